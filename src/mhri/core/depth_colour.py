@@ -1,0 +1,93 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Depth made visible: near is yellow, far is dark purple, invalid is a grey hatch.
+
+The map is viridis (matplotlib, S. van der Walt and N. Smith 2015): its lightness grows evenly, it
+can be read with any of the usual colour deficiencies, and unlike cividis it holds no grey. A hatch,
+because to some people any single grey is near some colour of the map.
+"""
+import math
+
+import cv2
+import numpy as np
+
+SMOOTH_S = 1.0
+LEAST_SPAN_M = 0.5
+_SAMPLES = 20_000
+_HATCH = ((96, 96, 96), (160, 160, 160))
+_HATCH_PERIOD = 8
+
+
+def _colours():
+    """Return viridis from far (0) to near (255) as cv2's table: 256 x 1 x 3, in RGB order."""
+    ramp = np.arange(256, dtype=np.uint8).reshape(256, 1)
+    return np.ascontiguousarray(cv2.applyColorMap(ramp, cv2.COLORMAP_VIRIDIS)[..., ::-1])
+
+
+_TABLE = _colours()
+
+
+def colour_at(depth_m, depth_range_m):
+    """Return the (r, g, b) in which a depth [m] is shown, for a scale beside the picture."""
+    near, far = depth_range_m
+    index = round(255 * (far - depth_m) / (far - near))
+    return tuple(int(value) for value in _TABLE[min(255, max(0, index)), 0])
+
+
+class DepthColour:
+    """Colours the pictures of one stream; the range follows the scene without flickering.
+
+    :param fixed_range_m: (near, far) [m], near < far; None: from the 2nd to the 98th percentile of
+        the valid pixels, smoothed over :data:`SMOOTH_S` seconds and never less than
+        :data:`LEAST_SPAN_M` wide
+    """
+
+    def __init__(self, fixed_range_m=None):
+        self._fixed = fixed_range_m
+        self._range = None
+        self._at = None
+        self._hatch = None
+
+    def colour(self, depth_m, now):
+        """Return (rgb uint8 (h, w, 3), (near, far) [m] or None where nothing was ever valid).
+
+        :param depth_m: float32 (h, w), NaN invalid
+        :param now: time of receipt [s], for the smoothing
+        """
+        depth_range = self._fixed or self._follow(depth_m, now)
+        if depth_range is None:
+            return self._hatched(depth_m.shape).copy(), None
+        near, far = depth_range
+        scale = 255.0 / (far - near)
+        valid = cv2.compare(depth_m, depth_m, cv2.CMP_EQ)
+        # cv2 rounds and clips to 0..255 on its own; NaN comes out as 0 and is hatched over.
+        shade = cv2.addWeighted(depth_m, -scale, depth_m, 0.0, far * scale, dtype=cv2.CV_8U)
+        rgb = cv2.applyColorMap(shade, _TABLE)
+        cv2.copyTo(self._hatched(depth_m.shape), cv2.bitwise_not(valid), rgb)
+        return rgb, depth_range
+
+    def _follow(self, depth_m, now):
+        """Return the range after one more picture."""
+        step = max(1, math.isqrt(depth_m.size // _SAMPLES))
+        sample = depth_m[::step, ::step]
+        sample = sample[sample == sample]
+        if len(sample) == 0:
+            return self._range
+        near, far = (float(value) for value in np.percentile(sample, (2, 98)))
+        if far - near < LEAST_SPAN_M:
+            middle = max((near + far) / 2, LEAST_SPAN_M / 2)
+            near, far = middle - LEAST_SPAN_M / 2, middle + LEAST_SPAN_M / 2
+        if self._range is not None:
+            weight = 1.0 - math.exp(-max(0.0, now - self._at) / SMOOTH_S)
+            near = self._range[0] + weight * (near - self._range[0])
+            far = self._range[1] + weight * (far - self._range[1])
+        self._range, self._at = (near, far), now
+        return self._range
+
+    def _hatched(self, shape):
+        """Return a picture of nothing but hatch."""
+        if self._hatch is None or self._hatch.shape[:2] != shape:
+            y, x = np.indices(shape)
+            dark = (x + y) % _HATCH_PERIOD < _HATCH_PERIOD // 2
+            self._hatch = np.where(dark[..., None], *(np.uint8(grey) for grey in _HATCH))
+        return self._hatch

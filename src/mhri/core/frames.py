@@ -1,0 +1,79 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pictures as plain values: what a camera feed hands to whoever shows them."""
+from dataclasses import dataclass
+from typing import Any, Optional, Tuple
+
+RGB = 'rgb'
+DEPTH = 'depth'
+
+# 8K video is 33 million pixels. What claims to be larger is taken for a corrupted header, so that
+# no frame can make the program allocate gigabytes.
+MAX_PIXELS = 40_000_000
+
+
+class FrameError(ValueError):
+    """A picture that cannot be decoded; the text says what it claims to be and what is wrong."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """One decoded picture, of the size it is shown at.
+
+    ``kind`` is 'rgb' or 'depth'; ``rgb`` a C-contiguous uint8 array (h, w, 3) in RGB order, ready
+    to show (depth: coloured already). ``depth_m``: float32 (h, w), distance along the optical axis
+    [m], NaN where invalid; None for 'rgb'. ``full_size`` is (width, height) of the picture as sent
+    [pixels]; ``depth_range_m`` the (near, far) of the colours [m] or None (rgb, or no valid pixel
+    yet). ``received_s``: time of receipt [s, monotonic].
+    """
+
+    kind: str
+    rgb: Any
+    depth_m: Any = None
+    full_size: Tuple[int, int] = (0, 0)
+    depth_range_m: Optional[Tuple[float, float]] = None
+    received_s: float = 0.0
+
+
+@dataclass(frozen=True)
+class StreamStatus:
+    """How a camera's stream does.
+
+    ``transport`` says what arrives: 'jpeg', 'png', 'raw', 'compressedDepth png' ...; '' before
+    the first picture. ``rate_hz`` and ``bits_per_s`` are what the network brought in the last 2 s;
+    ``age_s`` the age of the newest good picture [s], None before it. ``shown`` counts the pictures
+    that were taken, ``bad`` those that could not be decoded. ``problem`` names the last bad one, or
+    why nothing is there; '' while there is nothing to say. ``stale``: the newest good picture is
+    older than the newest bad one, or than 1 s.
+    """
+
+    transport: str = ''
+    rate_hz: float = 0.0
+    age_s: Optional[float] = None
+    bits_per_s: float = 0.0
+    shown: int = 0
+    bad: int = 0
+    problem: str = ''
+    stale: bool = False
+
+
+def check_size(what, width, height):
+    """Refuse a picture without pixels, or with more than :data:`MAX_PIXELS`.
+
+    :param what: how the picture calls itself, for the error's text
+    :raises FrameError: the size is absurd
+    """
+    if width <= 0 or height <= 0 or width * height > MAX_PIXELS:
+        raise FrameError('{}: refused, its header says {} x {} pixels'.format(what, width, height))
+
+
+def fit(full, view):
+    """Return the size at which to show a picture: within the view, same shape, never enlarged.
+
+    :param full: (width, height) of the picture [pixels], > 0
+    :param view: (width, height) of the room for it [pixels], or None for the full size
+    """
+    if view is None:
+        return full
+    scale = min(1.0, view[0] / full[0], view[1] / full[1])
+    return max(1, round(full[0] * scale)), max(1, round(full[1] * scale))

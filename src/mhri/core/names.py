@@ -1,0 +1,46 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Robot names: one segment of a ROS name, so that a robot is one namespace."""
+import re
+
+_LEGAL = re.compile(r'[A-Za-z][A-Za-z0-9_]*\Z')
+_GLOBAL = re.compile(r'(/[A-Za-z][A-Za-z0-9_]*)+\Z')
+MAX_LENGTH = 64
+
+
+def name_problem(name):
+    """Say why a text cannot be a robot's name; return None where it can.
+
+    A robot is a namespace of one segment: a letter, then letters, digits and ``_``
+    (http://wiki.ros.org/Names). A leading slash is the user's way of writing the same name and is
+    not forgiven here: strip it with :func:`tidy_name` first.
+    """
+    if not name:
+        return 'type the name of a robot first'
+    if len(name) > MAX_LENGTH:
+        return 'a name has at most {} characters'.format(MAX_LENGTH)
+    if '/' in name:
+        return 'a robot is one namespace: leave out the "/"'
+    if not (name[0].isascii() and name[0].isalpha()):
+        return 'a name begins with a letter from a to z'
+    if not _LEGAL.match(name):
+        odd = next(char for char in name if not re.match(r'[A-Za-z0-9_]', char))
+        shown = 'a space' if odd == ' ' else '"{}"'.format(odd) if odd.isprintable() else \
+            'a character that cannot be seen'
+        return 'use letters, digits and _ only: {} is not allowed'.format(shown)
+    return None
+
+
+def is_global_name(name):
+    """Tell whether a text is an absolute ROS name, e.g. ``/mux_in/joy``."""
+    return bool(_GLOBAL.match(name))
+
+
+def is_base_name(name):
+    """Tell whether a text is one legal segment of a ROS name."""
+    return bool(_LEGAL.match(name))
+
+
+def tidy_name(text):
+    """Return what the user most likely meant: no space around it, no slash in front or behind."""
+    return text.strip().strip('/')

@@ -1,0 +1,40 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which robots are in the list, and which of them are checked for control."""
+
+
+class Selection:
+    """An ordered list of robots, each checked or not; the order is that of adding."""
+
+    def __init__(self):
+        self._checked = {}
+
+    @property
+    def robots(self):
+        """All robots, in order."""
+        return tuple(self._checked)
+
+    @property
+    def selected(self):
+        """Names of the checked robots, in order."""
+        return tuple(name for name, checked in self._checked.items() if checked)
+
+    def add(self, name):
+        """Append a robot, unchecked; return False where it is there already."""
+        if name in self._checked:
+            return False
+        self._checked[name] = False
+        return True
+
+    def remove(self, name):
+        """Take a robot out; one that is not there is no error."""
+        self._checked.pop(name, None)
+
+    def check(self, names):
+        """Check exactly these robots; return the pair (newly checked, newly unchecked)."""
+        before, wanted = set(self.selected), set(names)
+        for name in self._checked:
+            self._checked[name] = name in wanted
+        after = set(self.selected)
+        return (tuple(name for name in self._checked if name in after - before),
+                tuple(name for name in self._checked if name in before - after))

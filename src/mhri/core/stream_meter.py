@@ -1,0 +1,37 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Rate and bandwidth of a stream over the last two seconds."""
+import collections
+
+WINDOW_S = 2.0
+_MOST = 2000
+
+
+class StreamMeter:
+    """Counts what arrives; not thread-safe, times are passed in."""
+
+    def __init__(self, window_s=WINDOW_S):
+        self._window_s = window_s
+        self._came = collections.deque(maxlen=_MOST)
+
+    def add(self, now, size):
+        """Note a message of so many bytes."""
+        self._came.append((now, size))
+        self._prune(now)
+
+    def _prune(self, now):
+        while self._came and self._came[0][0] < now - self._window_s:
+            self._came.popleft()
+
+    def read(self, now):
+        """Return (messages per second, bits per second); the rate is 0 with fewer than two."""
+        self._prune(now)
+        if not self._came:
+            return 0.0, 0.0
+        first, last = self._came[0][0], self._came[-1][0]
+        # From the first to the last, but an end of the stream shows at once: the rate falls.
+        span = max(last - first, now - first - 2.0 * (last - first) / max(1, len(self._came) - 1))
+        if len(self._came) < 2 or span <= 0.0:
+            return 0.0, 8.0 * self._came[0][1] / self._window_s
+        rate = (len(self._came) - 1) / span
+        return rate, 8.0 * rate * sum(size for _, size in self._came) / len(self._came)
