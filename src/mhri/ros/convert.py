@@ -1,0 +1,41 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Messages to values and back."""
+import math
+
+from geometry_msgs.msg import Twist
+
+from mhri.core.limits import Velocity
+from mhri.core.link import Motion
+
+
+def to_twist(linear_mps, angular_rad_s):
+    """Return a planar ``geometry_msgs/Twist`` (REP-103: x forward, z up)."""
+    message = Twist()
+    message.linear.x = linear_mps
+    message.angular.z = angular_rad_s
+    return message
+
+
+def from_twist(message):
+    """Return the planar part of a ``geometry_msgs/Twist`` as a :class:`Velocity`."""
+    return Velocity(message.linear.x, message.angular.z)
+
+
+def yaw_of(quaternion):
+    """Return the heading [rad, (-pi, pi]] of an orientation about the vertical axis."""
+    x, y, z, w = quaternion.x, quaternion.y, quaternion.z, quaternion.w
+    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+
+def motion_from_odometry(message):
+    """Return the :class:`Motion` of a ``nav_msgs/Odometry``."""
+    pose, twist = message.pose.pose, message.twist.twist
+    return Motion(twist.linear.x, twist.angular.z, pose.position.x, pose.position.y,
+                  yaw_of(pose.orientation))
+
+
+def motion_from_turtle_pose(message):
+    """Return the :class:`Motion` of a ``turtlesim/Pose``."""
+    return Motion(message.linear_velocity, message.angular_velocity, message.x, message.y,
+                  message.theta)

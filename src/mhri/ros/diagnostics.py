@@ -1,0 +1,33 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""``/diagnostics`` of a node: diagnostic_updater at 1 Hz on a thread that outlives the master."""
+import threading
+
+import diagnostic_updater
+import rospy
+
+
+def publish_diagnostics(tasks):
+    """Publish ``diagnostic_msgs/DiagnosticArray`` on ``/diagnostics`` once a second until shutdown.
+
+    :param tasks: {name: function that fills a ``DiagnosticStatusWrapper`` and returns it}
+    :returns: a ``threading.Event``; set, it ends them earlier
+    """
+    updater = diagnostic_updater.Updater()
+    updater.setHardwareID('mhri')
+    for name, task in tasks.items():
+        updater.add(name, task)
+    done = threading.Event()
+    rospy.on_shutdown(done.set)
+
+    def run():
+        """Update until the node ends.
+
+        Not by update(), which subscribes to a parameter at the master each time: a node that is
+        just ending would thereby register its name anew, and end the one that has taken it over.
+        """
+        while not done.wait(1.0):
+            updater.force_update()
+
+    threading.Thread(target=run, name='diagnostics', daemon=True).start()
+    return done

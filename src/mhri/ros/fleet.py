@@ -1,0 +1,138 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The robots of the panel: their types, links and gates, made and mended off the GUI thread."""
+import threading
+import time
+from dataclasses import replace
+
+import rospy
+
+from mhri.core.robot_types import resolve_robot_type
+from mhri.core.views import GONE, RobotView, WAITING
+from mhri.ros.bot_feeds import BotFeeds
+from mhri.ros.gates import Gate
+from mhri.ros.graph import robot_parameters
+from mhri.ros.master_api import MasterError
+from mhri.ros.robot_link import RobotLink
+
+
+class Fleet:
+    """The links of the robots in the list.
+
+    :param types: {name: RobotType}
+    :param bank: :class:`mhri.ros.gates.GateBank`
+    :param worker: :class:`mhri.ros.worker.Worker` for the feeds of the windows
+    """
+
+    def __init__(self, types, bank, worker, clock=time.monotonic):
+        self._types = types
+        self._bank = bank
+        self._worker = worker
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._links = {}
+        self._wanted = set()
+        self._problems = {}
+
+    def want(self, name):
+        """Take note that a robot is in the list; :meth:`connect` makes its link."""
+        with self._lock:
+            self._wanted.add(name)
+
+    def drop(self, name):
+        """Stop a robot and forget it; return its link for :meth:`RobotLink.close`, or None."""
+        with self._lock:
+            self._wanted.discard(name)
+            link = self._links.pop(name, None)
+        self._bank.remove(name)
+        return link
+
+    def connect(self, name, parameters=None):
+        """Make the link of a robot, or a new one where its type has changed (blocking).
+
+        :param parameters: its parameters where they are known already
+        """
+        try:
+            if parameters is None:
+                parameters = robot_parameters(rospy.get_name(), [name])[name]
+        except MasterError as error:
+            rospy.logwarn('%s: %s', name, error)
+            return
+        robot_type, errors = resolve_robot_type(self._types, name, parameters)
+        with self._lock:
+            old = self._links.get(name)
+            self._report(name, errors)
+            if name not in self._wanted or old and (
+                    old.robot_type == robot_type or not parameters.get('robot_type')):
+                return
+            self._links.pop(name, None)
+        if old is not None:
+            self._bank.remove(name)
+            old.close()
+        link = RobotLink(name, robot_type, Gate(name, robot_type),
+                         BotFeeds(name, robot_type, self._worker))
+        with self._lock:
+            self._links[name] = link
+        self._bank.add(link.gate)
+        if self._bank.stopped:
+            link.on_stop(True, self._clock())
+
+    def _report(self, name, errors):
+        """Log problems of a robot's parameters once."""
+        words = [str(error) for error in errors]
+        if words and self._problems.get(name) != words:
+            for text in words:
+                rospy.logwarn('%s', text)
+        self._problems[name] = words
+
+    def supervise(self):
+        """Look again at the type of each robot that is not heard: it may have come up meanwhile."""
+        with self._lock:
+            names = [name for name in self._wanted if name not in self._links
+                     or self._links[name].view().link in (WAITING, GONE)
+                     or self._links[name].robot_type.name == 'generic']
+        try:
+            parameters = robot_parameters(rospy.get_name(), names)
+        except MasterError as error:
+            rospy.logdebug('the robots cannot be looked at now: %s', error)
+            return
+        for name in names:
+            self.connect(name, parameters[name])
+
+    def on_stop(self, stopped, now):
+        """Begin or end the proof of a stop for every robot."""
+        with self._lock:
+            links = list(self._links.values())
+        for link in links:
+            link.on_stop(stopped, now)
+
+    def robot_type(self, name):
+        """Return the :class:`RobotType` of a robot, None before its link is made."""
+        with self._lock:
+            link = self._links.get(name)
+        return link.robot_type if link else None
+
+    def feeds(self, name):
+        """Return the :class:`BotFeeds` of a robot, None before its link is made."""
+        with self._lock:
+            link = self._links.get(name)
+        return link.feeds if link else None
+
+    def view(self, name, selected):
+        """Return the :class:`RobotView` of one robot."""
+        with self._lock:
+            link = self._links.get(name)
+            problems = self._problems.get(name)
+        if link is None:
+            return RobotView(name=name, selected=selected, note='looking for it')
+        view = link.view()
+        note = view.note or (problems[0] if problems else '')
+        return replace(view, selected=selected, note=note)
+
+    def close(self):
+        """Give the topics of all robots back (blocking)."""
+        with self._lock:
+            self._wanted.clear()
+            links, self._links = list(self._links.values()), {}
+        for link in links:
+            link.close()

@@ -1,0 +1,81 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The ROS master asked directly, with a time limit on every call.
+
+rospy's own master proxy has none: a master that is out of reach (not refused, but silent) blocks
+the caller for minutes.
+"""
+import http.client
+import xmlrpc.client
+
+import rosgraph
+
+ERRORS = (OSError, xmlrpc.client.Error, http.client.HTTPException)
+
+
+class MasterError(Exception):
+    """The master cannot be reached, or refused the call; the text says which and where."""
+
+
+class TimedTransport(xmlrpc.client.Transport):
+    """HTTP with a socket timeout [s]."""
+
+    def __init__(self, timeout_s):
+        super().__init__()
+        self._timeout_s = timeout_s
+
+    def make_connection(self, host):
+        """Return the (kept) connection, with the timeout set."""
+        connection = super().make_connection(host)
+        connection.timeout = self._timeout_s
+        return connection
+
+
+class MasterApi:
+    """Calls to the master (http://wiki.ros.org/ROS/Master_API), one at a time, not thread-safe.
+
+    :param caller_id: the name under which to ask
+    :param timeout_s: the most one call may take [s]
+    :param uri: the master; default ``ROS_MASTER_URI``
+    """
+
+    def __init__(self, caller_id, timeout_s=1.0, uri=None):
+        self.uri = uri or rosgraph.get_master_uri()
+        self._caller_id = caller_id
+        self._proxy = xmlrpc.client.ServerProxy(self.uri, transport=TimedTransport(timeout_s))
+
+    def call(self, method, *args):
+        """Call a method of the master and return the value of its answer.
+
+        :raises MasterError: no answer in time, or an answer that is not "success"
+        """
+        try:
+            code, message, value = getattr(self._proxy, method)(self._caller_id, *args)
+        except ERRORS as error:
+            raise MasterError('no answer from the ROS master at {}: {}'.format(self.uri, error))
+        if code != 1:
+            raise MasterError('the ROS master at {} refused {}: {}'.format(
+                self.uri, method, message))
+        return value
+
+    def call_many(self, calls):
+        """Send several calls as one request.
+
+        :param calls: [(method, arg, ...)]
+        :returns: their values in order; None where the master refused the single call
+        :raises MasterError: no answer in time
+        """
+        batch = xmlrpc.client.MultiCall(self._proxy)
+        for method, *args in calls:
+            getattr(batch, method)(self._caller_id, *args)
+        try:
+            return [value if code == 1 else None for code, _, value in batch()]
+        except ERRORS as error:
+            raise MasterError('no answer from the ROS master at {}: {}'.format(self.uri, error))
+
+    def node_uri(self, name):
+        """Return the URI under which a node is registered, or None where it is not.
+
+        :raises MasterError: the master cannot be reached
+        """
+        return self.call_many([('lookupNode', name)])[0]

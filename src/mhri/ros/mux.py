@@ -1,0 +1,229 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The mux node: ROS around :class:`mhri.core.arbiter.Arbiter`, which holds every rule.
+
+Interfaces (all global names; units SI):
+
+- subscribes to each source's topic (``sensor_msgs/Joy``), ``/mux_in/mode_select``
+  (``mhri/ControlMode``) and ``/mux_in/speed_limit`` (``geometry_msgs/Twist``: ``linear.x`` m/s,
+  ``angular.z`` rad/s)
+- publishes ``/robot_controller/twist`` (``geometry_msgs/Twist``, on events and at 20 Hz),
+  ``/robot_controller/stop_all`` (``std_msgs/Bool``, latched), ``/mux/mode`` (``mhri/ControlMode``,
+  latched), ``/mux/speed_limit`` (``geometry_msgs/Twist``, latched), ``/mux/waits_for``
+  (``std_msgs/String``, latched: '' or one of release, source, neutral, dead_man)
+- serves ``/mux/set_stop_all`` (``std_srvs/SetBool``)
+- parameters: ``~config`` (path of the sources' YAML, default ``resource/mux.yaml``),
+  ``/mux/sources`` (written: list of {name, label}), ``/mux/stop_all`` (written, and read at start,
+  so that a mux that crashed while everything was stopped comes back stopped)
+"""
+import threading
+import time
+
+from geometry_msgs.msg import Twist
+import rospy
+from sensor_msgs.msg import Joy
+from std_msgs.msg import Bool, String
+from std_srvs.srv import SetBool, SetBoolResponse
+
+from mhri.core.arbiter import Arbiter, REPEAT_HZ, ZEROS_S
+from mhri.core.limits import ZERO
+from mhri.core.profile import JoyRefused
+from mhri.msg import ControlMode
+from mhri.ros.convert import to_twist
+from mhri.ros.master_api import MasterError
+from mhri.ros.master_watch import MasterWatch
+from mhri.ros.mux_diagnostics import MuxDiagnostics
+from mhri.ros.mux_takeover import is_superseded
+from mhri.ros.suspender import Suspender
+
+STOP_PARAMETER = '/mux/stop_all'
+SOURCES_PARAMETER = '/mux/sources'
+
+
+class Mux:
+    """The one publisher of ``/robot_controller/twist``.
+
+    :param config: :class:`mhri.core.sources.MuxConfig`
+    :param clock: function returning seconds that never go back
+    """
+
+    def __init__(self, config, clock=time.monotonic):
+        self._clock = clock
+        self._arbiter = Arbiter(config, clock())
+        self._changed = threading.Condition(threading.RLock())
+        self._said_waiting = None
+        self._closing = False
+        self._service = None
+        self._twist = rospy.Publisher('/robot_controller/twist', Twist, queue_size=1,
+                                      tcp_nodelay=True)
+        self._mode = rospy.Publisher('/mux/mode', ControlMode, queue_size=10, latch=True)
+        self._stop = rospy.Publisher('/robot_controller/stop_all', Bool, queue_size=10, latch=True)
+        self._limit = rospy.Publisher('/mux/speed_limit', Twist, queue_size=10, latch=True)
+        self._waits = rospy.Publisher('/mux/waits_for', String, queue_size=10, latch=True)
+        self._suspender = Suspender([source.suspend_service for source in config.sources
+                                     if source.suspend_service])
+        self._watch = MasterWatch(
+            on_lost=lambda reason: self._hold('master'),
+            parameters={SOURCES_PARAMETER: [{'name': source.name, 'label': source.label}
+                                            for source in config.sources]})
+        self._config = config
+        self._remembering = threading.Lock()
+        self._diagnostics = MuxDiagnostics(self._arbiter, self._changed, self._suspender, clock,
+                                           config)
+
+    def start(self, stopped):
+        """Open for business.
+
+        :param stopped: begin with stop-all in force
+        """
+        rospy.on_shutdown(self.close)
+        if stopped:
+            self._arbiter.engage_stop_all(self._clock())
+        self._watch.start()
+        self._service = rospy.Service('/mux/set_stop_all', SetBool, self._on_stop_all)
+        self._listen('/mux_in/mode_select', ControlMode, self._on_mode, queue_size=10)
+        self._listen('/mux_in/speed_limit', Twist, self._on_limit, queue_size=1)
+        for source in self._config.sources:
+            self._listen(source.topic, Joy, self._on_joy, callback_args=source.name,
+                         queue_size=1, tcp_nodelay=True)
+        self._suspender.activate(self._arbiter.source.suspend_service)
+        threading.Thread(target=self._run, name='mux_timer', daemon=True).start()
+        self._diagnostics.start()
+        with self._changed:
+            self._announce()
+
+    def _listen(self, *args, **kwargs):
+        """Subscribe, unless this mux has been told to end while it was starting.
+
+        A registration made after a newer mux has taken the name would end that one as well
+        (ros_comm#2018).
+        """
+        if not self._closing:
+            rospy.Subscriber(*args, **kwargs)
+
+    def _announce(self):
+        """Publish the latched state anew."""
+        self._mode.publish(source=self._arbiter.mode)
+        self._stop.publish(data=self._arbiter.stop_all)
+        limits = self._arbiter.limits
+        self._limit.publish(to_twist(*limits))
+
+    def _send(self, velocity):
+        """Publish what a rule returned, and say what is waited for now; call it with the lock held.
+
+        Publishing inside the lock keeps a zero behind the command that it ends.
+        """
+        if self._closing:
+            return
+        if velocity is not None:
+            self._twist.publish(to_twist(velocity.linear_mps, velocity.angular_rad_s))
+        waiting = self._arbiter.waits_for(self._clock())
+        if waiting != self._said_waiting:
+            self._said_waiting = waiting
+            self._waits.publish(data=waiting)
+        self._changed.notify()
+
+    def _on_joy(self, message, name):
+        """Guard of the thread of one Joy subscriber."""
+        device = message._connection_header.get('callerid') if message._connection_header else None
+        try:
+            with self._changed:
+                self._send(self._arbiter.on_joy(
+                    name, message.axes, message.buttons, device, self._clock()))
+        except JoyRefused as refusal:
+            # Not while the lock is held: a log that blocks must not hold up a zero.
+            rospy.logwarn_throttle(1.0, 'refused from {}: {}'.format(name, refusal))
+
+    def _on_mode(self, message):
+        try:
+            with self._changed:
+                before = self._arbiter.mode
+                self._send(self._arbiter.on_mode(message.source, self._clock()))
+                changed = self._arbiter.mode != before
+                if changed:
+                    self._mode.publish(source=self._arbiter.mode)
+                self._suspender.activate(self._arbiter.source.suspend_service)
+        except KeyError:
+            rospy.logwarn_throttle(
+                1.0, 'no source {!r}: the mode stays {!r}. Sources are rows of mux.yaml'.format(
+                    message.source, before))
+            return
+        if changed:
+            rospy.loginfo('driving with %s', message.source)
+
+    def _on_limit(self, message):
+        problem = None
+        with self._changed:
+            try:
+                self._send(self._arbiter.set_limits(
+                    message.linear.x, message.angular.z, self._clock()))
+            except ValueError as error:
+                problem = error
+            self._limit.publish(to_twist(*self._arbiter.limits))
+        if problem:
+            rospy.logwarn_throttle(1.0, '{}; the old one stays'.format(problem))
+
+    def _on_stop_all(self, request):
+        """Serve ``/mux/set_stop_all``."""
+        with self._changed:
+            if request.data:
+                self._send(self._arbiter.engage_stop_all(self._clock()))
+                self._stop.publish(data=True)
+                answer = SetBoolResponse(True, 'everything is stopped')
+            else:
+                problem = self._arbiter.release_stop_all(self._clock())
+                self._send(None)
+                self._stop.publish(data=self._arbiter.stop_all)
+                answer = SetBoolResponse(problem is None, problem or 'released: centre the stick')
+        self._remember_stop()
+        return answer
+
+    def _remember_stop(self):
+        """Write stop-all down where the next mux finds it, before the answer is given."""
+        with self._remembering:
+            stopped = self._arbiter.stop_all
+            try:
+                self._watch.set_parameter(STOP_PARAMETER, stopped)
+            except MasterError as error:
+                rospy.logwarn('stop-all is %s, but the next mux will not know: %s', stopped, error)
+
+    def _hold(self, cause):
+        with self._changed:
+            self._send(self._arbiter.on_hold(cause, self._clock()))
+
+    def _run(self):
+        """Send what time demands: repetitions, the zero of a silent source, the later zeros."""
+        with self._changed:
+            while not self._closing:
+                now = self._clock()
+                self._send_due(now)
+                self._changed.wait(max(0.0, self._arbiter.next_tick(now) - self._clock()))
+
+    def _send_due(self, now):
+        """Let the arbiter's time pass; ask a silent input node once more."""
+        was_waiting = self._said_waiting
+        self._send(self._arbiter.tick(now))
+        if self._said_waiting == 'source' and was_waiting == 'source':
+            self._suspender.resume_again()
+
+    def close(self):
+        """Stop the robots: a zero now, more for half a second, then nothing ever again.
+
+        Where a newer mux has taken over, the first zero is the last: more of them would break into
+        its commands.
+        """
+        zero = to_twist(ZERO.linear_mps, ZERO.angular_rad_s)
+        with self._changed:
+            if self._closing:
+                return
+            self._closing = True
+            self._twist.publish(zero)
+            self._changed.notify()
+        self._diagnostics.stop()
+        self._watch.stop()
+        uri = self._service.uri if self._service else None
+        for _ in range(int(ZEROS_S * REPEAT_HZ)):
+            time.sleep(1.0 / REPEAT_HZ)
+            if is_superseded(uri):
+                return
+            self._twist.publish(zero)

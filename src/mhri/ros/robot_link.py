@@ -1,0 +1,148 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""One robot as this program hears it: its odometry, its link and the proof of its stops."""
+import importlib
+import threading
+import time
+
+import rospy
+
+from mhri.core.link import link_note, link_state
+from mhri.core.stop_proof import StopProof
+from mhri.core.views import RobotView
+from mhri.ros.convert import motion_from_odometry, motion_from_turtle_pose
+
+_READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
+            'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
+
+
+class Feed:
+    """The messages of one topic, each handed on with the time it came.
+
+    rospy has one connection for all subscribers of a topic in a program, and the class of whoever
+    came first decides what all of them get. So this asks for the real class, that an rqt plugin
+    beside the panel may rely on, and takes bytes (``rospy.AnyMsg``) where another asked for those.
+
+    :param read: function from the message to a value
+    :param on_message: called with (feed, message, received at [s]) on the ROS thread
+    """
+
+    def __init__(self, topic, message_class, read, on_message):
+        self.topic = topic
+        self._class = message_class
+        self._read = read
+        self._on_message = on_message
+        self._subscriber = rospy.Subscriber(topic, message_class, self._hear, queue_size=1,
+                                            tcp_nodelay=True)
+
+    def _hear(self, message):
+        self._on_message(self, message, time.monotonic())
+
+    def value(self, message):
+        """Return the value in a message."""
+        if isinstance(message, rospy.AnyMsg):
+            message = self._class().deserialize(message._buff)
+        return self._read(message)
+
+    def connections(self):
+        """Return the number of publishers connected; 0 once it has stopped listening."""
+        subscriber = self._subscriber
+        return subscriber.get_num_connections() if subscriber else 0
+
+    def unregister(self):
+        """Stop listening (blocking: it asks the master); others may look at it all the while."""
+        subscriber, self._subscriber = self._subscriber, None
+        subscriber.unregister()
+
+
+class RobotLink:
+    """A robot's newest motion, kept under a lock for the GUI thread to take.
+
+    :param name: the robot's namespace
+    :param robot_type: :class:`mhri.core.robot_types.RobotType`
+    :param gate: :class:`mhri.ros.gates.Gate` of the robot
+    :param feeds: :class:`mhri.ros.bot_feeds.BotFeeds` of its window
+    """
+
+    def __init__(self, name, robot_type, gate, feeds, clock=time.monotonic):
+        self.name = name
+        self.robot_type = robot_type
+        self.gate = gate
+        self.feeds = feeds
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._added_at = clock()
+        self._heard_at = None
+        self._heard_wall = ''
+        self._pending = None
+        self._motion = None
+        self._proof = None
+        self._feeds = self._open_feeds()
+
+    def _open_feeds(self):
+        """Subscribe the odometry topics of the template."""
+        module, class_name, read = _READERS[self.robot_type.odometry_type]
+        try:
+            message_class = getattr(importlib.import_module(module), class_name)
+        except ImportError:
+            rospy.logwarn('%s: cannot read its odometry, %s is not installed here', self.name,
+                          self.robot_type.odometry_type)
+            return []
+        return [Feed('/{}/{}'.format(self.name, topic), message_class, read, self._on_message)
+                for topic in self.robot_type.odometry]
+
+    def _on_message(self, feed, message, now):
+        with self._lock:
+            self._heard_at = now
+            self._pending = (feed, message)
+            if self._proof is not None:
+                self._take()
+                self._proof.on_motion(self._motion, now)
+
+    def _take(self):
+        """Read the newest message, where it has not been read yet."""
+        if self._pending is not None:
+            feed, message = self._pending
+            self._pending = None
+            self._motion = feed.value(message)
+
+    def on_stop(self, stopped, now):
+        """Begin (or end) the proof of a stop."""
+        with self._lock:
+            self._proof = StopProof(now) if stopped else None
+
+    @property
+    def stopped_ms(self):
+        """Time that the robot took to stand still at the stop in force [ms], None before that."""
+        with self._lock:
+            return self._proof.stopped_ms if self._proof else None
+
+    def view(self):
+        """Return the :class:`RobotView` of this moment."""
+        now = self._clock()
+        connections = sum(feed.connections() for feed in self._feeds)
+        with self._lock:
+            self._take()
+            age = None if self._heard_at is None else now - self._heard_at
+            motion, limits = self._motion, self.robot_type.limits
+            state = link_state(age, connections)
+            if age is not None and (age < 1.0 or not self._heard_wall):
+                self._heard_wall = time.strftime('%H:%M:%S')
+            proof = self._proof.view(now) if self._proof else None
+        return RobotView(
+            name=self.name, type_label=self.robot_type.label, window=self.robot_type.window,
+            link=state, age_s=age,
+            note=link_note(state, age, self._heard_wall, now - self._added_at),
+            linear_mps=motion and motion.linear_mps, angular_rad_s=motion and motion.angular_rad_s,
+            heading_rad=motion and motion.heading_rad, x_m=motion and motion.x_m,
+            y_m=motion and motion.y_m, selected=self.gate.rule.selected,
+            driven=self.gate.rule.driving and self.gate.reachable(),
+            moving=motion is not None and age < 1.0 and not motion.is_standstill(), proof=proof,
+            max_linear_mps=limits.linear_mps, max_angular_rad_s=limits.angular_rad_s)
+
+    def close(self):
+        """Stop listening and give the velocity topics back (blocking: it asks the master)."""
+        self.feeds.close()
+        for feed in self._feeds:
+            feed.unregister()
+        self.gate.unregister()
