@@ -1,0 +1,245 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The panel: robots on the left, driving on the right, stop-all and one sentence below."""
+import base64
+
+from python_qt_binding.QtCore import QByteArray, Qt, Signal
+from python_qt_binding.QtWidgets import QPushButton, QWidget
+
+from mhri.core.views import PanelView
+from mhri.gui import theme, words
+from mhri.gui.drive_keys import DriveKeys, mark_drive_area
+from mhri.gui.forms import load_form
+from mhri.gui.labels import Sign, TextLine
+from mhri.gui.mode_combo import ModeCombo
+from mhri.gui.pending import Pace
+from mhri.gui.robot_list import RobotList
+from mhri.gui.speed_limits import SpeedLimits
+from mhri.gui.status_line import StatusLine
+from mhri.gui.stop_bar import StopBar
+from mhri.gui.virtual_joystick import VirtualJoystick
+
+VIRTUAL_JOYSTICK = 'joy'
+NUMBERS_PERIOD_S = 0.25
+
+_WIDGETS = (
+    ModeCombo, RobotList, Sign, SpeedLimits, StatusLine, StopBar, TextLine, VirtualJoystick)
+
+
+class PanelWidget(QWidget):
+    """Everything an operator needs, in one widget for rqt and for a window of its own.
+
+    Values in (:meth:`show_view`), signals out; it decides nothing and knows no ROS. The host
+    installs :attr:`drive_keys` as an event filter of the application.
+
+    :param ui_dir: folder of ``panel.ui``
+    """
+
+    #: "Look for Connected Bots"
+    look_requested = Signal()
+    #: text of the name field
+    add_requested = Signal(str)
+    #: robot to take off the list
+    remove_requested = Signal(str)
+    #: every name that should be selected now, in list order
+    selection_requested = Signal(list)
+    #: a row was highlighted: its window comes to the front
+    activated = Signal(str)
+    #: double click or Return on a row: its window opens, without selecting
+    open_requested = Signal(str)
+    #: name of a source
+    mode_requested = Signal(str)
+    #: forward (ahead +) and turn (left +), each in [-1, 1]; at once on every change
+    stick_moved = Signal(float, float)
+    #: m/s, rad/s
+    limits_requested = Signal(float, float)
+    stop_requested = Signal()
+    release_requested = Signal()
+
+    def __init__(self, ui_dir, parent=None):
+        super().__init__(parent)
+        self._view = PanelView()
+        self._stick = (0.0, 0.0)
+        self._numbers = Pace(NUMBERS_PERIOD_S)
+        self._build(ui_dir)
+        self._connect()
+        self._restore()
+
+    def _build(self, ui_dir):
+        """Load the form and set what a form cannot say."""
+        self.setFont(theme.base_font(self.font()))
+        load_form(ui_dir, 'panel.ui', self, _WIDGETS)
+        self.drive_keys = DriveKeys(self)
+        mark_drive_area(self)
+        # A click beside a text field ends the typing, so that the keys drive again.
+        self.setFocusPolicy(Qt.ClickFocus)
+        touch = theme.touch_size(self)
+        for button in (self.look_button, self.add_button, self.all_button, self.none_button,
+                       self.remove_button, self.name_edit, self.mode_combo):
+            button.setMinimumHeight(touch)
+            if isinstance(button, QPushButton):
+                button.setFocusPolicy(Qt.TabFocus)
+                button.setMinimumWidth(button.sizeHint().width() + touch // 2)
+        for label, side in ((self.linear_label, Qt.AlignRight), (self.turn_label, Qt.AlignLeft)):
+            label.setFont(theme.number_font(theme.larger(self.font(), 1.1)))
+            label.setAlignment(side | Qt.AlignVCenter)
+        self.drive_note.setAlignment(Qt.AlignCenter)
+        self.name_edit.setTextMargins(touch // 6, 0, touch // 6, 0)
+        self.splitter.setCollapsible(0, False)
+        self.splitter.setCollapsible(1, False)
+
+    def _connect(self):
+        """Wire widgets to signals."""
+        self.look_button.clicked.connect(self._look)
+        self.add_button.clicked.connect(self._add)
+        self.name_edit.returnPressed.connect(self._add)
+        self.name_edit.textEdited.connect(self._on_name_edited)
+        self.remove_button.clicked.connect(self._remove)
+        self.all_button.clicked.connect(self.robot_list.select_all)
+        self.none_button.clicked.connect(self.robot_list.select_none)
+        for name in ('selection_requested', 'activated', 'open_requested'):
+            getattr(self.robot_list, name).connect(getattr(self, name))
+        self.robot_list.activated.connect(self._on_highlight)
+        self.mode_combo.mode_requested.connect(self.mode_requested)
+        self.speed_limits.limits_requested.connect(self.limits_requested)
+        self.stop_bar.stop_requested.connect(self._on_stop)
+        self.stop_bar.release_requested.connect(self.release_requested)
+        self.joystick.moved.connect(self._on_stick)
+        self.drive_keys.moved.connect(self._on_stick)
+        self.drive_keys.centre_pressed.connect(self.centre_stick)
+        self.drive_keys.stop_pressed.connect(self.stop_bar.request_stop)
+        self.drive_keys.robot_pressed.connect(self.robot_list.toggle)
+        self.drive_keys.all_pressed.connect(self.robot_list.toggle_all)
+
+    def _restore(self):
+        """Begin with an empty view, and with nothing said."""
+        self.show_name_problem('')
+        self.show_look_result('')
+        self.show_view(self._view)
+
+    def show_view(self, view):
+        """Show a :class:`mhri.core.views.PanelView`; cheap enough for 20 times a second.
+
+        States show at once, numbers at most four times a second.
+        """
+        self._view = view
+        numbers = self._numbers.due()
+        self.robot_list.show_robots(view.robots, numbers)
+        self.mode_combo.show_mode(view.sources, view.mode)
+        self.speed_limits.show_limits(view.limits)
+        self.stop_bar.show_stop(view.stop_all, view.stop_note)
+        self.status_line.show_status(view.status, view.status_level)
+        self._show_buttons()
+        self._show_stick(numbers)
+
+    def show_name_problem(self, text):
+        """Say below the name field why a name was refused; '' clears it."""
+        self.name_problem_label.show_text(text)
+        self.name_problem_sign.show_sign((theme.TRIANGLE, theme.ATTENTION) if text else None)
+
+    def show_look_result(self, text, busy=False):
+        """Say beside the button what looking found; ``busy`` while it looks."""
+        self.look_label.show_text(text, theme.MUTED)
+        self.look_button.setEnabled(not busy)
+
+    def clear_name(self):
+        """Empty the name field, after its robot was added."""
+        self.name_edit.clear()
+        self.show_name_problem('')
+
+    def stick(self):
+        """Return (forward, turn), each in [-1, 1], as held by pointer or keys now."""
+        return self._stick
+
+    def centre_stick(self):
+        """Let the stick go: pointer and keys have to take it again."""
+        self.drive_keys.centre()
+        self.joystick.centre()
+
+    def hideEvent(self, event):  # noqa: N802
+        """Let the stick go: nobody drives by a panel that cannot be seen."""
+        self.centre_stick()
+        super().hideEvent(event)
+
+    def save_settings(self):
+        """Return what only concerns the looks as a plain dict of JSON values."""
+        settings = {'splitter': self.splitter.sizes()}
+        if self.isWindow():
+            geometry = bytes(self.saveGeometry())
+            settings['geometry'] = base64.b64encode(geometry).decode('ascii')
+        return settings
+
+    def restore_settings(self, settings):
+        """Take back what :meth:`save_settings` returned; what cannot be used is left out."""
+        sizes = settings.get('splitter')
+        if isinstance(sizes, (list, tuple)) and len(sizes) == 2:
+            try:
+                self.splitter.setSizes([int(size) for size in sizes])
+            except (TypeError, ValueError):
+                pass
+        geometry = settings.get('geometry')
+        if isinstance(geometry, str) and self.isWindow():
+            self.restoreGeometry(QByteArray.fromBase64(geometry.encode('ascii', 'ignore')))
+
+    def _look(self):
+        """Ask to look for robots."""
+        self.look_requested.emit()
+
+    def _on_name_edited(self, text):
+        """Take back what was said about another name."""
+        self.show_name_problem('')
+
+    def _on_highlight(self, name):
+        """Enable what acts on the highlighted robot."""
+        self._show_buttons()
+
+    def _add(self):
+        """Ask for the robot in the name field."""
+        self.add_requested.emit(self.name_edit.text())
+
+    def _remove(self):
+        """Ask to take the highlighted robot off the list."""
+        if self.robot_list.current is not None:
+            self.remove_requested.emit(self.robot_list.current)
+
+    def _on_stop(self):
+        """Stop: the stick goes to neutral first, then everything else is told."""
+        self.centre_stick()
+        self.stop_requested.emit()
+
+    def _on_stick(self):
+        """Put pointer and keys together: the pointer wins while it holds the knob."""
+        keys = self.drive_keys.deflection()
+        self.joystick.show_keys(*keys)
+        stick = self.joystick.deflection() if self.joystick.dragging else keys
+        if stick != self._stick:
+            neutral = stick == (0.0, 0.0)
+            self._stick = stick
+            self.stick_moved.emit(*stick)
+            self._show_stick(neutral or self._numbers.due())
+
+    def _show_buttons(self):
+        """Enable what has something to act on."""
+        self.remove_button.setEnabled(self.robot_list.current is not None)
+        self.all_button.setEnabled(bool(self._view.robots))
+        self.none_button.setEnabled(bool(self._view.robots))
+
+    def _show_stick(self, numbers):
+        """Show what the stick asks for, and whether anybody listens to it."""
+        view = self._view
+        in_force = view.mode == VIRTUAL_JOYSTICK and not view.stop_all
+        self.joystick.show_active(in_force)
+        if view.stop_all:
+            note = 'no effect: everything is stopped'
+        elif view.mode is None:
+            note = 'no effect: the mode is not known yet'
+        elif not in_force:
+            note = 'no effect: {} drives'.format(self.mode_combo.label_of(view.mode))
+        else:
+            note = 'drag, arrow keys or W A S D; space centres'
+        self.drive_note.show_text(note, theme.MUTED)
+        if numbers:
+            tone = theme.TEXT if in_force else theme.MUTED
+            linear, turn = words.command_texts(*self._stick, limits=view.limits)
+            self.linear_label.show_text(linear, tone)
+            self.turn_label.show_text(turn, tone)

@@ -1,0 +1,98 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Numbers and states in the words of a person: fixed number of digits, units, never "None"."""
+import math
+
+from mhri.core import views
+
+UNKNOWN = '–'
+
+LINK_WORDS = {
+    views.WAITING: 'waiting',
+    views.LIVE: 'live',
+    views.SILENT: 'silent',
+    views.GONE: 'gone',
+}
+
+
+def _is_number(value):
+    """Tell whether a value can be shown as a number: neither None nor NaN nor infinite."""
+    return value is not None and math.isfinite(value)
+
+
+def age_text(age_s):
+    """Return an age [s] with two digits, e.g. "12 ms", "3.2 s", "4 min"; '' for None and NaN."""
+    if not _is_number(age_s):
+        return ''
+    age_ms = max(0.0, age_s) * 1000.0
+    if age_ms < 99.5:
+        return '{:.0f} ms'.format(age_ms)
+    if age_ms < 995.0:
+        return '{:.0f} ms'.format(round(age_ms, -1))
+    if age_s < 59.95:
+        return '{:.1f} s'.format(age_s)
+    if age_s < 3570.0:
+        return '{:.0f} min'.format(age_s / 60.0)
+    return '{:.0f} h'.format(age_s / 3600.0)
+
+
+def linear_text(linear_mps):
+    """Return a speed [m/s] along x, e.g. "0.31 m/s" or "back 0.31 m/s"; a dash for None and NaN."""
+    return _directed(linear_mps, '', 'back ', 'm/s')
+
+
+def turn_text(angular_rad_s):
+    """Return a yaw rate [rad/s, left positive], e.g. "left 0.20 rad/s"; a dash for None and NaN."""
+    return _directed(angular_rad_s, 'left ', 'right ', 'rad/s')
+
+
+def rate_text(angular_rad_s):
+    """Return a yaw rate without direction, e.g. "3.14 rad/s"; a dash for None and NaN."""
+    return _directed(angular_rad_s, '', '-', 'rad/s')
+
+
+def _directed(value, positive, negative, unit):
+    """Return a number with the word of its direction; what rounds to zero has none."""
+    if not _is_number(value):
+        return UNKNOWN
+    shown = round(abs(value), 2)
+    word = '' if shown == 0.0 else positive if value > 0.0 else negative
+    return '{}{:.2f} {}'.format(word, shown, unit)
+
+
+def command_texts(forward, turn, limits):
+    """Return what a stick asks for, e.g. ("forward 0.31 m/s", "left 0.20 rad/s").
+
+    :param forward: deflection in [-1, 1], ahead positive
+    :param turn: deflection in [-1, 1], left positive
+    :param limits: the operator's speed limits [m/s, rad/s]
+    """
+    return (_directed(forward * limits[0], 'forward ', 'back ', 'm/s'),
+            turn_text(turn * limits[1]))
+
+
+def heading_text(heading_rad):
+    """Return a heading [rad] in whole degrees in (-180, 180], e.g. "47 deg"; a dash for None."""
+    if not _is_number(heading_rad):
+        return UNKNOWN
+    degrees = round(math.degrees(math.remainder(heading_rad, 2.0 * math.pi)))
+    return '{:d} deg'.format(180 if degrees == -180 else degrees)
+
+
+def metres_text(value_m):
+    """Return a coordinate, e.g. "-1.25 m"; a dash for None and NaN."""
+    # What rounds to zero has no sign.
+    return '{:.2f} m'.format(round(value_m, 2) + 0.0) if _is_number(value_m) else UNKNOWN
+
+
+def battery_text(fraction):
+    """Return a battery's charge in [0, 1] as percent, e.g. "82 %"; '' where there is none."""
+    if not _is_number(fraction):
+        return ''
+    return '{:.0f} %'.format(100.0 * min(1.0, max(0.0, fraction)))
+
+
+def link_text(view):
+    """Return the word for a robot's link and, where it helps, the age: "live 12 ms"."""
+    age = age_text(view.age_s) if view.link in (views.LIVE, views.SILENT) else ''
+    return '{} {}'.format(LINK_WORDS[view.link], age).strip()
