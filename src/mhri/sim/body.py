@@ -1,0 +1,177 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A differential-drive body: what a velocity command does to it, and what its wheels measure."""
+from dataclasses import dataclass
+import math
+
+from mhri.core.config import parse_yaml
+from mhri.sim.plan import Colour, disc_distance, read_colour
+
+_KEYS = ('radius_m', 'height_m', 'wheel_separation_m', 'accel_mps2', 'accel_rad_s2', 'brake_mps2',
+         'watchdog_s', 'scan_min_m', 'scan_max_m')
+
+
+@dataclass(frozen=True)
+class BodyType:
+    """Size [m], accelerations [m/s^2, rad/s^2], watchdog [s] and laser range [m] of a robot.
+
+    ``colour`` (red, green, blue) is how other robots' cameras see it.
+    """
+
+    radius_m: float
+    height_m: float
+    wheel_separation_m: float
+    accel_mps2: float
+    accel_rad_s2: float
+    brake_mps2: float
+    watchdog_s: float
+    scan_min_m: float
+    scan_max_m: float
+    colour: Colour
+
+
+def parse_bodies(text, origin):
+    """Return {name: BodyType} of a YAML text.
+
+    :raises ConfigError: names the file and the key that is wrong
+    """
+    top = parse_yaml(text, origin)
+    bodies = {}
+    for name, section in top.named_sections('bodies').items():
+        bodies[name] = BodyType(colour=read_colour(section, 'colour'), **{
+            key: section.number(key, 0.01, 100.0) for key in _KEYS})
+        section.close()
+    top.close()
+    return bodies
+
+
+class Bumper:
+    """How much room a round body has.
+
+    What stands still is asked for only where it may be near: a distance once measured tells for
+    some way around that nothing is.
+
+    :param radius_m: of the body
+    :param distance: function (x, y) -> metres to the nearest thing that never moves
+    :param others: function () -> array (n, 3) of x, y, radius [m] of what does
+    """
+
+    _NEAR_M = 0.02
+
+    def __init__(self, radius_m, distance, others):
+        self._radius_m = radius_m
+        self._distance = distance
+        self._others = others
+        self._measured = (0.0, 0.0, -math.inf)
+
+    def room(self, x, y):
+        """Return the gap [m] between the body, were it at x, y, and what it would meet first.
+
+        It is < 0 where they overlap, and never more than the true one.
+        """
+        measured_x, measured_y, distance = self._measured
+        still = distance - math.hypot(x - measured_x, y - measured_y)
+        if still < self._radius_m + self._NEAR_M:
+            still = self._distance(x, y)
+            self._measured = (x, y, still)
+        return min(still, disc_distance(self._others(), x, y)) - self._radius_m
+
+
+def _approach(value, target, step):
+    """Return the value moved towards the target by at most one step."""
+    return min(target, value + step) if target > value else max(target, value - step)
+
+
+class Body:
+    """A robot in the plan: the truth about it, and the odometry of its wheels, which drifts.
+
+    ``x, y, yaw`` are the truth [m, m, rad]; ``odom_*`` what the wheels say, from 0 at the start;
+    ``v, w`` the speeds [m/s, rad/s]. At rest the wheel noise is exactly zero: encoders do not tick.
+
+    :param body_type: :class:`BodyType`
+    :param limits: :class:`mhri.core.robot_types.Limits`, the most the motors do
+    :param bumper: :class:`Bumper`
+    :param random: :class:`random.Random`
+    """
+
+    WHEEL_NOISE = 0.02
+    WHEEL_BIAS = 0.001
+
+    def __init__(self, body_type, limits, pose, bumper, random):
+        self.type = body_type
+        self._limits = limits
+        self._bumper = bumper
+        self._random = random
+        self.x, self.y, self.yaw = pose
+        self.v = self.w = 0.0
+        self.forward_accel = 0.0
+        self.odom_x = self.odom_y = self.odom_yaw = 0.0
+        self.odom_v = self.odom_w = 0.0
+        self._bias = [1.0 + random.gauss(0.0, self.WHEEL_BIAS) for _ in range(2)]
+        self._order = (0.0, 0.0, -math.inf)
+        self.blocked = False
+
+    def command(self, v, w, now):
+        """Take in a velocity command [m/s, rad/s]; one that is not finite is refused.
+
+        It may be given on another thread than the one that steps.
+
+        :returns: whether it was accepted
+        """
+        if not (math.isfinite(v) and math.isfinite(w)):
+            return False
+        limits = self._limits
+        # One assignment, so that a step never sees half of a command.
+        self._order = (max(-limits.linear_mps, min(limits.linear_mps, v)),
+                       max(-limits.angular_rad_s, min(limits.angular_rad_s, w)), now)
+        return True
+
+    def step(self, dt, now):
+        """Move on by ``dt`` seconds; the base's watchdog brakes when commands stop coming."""
+        v, w, commanded_at = self._order
+        before = self.v
+        if now - commanded_at > self.type.watchdog_s:
+            brake = self.type.brake_mps2 * dt
+            self.v = _approach(self.v, 0.0, brake)
+            self.w = _approach(self.w, 0.0, 2.0 * brake / self.type.wheel_separation_m)
+        else:
+            self.v = _approach(self.v, v, self.type.accel_mps2 * dt)
+            self.w = _approach(self.w, w, self.type.accel_rad_s2 * dt)
+        self._move(dt)
+        self.forward_accel = (self.v - before) / dt
+        self._roll(dt)
+
+    def _move(self, dt):
+        """Move the truth along the arc of this step, unless something is in the way.
+
+        Two robots can meet within one step, or one be started inside another: out of there leads
+        every way that makes more room.
+        """
+        self.blocked = False
+        middle = self.yaw + 0.5 * self.w * dt
+        if self.v:
+            x = self.x + self.v * dt * math.cos(middle)
+            y = self.y + self.v * dt * math.sin(middle)
+            room = self._bumper.room(x, y)
+            if room >= 0.0 or room > self._bumper.room(self.x, self.y):
+                self.x, self.y = x, y
+            else:
+                self.blocked = True
+                self.v = 0.0
+        self.yaw = math.remainder(self.yaw + self.w * dt, 2.0 * math.pi)
+
+    def _roll(self, dt):
+        """Let the wheels measure the step."""
+        if not (self.v or self.w):
+            self.odom_v = self.odom_w = 0.0
+            return
+        half = 0.5 * self.type.wheel_separation_m
+        left, right = (
+            speed * self._bias[side] * (1.0 + self._random.gauss(0.0, self.WHEEL_NOISE))
+            for side, speed in enumerate((self.v - self.w * half, self.v + self.w * half)))
+        self.odom_v = 0.5 * (left + right)
+        self.odom_w = (right - left) / self.type.wheel_separation_m
+        middle = self.odom_yaw + 0.5 * self.odom_w * dt
+        self.odom_x += self.odom_v * dt * math.cos(middle)
+        self.odom_y += self.odom_v * dt * math.sin(middle)
+        self.odom_yaw = math.remainder(self.odom_yaw + self.odom_w * dt, 2.0 * math.pi)

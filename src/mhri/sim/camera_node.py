@@ -1,0 +1,152 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The simulated robot's camera on ROS, below the first RGB and depth topic of its template.
+
+- ``<rgb>`` ``sensor_msgs/Image`` rgb8 and ``<rgb>/compressed`` ``sensor_msgs/CompressedImage``
+  jpeg, 640x480, 30 Hz
+- ``<depth>`` ``sensor_msgs/Image`` 16UC1 [mm], 0 nothing within 10 m, and
+  ``<depth>/compressedDepth`` ``sensor_msgs/CompressedImage`` png or rvl, 640x480, 15 Hz, pixel by
+  pixel that of the RGB picture
+- ``camera_info`` beside each ``sensor_msgs/CameraInfo``, at the rate of the picture
+
+All in the frame ``<robot>/camera_rgb_optical_frame``. What nobody subscribes is neither drawn nor
+encoded.
+"""
+import threading
+import time
+
+import cv2
+import rospy
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image
+
+from mhri.core.depth_codec import encode_depth
+from mhri.sim.camera import Camera, CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, WIDTH
+
+RGB_HZ = 30
+DEPTH_EVERY = 2
+JPEG_QUALITY = 80
+DEPTH_FORMATS = ('png', 'rvl')
+
+
+class _Stream:
+    """The topics of one kind of picture: raw, compressed, and what the camera is like."""
+
+    def __init__(self, topic, transport, encoding, frame_id, compress):
+        self._compress = compress
+        self._raw = rospy.Publisher(topic, Image, queue_size=1)
+        self._compressed = rospy.Publisher(topic + '/' + transport, CompressedImage, queue_size=1)
+        self._info = rospy.Publisher(topic.rpartition('/')[0] + '/camera_info', CameraInfo,
+                                     queue_size=1)
+        self._image = Image(width=WIDTH, height=HEIGHT, encoding=encoding, is_bigendian=0)
+        self._info_msg = camera_info()
+        self._frame_id = frame_id
+
+    def wanted(self):
+        """Tell whether anybody subscribes a picture."""
+        return self._raw.get_num_connections() + self._compressed.get_num_connections() > 0
+
+    def publish_info(self, stamp):
+        """Say what the camera is like."""
+        if self._info.get_num_connections():
+            self._info.publish(self._stamped(self._info_msg, stamp))
+
+    def publish(self, pixels, stamp):
+        """Send a picture in every way that somebody subscribes."""
+        if self._raw.get_num_connections():
+            self._image.step = pixels.strides[0]
+            self._image.data = pixels.tobytes()
+            self._raw.publish(self._stamped(self._image, stamp))
+        if self._compressed.get_num_connections():
+            fmt, data = self._compress(pixels)
+            self._compressed.publish(self._stamped(CompressedImage(format=fmt, data=data), stamp))
+
+    def _stamped(self, message, stamp):
+        message.header.stamp = stamp
+        message.header.frame_id = self._frame_id
+        return message
+
+
+def encode_jpeg(rgb):
+    """Return (format, data) of a picture (h, w, 3) uint8, red, green, blue."""
+    options = [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]
+    data = cv2.imencode('.jpg', cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR), options)[1]
+    return 'rgb8; jpeg compressed bgr8', data.tobytes()
+
+
+def camera_info():
+    """Return the ``CameraInfo`` of the simulated camera: a pinhole, without distortion."""
+    return CameraInfo(
+        width=WIDTH, height=HEIGHT, distortion_model='plumb_bob', D=[0.0] * 5,
+        K=[FOCAL_PX, 0.0, CENTRE_X_PX, 0.0, FOCAL_PX, CENTRE_Y_PX, 0.0, 0.0, 1.0],
+        R=[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        P=[FOCAL_PX, 0.0, CENTRE_X_PX, 0.0, 0.0, FOCAL_PX, CENTRE_Y_PX, 0.0, 0.0, 0.0, 1.0, 0.0])
+
+
+class SimCamera:
+    """Publishes what the camera of one robot sees, on a thread of its own.
+
+    :param name: the robot; also the prefix of its frame
+    :param template: :class:`mhri.core.robot_types.RobotType`; a kind without topic is not published
+    :param plan: :class:`mhri.sim.plan.Plan`
+    :param pose_source: function () -> (x, y, yaw) of the robot [m, m, rad], called on the thread
+    :param others_source: function () -> the other robots, as :meth:`mhri.sim.world.World.others`
+    :param depth_format: 'png' or 'rvl', of ``compressedDepth``
+    :raises ValueError: another depth format
+    """
+
+    def __init__(self, name, template, plan, pose_source, others_source, depth_format='png'):
+        if depth_format not in DEPTH_FORMATS:
+            raise ValueError('depth_format: expected one of {}, got {!r}'.format(
+                ', '.join(DEPTH_FORMATS), depth_format))
+        self._camera = Camera(plan)
+        self._pose_source = pose_source
+        self._others_source = others_source
+        self._done = threading.Event()
+        prefix, frame_id = '/' + name + '/', name + '/camera_rgb_optical_frame'
+        self._rgb = _Stream(prefix + template.rgb[0], 'compressed', 'rgb8', frame_id,
+                            encode_jpeg) if template.rgb else None
+        self._depth = _Stream(
+            prefix + template.depth[0], 'compressedDepth', '16UC1', frame_id,
+            lambda depth: encode_depth(depth, depth_format)) if template.depth else None
+
+    def start(self):
+        """Begin; it ends with the node, or with :meth:`stop`."""
+        if self._rgb or self._depth:
+            # OpenCV's own threads would spin on every core, in the way of the physics' next step.
+            cv2.setNumThreads(1)
+            rospy.on_shutdown(self.stop)
+            threading.Thread(target=self._run, name='camera', daemon=True).start()
+
+    def stop(self):
+        """End after the frame that is under way."""
+        self._done.set()
+
+    def _run(self):
+        """Publish at absolute times; frames that could not be made in time are left out."""
+        period_s = 1.0 / RGB_HZ
+        due, tick = time.monotonic(), 0
+        try:
+            while not self._done.wait(max(0.0, due - time.monotonic())):
+                self._frame(tick % DEPTH_EVERY == 0)
+                missed = max(0, int((time.monotonic() - due) / period_s))
+                tick += 1 + missed
+                due += period_s * (1 + missed)
+        except rospy.ROSException:
+            # The topics close while a frame is under way: that is how a shutdown looks from here.
+            if not rospy.is_shutdown():
+                raise
+
+    def _frame(self, with_depth):
+        """Draw and send what is due and wanted, all of one moment."""
+        due = [stream for stream, is_due in ((self._rgb, True), (self._depth, with_depth))
+               if stream and is_due]
+        wanted = [stream for stream in due if stream.wanted()]
+        stamp = rospy.Time.now()
+        for stream in due:
+            stream.publish_info(stamp)
+        if not wanted:
+            return
+        view = self._camera.look(*self._pose_source(), self._others_source())
+        for stream in wanted:
+            draw = self._camera.rgb if stream is self._rgb else self._camera.depth
+            stream.publish(draw(view), stamp)

@@ -1,0 +1,171 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The simulated robot on ROS: exactly the topics of its template, at the rates of the real one.
+
+Publishes odometry at 50 Hz, IMU at 100 Hz, laser scan at 10 Hz, ``/tf`` at 50 Hz and, where the
+template has one, the battery at 1 Hz; reads every velocity topic of the template. Frames are
+``<robot>/odom``, ``<robot>/base_link``, ``<robot>/imu_link`` and ``<robot>/laser`` (REP-105).
+"""
+import math
+import time
+
+from geometry_msgs.msg import TransformStamped, Twist
+from nav_msgs.msg import Odometry
+import numpy as np
+import rospy
+from sensor_msgs.msg import BatteryState, Imu, LaserScan
+from tf2_msgs.msg import TFMessage
+
+from mhri.sim.sensors import ImuSensor
+from mhri.sim.ticks import Due, Ticks
+
+RATE_HZ = 100
+ODOMETRY_EVERY = 2
+SCAN_EVERY = 10
+BATTERY_EVERY = 100
+MAX_STEP_S = 0.1
+BATTERY_LIFE_S = 2.5 * 3600.0
+
+
+class SimRobot:
+    """Publishes what a body and its sensors say, and hands it the commands.
+
+    :param name: the robot; also the prefix of its frames
+    :param template: :class:`mhri.core.robot_types.RobotType`
+    :param body: :class:`mhri.sim.body.Body`
+    :param laser: :class:`mhri.sim.sensors.Laser`
+    :param world: :class:`mhri.sim.world.World`
+    :param landmarks: array (n, 3) of x, y, radius [m]
+    """
+
+    def __init__(self, name, template, body, imu, laser, world, landmarks):
+        self._name = name
+        self._body = body
+        self._imu = imu
+        self._laser = laser
+        self._world = world
+        self._landmarks = landmarks
+        self._begun = time.monotonic()
+        self._odometry_due, self._scan_due, self._battery_due = (
+            Due(every) for every in (ODOMETRY_EVERY, SCAN_EVERY, BATTERY_EVERY))
+        self._make_messages()
+        prefix = '/' + name + '/'
+        self._odom_pub = rospy.Publisher(prefix + template.odometry[0], Odometry, queue_size=10)
+        self._imu_pub = rospy.Publisher(prefix + template.imu[0], Imu, queue_size=10)
+        self._scan_pub = rospy.Publisher(prefix + template.scan[0], LaserScan, queue_size=2)
+        self._tf_pub = rospy.Publisher('/tf', TFMessage, queue_size=10)
+        self._battery_pub = rospy.Publisher(prefix + template.battery[0], BatteryState,
+                                            queue_size=1) if template.battery else None
+        for topic in template.command:
+            rospy.Subscriber(prefix + topic, Twist, self._on_twist, queue_size=1, tcp_nodelay=True)
+
+    def _make_messages(self):
+        """Fill once what does not change from message to message."""
+        name = self._name
+        self._odom = Odometry(child_frame_id=name + '/base_link')
+        self._odom.header.frame_id = name + '/odom'
+        for matrix, values in ((self._odom.pose.covariance, (0.01, 0.01, 1e6, 1e6, 1e6, 0.03)),
+                               (self._odom.twist.covariance, (0.0004, 1e-6, 1e6, 1e6, 1e6, 0.001))):
+            for index, value in enumerate(values):
+                matrix[index * 7] = value
+        self._imu_msg = Imu()
+        self._imu_msg.header.frame_id = name + '/imu_link'
+        for matrix, value in ((self._imu_msg.orientation_covariance, 0.01),
+                              (self._imu_msg.angular_velocity_covariance,
+                               ImuSensor.GYRO_NOISE_RAD_S ** 2),
+                              (self._imu_msg.linear_acceleration_covariance,
+                               ImuSensor.ACCEL_NOISE_MPS2 ** 2)):
+            matrix[0] = matrix[4] = matrix[8] = value
+        laser = self._laser
+        self._scan = LaserScan(
+            angle_min=0.0, angle_max=2.0 * math.pi - laser.increment_rad,
+            angle_increment=laser.increment_rad, scan_time=SCAN_EVERY / RATE_HZ,
+            range_min=laser.range_min_m, range_max=laser.range_max_m)
+        self._scan.header.frame_id = name + '/laser'
+        self._tf = TFMessage()
+        for parent, child in (('odom', 'base_link'), ('base_link', 'imu_link'),
+                              ('base_link', 'laser')):
+            transform = TransformStamped(child_frame_id='{}/{}'.format(name, child))
+            transform.header.frame_id = '{}/{}'.format(name, parent)
+            transform.transform.rotation.w = 1.0
+            self._tf.transforms.append(transform)
+
+    def _on_twist(self, message):
+        if not self._body.command(message.linear.x, message.angular.z, time.monotonic()):
+            rospy.logwarn_throttle(1.0, 'refused a velocity that is not finite')
+
+    def run(self):
+        """Live until shutdown, in steps of 10 ms; steps that were missed are skipped."""
+        ticks = Ticks(1.0 / RATE_HZ)
+        try:
+            while not rospy.is_shutdown():
+                self._step(*ticks.wait())
+        except rospy.ROSException:
+            # The topics close while a step is under way: that is how a shutdown looks from here.
+            if not rospy.is_shutdown():
+                raise
+        finally:
+            self._world.leave()
+
+    def _step(self, tick, now, took):
+        """Move, and publish what is due; a process that was stopped for long makes no leap."""
+        body, dt = self._body, min(took, MAX_STEP_S)
+        body.step(dt, now)
+        self._world.publish(body.x, body.y, body.yaw)
+        stamp = rospy.Time.now()
+        self._publish_imu(dt, stamp)
+        if self._odometry_due.at(tick):
+            self._publish_odometry(stamp)
+        if self._scan_due.at(tick) and self._scan_pub.get_num_connections():
+            self._publish_scan(stamp)
+        if self._battery_pub is not None and self._battery_due.at(tick):
+            self._publish_battery(stamp, now)
+
+    def _publish_imu(self, dt, stamp):
+        gyro, accel = self._imu.measure(self._body, dt)
+        if not self._imu_pub.get_num_connections():
+            return
+        message = self._imu_msg
+        message.header.stamp = stamp
+        turn = message.orientation
+        turn.z, turn.w = math.sin(0.5 * self._imu.yaw), math.cos(0.5 * self._imu.yaw)
+        rate, force = message.angular_velocity, message.linear_acceleration
+        rate.x, rate.y, rate.z = gyro
+        force.x, force.y, force.z = accel
+        self._imu_pub.publish(message)
+
+    def _publish_odometry(self, stamp):
+        body = self._body
+        z, w = math.sin(0.5 * body.odom_yaw), math.cos(0.5 * body.odom_yaw)
+        if self._odom_pub.get_num_connections():
+            message = self._odom
+            message.header.stamp = stamp
+            place, turn = message.pose.pose.position, message.pose.pose.orientation
+            place.x, place.y, turn.z, turn.w = body.odom_x, body.odom_y, z, w
+            message.twist.twist.linear.x = body.odom_v
+            message.twist.twist.angular.z = body.odom_w
+            self._odom_pub.publish(message)
+        if self._tf_pub.get_num_connections():
+            for transform in self._tf.transforms:
+                transform.header.stamp = stamp
+            move = self._tf.transforms[0].transform.translation
+            turn = self._tf.transforms[0].transform.rotation
+            move.x, move.y, turn.z, turn.w = body.odom_x, body.odom_y, z, w
+            self._tf_pub.publish(self._tf)
+
+    def _publish_scan(self, stamp):
+        body = self._body
+        discs = np.vstack((self._landmarks, self._world.discs()))
+        self._scan.header.stamp = stamp
+        self._scan.ranges = self._laser.scan(body.x, body.y, body.yaw, discs).tolist()
+        self._scan_pub.publish(self._scan)
+
+    def _publish_battery(self, stamp, now):
+        left = max(0.0, 1.0 - (now - self._begun) / BATTERY_LIFE_S)
+        message = BatteryState(
+            voltage=11.0 + 1.6 * left, percentage=left, capacity=1.8, design_capacity=1.8,
+            charge=1.8 * left, current=float('nan'), present=True,
+            power_supply_status=BatteryState.POWER_SUPPLY_STATUS_DISCHARGING,
+            power_supply_technology=BatteryState.POWER_SUPPLY_TECHNOLOGY_LIPO)
+        message.header.stamp = stamp
+        self._battery_pub.publish(message)

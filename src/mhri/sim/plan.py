@@ -1,0 +1,131 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The floor plan that all simulated robots share: walls, landmarks, places to start from."""
+from dataclasses import dataclass
+import math
+from typing import Tuple
+
+import numpy as np
+
+from mhri.core.config import parse_yaml
+
+Colour = Tuple[int, int, int]
+
+
+@dataclass(frozen=True)
+class Landmark:
+    """A coloured cylinder: centre, radius and height [m], colour (red, green, blue) 0 to 255."""
+
+    name: str
+    colour: Colour
+    x_m: float
+    y_m: float
+    radius_m: float
+    height_m: float
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Walls as an array (n, 4) of x1, y1, x2, y2 [m]; landmarks; start poses (x, y, yaw).
+
+    Walls are thin, all of one height [m] and colour; the floor has a colour too.
+    """
+
+    name: str
+    walls: np.ndarray
+    wall_height_m: float
+    wall_colour: Colour
+    floor_colour: Colour
+    landmarks: Tuple[Landmark, ...]
+    starts: Tuple[Tuple[float, float, float], ...]
+
+    def discs(self):
+        """Return the landmarks as an array (n, 3) of x, y, radius [m]."""
+        return np.array([(item.x_m, item.y_m, item.radius_m) for item in self.landmarks],
+                        dtype=float).reshape(-1, 3)
+
+    def distance(self, x, y):
+        """Return the way to the nearest wall or landmark [m], < 0 inside a landmark."""
+        start, along = self.walls[:, :2], self.walls[:, 2:] - self.walls[:, :2]
+        to_point = np.array((x, y)) - start
+        length2 = np.maximum((along ** 2).sum(axis=1), 1e-12)
+        share = np.clip((to_point * along).sum(axis=1) / length2, 0.0, 1.0)
+        gap = to_point - share[:, None] * along
+        return min(math.sqrt((gap ** 2).sum(axis=1).min()), disc_distance(self.discs(), x, y))
+
+
+def disc_distance(discs, x, y):
+    """Return how far a point is from the nearest disc [m], < 0 inside one, inf without discs.
+
+    :param discs: array (n, 3) of x, y, radius [m]
+    """
+    if not len(discs):
+        return math.inf
+    return float((np.hypot(discs[:, 0] - x, discs[:, 1] - y) - discs[:, 2]).min())
+
+
+def read_colour(section, key):
+    """Return the (red, green, blue) of a key, each a whole number from 0 to 255.
+
+    :raises ConfigError: it is something else
+    """
+    row = section.take(key)
+    if not (isinstance(row, list) and len(row) == 3 and all(
+            type(value) is int and 0 <= value <= 255 for value in row)):
+        raise section.error(key, 'expected red, green, blue from 0 to 255, got {!r}'.format(row))
+    return tuple(row)
+
+
+def _rows(section, key, value):
+    """Return a list that has something in it."""
+    if not isinstance(value, list) or not value:
+        raise section.error(key, 'expected a list, got {!r}'.format(value))
+    return value
+
+
+def _numbers(section, key, row, count):
+    """Return a tuple of finite floats of a given length."""
+    good = isinstance(row, list) and len(row) == count and all(
+        type(value) in (int, float) and math.isfinite(value) for value in row)
+    if not good:
+        raise section.error(key, 'expected {} numbers, got {!r}'.format(count, row))
+    return tuple(float(value) for value in row)
+
+
+def _walls(section):
+    """Return the polylines of the key ``walls`` as an array (n, 4) of single walls."""
+    walls = []
+    for line in _rows(section, 'walls', section.take('walls')):
+        corners = [_numbers(section, 'walls', corner, 2)
+                   for corner in _rows(section, 'walls', line)]
+        if len(corners) < 2:
+            raise section.error('walls', 'a wall needs two corners, got {!r}'.format(line))
+        walls += [one + two for one, two in zip(corners, corners[1:])]
+    return np.array(walls, dtype=float)
+
+
+def _landmark(row):
+    landmark = Landmark(
+        row.text('name'), read_colour(row, 'colour'),
+        row.number('x', -1000.0, 1000.0), row.number('y', -1000.0, 1000.0),
+        row.number('radius', 0.01, 10.0), row.number('height', 0.01, 10.0))
+    row.close()
+    return landmark
+
+
+def parse_plan(text, origin):
+    """Return the :class:`Plan` of a YAML text.
+
+    :raises ConfigError: names the file and the key that is wrong
+    """
+    section = parse_yaml(text, origin)
+    plan = Plan(
+        name=section.text('name'), walls=_walls(section),
+        wall_height_m=section.number('wall_height', 0.1, 100.0),
+        wall_colour=read_colour(section, 'wall_colour'),
+        floor_colour=read_colour(section, 'floor_colour'),
+        landmarks=tuple(_landmark(row) for row in section.sections('landmarks')),
+        starts=tuple(_numbers(section, 'starts', row, 3)
+                     for row in _rows(section, 'starts', section.take('starts'))))
+    section.close()
+    return plan

@@ -1,0 +1,142 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The bodies of all simulated robots of one building, shared without ROS.
+
+A file in shared memory, one slot for each robot: what a laser, a bumper or a camera meets must not
+need a topic that no real robot has. A robot that is killed stays where it was, as a body, until its
+slot is taken by a robot of its name or has not been written for :data:`GHOST_S`.
+"""
+import fcntl
+import hashlib
+import mmap
+import os
+import struct
+import tempfile
+
+import numpy as np
+
+from mhri.core.names import MAX_LENGTH
+
+SLOTS = 64
+GHOST_S = 20.0
+_SLOT = np.dtype([('name', 'S{}'.format(MAX_LENGTH)), ('owner', '<u8'), ('x', '<f8'), ('y', '<f8'),
+                  ('yaw', '<f8'), ('stamp', '<f8'), ('radius', '<f8'), ('height', '<f8'),
+                  ('colour', 'u1', 3), ('spare', 'u1', 5)])
+_OWNER = struct.Struct('<Q')
+_POSE = struct.Struct('<4d')
+_SIZE = SLOTS * _SLOT.itemsize
+
+
+class WorldFull(Exception):
+    """No slot is left: more than :data:`SLOTS` robots in one building."""
+
+
+def world_path(key, folder=None):
+    """Return the file of a world; robots with one key (and one layout of the file) meet."""
+    if folder is None:
+        folder = '/dev/shm' if os.path.isdir('/dev/shm') else tempfile.gettempdir()
+    digest = hashlib.sha256('{} {} {}'.format(key, SLOTS, _SLOT).encode('utf-8')).hexdigest()[:16]
+    return os.path.join(folder, 'mhri_world_{}_{}'.format(os.getuid(), digest))
+
+
+class World:
+    """One robot's place in the shared file.
+
+    Of two robots with one name the one that publishes has the place; a robot that was asleep for
+    so long that its place was given away takes another one.
+
+    :param path: from :func:`world_path`
+    :param body_type: :class:`mhri.sim.body.BodyType`, which the others are to see
+    :param clock: seconds since some time common to all processes (``time.monotonic`` on Linux)
+    :raises WorldFull: no slot is left
+    :raises OSError: the file cannot be used
+    """
+
+    def __init__(self, path, name, body_type, clock):
+        self._path = path
+        self._name = name.encode('ascii')
+        self._body_type = body_type
+        self._clock = clock
+        self._owner = int.from_bytes(os.urandom(8), 'little') | 1
+        self._file = self._open_locked()
+        try:
+            if os.fstat(self._file).st_size < _SIZE:
+                os.ftruncate(self._file, _SIZE)
+            self._map = mmap.mmap(self._file, _SIZE)
+            self._slots = np.frombuffer(self._map, dtype=_SLOT)
+            self._take()
+        finally:
+            fcntl.flock(self._file, fcntl.LOCK_UN)
+
+    def _open_locked(self):
+        """Return the open file, locked; one that the last robot has removed is no world."""
+        while True:
+            handle = os.open(self._path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
+            fcntl.flock(handle, fcntl.LOCK_EX)
+            if os.fstat(handle).st_nlink:
+                return handle
+            os.close(handle)
+
+    def _take(self):
+        """Take the slot of this name, else a free one; called with the file locked."""
+        slots = self._slots
+        own = np.flatnonzero(slots['name'] == self._name)
+        free = np.flatnonzero(~self._there())
+        if not len(own) and not len(free):
+            raise WorldFull('the simulated building has room for {} robots'.format(SLOTS))
+        slot = int(own[0] if len(own) else free[0])
+        body = self._body_type
+        # Out of sight until it says where it is.
+        slots[slot] = (self._name, self._owner, 1e9, 1e9, 0.0, self._clock(), body.radius_m,
+                       body.height_m, body.colour, 0)
+        self._slot = slot
+        self._owner_at = slot * _SLOT.itemsize + _SLOT.fields['owner'][1]
+        self._pose_at = slot * _SLOT.itemsize + _SLOT.fields['x'][1]
+
+    def _owned(self):
+        return _OWNER.unpack_from(self._map, self._owner_at)[0] == self._owner
+
+    def publish(self, x, y, yaw):
+        """Say where this robot is [m, m, rad].
+
+        :raises WorldFull: its place was given away, and no other is left
+        """
+        if not self._owned():
+            fcntl.flock(self._file, fcntl.LOCK_EX)
+            try:
+                self._take()
+            finally:
+                fcntl.flock(self._file, fcntl.LOCK_UN)
+        _POSE.pack_into(self._map, self._pose_at, x, y, yaw, self._clock())
+
+    def _there(self):
+        """Return which slots hold a robot, or the body of one that was killed."""
+        # Another process may write while this one looks: its stamp is then later than our clock.
+        age = np.abs(self._clock() - self._slots['stamp'])
+        return (self._slots['owner'] != 0) & (age <= GHOST_S)
+
+    def others(self):
+        """Return what can be seen of the other robots: a structured array, a copy.
+
+        Its fields: ``x, y`` [m], ``yaw`` [rad], ``radius, height`` [m], ``colour`` (3 times 0 to
+        255), ``name``.
+        """
+        there = self._there()
+        there[self._slot] = False
+        return self._slots[there]
+
+    def discs(self):
+        """Return the bodies of the other robots as an array (n, 3) of x, y, radius [m]."""
+        rows = self.others()
+        return np.column_stack((rows['x'], rows['y'], rows['radius']))
+
+    def leave(self):
+        """Take this robot out, unless its place is another's by now; the last removes the file."""
+        fcntl.flock(self._file, fcntl.LOCK_EX)
+        try:
+            if self._owned():
+                self._slots[self._slot] = np.zeros((), _SLOT)
+            if not self._there().any() and os.fstat(self._file).st_nlink:
+                os.unlink(self._path)
+        finally:
+            fcntl.flock(self._file, fcntl.LOCK_UN)
