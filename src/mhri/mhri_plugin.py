@@ -1,0 +1,46 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The panel as an rqt plugin: a thin adapter over :class:`mhri.panel_host.PanelHost`."""
+import json
+
+import rospy
+from rqt_gui_py.plugin import Plugin
+
+from mhri.panel_host import PanelHost
+from mhri.ros.operator import Operator
+
+_KEY = 'state'
+
+
+class MhriPlugin(Plugin):
+    """Hosted by rqt, which has initialised the ROS node before (http://wiki.ros.org/rqt).
+
+    It takes ``--args --robots "bot1 bot2"``: names to add to the list.
+    """
+
+    def __init__(self, context):
+        super().__init__(context)
+        self.setObjectName('MhriPlugin')
+        self._host = PanelHost(Operator())
+        if context.serial_number() > 1:
+            self._host.panel.setWindowTitle('{} ({})'.format(
+                self._host.panel.windowTitle(), context.serial_number()))
+        context.add_widget(self._host.panel)
+        words = list(context.argv())
+        self._host.start(words[words.index('--robots') + 1].split() if '--robots' in words[:-1]
+                         else ())
+
+    def save_settings(self, plugin_settings, instance_settings):
+        """Keep the robots, limits, mode and window places in rqt's perspective."""
+        instance_settings.set_value(_KEY, json.dumps(self._host.save_state()))
+
+    def restore_settings(self, plugin_settings, instance_settings):
+        """Take them over again; a perspective that cannot be read is left out and said so."""
+        try:
+            self._host.restore_state(json.loads(instance_settings.value(_KEY, '{}')))
+        except (ValueError, TypeError, AttributeError) as error:
+            rospy.logwarn('the saved settings cannot be used and are left out: %s', error)
+
+    def shutdown_plugin(self):
+        """Stop the robots before the plugin goes."""
+        self._host.close(forget=True)

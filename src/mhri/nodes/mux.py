@@ -1,0 +1,49 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The executable ``mux``: reads its parameters and runs :class:`mhri.ros.mux.Mux`."""
+import signal
+import sys
+
+import rosgraph
+import rospy
+
+from mhri.core.config import ConfigError
+from mhri.core.sources import parse_mux_config
+from mhri.ros.master_api import MasterApi, MasterError
+from mhri.ros.mux import Mux, STOP_PARAMETER
+from mhri.ros.mux_takeover import end_other_muxes
+from mhri.ros.resources import profile_reader, read_text, resource_path
+
+
+def config_path(argv):
+    """Return ``~config`` of a node that does not exist yet, or ''.
+
+    The file is read before the node takes its name: a slip in it must not end the mux that runs.
+
+    :raises MasterError: no master answers
+    """
+    own = [word.split(':=', 1)[1] for word in argv if word.startswith('_config:=')]
+    if own:
+        return own[-1]
+    mappings = rosgraph.names.load_mappings(argv)
+    name = rosgraph.names.resolve_name(
+        mappings.get('__name', 'mux'), rosgraph.names.get_ros_namespace(argv=argv))
+    return MasterApi(name, timeout_s=5.0).call_many([('getParam', name + '/config')])[0] or ''
+
+
+def main():
+    """Run until shut down; exit with 1 where the sources' file cannot be used."""
+    try:
+        path = config_path(sys.argv) or resource_path('mux.yaml')
+        config = parse_mux_config(read_text(path), path, profile_reader(path))
+    except (ConfigError, OSError, MasterError) as error:
+        sys.exit('the mux cannot start: {}'.format(error))
+    rospy.init_node('mux')
+    # A terminal that is closed must not end the mux without a zero.
+    signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
+    stopped = bool(rospy.get_param(STOP_PARAMETER, False))
+    if stopped:
+        rospy.logwarn('stop-all was in force when the last mux ended: it still is')
+    end_other_muxes()
+    Mux(config).start(stopped)
+    rospy.spin()

@@ -1,0 +1,58 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The executable ``panel``: in rqt where rqt is installed, else in a window of its own."""
+import argparse
+import os
+import shutil
+import sys
+
+from python_qt_binding.QtWidgets import QApplication
+import rospy
+
+from mhri.standalone import Standalone
+
+PLUGIN = 'mhri.mhri_plugin.MhriPlugin'
+
+
+def parse(argv):
+    """Return the options of a command line without ROS remappings."""
+    parser = argparse.ArgumentParser(prog='panel', description='The operator\'s panel of mhri.')
+    parser.add_argument('--gui', choices=('auto', 'rqt', 'standalone'), default='standalone',
+                        help='where to show it; auto: in rqt where that is installed')
+    parser.add_argument('--robots', default='', help='names to add at start, separated by spaces')
+    parser.add_argument('--select', default='', help='names to add and select at start')
+    parser.add_argument('--settings', help='INI file for the settings, instead of the user\'s own')
+    parser.add_argument('--fresh', action='store_true', help='begin without the saved settings')
+    parser.add_argument('--demo', action='store_true',
+                        help='play a scripted drive without hands, then end')
+    parser.add_argument('--screenshot', help='with --demo: write a picture (PNG) to this file')
+    parser.add_argument('--demo-result',
+                        help='with --demo: write "ok", or the reason why not, to this file')
+    return parser.parse_args(argv)
+
+
+def main():
+    """Run the panel until it is closed; the exit status is that of the demo, else 0."""
+    options = parse(rospy.myargv(sys.argv)[1:])
+    in_rqt = options.gui == 'rqt' or options.gui == 'auto' and shutil.which('rqt')
+    if in_rqt and not options.demo:
+        remappings = [arg for arg in sys.argv[1:] if ':=' in arg]
+        extra = ['--args', '--robots', options.robots] if options.robots else []
+        os.execvp('rqt', ['rqt', '--standalone', PLUGIN] + remappings + extra)
+    app = QApplication(sys.argv[:1])
+    program = Standalone(sys.argv, options.settings)
+    if not options.fresh and not options.demo:
+        program.restore()
+    program.window.show()
+    program.host.start(options.robots.split(), options.select.split())
+    demo = start_demo(program, options) if options.demo else None
+    app.exec_()
+    sys.exit(demo.exit_status if demo else 0)
+
+
+def start_demo(program, options):
+    """Begin the scripted drive in a program that is running."""
+    from mhri.demo import Demo
+    demo = Demo(program, options.screenshot, options.demo_result)
+    demo.start()
+    return demo

@@ -1,0 +1,120 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The executable ``sim_robot``: a simulated robot in the namespace it is started in.
+
+Parameters: ``robot_type`` and ``robot_model`` of the robot's namespace (its template), ``~plan``
+(path, default ``resource/sim/plan.yaml``), ``~x``, ``~y`` [m], ``~yaw`` [rad] (default: the start
+place of the plan that the number at the end of the name says), ``~depth_format`` (``png`` or
+``rvl``, of compressedDepth), ``~seed`` (whole number; default: chance).
+"""
+import math
+import random
+import re
+import sys
+import time
+from urllib.parse import urlparse
+
+import numpy as np
+import rosgraph
+import rosgraph.network
+import rospy
+
+from mhri.core.config import ConfigError
+from mhri.core.robot_types import resolve_robot_type
+from mhri.ros.master_watch import MasterWatch
+from mhri.ros.resources import read_resource, read_text, resource_path, robot_types
+from mhri.sim.body import Body, Bumper, parse_bodies
+from mhri.sim.camera_node import SimCamera
+from mhri.sim.node import SimRobot
+from mhri.sim.plan import parse_plan
+from mhri.sim.sensors import ImuSensor, Laser
+from mhri.sim.world import World, WorldFull, world_path
+
+
+def start_pose(plan, name, radius_m):
+    """Return (x, y, yaw): the parameters where they are given, else a start place of the plan.
+
+    :raises ConfigError: one is not a number, or the body would stand in a wall or a landmark
+    """
+    number = re.search(r'(\d+)\Z', name)
+    pose = list(plan.starts[(int(number.group(1)) - 1 if number else 0) % len(plan.starts)])
+    for index, key in enumerate(('x', 'y', 'yaw')):
+        value = rospy.get_param('~' + key, '')
+        if value != '':
+            try:
+                pose[index] = float(value)
+            except (TypeError, ValueError):
+                raise ConfigError(rospy.resolve_name('~' + key), '',
+                                  'expected a number, got {!r}'.format(value))
+    if not (all(map(math.isfinite, pose)) and plan.distance(pose[0], pose[1]) >= radius_m):
+        raise ConfigError(rospy.resolve_name('~x'), '', 'a body of {:g} m radius cannot stand at '
+                          'x {:g}, y {:g} of this plan'.format(radius_m, pose[0], pose[1]))
+    return tuple(pose)
+
+
+def building_key(plan):
+    """Return what robots in one building have in common: the master and the plan.
+
+    One master has several addresses (``localhost``, the host's name, each of its interfaces).
+    """
+    uri = urlparse(rosgraph.get_master_uri())
+    local = rosgraph.network.is_local_address(uri.hostname)
+    return '{}:{}/{}'.format('localhost' if local else uri.hostname, uri.port, plan.name)
+
+
+def body_type(name, template):
+    """Return the :class:`BodyType` of a template and its model.
+
+    :raises ConfigError: there is none
+    """
+    bodies = parse_bodies(read_resource('sim', 'bodies.yaml'), resource_path('sim', 'bodies.yaml'))
+    key = template.name if template.model is None else '{}_{}'.format(template.name, template.model)
+    if key not in bodies:
+        raise ConfigError('/' + name, 'robot_type', 'no simulated body for {!r}; there are '
+                          '{}'.format(key, ', '.join(sorted(bodies))))
+    return bodies[key]
+
+
+def build(name, parameters):
+    """Return the :class:`SimRobot` that the parameters of a robot's namespace describe.
+
+    :raises ConfigError: an unknown type or model, a plan or a start place that cannot be used
+    :raises WorldFull: there are too many robots
+    :raises OSError: a file cannot be read
+    """
+    template, errors = resolve_robot_type(robot_types()[0], name, parameters)
+    if errors:
+        raise errors[0]
+    kind = body_type(name, template)
+    path = rospy.get_param('~plan', '') or resource_path('sim', 'plan.yaml')
+    plan = parse_plan(read_text(path), path)
+    pose = start_pose(plan, name, kind.radius_m)
+    seed = rospy.get_param('~seed', None)
+    chance = random.Random(seed)
+    laser = Laser(plan.walls, kind.scan_min_m, kind.scan_max_m, np.random.default_rng(seed))
+    world = World(world_path(building_key(plan)), name, kind, time.monotonic)
+    body = Body(kind, template.limits, pose, Bumper(kind.radius_m, plan.distance, world.discs),
+                chance)
+    SimCamera(name, template, plan, lambda: (body.x, body.y, body.yaw), world.others,
+              rospy.get_param('~depth_format', 'png')).start()
+    return SimRobot(name, template, body, ImuSensor(chance), laser, world, plan.discs())
+
+
+def main():
+    """Run until shut down; exit with 1 and a reason where the robot cannot be built."""
+    rospy.init_node('base')
+    name = rospy.get_namespace().strip('/')
+    if not name or '/' in name:
+        rospy.logfatal('start a simulated robot inside a group named after it: '
+                       'roslaunch mhri turtlebot.launch name:=bot1')
+        sys.exit(1)
+    parameters = {key: rospy.get_param(key) for key in ('robot_type', 'robot_model')
+                  if rospy.has_param(key)}
+    try:
+        robot = build(name, parameters)
+    except (ConfigError, WorldFull, OSError, ValueError) as error:
+        rospy.logfatal('%s cannot be simulated: %s', name, error)
+        sys.exit(1)
+    MasterWatch(parameters={'/{}/{}'.format(name, key): value
+                            for key, value in parameters.items()}).start()
+    robot.run()

@@ -1,0 +1,274 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Joins the two halves of the panel: the operator's ROS side and the widgets.
+
+One of the few modules that know both. Everything here runs on the GUI thread; the ROS side is asked
+by timers and never waited for.
+"""
+from python_qt_binding.QtCore import QByteArray, QObject, Qt, QTimer
+from python_qt_binding.QtGui import QGuiApplication
+from python_qt_binding.QtWidgets import QApplication
+
+from mhri.core.names import tidy_name
+from mhri.gui.panel import PanelWidget
+from mhri.gui.windows import free_corner, window_class
+from mhri.ros.resources import resource_path
+from mhri.window_host import WindowHost
+
+DRAW_MS = 50
+STICK_MS = 50
+SLICE_MS = 4
+# A row takes about 2 ms to make: more at once would be felt at the stick.
+ADD_AT_ONCE = 6
+
+
+class PanelHost(QObject):
+    """The panel, its bot windows and what feeds them; rqt and the standalone window hold one each.
+
+    :param operator: :class:`mhri.ros.operator.Operator`, started by :meth:`start`
+    """
+
+    def __init__(self, operator, parent=None):
+        super().__init__(parent)
+        self.operator = operator
+        self.windows = {}
+        self._hosts = {}
+        self._places = {}
+        self._looks = {}
+        self._window_due = set()
+        self._to_add = []
+        self._due = []
+        self._stopped = False
+        self._mode = None
+        self._closed = False
+        self._build()
+        self._connect()
+
+    def _build(self):
+        self._ui_dir = resource_path()
+        self.panel = PanelWidget(self._ui_dir)
+        QApplication.instance().installEventFilter(self.panel.drive_keys)
+        self._draw_timer = QTimer(self)
+        self._draw_timer.setInterval(DRAW_MS)
+        self._slice_timer = QTimer(self)
+        self._slice_timer.setInterval(SLICE_MS)
+        self._stick_timer = QTimer(self)
+        self._stick_timer.setInterval(STICK_MS)
+
+    def _connect(self):
+        panel, operator = self.panel, self.operator
+        panel.look_requested.connect(self._look)
+        panel.add_requested.connect(self._add)
+        panel.remove_requested.connect(self._remove)
+        panel.selection_requested.connect(self._select)
+        panel.activated.connect(self._activate)
+        panel.open_requested.connect(self._open)
+        panel.mode_requested.connect(self._request_mode)
+        panel.stick_moved.connect(operator.send_stick)
+        panel.limits_requested.connect(operator.request_limits)
+        panel.stop_requested.connect(operator.stop_all)
+        panel.release_requested.connect(operator.release)
+        self._draw_timer.timeout.connect(self.draw)
+        self._slice_timer.timeout.connect(self._draw_next)
+        self._stick_timer.timeout.connect(self._repeat_stick)
+
+    def start(self, robots=(), selected=()):
+        """Begin; returns at once.
+
+        :param robots: names to add to the list
+        :param selected: names to add and select
+        """
+        for name in dict.fromkeys((*robots, *selected)):
+            self._add(name)
+        if selected:
+            self._select(list(selected))
+        self.operator.start()
+        self._draw_timer.start()
+        self._stick_timer.start()
+        self.draw()
+
+    def draw(self):
+        """Take what there is to see and hand it to the widgets."""
+        for name, parameters in self._to_add[:ADD_AT_ONCE]:
+            self.operator.add(name, parameters)
+        del self._to_add[:ADD_AT_ONCE]
+        view = self.operator.view()
+        self._mode = view.mode or self._mode
+        self.panel.show_view(view)
+        for robot in view.robots:
+            if robot.name in self._window_due and robot.type_label:
+                self._open(robot.name)
+        waiting = [robot.name for robot in self._due]
+        self._due = sorted((robot for robot in view.robots if robot.name in self._hosts),
+                           key=lambda robot: robot.name not in waiting)
+        self._stopped = view.stop_all
+        self._slice_timer.start()
+        for kind, value in self.operator.take_events():
+            if kind == 'found':
+                self._show_found(value)
+            else:
+                self.panel.show_look_result(value)
+
+    def _draw_next(self):
+        """Draw one window; the others have their turn later, so that a click never waits for all.
+
+        Those that were not reached before the next round come first in it.
+        """
+        if not self._due:
+            self._slice_timer.stop()
+            return
+        robot = self._due.pop(0)
+        if robot.name in self._hosts:
+            highlighted = self.panel.robot_list.current
+            self._hosts[robot.name].prominent = highlighted in (None, robot.name) \
+                or highlighted not in self._hosts
+            self._hosts[robot.name].draw(robot, self._stopped)
+
+    def _repeat_stick(self):
+        """Say again where the stick is: a source that is not heard for 0.5 s counts as lost."""
+        self.operator.send_stick(*self.panel.stick())
+
+    def _look(self):
+        self.panel.show_look_result('looking', busy=True)
+        self.operator.look()
+
+    def _show_found(self, found):
+        """Say what was found; the robots that answer come into the list a few with each drawing."""
+        new = [item.name for item in found.live]
+        self._to_add += [(name, found.parameters[name]) for name in new]
+        words = ['found {}'.format(', '.join(new)) if new else 'no new robot answers']
+        if found.leftovers:
+            words.append('{}: registered, but nothing answers (switched off?), not added'.format(
+                ', '.join(item.name for item in found.leftovers)))
+        words += ['{}: {}'.format(item.name, item.problem) for item in found.refused]
+        self.panel.show_look_result('; '.join(words))
+
+    def _add(self, name):
+        name = tidy_name(name)
+        problem = self.operator.add(name)
+        if problem:
+            self.panel.show_name_problem(problem)
+        else:
+            self.panel.clear_name()
+        self.draw()
+
+    def _remove(self, name):
+        self._window_due.discard(name)
+        self._close_window(name)
+        self.operator.remove(name)
+        self.draw()
+
+    def _select(self, names):
+        newly = set(names) - set(self.operator.selection.selected)
+        self.operator.select(names)
+        self._window_due |= newly
+        self._window_due &= set(names)
+        self.draw()
+
+    def _request_mode(self, name):
+        self._mode = name
+        self.operator.request_mode(name)
+
+    def _activate(self, name):
+        """Bring the window of the highlighted robot to the front; open it where it is selected."""
+        if name in self.windows:
+            self.windows[name].raise_()
+        elif name in self.operator.selection.selected:
+            self._open(name)
+
+    def _open(self, name):
+        """Open a robot's window, or bring it to the front.
+
+        It does not take the keyboard: the keys go on driving, and a held stick stays held.
+        """
+        self._window_due.discard(name)
+        if name not in self.windows:
+            view = self.operator.robot_view(name)
+            window = window_class(view.window)(self._ui_dir, name, view.type_label)
+            window.closed.connect(self._on_window_closed)
+            window.stop_requested.connect(self.operator.stop_all)
+            self.windows[name] = window
+            self._hosts[name] = WindowHost(window, self.operator)
+            feeds = self.operator.feeds(name)
+            if feeds is not None:
+                window.offer(feeds.offers())
+            window.restore_settings(self._looks.get(name, {}))
+            self._place(name, window)
+            window.show_view(view)
+            window.setAttribute(Qt.WA_ShowWithoutActivating)
+            window.show()
+        self.windows[name].raise_()
+
+    def _place(self, name, window):
+        """Put a window where it was last time, else where it covers the panel and others least."""
+        saved = self._places.get(name)
+        if saved:
+            window.restoreGeometry(QByteArray.fromHex(saved.encode('ascii')))
+            return
+        screen = QGuiApplication.screenAt(self.panel.window().geometry().center()) \
+            or QGuiApplication.primaryScreen()
+        others = [other.frameGeometry() for other in self.windows.values() if other is not window]
+        window.move(free_corner(screen.availableGeometry(), window.sizeHint(),
+                                self.panel.window().frameGeometry(), others))
+
+    def _on_window_closed(self, name):
+        """A robot whose window is closed is not driven any more: its zero leaves here, at once."""
+        window = self._forget_window(name)
+        if window is not None:
+            window.deleteLater()
+        self._select([other for other in self.operator.selection.selected if other != name])
+
+    def _close_window(self, name):
+        window = self._forget_window(name)
+        if window is not None:
+            window.closed.disconnect(self._on_window_closed)
+            window.close()
+            window.deleteLater()
+
+    def _forget_window(self, name):
+        """Let a window's feeds rest and keep how it looked; return it, None where there is none."""
+        if name not in self.windows:
+            return None
+        self._keep_look(name)
+        self._hosts.pop(name).close()
+        return self.windows.pop(name)
+
+    def _keep_look(self, name):
+        window = self.windows[name]
+        self._places[name] = bytes(window.saveGeometry().toHex()).decode('ascii')
+        self._looks[name] = window.save_settings()
+
+    def save_state(self):
+        """Return what is kept between runs as a plain dict: never which robots are selected."""
+        for name in self.windows:
+            self._keep_look(name)
+        return {'robots': list(self.operator.selection.robots), 'mode': self._mode,
+                'limits': list(self.operator.view().limits), 'windows': self._places,
+                'looks': self._looks,
+                'panel': self.panel.save_settings()}
+
+    def restore_state(self, state):
+        """Take over a dict of :meth:`save_state`; call it before :meth:`start`."""
+        for name in state.get('robots', []):
+            self.operator.add(name)
+        if state.get('mode'):
+            self._mode = state['mode']
+            self.operator.restore_mode(state['mode'])
+        if state.get('limits'):
+            self.operator.request_limits(*state['limits'])
+        self._places.update(state.get('windows', {}))
+        self._looks.update(state.get('looks', {}))
+        self.panel.restore_settings(state.get('panel', {}))
+
+    def close(self, forget=False):
+        """Stop the robots first, then close everything; ``forget``: see :meth:`Operator.close`."""
+        if self._closed:
+            return
+        self._closed = True
+        self._draw_timer.stop()
+        self._slice_timer.stop()
+        self._stick_timer.stop()
+        self.operator.close(forget)
+        QApplication.instance().removeEventFilter(self.panel.drive_keys)
+        for name in list(self.windows):
+            self._close_window(name)

@@ -1,0 +1,84 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The panel in a window of its own, for machines without rqt."""
+import json
+import signal
+import socket
+
+from python_qt_binding.QtCore import QSettings, QSocketNotifier, Signal
+from python_qt_binding.QtWidgets import QApplication, QMainWindow
+import rospy
+
+from mhri.panel_host import PanelHost
+from mhri.ros.operator import Operator
+
+
+class PanelWindow(QMainWindow):
+    """A main window around the panel; closing it stops the robots and ends the program."""
+
+    closing = Signal()
+
+    def __init__(self, host):
+        super().__init__()
+        self._host = host
+        self.setWindowTitle('mhri')
+        self.setCentralWidget(host.panel)
+        self.resize(1000, 600)
+
+    def closeEvent(self, event):  # noqa: N802
+        """Stop the robots before the window goes."""
+        self.closing.emit()
+        super().closeEvent(event)
+
+
+class SignalBell:
+    """Wakes Qt's event loop for SIGINT, SIGTERM and SIGHUP, which Python alone would not see."""
+
+    def __init__(self, on_signal):
+        self._reading, self._writing = socket.socketpair()
+        self._writing.setblocking(False)
+        self._notifier = QSocketNotifier(self._reading.fileno(), QSocketNotifier.Read)
+        self._notifier.activated.connect(lambda *_: on_signal())
+        signal.set_wakeup_fd(self._writing.fileno())
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, lambda *_: None)
+
+
+class Standalone:
+    """The program: settings, signals, window.
+
+    :param argv: the node's command line
+    :param settings_path: an INI file, None for the user's own
+    """
+
+    def __init__(self, argv, settings_path=None):
+        self._settings = QSettings(settings_path, QSettings.IniFormat) if settings_path else \
+            QSettings('mhri', 'panel')
+        self.host = PanelHost(Operator(argv))
+        self.window = PanelWindow(self.host)
+        self.window.closing.connect(self.close)
+        self._bell = SignalBell(self.window.close)
+        self._closed = False
+
+    def restore(self):
+        """Take over the settings of the last run."""
+        try:
+            self.host.restore_state(json.loads(self._settings.value('state', '{}')))
+        except (ValueError, TypeError, AttributeError) as error:
+            rospy.logwarn('the saved settings cannot be used and are left out: %s', error)
+        geometry = self._settings.value('geometry')
+        if geometry is not None:
+            self.window.restoreGeometry(geometry)
+
+    def close(self):
+        """Stop the robots, save the settings, end."""
+        if self._closed:
+            return
+        self._closed = True
+        state = json.dumps(self.host.save_state())
+        self.host.close()
+        self._settings.setValue('state', state)
+        self._settings.setValue('geometry', self.window.saveGeometry())
+        self._settings.sync()
+        rospy.signal_shutdown('the panel was closed')
+        QApplication.instance().quit()
