@@ -1,0 +1,225 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+# shellcheck shell=bash
+# What mhri_run.sh and mhri_test.sh share: messages, packages, the workspace, a display without a
+# screen. Sourced, never run.
+
+REPO=$(cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
+WS="$REPO/.ws"
+# The tests point these elsewhere to see what happens on other systems.
+OS_RELEASE=${MHRI_OS_RELEASE:-/etc/os-release}
+NOETIC=${MHRI_NOETIC:-/opt/ros/noetic}
+RUN_ID="mhri-$$-$RANDOM$RANDOM"
+SCRATCH=
+XVFB_PID=
+PACKAGES=()
+
+# The system's python3 has to be the first: ROS is not installed for any other.
+[ "$(command -v python3)" = /usr/bin/python3 ] || export PATH="/usr/bin:$PATH"
+
+DEBIAN_RUN=(
+  catkin cmake g++ make python3-catkin-pkg ros-message-generation ros-message-runtime
+  python3-roslaunch python3-rosgraph python3-rospkg python3-rospy
+  python3-rosbag python3-rosnode python3-rosparam python3-rosservice python3-rostopic rosbash
+  python3-std-msgs python3-geometry-msgs python3-sensor-msgs python3-nav-msgs python3-std-srvs
+  python3-tf2-msgs python3-rosgraph-msgs python3-diagnostic-msgs python3-diagnostic-updater
+  python3-cv-bridge python3-python-qt-binding python3-pyqt5 python3-pyqtgraph python3-pygame
+  python3-numpy python3-opencv python3-yaml python3-genpy fonts-dejavu-core
+  xvfb xauth hostname util-linux
+)
+DEBIAN_TEST=(
+  librostest-dev python3-rostest topic-tools python3-pytest python3-flake8
+  python3-flake8-docstrings python3-mccabe python3-pip python3-psutil catkin-lint shellcheck
+  xdotool imagemagick x11-utils git procps
+)
+# On Ubuntu rosdep reads the ROS packages from package.xml; these have no key there.
+UBUNTU_RUN=(python3-rosdep build-essential cmake fonts-dejavu-core xvfb xauth hostname util-linux)
+UBUNTU_TEST=(
+  python3-pytest python3-flake8 python3-mccabe python3-pip python3-psutil python3-catkin-lint
+  shellcheck xdotool imagemagick x11-utils git procps
+)
+
+say() { printf 'mhri: %s\n' "$*"; }
+warn() { printf 'mhri: %s\n' "$*" >&2; }
+die() { warn "$*"; exit 1; }
+# A wrong command line: exit status 2, and nothing has been started.
+usage_error() { warn "$* (--help lists every option)"; exit 2; }
+
+# Prints debian or ubuntu, or ends with what is supported.
+os_family() {
+  local system
+  # shellcheck disable=SC1090 # known at run time only
+  system=$(. "$OS_RELEASE" 2>/dev/null && printf '%s' "${ID:-} ${VERSION_ID:-}") || system=
+  case "$system" in
+    "debian 12") echo debian ;;
+    "ubuntu 20.04")
+      [ -f "$NOETIC/setup.bash" ] || die "Ubuntu 20.04 without ROS Noetic: install" \
+        "ros-noetic-ros-base first (http://wiki.ros.org/noetic/Installation/Ubuntu)"
+      echo ubuntu ;;
+    *) die "this system (${system:-unknown}) is not supported: mhri runs on Debian 12 and" \
+         "on Ubuntu 20.04 with ROS Noetic" ;;
+  esac
+}
+
+# missing_packages NAME...: prints those that are not installed, one a line.
+missing_packages() {
+  local name
+  for name in "$@"; do
+    # shellcheck disable=SC2016 # the dollar is dpkg-query's
+    [ "$(dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null)" = installed ] ||
+      printf '%s\n' "$name"
+  done
+}
+
+# as_root COMMAND...: runs it, through sudo where that is needed.
+as_root() {
+  if [ "$(id -u)" = 0 ]; then "$@"; return; fi
+  command -v sudo >/dev/null ||
+    die "administrator rights are needed and there is no sudo; ask an administrator to run: $*"
+  say "asking for administrator rights (sudo) to run: $*"
+  sudo "$@"
+}
+
+# install_packages NAME...: installs what is missing; with nothing missing, neither apt nor sudo nor
+# the network is touched.
+install_packages() {
+  local missing
+  mapfile -t missing < <(missing_packages "$@")
+  [ "${#missing[@]}" -gt 0 ] || return 0
+  say "these packages are missing and will be installed with apt: ${missing[*]}"
+  as_root apt-get update ||
+    warn "the package lists could not be renewed; going on with the lists that are here"
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends \
+    "${missing[@]}" ||
+    die "apt could not install what is missing (${missing[*]}): see its message above"
+}
+
+# install_rosdeps: on Ubuntu, what package.xml asks for.
+install_rosdeps() {
+  local keys=(--from-paths "$REPO" --ignore-src --rosdistro noetic)
+  if rosdep check "${keys[@]}" >/dev/null 2>&1; then return 0; fi
+  say "packages named in package.xml are missing and will be installed with rosdep"
+  [ -f /etc/ros/rosdep/sources.list.d/20-default.list ] || as_root rosdep init
+  rosdep update --rosdistro noetic
+  # rosdep calls sudo itself where it is needed.
+  rosdep install "${keys[@]}" -r -y || die "rosdep could not install everything: see above"
+}
+
+# install_missing run|test: everything that kind of start needs.
+install_missing() {
+  local family
+  family=$(os_family)
+  case "$family" in
+    debian) PACKAGES=("${DEBIAN_RUN[@]}"); [ "$1" = run ] || PACKAGES+=("${DEBIAN_TEST[@]}") ;;
+    ubuntu) PACKAGES=("${UBUNTU_RUN[@]}"); [ "$1" = run ] || PACKAGES+=("${UBUNTU_TEST[@]}") ;;
+  esac
+  install_packages "${PACKAGES[@]}"
+  if [ "$family" = ubuntu ]; then
+    source_setup "$NOETIC/setup.bash"
+    install_rosdeps
+  fi
+}
+
+# source_setup FILE: catkin's setup files read variables that may not be set.
+source_setup() {
+  set +u
+  # shellcheck disable=SC1090 # known at run time only
+  . "$1"
+  set -u
+}
+
+# nothing_changed STAMP: true where a build of the devel space would find nothing to do. Python,
+# launch and resource files are used from where they are, so they need no build.
+nothing_changed() {
+  local inputs=(CMakeLists.txt package.xml setup.py msg srv scripts)
+  if [ ! -f "$1" ] || [ "$(cat "$1")" != "$REPO" ]; then return 1; fi
+  [ -z "$(cd "$REPO" && find "${inputs[@]}" -newer "$1" -print -quit)" ]
+}
+
+# needs_plain_path WHO: ends where the checkout's path is too much for WHO.
+needs_plain_path() {
+  [[ $REPO != *[[:space:]]* ]] ||
+    die "$1 cannot work in a path with a space in it: move the checkout ($REPO)"
+}
+
+# build_workspace TESTING [MAKE_TARGET]: builds this checkout in its own workspace, .ws; TESTING is
+# ON or OFF.
+build_workspace() {
+  local testing=$1 target=${2:-} stamp="$WS/built" log="$WS/build.log"
+  mkdir -p "$WS/src" 2>/dev/null ||
+    die "cannot write to $REPO: the workspace is built there, in .ws"
+  exec {BUILD_LOCK}>"$WS/lock"
+  flock "$BUILD_LOCK"
+  ln -sfn ../.. "$WS/src/mhri"
+  if [ -z "$target" ] && [ "$testing" = OFF ] && nothing_changed "$stamp"; then
+    exec {BUILD_LOCK}>&-
+    return 0
+  fi
+  # Stamped with the time of the start: what is saved during the build is built next time.
+  printf '%s' "$REPO" >"$stamp.new"
+  # CMake refuses a build folder that was made for another place (a copied or moved checkout).
+  if [ -f "$WS/place" ] && [ "$(cat "$WS/place")" != "$REPO" ]; then
+    rm -rf "$WS/build" "$WS/devel" "$WS/install" "$stamp"
+  fi
+  printf '%s' "$REPO" >"$WS/place"
+  # A workspace set up for the tests stays so: a start in the middle of a test run must not take
+  # its targets away.
+  if grep -qs '^CATKIN_ENABLE_TESTING:[A-Z]*=ON' "$WS/build/CMakeCache.txt"; then testing=ON; fi
+  say "building in $WS (log: $log)"
+  # With a master's address already set, catkin does not bake the default one into the environment
+  # that it gives to the tests.
+  (cd -P "$WS" && ROS_MASTER_URI=${ROS_MASTER_URI:-http://127.0.0.1:11311} catkin_make \
+    -DPYTHON_EXECUTABLE=/usr/bin/python3 "-DCATKIN_ENABLE_TESTING=$testing" \
+    ${target:+"$target"}) >"$log" 2>&1 {BUILD_LOCK}>&- || {
+    tail -n 40 "$log" >&2
+    die "the build failed; the whole log is $log"
+  }
+  mv "$stamp.new" "$stamp"
+  exec {BUILD_LOCK}>&-
+}
+
+# make_scratch: a private folder for this run, SCRATCH; clean_up removes it.
+make_scratch() { SCRATCH=$(mktemp -d "${TMPDIR:-/tmp}/mhri.XXXXXX"); }
+
+# start_xvfb: a display in memory on a free number, in DISPLAY; only this run has its key.
+start_xvfb() {
+  local number='' cookie
+  cookie=$(mcookie)
+  export XAUTHORITY="$SCRATCH/xauthority"
+  : >"$XAUTHORITY"
+  xauth -q add :0 . "$cookie"
+  mkfifo "$SCRATCH/display"
+  # In a session of its own, so that Ctrl-C does not end the display before the panel has sent its
+  # last zero; and ended by the kernel should this script be killed.
+  setsid setpriv --pdeathsig TERM Xvfb -displayfd 3 -screen 0 1920x1080x24 \
+    -nolisten tcp -auth "$XAUTHORITY" 3>"$SCRATCH/display" >"$SCRATCH/xvfb.log" 2>&1 &
+  XVFB_PID=$!
+  read -r -t 20 number <"$SCRATCH/display" || true
+  [ -n "$number" ] || die "Xvfb did not start: $(tail -n 3 "$SCRATCH/xvfb.log" | tr '\n' ' ')"
+  export DISPLAY=":$number"
+  xauth -q add "$DISPLAY" . "$cookie"
+  unset WAYLAND_DISPLAY
+}
+
+# end_leftovers: ends what this run started and did not end itself, known by its mark; prints each.
+end_leftovers() {
+  local entry pid
+  for entry in /proc/[0-9]*/environ; do
+    pid=${entry#/proc/}
+    pid=${pid%/environ}
+    if [ "$pid" != "$$" ] && grep -qzsxF "MHRI_RUN_ID=$RUN_ID" "$entry"; then
+      warn "ending what was left running: $pid $(tr '\0' ' ' 2>/dev/null <"/proc/$pid/cmdline")"
+      kill -KILL "$pid" 2>/dev/null || true
+    fi
+  done
+}
+
+# clean_up: for the scripts' exit trap.
+clean_up() {
+  if [ -n "$XVFB_PID" ]; then
+    kill "$XVFB_PID" 2>/dev/null || true
+    wait "$XVFB_PID" 2>/dev/null || true
+  fi
+  end_leftovers
+  [ -z "$SCRATCH" ] || rm -rf "$SCRATCH"
+}

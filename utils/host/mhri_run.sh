@@ -1,0 +1,299 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+# Starts mhri on the host computer; --help is the manual.
+set -euo pipefail
+# shellcheck source-path=SCRIPTDIR source=common.sh
+. "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
+
+help_text() {
+  cat <<'HELP'
+Usage: mhri_run.sh [OPTION]... [ARG:=VALUE]...
+
+Starts the human-robot interface on this computer: the mux and the panel, in rqt where rqt is
+installed. Installs what is missing and builds first; when nothing is missing and nothing has
+changed, it does neither and needs no network. Ctrl-C, or closing the panel, ends everything.
+
+Robots
+  --sim N [TYPES]      add N simulated robots (1 to 12). TYPES names their types in turn, e.g.
+                       --sim 3 "turtlebot2 turtlebot3_burger turtlebot3_waffle"
+  --sim-types TYPES    the same, as an option of its own
+  --demo               drive simulated robots by a script, with no hands: discover, select two of
+                       three, drive both, change the selection while moving, stop all. Prints what
+                       each robot did, writes a picture and ends: 0 where all went well, else 1.
+                       Means --sim 3 unless --sim is given; has a master of its own, so that a
+                       system that is running is not disturbed.
+  --screenshot FILE    where --demo writes its picture (PNG; default mhri-demo.png, here)
+
+Network
+  --ip ADDR            this computer's address, as the robots reach it. Default: the first IPv4
+                       address of 'hostname -I'. With --sim, or a master on this machine:
+                       127.0.0.1, and no network is needed.
+  --master URI         use the ROS master at URI, e.g. http://192.168.0.103:11311. Default: port
+                       11311 of this computer; one that runs there is used, else one is started.
+
+  ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME are set from these; what the shell had is not used.
+
+Other
+  --install-space      build and run from the install space instead of the devel space
+  ARG:=VALUE           an argument of launch/mhri.launch, e.g. gui:=none or robots:="bot1 bot2"
+  -h, --help           this text
+
+Without a display (DISPLAY and WAYLAND_DISPLAY not set) the panel runs under Xvfb, 1920x1080.
+
+Works on Debian 12, and on Ubuntu 20.04 with ROS Noetic. sudo is asked for only when packages are
+missing. The build is in .ws in the checkout; deleting that folder costs a minute at the next start.
+
+Exit status: 0 ended by itself, 1 could not start or the demo failed, 2 wrong option,
+130 or 143 ended by Ctrl-C or a signal.
+
+Examples
+  mhri_run.sh                       drive the robots of the network
+  mhri_run.sh --ip 192.168.0.103    the same, on this of several addresses
+  mhri_run.sh --sim 3               three simulated robots; needs neither robots nor network
+  mhri_run.sh --demo                the proof that all of it works here
+HELP
+}
+
+SIM=
+SIM_TYPES=
+IP=
+MASTER=
+DEMO=false
+PICTURE=
+SPACE=devel
+LAUNCH_ARGS=()
+STOPPED_WITH=
+LAUNCH_PID=
+
+valid_ip() {
+  local part octets
+  [[ $1 =~ ^[0-9]{1,3}(\.[0-9]{1,3}){3}$ ]] || return 1
+  IFS=. read -r -a octets <<<"$1"
+  for part in "${octets[@]}"; do [ "$((10#$part))" -le 255 ] || return 1; done
+}
+
+# value OPTION [VALUE]: the value of an option, or the error that there is none.
+value() {
+  case "${2:-}" in
+    '' | -*) usage_error "$1 needs a value" ;;
+  esac
+  printf '%s' "$2"
+}
+
+parse_arguments() {
+  while [ $# -gt 0 ]; do
+    case "$1" in
+      -h | --help) help_text; exit 0 ;;
+      --sim)
+        SIM=$(value "$@"); shift
+        if [[ ${2:-} =~ ^[a-z] && $2 != *:=* ]]; then SIM_TYPES=$2; shift; fi ;;
+      --sim-types) SIM_TYPES=$(value "$@"); shift ;;
+      --ip) IP=$(value "$@"); shift ;;
+      --master) MASTER=$(value "$@"); shift ;;
+      --screenshot) PICTURE=$(value "$@"); shift ;;
+      --demo) DEMO=true ;;
+      --install-space) SPACE=install ;;
+      -*) usage_error "there is no option $1" ;;
+      *:=*) LAUNCH_ARGS+=("$1") ;;
+      *) usage_error "'$1' is neither an option nor ARG:=VALUE" ;;
+    esac
+    shift
+  done
+}
+
+check_arguments() {
+  local arg
+  [[ -z $SIM || $SIM =~ ^([1-9]|1[0-2])$ ]] ||
+    usage_error "--sim: '$SIM' is not a number of robots from 1 to 12"
+  [[ $SIM_TYPES =~ ^[a-z0-9_\ ]*$ ]] ||
+    usage_error "--sim: '$SIM_TYPES' is not a list of robot types: names with spaces between"
+  [ -z "$SIM_TYPES" ] || [ -n "$SIM" ] || "$DEMO" ||
+    usage_error "--sim-types says of what type the robots of --sim N are: give --sim as well"
+  [ -z "$IP" ] || valid_ip "$IP" ||
+    usage_error "--ip: '$IP' is not an IPv4 address such as 192.168.0.103"
+  [[ -z $MASTER || $MASTER =~ ^http://[A-Za-z0-9]([A-Za-z0-9.-]*)?:[0-9]{1,5}/?$ ]] ||
+    usage_error "--master: '$MASTER' is not an address such as http://192.168.0.103:11311"
+  MASTER=${MASTER%/}
+  if [ -n "$MASTER" ] && [ "$((10#${MASTER##*:}))" -gt 65535 ]; then
+    usage_error "--master: there is no port ${MASTER##*:}"
+  fi
+  if "$DEMO" && [ -n "$IP$MASTER" ]; then
+    usage_error "--demo runs on this machine alone, with a master of its own:" \
+      "leave out --ip and --master"
+  fi
+  [ -z "$PICTURE" ] || "$DEMO" || usage_error "--screenshot goes with --demo"
+  for arg in "${LAUNCH_ARGS[@]}"; do
+    [[ $arg =~ ^[a-z][a-z0-9_]*:= ]] || usage_error "'$arg' is not ARG:=VALUE"
+  done
+}
+
+# A picture that cannot be written is said before the drive, not after it.
+check_picture() {
+  local folder
+  "$DEMO" || return 0
+  PICTURE=$(realpath -m -- "${PICTURE:-mhri-demo.png}")
+  folder=$(dirname "$PICTURE")
+  [ ! -d "$PICTURE" ] || usage_error "--screenshot: $PICTURE is a folder"
+  [ -d "$folder" ] || usage_error "--screenshot: there is no folder $folder"
+  [ -w "$folder" ] || usage_error "--screenshot: cannot write to $folder"
+}
+
+is_loopback() { [[ $1 == localhost || $1 == 127.* ]]; }
+
+# choose_address: sets IP where --ip did not.
+choose_address() {
+  local master_host=${MASTER#http://} all=() address v4=()
+  master_host=${master_host%:*}
+  [ -z "$IP" ] || return 0
+  if is_loopback "$master_host" || { [ -n "$SIM" ] && [ -z "$MASTER" ]; }; then
+    IP=127.0.0.1
+    return
+  fi
+  read -r -a all < <(hostname -I) || true
+  for address in "${all[@]}"; do
+    if valid_ip "$address"; then v4+=("$address"); fi
+  done
+  if [ "${#v4[@]}" = 0 ]; then
+    die "this computer has no IPv4 address${all:+ (only ${all[*]}, and ROS 1 needs one)}:" \
+      "connect it to the robots' network, or name an address with --ip ADDR;" \
+      "simulated robots (--sim 3) need no network"
+  fi
+  IP=${v4[0]}
+  [ "${#v4[@]}" = 1 ] || say "this computer has several addresses (${v4[*]}): taking $IP;" \
+    "choose another with --ip ADDR"
+}
+
+free_port() {
+  python3 -c 'import socket
+with socket.socket() as sock:
+    sock.bind(("127.0.0.1", 0))
+    print(sock.getsockname()[1])'
+}
+
+# What is at a master's address: prints master, other or nothing.
+probe_master() {
+  python3 - "$1" <<'PYTHON'
+import socket
+import sys
+import urllib.parse
+import xmlrpc.client
+
+place = urllib.parse.urlsplit(sys.argv[1])
+socket.setdefaulttimeout(3.0)
+try:
+    socket.create_connection((place.hostname, place.port)).close()
+except OSError:
+    print('nothing')
+    sys.exit()
+try:
+    xmlrpc.client.ServerProxy(sys.argv[1]).getPid('/mhri_run')
+    print('master')
+except Exception:  # whatever it answers, it is not a master's answer
+    print('other')
+PYTHON
+}
+
+check_master() {
+  local host=${MASTER#http://}
+  host=${host%:*}
+  case "$(probe_master "$MASTER")" in
+    master) say "a ROS master runs at $MASTER: joining it" ;;
+    other) die "something that is not a ROS master has $MASTER: end it, or choose another port" \
+      "with --master http://$IP:11312" ;;
+    nothing)
+      # roslaunch starts a master only on its own machine.
+      is_loopback "$host" || [ "$host" = "$IP" ] || [ "$host" = "$(hostname)" ] ||
+        [[ " $(hostname -I) " == *" $host "* ]] ||
+        die "there is no ROS master at $MASTER: start it there first, or leave out --master to" \
+          "start one here" ;;
+  esac
+}
+
+choose_network() {
+  if "$DEMO"; then MASTER="http://127.0.0.1:$(free_port)"; fi
+  MASTER=${MASTER:-http://$IP:11311}
+  export ROS_MASTER_URI=$MASTER ROS_IP=$IP ROS_HOSTNAME=$IP
+  check_master
+}
+
+# An installed copy of this script has its setup file above it and nothing to build.
+prepare_code() {
+  local installed="$REPO/../../setup.bash"
+  if [ ! -f "$REPO/CMakeLists.txt" ] && [ -f "$installed" ]; then
+    source_setup "$installed"
+    return
+  fi
+  install_missing run
+  if [ "$SPACE" = install ]; then
+    needs_plain_path "catkin's installation"
+    build_workspace OFF install
+  else
+    build_workspace OFF
+  fi
+  source_setup "$WS/$SPACE/setup.bash"
+}
+
+prepare_display() {
+  [[ " ${LAUNCH_ARGS[*]} " != *" gui:=none "* ]] || return 0
+  [ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ] || return 0
+  start_xvfb
+  say "there is no display: the panel runs under Xvfb, on $DISPLAY. To look at it:" \
+    "XAUTHORITY=$XAUTHORITY DISPLAY=$DISPLAY import -window root picture.png (from imagemagick)"
+}
+
+# Sends one signal, however often it was asked: roslaunch then ends its nodes in order, the mux and
+# the panel sending their zeros, and forces those that do not end. SIGTERM, since a shell starts
+# what runs in the background with SIGINT ignored.
+stop() {
+  if [ -n "$STOPPED_WITH" ]; then return; fi
+  STOPPED_WITH=$1
+  say "ending"
+  if [ -z "$LAUNCH_PID" ]; then exit "$1"; fi
+  kill -TERM "$LAUNCH_PID" 2>/dev/null || true
+}
+
+launch() {
+  local status=0 args=("sim:=${SIM:-0}" "${LAUNCH_ARGS[@]}")
+  [ -z "$SIM_TYPES" ] || args+=("sim_types:=$SIM_TYPES")
+  if "$DEMO"; then
+    args+=("demo:=true" "screenshot:=$PICTURE" "demo_result:=$SCRATCH/demo_result")
+  fi
+  say "ROS_MASTER_URI=$ROS_MASTER_URI ROS_IP=$ROS_IP ROS_HOSTNAME=$ROS_HOSTNAME"
+  # A session of its own: Ctrl-C in the terminal reaches this script alone, which passes it on once.
+  # Should this script be killed, the kernel does.
+  MHRI_RUN_ID=$RUN_ID setsid setpriv --pdeathsig TERM roslaunch mhri mhri.launch "${args[@]}" &
+  LAUNCH_PID=$!
+  while kill -0 "$LAUNCH_PID" 2>/dev/null; do
+    status=0
+    wait "$LAUNCH_PID" || status=$?
+  done
+  return "${STOPPED_WITH:-$status}"
+}
+
+demo_verdict() {
+  local verdict=
+  [ ! -f "$SCRATCH/demo_result" ] || verdict=$(cat "$SCRATCH/demo_result")
+  [ "$verdict" = ok ] || die "the demo failed: ${verdict:-it ended without a result}"
+  say "the demo went well; its picture is $PICTURE"
+}
+
+main() {
+  parse_arguments "$@"
+  check_arguments
+  check_picture
+  if "$DEMO"; then SIM=${SIM:-3}; fi
+  os_family >/dev/null
+  choose_address
+  make_scratch
+  trap clean_up EXIT
+  trap 'stop 130' INT
+  trap 'stop 143' TERM HUP
+  prepare_code
+  choose_network
+  prepare_display
+  launch
+  if "$DEMO"; then demo_verdict; fi
+}
+
+main "$@"
