@@ -1,0 +1,148 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""How long the Qt event loop of the panel is blocked: driving four robots, and finding a hundred.
+
+A timer asks to be called every 2 ms; what it is late is the time a click would have waited.
+Figures in milliseconds. Promised: never more than 50 ms.
+"""
+import argparse
+import os
+import sys
+import time
+import xmlrpc.client
+
+from python_qt_binding.QtWidgets import QAbstractButton
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.ros_system import System, wait_for  # noqa: E402
+
+
+NAMES = ['bot{}'.format(number + 1) for number in range(4)]
+
+
+class LoopWatch:
+    """Measures the gaps between the turns of the event loop."""
+
+    def __init__(self):
+        from python_qt_binding.QtCore import Qt, QTimer
+        self.gaps = []
+        self._last = None
+        self._timer = QTimer()
+        self._timer.setTimerType(Qt.PreciseTimer)
+        self._timer.timeout.connect(self._tick)
+        self._timer.start(2)
+
+    def _tick(self):
+        now = time.monotonic()
+        if self._last is not None:
+            self.gaps.append((now - self._last) * 1e3 - 2.0)
+        self._last = now
+
+    def take(self):
+        gaps, self.gaps = sorted(self.gaps), []
+        return gaps
+
+
+def row(name, gaps):
+    return '{:<44} {:>7} {:>7.2f} {:>7.2f} {:>7.2f}'.format(
+        name, len(gaps), gaps[len(gaps) // 2], gaps[int(0.99 * len(gaps))], gaps[-1])
+
+
+def register(system, robots, topics, uri):
+    """Register robots by hand, all at one address that answers."""
+    batch = xmlrpc.client.MultiCall(xmlrpc.client.ServerProxy(system.env['ROS_MASTER_URI']))
+    for robot in range(robots):
+        for topic in range(topics):
+            batch.registerPublisher('/r{:03}/base'.format(robot),
+                                    '/r{:03}/topic{}'.format(robot, topic), 'std_msgs/Bool', uri)
+    batch()
+
+
+class Measurement:
+    """A panel in this process with four robots in their windows."""
+
+    def __init__(self, system, seconds):
+        from python_qt_binding.QtWidgets import QApplication
+        from mhri.demo import Hands
+        from mhri.panel_host import PanelHost
+        from mhri.ros.operator import Operator
+        self.system = system
+        self._seconds = seconds
+        self._app = QApplication(['panel'])
+        self.host = PanelHost(Operator(['panel']))
+        self.operator = self.host.operator
+        self.host.panel.resize(1000, 600)
+        self.host.panel.show()
+        self.host.start((), NAMES)
+        self.until(lambda: len(self.host.windows) == 4 and all(
+            self.operator.robot_view(name).link == 'live' for name in NAMES), 'four robots')
+        self.until(lambda: self.operator.view().status.endswith('ready'), 'the mux')
+        self._hands = Hands(self.host.panel)
+        self._watch = LoopWatch()
+
+    def until(self, condition, what):
+        """Let Qt work until a condition comes true."""
+        wait_for(lambda: (self._app.processEvents(), condition())[1], 40, what)
+
+    def watch_for(self, seconds):
+        """Return the gaps of some seconds, sorted."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self._app.processEvents()
+            time.sleep(0.0002)
+        return self._watch.take()
+
+    def drive(self):
+        """Print the gaps at rest and while driving."""
+        self.watch_for(0.5)
+        print(row('4 windows with graphs, at rest', self.watch_for(self._seconds)), flush=True)
+        self._hands.hold_stick(0.2, 0.6)
+        print(row('4 windows with graphs, driving all', self.watch_for(self._seconds)), flush=True)
+        for window in self.host.windows.values():
+            window.findChild(QAbstractButton, 'camera_rgb').click()
+        self.watch_for(3.0)
+        print(row('4 windows with graphs and RGB, driving all', self.watch_for(self._seconds)))
+        rates = [self.operator.feeds(name).get('rgb').status().rate_hz for name in NAMES]
+        print('pictures: {} Hz'.format(', '.join('{:.1f}'.format(rate) for rate in rates)),
+              flush=True)
+        for window in self.host.windows.values():
+            window.findChild(QAbstractButton, 'camera_off').click()
+        self._hands.let_go()
+
+    def find(self, uri):
+        """Print the gaps while a hundred robots are found and listed."""
+        register(self.system, 100, 20, uri)
+        self.watch_for(0.5)
+        begun = time.monotonic()
+        self._hands.click('look_button')
+        self.until(lambda: self.host.panel.look_label.text().startswith('found'), 'the answer')
+        answered = time.monotonic() - begun
+        self.until(lambda: len(self.operator.selection.robots) >= 104, '100 robots in the list')
+        listed = time.monotonic() - begun
+        gaps = self._watch.take() + self.watch_for(2.0)
+        print(row('finding 100 robots with 20 topics each', sorted(gaps)))
+        print('from the click: answer shown after {:.0f} ms, 100 new rows after {:.0f} ms'.format(
+            answered * 1e3, listed * 1e3), flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--short', action='store_true', help='a quarter of the time')
+    seconds = 4.0 if parser.parse_args().short else 16.0
+    with System() as system:
+        system.screen()
+        system.start_master()
+        system.node('mux', '__name:=mux')
+        system.launch('sim.launch', 'n:=4')
+        import rospy
+        measurement = Measurement(system, seconds)
+        print('Qt event loop blocked [ms]                     turns     p50     p99     max')
+        measurement.drive()
+        measurement.find(rospy.get_node_uri())
+        measurement.host.close()
+        rospy.signal_shutdown('measured')
+
+
+if __name__ == '__main__':
+    main()

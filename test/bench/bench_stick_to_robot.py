@@ -1,0 +1,209 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Latency from a stick event to the command at the robot, beside a chain of existing nodes.
+
+mhri: Joy -> mux -> gate in the real panel -> Twist at the robot. Beside it, on the same machine and
+with rounds taken in turn: Twist -> topic_tools mux -> a topic_tools relay for each robot -> Twist,
+the same two hops made of C++ nodes from the distribution (without limits, watch on freshness,
+selection or stop). Every figure is in milliseconds, over all robots and events.
+"""
+import argparse
+import os
+import sys
+import threading
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.ros_system import System, wait_for  # noqa: E402
+
+
+class Receiver:
+    """Stands for all robots: notes when a value of ``linear.x`` first arrives at each of them."""
+
+    def __init__(self, topics):
+        import rospy
+        from geometry_msgs.msg import Twist
+        self._lock = threading.Condition()
+        self._target = None
+        self.arrivals = {}
+        self.subscribers = [rospy.Subscriber(topic, Twist, self._on_twist, callback_args=topic,
+                                             queue_size=10, tcp_nodelay=True) for topic in topics]
+        self._count = len(topics)
+
+    def connected(self):
+        """Tell whether every topic has its publisher."""
+        return all(subscriber.get_num_connections() for subscriber in self.subscribers)
+
+    def _on_twist(self, message, topic):
+        now = time.monotonic()
+        with self._lock:
+            if self._target is not None and abs(message.linear.x - self._target) < 1e-6:
+                self.arrivals.setdefault(topic, now)
+                if len(self.arrivals) == self._count:
+                    self._lock.notify()
+
+    def expect(self, value):
+        """Forget what arrived and wait for another value."""
+        with self._lock:
+            self._target = value
+            self.arrivals = {}
+
+    def wait(self, timeout_s=2.0):
+        """Return the arrival times; fewer than robots where some did not come."""
+        with self._lock:
+            self._lock.wait_for(lambda: len(self.arrivals) == self._count, timeout_s)
+            return list(self.arrivals.values())
+
+
+def percentile(values, share):
+    """Return the value below which a share of the sorted values lies."""
+    return values[min(len(values) - 1, int(share * len(values)))]
+
+
+def row(name, robots, values):
+    """Return one line of the table."""
+    values = sorted(values)
+    return '{:<26} {:>3} {:>7} {:>8.2f} {:>8.2f} {:>8.2f} {:>8.2f}'.format(
+        name, robots, len(values), percentile(values, 0.5), percentile(values, 0.9),
+        percentile(values, 0.99), values[-1])
+
+
+class Mhri:
+    """The mux and the real panel, with the robots selected."""
+
+    def __init__(self, system, names):
+        import rospy
+        from sensor_msgs.msg import Joy
+        from mhri.msg import ControlMode
+        self._joy_class = Joy
+        system.node('mux')
+        for name in names:
+            rospy.set_param('/{}/robot_type'.format(name), 'generic')
+        system.node('panel', '--fresh', '--select', ' '.join(names))
+        self.receiver = Receiver(['/{}/cmd_vel'.format(name) for name in names])
+        self._joy = rospy.Publisher('/mux_in/pedal', Joy, queue_size=1, tcp_nodelay=True)
+        mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=1)
+        wait_for(lambda: self._joy.get_num_connections() and mode.get_num_connections(), 15,
+                 'the mux')
+        mode.publish('pedal')
+        wait_for(self.receiver.connected, 20, 'the gates of the panel')
+        wait_for(lambda: self._through(0.1), 20, 'the first command at every robot')
+
+    def rest(self):
+        """Centre the stick: in the other way's turn the source has gone stale."""
+        self.receiver.expect(0.0)
+        self.send(0.0)
+        self.receiver.wait()
+
+    def _through(self, value):
+        self.send(0.0)
+        time.sleep(0.02)
+        self.receiver.expect(value * 0.5)
+        self.send(value)
+        return len(self.receiver.wait(0.2)) == self.receiver._count
+
+    def send(self, value):
+        """Deflect the stick forward; the operator's limit makes it half as many m/s."""
+        self._joy.publish(self._joy_class(axes=[0.0, value]))
+
+
+class Chain:
+    """topic_tools mux and one relay for each robot."""
+
+    def __init__(self, system, names):
+        import rospy
+        from geometry_msgs.msg import Twist
+        self._twist_class = Twist
+        tools = [path for path in ('/opt/ros/noetic/lib/topic_tools', '/usr/lib/topic_tools')
+                 if os.path.exists(os.path.join(path, 'relay'))][0]
+        system.start(os.path.join(tools, 'mux'), '/chain/out', '/chain/in', '__name:=chain_mux',
+                     '_tcp_nodelay:=true')
+        topics = ['/chain/{}/cmd_vel'.format(name) for name in names]
+        for name, topic in zip(names, topics):
+            system.start(os.path.join(tools, 'relay'), '/chain/out', topic,
+                         '__name:=relay_' + name, '_tcp_nodelay:=true', '_unreliable:=false')
+        self.receiver = Receiver(topics)
+        self._twist = rospy.Publisher('/chain/in', Twist, queue_size=1, tcp_nodelay=True)
+        wait_for(lambda: self._through(0.1), 20, 'the chain')
+
+    def rest(self):
+        """Do nothing: the chain forwards whatever comes."""
+
+    def _through(self, value):
+        self.receiver.expect(value * 0.5)
+        self.send(value)
+        return len(self.receiver.wait(0.2)) == self.receiver._count
+
+    def send(self, value):
+        """Send the command as the stick would."""
+        message = self._twist_class()
+        message.linear.x = value * 0.5
+        self._twist.publish(message)
+
+
+def measure(way, events, pace_s, start):
+    """Return latencies [ms] of a number of events."""
+    found = []
+    way.rest()
+    for number in range(events):
+        value = 0.2 + 0.001 * ((start + number) % 500)
+        way.receiver.expect(value * 0.5)
+        begun = time.monotonic()
+        way.send(value)
+        arrivals = way.receiver.wait()
+        if len(arrivals) < way.receiver._count:
+            raise RuntimeError('a command did not arrive at every robot')
+        found += [(when - begun) * 1000.0 for when in arrivals]
+        time.sleep(max(0.0, pace_s - (time.monotonic() - begun)))
+    return found
+
+
+def run(robots, events, table):
+    """Measure both ways with a number of robots, in rounds taken in turn."""
+    import rospy
+    names = ['bot{}'.format(number + 1) for number in range(robots)]
+    with System(adopt=False) as system:
+        os.environ.update({key: system.env[key] for key in ('ROS_MASTER_URI', 'ROS_IP', 'ROS_HOME',
+                                                            'ROS_LOG_DIR')})
+        system.screen()
+        system.start_master()
+        rospy.init_node('bench', disable_signals=True)
+        ways = {'mhri (mux, panel)': Mhri(system, names), 'topic_tools (mux, relay)':
+                Chain(system, names)}
+        found = {name: [] for name in ways}
+        rounds = 5
+        for turn in range(rounds):
+            for name, way in ways.items():
+                found[name] += measure(way, events // rounds, 0.013, turn * 97)
+        for name, values in found.items():
+            table.append(row(name, robots, values))
+        middle = [percentile(sorted(values), 0.5) for values in found.values()]
+        table.append('{:<26} {:>3}   ratio of the medians {:.2f}'.format(
+            '', robots, middle[0] / middle[1]))
+        rospy.signal_shutdown('measured')
+
+
+def main():
+    """Print one table; each number of robots in a process of its own, rospy knows only one life."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--short', action='store_true', help='fewer events')
+    parser.add_argument('--robots', type=int, help='only this many')
+    options = parser.parse_args()
+    if options.robots is None:
+        print('stick to robot [ms]        bots  values      p50      p90      p99      max',
+              flush=True)
+        for robots in (1, 4, 12):
+            arguments = [sys.executable, os.path.abspath(__file__), '--robots', str(robots)]
+            status = os.spawnv(os.P_WAIT, sys.executable,
+                               arguments + (['--short'] if options.short else []))
+            if status:
+                sys.exit(status)
+        return
+    table = []
+    run(options.robots, 200 if options.short else 1000, table)
+    print('\n'.join(table), flush=True)
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,63 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A master, a publisher and disks for recordings that go wrong."""
+import os
+import subprocess
+import sys
+import threading
+
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.ros_system import System  # noqa: E402
+
+
+@pytest.fixture(scope='module')
+def system():
+    with System() as built:
+        built.start_master()
+        import rospy
+        rospy.init_node('recorder_faults', disable_signals=True)
+        yield built
+        rospy.signal_shutdown('done')
+
+
+@pytest.fixture(scope='module')
+def sender(system):
+    """A publisher of numbered texts at 100 Hz, 10 kB each, as long as anybody listens."""
+    import rospy
+    from std_msgs.msg import String
+    publisher = rospy.Publisher('/bot1/text', String, queue_size=1000)
+    done = threading.Event()
+
+    def send():
+        number = 0
+        while not done.wait(0.01):
+            if publisher.get_num_connections():
+                publisher.publish('{:08} '.format(number) + 'x' * 10000)
+                number += 1
+    thread = threading.Thread(target=send)
+    thread.start()
+    yield publisher
+    done.set()
+    thread.join()
+
+
+@pytest.fixture
+def disk(tmp_path):
+    """Return a function that mounts a tmpfs of some MB; unmounted at the end."""
+    mounted = []
+
+    def mount(size_mb, *options):
+        path = str(tmp_path / 'disk{}'.format(len(mounted)))
+        os.mkdir(path)
+        done = subprocess.run(['mount', '-t', 'tmpfs', '-o', ','.join(
+            ['size={}m'.format(size_mb)] + list(options)), 'tmpfs', path], stderr=subprocess.PIPE)
+        if done.returncode:
+            pytest.skip('no right to mount here: ' + done.stderr.decode().strip())
+        mounted.append(path)
+        return path
+    yield mount
+    for path in mounted:
+        subprocess.run(['umount', path], check=True)

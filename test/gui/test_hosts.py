@@ -1,0 +1,160 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The two hosts of the panel: what they keep between runs, and how they end."""
+import json
+import sys
+import types
+
+import pytest
+from python_qt_binding.QtCore import QPoint, QSettings
+from python_qt_binding.QtWidgets import QApplication, QWidget
+
+from mhri.panel_host import PanelHost
+from mhri.ros.operator import Operator
+from mhri.standalone import Standalone
+
+
+@pytest.fixture(scope='module', autouse=True)
+def app():
+    yield QApplication.instance() or QApplication(['panel'])
+
+
+def used_host():
+    """A host with something to remember."""
+    host = PanelHost(Operator())
+    for name in ('bot2', 'bot1', 'rover_7'):
+        host._add(name)
+    host._select(['bot1'])
+    host.operator.request_limits(0.3, 0.8)
+    host._request_mode('ps3joy')
+    host._open('bot1')
+    host.windows['bot1'].move(QPoint(321, 123))
+    return host
+
+
+def check_restored(host):
+    assert host.operator.selection.robots == ('bot2', 'bot1', 'rover_7')
+    assert host.operator.selection.selected == (), 'nothing is driven that was not chosen today'
+    assert host.operator.view().limits == (0.3, 0.8)
+    assert host.operator._first_mode == 'ps3joy'
+    host._open('bot1')
+    assert host.windows['bot1'].pos() == QPoint(321, 123)
+
+
+def test_state_survives_as_json():
+    first = used_host()
+    state = json.loads(json.dumps(first.save_state()))
+    first.close()
+    second = PanelHost(Operator())
+    second.restore_state(state)
+    check_restored(second)
+    second.close()
+
+
+def test_standalone_keeps_its_settings_in_a_file(tmp_path):
+    path = str(tmp_path / 'panel.ini')
+    first = Standalone(['panel'], path)
+    first.restore()
+    for name in ('bot2', 'bot1', 'rover_7'):
+        first.host._add(name)
+    first.host._select(['bot2'])
+    first.host.operator.request_limits(0.3, 0.8)
+    first.host._request_mode('ps3joy')
+    first.host._open('bot1')
+    first.host.windows['bot1'].move(QPoint(321, 123))
+    first.window.close()
+    second = Standalone(['panel'], path)
+    second.restore()
+    check_restored(second.host)
+    second.window.close()
+
+
+@pytest.mark.parametrize('rubbish', ['{', '[]', '"x"', '{"robots": 5}', '{"limits": "fast"}', ''])
+def test_settings_that_cannot_be_used_are_left_out(tmp_path, rubbish):
+    path = str(tmp_path / 'panel.ini')
+    settings = QSettings(path, QSettings.IniFormat)
+    settings.setValue('state', rubbish)
+    settings.sync()
+    program = Standalone(['panel'], path)
+    program.restore()
+    assert program.host.operator.selection.robots == ()
+    program.window.close()
+
+
+class Settings(dict):
+    """As qt_gui's Settings: set_value and value."""
+
+    def set_value(self, key, value):
+        self[key] = value
+
+    def value(self, key, default=None):
+        return self.get(key, default)
+
+
+class Context:
+    """As rqt's plugin context."""
+
+    def __init__(self, *argv):
+        self.widgets = []
+        self._argv = list(argv)
+
+    def argv(self):
+        return self._argv
+
+    def serial_number(self):
+        return 1
+
+    def add_widget(self, widget):
+        self.widgets.append(widget)
+
+
+@pytest.fixture
+def plugin_class(monkeypatch):
+    """The adapter over a stand-in of rqt_gui_py, which is not packaged everywhere."""
+    from python_qt_binding.QtCore import QObject
+
+    class Plugin(QObject):
+        def __init__(self, context):
+            super().__init__()
+
+    package, module = types.ModuleType('rqt_gui_py'), types.ModuleType('rqt_gui_py.plugin')
+    module.Plugin = Plugin
+    monkeypatch.setitem(sys.modules, 'rqt_gui_py', package)
+    monkeypatch.setitem(sys.modules, 'rqt_gui_py.plugin', module)
+    monkeypatch.delitem(sys.modules, 'mhri.mhri_plugin', raising=False)
+    monkeypatch.setattr(Operator, 'start', lambda self: None)
+    from mhri.mhri_plugin import MhriPlugin
+    return MhriPlugin
+
+
+def test_the_rqt_plugin_shows_the_panel_and_keeps_its_settings(plugin_class):
+    context, settings = Context(), Settings()
+    plugin = plugin_class(context)
+    assert isinstance(context.widgets[0], QWidget)
+    host = plugin._host
+    for name in ('bot2', 'bot1', 'rover_7'):
+        host._add(name)
+    host.operator.request_limits(0.3, 0.8)
+    host._request_mode('ps3joy')
+    host._open('bot1')
+    host.windows['bot1'].move(QPoint(321, 123))
+    plugin.save_settings(Settings(), settings)
+    plugin.shutdown_plugin()
+    assert host.windows == {}
+    again = plugin_class(Context())
+    again.restore_settings(Settings(), settings)
+    check_restored(again._host)
+    again.shutdown_plugin()
+
+
+def test_the_rqt_plugin_adds_the_robots_it_is_told(plugin_class):
+    plugin = plugin_class(Context('--robots', 'bot1 bot2'))
+    assert plugin._host.operator.selection.robots == ('bot1', 'bot2')
+    plugin.shutdown_plugin()
+
+
+def test_the_rqt_plugin_leaves_out_a_perspective_it_cannot_read(plugin_class):
+    plugin = plugin_class(Context())
+    plugin.restore_settings(Settings(), Settings(state='{"robots": 5}'))
+    assert plugin._host.operator.selection.robots == ()
+    plugin.shutdown_plugin()

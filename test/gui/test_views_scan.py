@@ -1,0 +1,103 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The laser scan: ahead is up, left is left, metres are metres, and old is not live."""
+import math
+
+import numpy as np
+import pytest
+
+from mhri.gui import theme
+from mhri.gui.scan_view import reach_for, scan_points, ScanView
+
+
+def scan_of(bearings_deg, range_m):
+    """Return a scan of one degree a step with points in some directions only."""
+    ranges = np.full(360, np.nan)
+    ranges[[(180 + bearing) % 360 for bearing in bearings_deg]] = range_m
+    return ranges, -math.pi, math.radians(1.0), 8.0
+
+
+@pytest.fixture
+def view(operator):
+    widget = ScanView()
+    widget.resize(400, 420)
+    operator.show(widget)
+    return widget
+
+
+def places(view, name):
+    """Return the middle of what is painted in a colour, in metres ahead and to the left."""
+    image, wanted = view.grab().toImage(), theme.colour(name, view.palette()).getRgb()
+    line = 1.4 * view.fontMetrics().height()
+    middle = (view.width() / 2.0, (view.height() - line) / 2.0)
+    scale = (min(view.width(), view.height() - line) / 2.0 - 3.0) / view.reach_m
+    found = [(x, y) for x in range(image.width()) for y in range(int(image.height() - line))
+             if sum(abs(a - b) for a, b in zip(image.pixelColor(x, y).getRgb(), wanted)) < 40]
+    if not found:
+        return None
+    x, y = np.mean(found, axis=0) + 0.5
+    return (middle[1] - y) / scale, (middle[0] - x) / scale
+
+
+@pytest.mark.parametrize('bearing_deg, ahead, left', [
+    (0, 2.0, 0.0), (90, 0.0, 2.0), (-90, 0.0, -2.0), (45, 1.41, 1.41), (-179, -2.0, -0.03)])
+def test_a_point_is_where_it_was_measured(view, operator, bearing_deg, ahead, left):
+    view.show_scan(scan_of([bearing_deg], 2.0))
+    operator.settle()
+    assert places(view, theme.DRIVE) == pytest.approx((ahead, left), abs=0.04)
+    assert view.nearest_m == 2.0
+
+
+def test_what_is_near_is_orange(view, operator):
+    view.show_scan(scan_of([90], 0.4))
+    operator.settle()
+    assert places(view, theme.ATTENTION) == pytest.approx((0.0, 0.4), abs=0.04)
+    assert places(view, theme.DRIVE) is None
+
+
+@pytest.mark.parametrize('farthest_m, reach_m', [
+    (0.3, 1.0), (1.4, 1.5), (3.9, 4.0), (5.0, 6.0), (29.0, 30.0), (400.0, 100.0), (math.nan, 1.0)])
+def test_the_reach_shows_all_points(farthest_m, reach_m):
+    assert reach_for(np.array([farthest_m] * 10)) == reach_m
+
+
+def test_the_picture_grows_at_once_and_shrinks_late(view):
+    view.show_scan(scan_of(range(0, 90), 3.0))
+    assert view.reach_m == 3.0
+    view.show_scan(scan_of(range(0, 90), 11.0))
+    assert view.reach_m == 12.0
+    for _ in range(20):
+        view.show_scan(scan_of(range(0, 90), 3.0))
+    assert view.reach_m == 12.0
+    for _ in range(30):
+        view.show_scan(scan_of(range(0, 90), 3.0))
+    assert view.reach_m == 3.0
+
+
+def test_an_old_scan_does_not_look_live(view, operator):
+    view.show_scan(scan_of([0], 2.0))
+    view.show_age(0.3)
+    operator.settle()
+    assert view.warning == '' and places(view, theme.DRIVE)
+    view.show_age(3.2)
+    operator.settle()
+    assert view.warning == 'OLD SCAN, 3.2 s' and places(view, theme.DRIVE) is None
+    view.show_scan(scan_of([0], 2.0))
+    assert view.warning == ''
+
+
+@pytest.mark.parametrize('ranges', [[], [math.nan] * 5, [1e-6] * 5, [99.0] * 5])
+def test_any_scan_can_be_drawn(view, operator, ranges):
+    view.show_age(None)
+    view.show_scan((np.array(ranges, float), -1.0, 0.1, 100.0))
+    operator.settle()
+    assert not view.grab().isNull()
+    view.clear('bot1 has no laser scanner')
+    view.show_age(9.0)
+    assert view.warning == '' and not view.grab().isNull()
+
+
+def test_points_in_metres():
+    ahead, left, distance = scan_points(np.array([1.0, np.nan, 2.0]), 0.0, math.pi / 4.0)
+    assert list(ahead) == pytest.approx([1.0, 0.0]) and list(left) == pytest.approx([0.0, 2.0])
+    assert list(distance) == [1.0, 2.0]

@@ -1,0 +1,170 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The views of a bot window: chosen by click and key, asked for only while they are seen."""
+import pytest
+from python_qt_binding.QtCore import Qt
+from python_qt_binding.QtTest import QTest
+from python_qt_binding.QtWidgets import QAbstractButton
+
+from mhri.core import views
+from mhri.gui.drive_keys import DriveKeys
+from mhri.gui.windows import TurtleBotWindow
+
+ALL = frozenset(('imu', 'rgb', 'depth', 'scan', 'record'))
+
+
+@pytest.fixture
+def window(operator, ui_dir):
+    made = TurtleBotWindow(ui_dir, 'bot1', 'TurtleBot2')
+    made.offer(ALL)
+    return operator.show(made)
+
+
+@pytest.mark.parametrize('offered, wanted, seen', [
+    (ALL, {'imu', 'rgb'}, {'graph', 'camera', 'recording', 'switches'}),
+    ({'imu', 'record'}, {'imu'}, {'graph', 'recording', 'switches'}),
+    ({'depth'}, set(), {'motion_page', 'switches'}),
+    ({'record'}, set(), {'motion_page', 'recording'}),
+    ((), set(), {'motion_page'}),
+])
+def test_at_first(operator, ui_dir, offered, wanted, seen):
+    window = TurtleBotWindow(ui_dir, 'bot1', 'TurtleBot2')
+    window.offer(offered)
+    operator.show(window)
+    assert window.wanted() == wanted
+    assert {name for name in ('graph', 'camera', 'scan', 'recording', 'switches', 'motion_page')
+            if getattr(window, name).isVisible()} == seen
+
+
+@pytest.mark.parametrize('clicks, wanted', [
+    (['view_imu'], {'rgb'}),
+    (['camera_depth'], {'imu', 'depth'}),
+    (['camera_depth', 'camera_rgb'], {'imu', 'rgb'}),
+    (['camera_off', 'view_scan'], {'imu', 'scan'}),
+    (['camera_off', 'view_imu'], set()),
+    (['camera_rgb'], {'imu', 'rgb'}),
+])
+def test_clicks(window, operator, heard, clicks, wanted):
+    changed = heard(window.views_changed)
+    for name in clicks:
+        operator.click(window.findChild(QAbstractButton, name))
+    assert window.wanted() == wanted
+    assert len(changed) == (0 if clicks == ['camera_rgb'] else len(clicks))
+    assert window.motion_page.isVisible() == (not wanted)
+    assert window.camera.kind == next(iter(wanted & {'rgb', 'depth'}), None)
+    for key, part in (('imu', window.graph), ('scan', window.scan)):
+        assert part.isVisible() == (key in wanted)
+
+
+def test_every_switch_is_reached_and_set_with_the_keyboard(window, operator):
+    window.switches.checks['imu'].setFocus()
+    operator.hit(window.switches.checks['imu'], Qt.Key_Space)
+    assert window.wanted() == {'rgb'}
+    QTest.keyClick(window, Qt.Key_Tab)
+    operator.wait_until(window.switches.cameras['rgb'].hasFocus)
+    operator.hit(window.switches.cameras['rgb'], Qt.Key_Right)
+    assert window.wanted() == {'depth'}
+    QTest.keyClick(window, Qt.Key_Tab)
+    assert window.switches.checks['scan'].hasFocus()
+
+
+def test_a_click_leaves_the_keyboard_to_the_drive_keys(window, operator, application, panel):
+    keys = panel.drive_keys
+    assert isinstance(keys, DriveKeys)
+    operator.show(window)
+    for name in ('imu', 'scan'):
+        operator.click(window.switches.checks[name])
+    operator.click(window.switches.cameras['depth'])
+    operator.press(window, Qt.Key_Up)
+    assert keys.deflection() == (1.0, 0.0)
+    operator.release(window, Qt.Key_Up)
+
+
+def test_a_hidden_or_minimised_window_wants_nothing(window, operator, heard):
+    changed = heard(window.views_changed)
+    window.hide()
+    assert window.wanted() == set() and len(changed) == 1
+    window.show()
+    assert window.wanted() == {'imu', 'rgb'} and len(changed) == 2
+    window.setWindowState(Qt.WindowMinimized)
+    operator.wait_until(lambda: window.wanted() == set())
+    window.setWindowState(Qt.WindowNoState)
+    operator.wait_until(lambda: window.wanted() == {'imu', 'rgb'})
+
+
+def test_what_is_not_on_offer_for_a_while_comes_back(window, heard):
+    changed = heard(window.views_changed)
+    window.offer({'imu'})
+    assert window.wanted() == {'imu'}
+    window.offer({'imu'})
+    assert len(changed) == 1
+    window.offer(ALL)
+    assert window.wanted() == {'imu', 'rgb'} and window.camera.kind == 'rgb'
+
+
+def test_settings_come_back(window, operator, ui_dir):
+    operator.click(window.switches.cameras['depth'])
+    operator.click(window.switches.checks['scan'])
+    window.graph.window_combo.setCurrentIndex(0)
+    sizes = [300, 200, window.views_splitter.width() - 524]
+    window.views_splitter.setSizes(sizes)
+    window.views_splitter.splitterMoved.emit(300, 1)
+    kept = window.save_settings()
+    other = TurtleBotWindow(ui_dir, 'bot1', 'TurtleBot2')
+    other.restore_settings(kept)
+    other.offer(ALL)
+    other.resize(window.size())
+    operator.show(other)
+    assert other.wanted() == {'imu', 'depth', 'scan'} and other.graph.window_s == 5
+    assert other.views_splitter.sizes() == window.views_splitter.sizes()
+
+
+@pytest.mark.parametrize('settings', [
+    {}, {'views': []}, {'views': ['gone', 'rgb', 'depth'], 'splitter': 'zz', 'graph': {}}])
+def test_settings_of_another_version_do_no_harm(window, settings):
+    window.restore_settings(settings)
+    assert window.wanted() <= {'imu', 'rgb'}
+
+
+@pytest.mark.parametrize('size', [(760, 520), (1024, 600), (1600, 1100)])
+@pytest.mark.parametrize('chosen', [
+    {'imu', 'rgb'}, {'imu', 'depth', 'scan'}, {'rgb'}, {'scan'}, {'imu'}, set()])
+def test_everything_fits(window, operator, size, chosen):
+    window.switches.choose(chosen)
+    window.resize(*size)
+    operator.settle()
+    assert (window.width(), window.height()) == size
+    width, height = window.camera_size()
+    if chosen & {'rgb', 'depth'}:
+        assert width >= 120 and height >= 120
+    assert window.stop_button.isVisible() and window.stop_button.height() >= 50
+
+
+def test_the_picture_gets_the_width_its_height_needs(window, operator):
+    window.resize(1600, 700)
+    operator.settle()
+    width, height = window.camera_size()
+    assert width == pytest.approx(height * 4.0 / 3.0, abs=6)
+
+
+def test_the_place_is_in_the_header_where_there_is_room(window, operator):
+    for width, there in ((760, False), (1200, True), (760, False)):
+        window.resize(width, 600)
+        operator.settle()
+        assert window.pose_label.isVisible() == there
+    window.resize(1200, 600)
+    operator.settle()
+    window._numbers._next = None
+    window.show_view(views.RobotView('bot1', x_m=1.25, y_m=-0.4, link=views.LIVE))
+    assert window.pose_label.text() == 'x 1.25 m  y -0.40 m'
+
+
+def test_no_control_is_too_small_for_a_finger(window, operator):
+    operator.settle()
+    for button in (*window.switches.checks.values(), *window.switches.cameras.values(),
+                   window.graph.quantity_combo, window.graph.window_combo,
+                   window.graph.pause_button, window.camera.transport_combo,
+                   window.camera.still_button, window.recording.record_check,
+                   window.recording.path_edit, window.recording.browse_button,
+                   window.recording.extras_button):
+        assert button.height() >= 36 and button.width() >= 36, button.objectName()

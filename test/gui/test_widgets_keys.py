@@ -1,0 +1,272 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The keyboard: by place, together, and gone with the focus; stop-all from anywhere."""
+import pytest
+from python_qt_binding.QtCore import QEvent, Qt
+from python_qt_binding.QtGui import QKeyEvent
+from python_qt_binding.QtWidgets import QApplication, QLineEdit, QSpinBox, QTextEdit, QWidget
+
+from mhri.gui.drive_keys import DriveKeys, mark_drive_area
+from mhri.gui.windows import window_class
+
+W, A, S, D, UP, LEFT, RIGHT, DOWN, SPACE, ONE, NINE, ZERO = (
+    25, 38, 39, 40, 111, 113, 114, 116, 65, 10, 18, 19)
+
+AHEAD, BACK, TO_LEFT, TO_RIGHT = (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)
+
+
+@pytest.mark.parametrize('key, scan, stick', [
+    (Qt.Key_W, W, AHEAD), (Qt.Key_S, S, BACK), (Qt.Key_A, A, TO_LEFT), (Qt.Key_D, D, TO_RIGHT),
+    (Qt.Key_Up, UP, AHEAD), (Qt.Key_Down, DOWN, BACK), (Qt.Key_Left, LEFT, TO_LEFT),
+    (Qt.Key_Right, RIGHT, TO_RIGHT),
+    # The same places on a French keyboard, on a Russian one, and with the lock on.
+    (Qt.Key_Z, W, AHEAD), (Qt.Key_Q, A, TO_LEFT), (0x426, W, AHEAD),
+    # Letters at other places drive nothing.
+    (Qt.Key_W, 52, None), (Qt.Key_A, 24, None), (Qt.Key_E, 26, None),
+    # Events made by programs have no place.
+    (Qt.Key_W, 0, AHEAD), (Qt.Key_D, 0, TO_RIGHT), (Qt.Key_Left, 0, TO_LEFT),
+])
+def test_one_key(panel, operator, heard, key, scan, stick):
+    moved = heard(panel.stick_moved)
+    operator.press(panel, key, scan)
+    assert moved == ([stick] if stick else [])
+    operator.release(panel, key, scan)
+    assert panel.stick() == (0.0, 0.0)
+    assert moved == ([stick, (0.0, 0.0)] if stick else [])
+
+
+@pytest.mark.parametrize('keys, stick', [
+    (((Qt.Key_W, W), (Qt.Key_A, A)), (1.0, 1.0)),
+    (((Qt.Key_Down, DOWN), (Qt.Key_D, D)), (-1.0, -1.0)),
+    (((Qt.Key_W, W), (Qt.Key_S, S)), (0.0, 0.0)),
+    (((Qt.Key_W, W), (Qt.Key_Up, UP)), (1.0, 0.0)),
+])
+def test_keys_together(panel, operator, keys, stick):
+    for key, scan in keys:
+        operator.press(panel, key, scan)
+    assert panel.stick() == stick
+    operator.release(panel, *keys[0])
+    operator.release(panel, *keys[1])
+    assert panel.stick() == (0.0, 0.0)
+
+
+def test_auto_repeat_is_not_a_press_nor_a_release(panel, operator, heard):
+    moved = heard(panel.stick_moved)
+    operator.press(panel, Qt.Key_W, W, repeat=True)
+    assert moved == []
+    operator.press(panel, Qt.Key_W, W)
+    for _ in range(3):
+        operator.release(panel, Qt.Key_W, W, repeat=True)
+        operator.press(panel, Qt.Key_W, W, repeat=True)
+    assert moved == [AHEAD]
+
+
+def test_a_release_counts_even_if_a_modifier_changed_the_key(panel, operator):
+    operator.press(panel, Qt.Key_Up, 80, Qt.KeypadModifier)
+    assert panel.stick() == AHEAD
+    operator.release(panel, Qt.Key_8, 80, Qt.KeypadModifier)
+    assert panel.stick() == (0.0, 0.0)
+
+
+@pytest.mark.parametrize('modifier', [Qt.ControlModifier, Qt.AltModifier, Qt.MetaModifier])
+def test_with_a_command_modifier_nothing_drives(panel, operator, heard, modifier):
+    moved, selected = heard(panel.stick_moved), heard(panel.selection_requested)
+    operator.hit(panel, Qt.Key_W, W, modifier)
+    operator.hit(panel, Qt.Key_1, ONE, modifier)
+    assert moved == [] and selected == []
+
+
+@pytest.mark.parametrize('kind', [QEvent.WindowDeactivate, QEvent.WindowBlocked])
+def test_losing_the_keyboard_releases(panel, operator, heard, kind):
+    operator.press(panel, Qt.Key_W, W)
+    moved = heard(panel.stick_moved)
+    QApplication.sendEvent(panel, QEvent(kind))
+    assert moved == [(0.0, 0.0)]
+    operator.press(panel, Qt.Key_W, W, repeat=True)
+    assert panel.stick() == (0.0, 0.0), 'still down, but it has to be pressed again'
+
+
+def test_another_window_takes_the_keys(panel, operator):
+    operator.press(panel, Qt.Key_W, W)
+    other = QWidget()
+    other.show()
+    other.activateWindow()
+    operator.wait_until(lambda: panel.stick() == (0.0, 0.0))
+
+
+def test_space_centres_and_held_keys_are_dead_until_released(panel, operator, drag):
+    operator.press(panel, Qt.Key_W, W)
+    operator.hit(panel, Qt.Key_Space, SPACE)
+    assert panel.stick() == (0.0, 0.0)
+    operator.press(panel, Qt.Key_A, A)
+    assert panel.stick() == TO_LEFT, 'another key is a new wish'
+    operator.release(panel, Qt.Key_W, W)
+    operator.press(panel, Qt.Key_W, W)
+    assert panel.stick() == (1.0, 1.0)
+
+
+def test_space_lets_the_knob_go(panel, operator, drag):
+    drag(panel.joystick, 0.0, 0.9)
+    operator.hit(panel, Qt.Key_Space, SPACE)
+    assert panel.stick() == (0.0, 0.0) and not panel.joystick.dragging
+
+
+def test_the_pointer_wins_over_the_keys_while_it_holds_the_knob(panel, operator, drag):
+    operator.press(panel, Qt.Key_W, W)
+    drag(panel.joystick, -0.9, 0.0)
+    forward, turn = panel.stick()
+    assert forward == 0.0 and turn > 0.8
+    panel.joystick.centre()
+    assert panel.stick() == AHEAD
+
+
+@pytest.mark.parametrize('name', ['look_button', 'add_button', 'all_button', 'stop_button',
+                                  'check_bot2'])
+def test_return_works_a_focused_button_and_space_never_does(panel, operator, heard, four_robots,
+                                                            name):
+    panel.show_view(four_robots)
+    signals = {'look_button': panel.look_requested, 'add_button': panel.add_requested,
+               'all_button': panel.selection_requested, 'stop_button': panel.stop_requested,
+               'check_bot2': panel.selection_requested}
+    button = panel.findChild(QWidget, name)
+    button.setFocus(Qt.TabFocusReason)
+    said = heard(signals[name])
+    operator.hit(button, Qt.Key_Space, SPACE)
+    operator.settle()
+    assert said == []
+    operator.hit(button, Qt.Key_Return, 36)
+    assert len(said) == 1
+
+
+def _line_edit(panel):
+    return panel.name_edit
+
+
+def _spin_box(panel):
+    return QSpinBox(panel)
+
+
+def _text_edit(panel):
+    return QTextEdit(panel)
+
+
+@pytest.mark.parametrize('make', [_line_edit, _spin_box, _text_edit])
+def test_typing_is_typing_but_for_stop_all(panel, operator, heard, four_robots, make):
+    panel.show_view(four_robots)
+    field = make(panel)
+    field.show()
+    field.setFocus()
+    operator.wait_until(field.hasFocus)
+    moved, selected = heard(panel.stick_moved), heard(panel.selection_requested)
+    stopped = heard(panel.stop_requested)
+    for key, scan in ((Qt.Key_W, W), (Qt.Key_Up, UP), (Qt.Key_1, ONE), (Qt.Key_Space, SPACE)):
+        operator.hit(field, key, scan)
+    assert moved == [] and selected == [] and stopped == []
+    operator.hit(field, Qt.Key_Space, SPACE, Qt.ShiftModifier)
+    assert stopped == [()]
+
+
+def test_a_click_beside_the_field_ends_the_typing(panel, operator):
+    panel.name_edit.setFocus()
+    operator.wait_until(panel.name_edit.hasFocus)
+    operator.click(panel.joystick)
+    assert not panel.name_edit.hasFocus()
+    operator.press(panel, Qt.Key_W, W)
+    assert panel.stick() == AHEAD
+
+
+@pytest.mark.parametrize('name, arrows_stay', [
+    ('linear_slider', True), ('mode_combo', True), ('robot_list', True), ('look_button', False),
+    ('check_bot1', False)])
+def test_who_keeps_the_arrows_after_tab(panel, operator, four_robots, name, arrows_stay):
+    panel.show_view(four_robots)
+    widget = panel.findChild(QWidget, name)
+    assert not widget.focusPolicy() & Qt.ClickFocus, 'a click never takes the drive keys away'
+    widget.setFocus(Qt.TabFocusReason)
+    operator.wait_until(widget.hasFocus)
+    operator.press(widget, Qt.Key_Up, UP)
+    assert panel.stick() == ((0.0, 0.0) if arrows_stay else AHEAD)
+    operator.release(widget, Qt.Key_Up, UP)
+    operator.press(widget, Qt.Key_W, W)
+    assert panel.stick() == AHEAD, 'W A S D drive even then'
+
+
+@pytest.mark.parametrize('key, scan, expected', [
+    (Qt.Key_1, ONE, []),
+    (Qt.Key_2, 11, ['bot1', 'bot2']),
+    (Qt.Key_4, 13, ['bot1', 'bot4']),
+    (Qt.Key_Ampersand, ONE, []),
+    (Qt.Key_3, 0, ['bot1', 'bot3']),
+    (Qt.Key_0, ZERO, ['bot1', 'bot2', 'bot3', 'bot4']),
+    (Qt.Key_9, NINE, None),
+])
+def test_digits_are_the_switches(panel, operator, heard, four_robots, key, scan, expected):
+    panel.show_view(four_robots)
+    selected = heard(panel.selection_requested)
+    operator.hit(panel, key, scan)
+    assert selected == ([] if expected is None else [expected])
+
+
+def test_in_an_open_list_keys_choose_but_stop_all_stops(panel, operator, heard, four_robots):
+    panel.show_view(four_robots)
+    panel.mode_combo.showPopup()
+    popup = QApplication.activePopupWidget()
+    moved, stopped = heard(panel.stick_moved), heard(panel.stop_requested)
+    operator.hit(panel.mode_combo.view(), Qt.Key_W, W)
+    operator.hit(panel.mode_combo.view(), Qt.Key_Space, SPACE, Qt.ShiftModifier)
+    assert popup is not None and moved == [] and stopped == [()]
+    panel.mode_combo.hidePopup()
+
+
+def test_keys_work_while_a_bot_window_is_active(panel, operator, heard, ui_dir):
+    window = window_class('turtlebot')(ui_dir, 'bot1', 'TurtleBot2')
+    operator.show(window)
+    stopped = heard(panel.stop_requested)
+    operator.press(window, Qt.Key_W, W)
+    assert panel.stick() == AHEAD
+    operator.hit(window, Qt.Key_Space, SPACE, Qt.ShiftModifier)
+    assert stopped == [()] and panel.stick() == (0.0, 0.0)
+
+
+def test_a_foreign_window_keeps_its_keys_but_not_stop_all(panel, operator, heard):
+    foreign = operator.show(QLineEdit())
+    moved, stopped = heard(panel.stick_moved), heard(panel.stop_requested)
+    other = QWidget(foreign)
+    operator.hit(other, Qt.Key_W, W)
+    operator.hit(foreign, Qt.Key_Space, SPACE, Qt.ShiftModifier)
+    assert moved == [] and stopped == [()]
+
+
+def test_the_host_window_without_any_focus_drives(operator, application, heard):
+    host = QWidget()
+    area = QWidget(host)
+    mark_drive_area(area)
+    keys = DriveKeys(area)
+    moved = heard(keys.moved)
+    application.installEventFilter(keys)
+    operator.show(host)
+    operator.press(host, Qt.Key_W, W)
+    application.removeEventFilter(keys)
+    assert moved == [AHEAD]
+
+
+def test_stop_all_centres_the_stick_and_repeats_are_one(panel, operator, heard):
+    operator.press(panel, Qt.Key_W, W)
+    stopped = heard(panel.stop_requested)
+    operator.press(panel, Qt.Key_Space, SPACE, Qt.ShiftModifier)
+    operator.press(panel, Qt.Key_Space, SPACE, Qt.ShiftModifier, repeat=True)
+    assert stopped == [()] and panel.stick() == (0.0, 0.0)
+
+
+@pytest.mark.parametrize('key, scan, modifiers, ours', [
+    (Qt.Key_W, W, Qt.NoModifier, True),
+    (Qt.Key_Space, SPACE, Qt.ShiftModifier, True),
+    (Qt.Key_W, W, Qt.ControlModifier, False),
+    (Qt.Key_E, 26, Qt.NoModifier, False),
+])
+def test_no_shortcut_of_the_host_takes_a_key_of_ours(panel, key, scan, modifiers, ours):
+    event = QKeyEvent(QEvent.ShortcutOverride, int(key), modifiers, scan, 0, 0)
+    event.ignore()
+    QApplication.sendEvent(panel, event)
+    assert event.isAccepted() == ours
+    assert panel.stick() == (0.0, 0.0), 'an override is a question, not a press'

@@ -1,0 +1,187 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The panel as a whole: what it shows of a view, what it asks for, and how large things are."""
+from dataclasses import replace
+import json
+from time import perf_counter
+
+import pytest
+from python_qt_binding.QtCore import Qt
+from python_qt_binding.QtGui import QColor, QPalette
+from python_qt_binding.QtTest import QTest
+from python_qt_binding.QtWidgets import QAbstractButton, QComboBox, QLabel, QLineEdit
+
+from mhri.core import views
+from mhri.gui import theme
+from mhri.gui.panel import PanelWidget
+
+
+def test_buttons_and_fields_ask(panel, operator, heard, four_robots):
+    panel.show_view(four_robots)
+    looked, added = heard(panel.look_requested), heard(panel.add_requested)
+    removed, selected = heard(panel.remove_requested), heard(panel.selection_requested)
+    operator.click(panel.look_button)
+    QTest.keyClicks(panel.name_edit, 'bot5')
+    operator.click(panel.add_button)
+    QTest.keyClick(panel.name_edit, Qt.Key_Return)
+    assert (looked, added) == ([()], ['bot5', 'bot5'])
+    assert not panel.remove_button.isEnabled(), 'nothing is highlighted'
+    operator.click(panel.robot_list.row('bot3'))
+    operator.click(panel.remove_button)
+    operator.click(panel.all_button)
+    operator.click(panel.none_button)
+    assert removed == ['bot3']
+    assert selected == [['bot1', 'bot2', 'bot3', 'bot4'], []]
+
+
+def test_a_name_problem_is_told_beside_the_field_until_it_is_edited(panel):
+    panel.name_edit.setText('a b')
+    panel.show_name_problem('a space is not allowed')
+    assert panel.name_problem_label.text() == 'a space is not allowed'
+    assert panel.name_problem_sign.sign is not None
+    QTest.keyClick(panel.name_edit, Qt.Key_Backspace)
+    assert panel.name_problem_label.text() == '' and panel.name_problem_sign.sign is None
+
+
+def test_looking_says_so_in_place(panel):
+    panel.show_look_result('looking ...', busy=True)
+    assert panel.look_label.text() == 'looking ...' and not panel.look_button.isEnabled()
+    panel.show_look_result('found 2 robots')
+    assert panel.look_button.isEnabled()
+
+
+@pytest.mark.parametrize('changes, active, note', [
+    ({}, True, 'drag'),
+    ({'mode': 'ps3joy'}, False, 'PS3 Controller drives'),
+    ({'mode': None}, False, 'not known'),
+    ({'stop_all': True}, False, 'stopped'),
+])
+def test_the_stick_says_whether_anybody_listens(panel, drag, heard, four_robots, changes, active,
+                                                note):
+    panel.show_view(replace(four_robots, **changes))
+    moved = heard(panel.stick_moved)
+    drag(panel.joystick, 0.0, 0.9)
+    assert panel.joystick._active == active and note in panel.drive_note.text()
+    assert moved[-1][0] > 0.8, 'it moves all the same'
+
+
+@pytest.mark.parametrize('level, sign', [
+    ('calm', None), ('attention', (theme.TRIANGLE, theme.ATTENTION)),
+    ('stopped', (theme.OCTAGON, theme.STOP))])
+def test_the_status_line(panel, four_robots, level, sign):
+    panel.show_view(replace(four_robots, status='one thing', status_level=level))
+    assert panel.findChild(QLabel, 'status_label').text() == 'one thing'
+    assert panel.status_line._sign.sign == sign
+
+
+def test_what_the_stick_asks_for_is_said_in_units(panel, operator, four_robots):
+    panel.show_view(four_robots)
+    panel._numbers._next = None
+    operator.press(panel, Qt.Key_W, 25)
+    assert panel.linear_label.text() == 'forward 0.50 m/s'
+    operator.release(panel, Qt.Key_W, 25)
+    assert panel.linear_label.text() == '0.00 m/s', 'neutral is told at once'
+
+
+def test_showing_views_takes_no_focus_and_asks_for_nothing(panel, operator, heard, four_robots):
+    panel.name_edit.setFocus()
+    operator.wait_until(panel.name_edit.hasFocus)
+    said = [heard(getattr(panel, name)) for name in (
+        'selection_requested', 'mode_requested', 'limits_requested', 'stick_moved', 'activated',
+        'stop_requested', 'release_requested')]
+    stopped = replace(four_robots, stop_all=True, mode='voice', limits=(0.3, 1.0))
+    for view in (four_robots, stopped, views.PanelView(), four_robots):
+        panel.show_view(view)
+        operator.settle()
+        assert panel.name_edit.hasFocus()
+    assert all(signal == [] for signal in said)
+
+
+def test_showing_twelve_robots_is_cheap(panel, operator, four_robots):
+    def twelve(tick):
+        return replace(four_robots, robots=tuple(
+            replace(four_robots.robots[0], name='bot{}'.format(n), linear_mps=0.01 * (tick + n))
+            for n in range(12)))
+    panel.show_view(twelve(0))
+    operator.settle()
+    start = perf_counter()
+    for tick in range(20):
+        panel._numbers._next = None
+        panel.show_view(twelve(tick))
+        operator.settle()
+    spent_ms = (perf_counter() - start) * 1000 / 20
+    print('12 robots, every number new, shown and painted: {:.2f} ms'.format(spent_ms))
+    assert spent_ms < 10.0
+
+
+def test_it_fits_1024x600_and_fingers(panel, operator, four_robots):
+    panel.show_view(four_robots)
+    operator.settle()
+    hint = panel.minimumSizeHint()
+    assert hint.width() <= 1024 and hint.height() <= 600
+    assert (panel.width(), panel.height()) == (1024, 600)
+    stop = panel.stop_bar.stop_button
+    for widget in panel.findChildren((QAbstractButton, QComboBox, QLineEdit)):
+        if widget.isVisible():
+            assert widget.height() >= 36 and widget.width() >= 36, widget.objectName()
+            if isinstance(widget, QAbstractButton) and widget is not stop:
+                assert widget.width() * widget.height() < stop.width() * stop.height()
+    for label in panel.findChildren(QLabel):
+        assert label.font().pointSizeF() >= 11.0, label.text()
+    assert stop.width() > 0.95 * panel.width()
+
+
+def test_a_hidden_panel_drives_nothing(panel, operator):
+    operator.press(panel, Qt.Key_W, 25)
+    panel.hide()
+    assert panel.stick() == (0.0, 0.0)
+
+
+def test_tab_order_is_the_reading_order(panel, operator, application, four_robots):
+    panel.show_view(four_robots)
+    panel.robot_list.activate('bot1')
+    panel.look_button.setFocus(Qt.TabFocusReason)
+    seen = ['look_button']
+    for _ in range(14):
+        operator.hit(application.focusWidget(), Qt.Key_Tab)
+        seen.append(application.focusWidget().objectName())
+    assert seen == ['look_button', 'name_edit', 'add_button', 'robot_list', 'check_bot1',
+                    'check_bot2', 'check_bot3', 'check_bot4', 'all_button', 'none_button',
+                    'remove_button', 'mode_combo', 'linear_slider', 'angular_slider',
+                    'stop_button']
+
+
+def test_settings_survive_json_and_nonsense_is_left_out(panel, operator, ui_dir):
+    panel.splitter.setSizes([400, 600])
+    settings = json.loads(json.dumps(panel.save_settings()))
+    other = PanelWidget(ui_dir)
+    other.resize(1024, 600)
+    other.restore_settings(settings)
+    operator.show(other)
+    assert other.splitter.sizes() == panel.splitter.sizes()
+    for nonsense in ({}, {'splitter': 'x'}, {'splitter': [None, 1]}, {'geometry': '%%'},
+                     {'geometry': 5, 'splitter': [1, 2, 3]}):
+        other.restore_settings(nonsense)
+        assert other.splitter.sizes() == panel.splitter.sizes()
+
+
+@pytest.mark.parametrize('ground, text', [('#efefef', '#000000'), ('#2d2f33', '#ebebeb')])
+def test_shapes_and_text_stand_out_in_light_and_dark(ground, text):
+    palette = QPalette(QColor(ground))
+    palette.setColor(QPalette.WindowText, QColor(text))
+
+    def luminance(colour):
+        parts = [part / 12.92 if part <= 0.03928 else ((part + 0.055) / 1.055) ** 2.4
+                 for part in colour.getRgbF()[:3]]
+        return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2]
+
+    def contrast(one, other):
+        high, low = sorted((luminance(one), luminance(other)), reverse=True)
+        return (high + 0.05) / (low + 0.05)
+    window = palette.color(QPalette.Window)
+    assert contrast(theme.colour(theme.MUTED, palette), window) >= 4.5
+    for name in (theme.LIVE, theme.STOP, theme.DRIVE):
+        assert contrast(theme.colour(name, palette), window) >= 2.9, name
+    for name in (theme.DRIVE, theme.STOP):
+        ink = theme.colour(name, palette)
+        assert contrast(theme.readable_on(ink), ink) >= 3.0, 'large bold text'

@@ -1,0 +1,173 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The list of robots: what rows say, what clicks ask for, and that nothing jumps."""
+from dataclasses import replace
+
+import pytest
+from python_qt_binding.QtCore import Qt
+from python_qt_binding.QtTest import QTest
+
+from mhri.core import views
+from mhri.core.views import ProofView, RobotView
+from mhri.gui import theme
+from mhri.gui.robot_list import RobotList
+from mhri.gui.robot_row import DRIVING, MOVING
+
+LIVE = RobotView('bot1', 'TurtleBot2', link=views.LIVE, age_s=0.012, linear_mps=0.31,
+                 angular_rad_s=-0.2, battery=0.82)
+
+
+@pytest.fixture
+def robots(operator, four_robots):
+    """Return a list on the screen with four robots."""
+    widget = RobotList()
+    widget.resize(560, 330)
+    widget.show_robots(four_robots.robots)
+    return operator.show(widget)
+
+
+@pytest.mark.parametrize('view, sign, word, age, second', [
+    (LIVE, theme.DISC, 'live', '12 ms', '0.31 m/s'),
+    (replace(LIVE, link=views.WAITING), theme.RING, 'waiting', '', 'waiting'),
+    (replace(LIVE, link=views.SILENT, age_s=3.2, note='nothing for 3.2 s'), theme.TRIANGLE,
+     'silent', '3.2 s', 'nothing for 3.2 s'),
+    (replace(LIVE, link=views.GONE, note='master lost it'), theme.CROSSED_SQUARE, 'gone', '',
+     'master lost it'),
+    (replace(LIVE, proof=ProofView(views.PROOF_STOPPED, 'stopped in 180 ms')), theme.DISC, 'live',
+     '12 ms', 'stopped in 180 ms'),
+    (replace(LIVE, link=views.GONE, proof=ProofView(
+        views.PROOF_NOT_CONFIRMED, 'NOT CONFIRMED: gone')), theme.CROSSED_SQUARE, 'gone', '',
+     'NOT CONFIRMED: gone'),
+])
+def test_a_row_says_state_by_shape_and_word(operator, view, sign, word, age, second):
+    robots = RobotList()
+    robots.show_robots([view])
+    operator.show(robots)
+    row = robots.row('bot1')
+    assert row.sign.sign[0] == sign
+    assert (row.link.text(), row.age.text()) == (word, age)
+    visible = row.trouble if row.trouble.isVisible() else row.linear
+    assert visible.text() == second
+    assert row.trouble.isVisible() != row.linear.isVisible()
+
+
+@pytest.mark.parametrize('changes, word', [
+    ({}, ''), ({'driven': True}, DRIVING), ({'driven': True, 'moving': True}, DRIVING),
+    ({'moving': True}, MOVING)])
+def test_a_row_says_whether_it_is_driven(operator, changes, word):
+    robots = RobotList()
+    robots.show_robots([replace(LIVE, **changes)])
+    assert robots.row('bot1').pill.word == word
+
+
+def test_numbers_wait_for_their_turn_but_states_do_not(robots):
+    faster = replace(LIVE, linear_mps=0.5, age_s=0.099, driven=True)
+    robots.show_robots([faster], numbers=False)
+    row = robots.row('bot1')
+    assert (row.linear.text(), row.age.text()) == ('0.31 m/s', '12 ms')
+    robots.show_robots([faster], numbers=True)
+    assert (row.linear.text(), row.age.text()) == ('0.50 m/s', '99 ms')
+    robots.show_robots([replace(faster, link=views.SILENT, age_s=1.1)], numbers=False)
+    assert (row.link.text(), row.age.text()) == ('silent', '1.1 s')
+
+
+def test_nothing_jumps(robots, operator, four_robots):
+    def places():
+        return {name: (robots.row(name).y(), robots.row(name).height(), robots.row(name).link.x())
+                for name in ('bot1', 'bot2')}
+    operator.settle()
+    before = places()
+    stopped = [replace(robot, driven=False, link=views.GONE, note='x' * 200, proof=ProofView(
+        views.PROOF_NOT_CONFIRMED, 'NOT CONFIRMED: ' + 'x' * 200)) for robot in four_robots.robots]
+    for shown in (stopped, stopped[:2], four_robots.robots):
+        robots.show_robots(shown)
+        operator.settle()
+        assert places() == before
+
+
+def test_the_box_follows_the_view_without_saying_anything(robots, heard, four_robots):
+    asked = heard(robots.selection_requested)
+    assert robots.checked() == ['bot1']
+    robots.show_robots([replace(robot, selected=robot.name in ('bot2', 'bot4'))
+                        for robot in four_robots.robots])
+    assert robots.checked() == ['bot2', 'bot4'] and asked == []
+
+
+def test_a_click_asks_for_the_whole_list_in_order(robots, operator, heard, four_robots):
+    asked = heard(robots.selection_requested)
+    operator.click(robots.row('bot4').box)
+    operator.click(robots.row('bot2').box)
+    robots.show_robots(four_robots.robots)
+    assert robots.checked() == ['bot1', 'bot2', 'bot4'], 'no flicker while the answer is coming'
+    operator.click(robots.row('bot1').box)
+    assert asked == [['bot1', 'bot4'], ['bot1', 'bot2', 'bot4'], ['bot2', 'bot4']]
+
+
+def test_a_selection_that_is_not_granted_goes_back(robots, operator):
+    operator.click(robots.row('bot4').box)
+    assert robots.checked() == ['bot1', 'bot4']
+    operator.wait_until(lambda: robots.checked() == ['bot1'])
+
+
+@pytest.mark.parametrize('action, asked', [
+    (lambda robots: robots.select_all(), [['bot1', 'bot2', 'bot3', 'bot4']]),
+    (lambda robots: robots.select_none(), [[]]),
+    (lambda robots: robots.toggle(1), [[]]),
+    (lambda robots: robots.toggle(3), [['bot1', 'bot3']]),
+    (lambda robots: robots.toggle(5), []),
+    (lambda robots: robots.toggle(0), []),
+    (lambda robots: (robots.toggle_all(), robots.toggle_all()),
+     [['bot1', 'bot2', 'bot3', 'bot4'], []]),
+])
+def test_selecting(robots, heard, action, asked):
+    said = heard(robots.selection_requested)
+    action(robots)
+    assert said == asked
+
+
+def test_click_highlights_and_double_click_opens_without_selecting(robots, operator, heard):
+    activated, opened = heard(robots.activated), heard(robots.open_requested)
+    asked = heard(robots.selection_requested)
+    operator.click(robots.row('bot3').title)
+    QTest.mouseDClick(robots.row('bot4'), Qt.LeftButton)
+    assert activated[0] == 'bot3' and opened == ['bot4'] and asked == []
+    assert robots.current == 'bot3'
+
+
+@pytest.mark.parametrize('keys, current', [
+    ([Qt.Key_Down], 'bot1'), ([Qt.Key_Down, Qt.Key_Down], 'bot2'),
+    ([Qt.Key_Down] * 9, 'bot4'), ([Qt.Key_Down, Qt.Key_Down, Qt.Key_Up], 'bot1')])
+def test_the_list_by_keyboard(robots, operator, heard, keys, current):
+    opened = heard(robots.open_requested)
+    for key in keys:
+        operator.hit(robots, key)
+    operator.hit(robots, Qt.Key_Return)
+    assert robots.current == current and opened == [current]
+
+
+def test_tab_goes_through_the_boxes_in_order(robots, operator, application):
+    robots.setFocus(Qt.TabFocusReason)
+    seen = []
+    for _ in range(4):
+        operator.hit(application.focusWidget(), Qt.Key_Tab)
+        seen.append(application.focusWidget().objectName())
+    assert seen == ['check_bot1', 'check_bot2', 'check_bot3', 'check_bot4']
+
+
+def test_a_removed_robot_loses_highlight_and_row(robots, operator, four_robots):
+    robots.activate('bot2')
+    robots.show_robots([robot for robot in four_robots.robots if robot.name != 'bot2'])
+    operator.settle()
+    assert robots.current is None
+    assert robots.findChild(type(robots.row('bot1')), 'row_bot2') is None
+    assert [robots.row(name).number.text() for name in ('bot1', 'bot3', 'bot4')] == ['1', '2', '3']
+
+
+def test_twelve_robots_scroll_and_fingers_hit(robots, operator):
+    robots.show_robots([replace(LIVE, name='bot{}'.format(n)) for n in range(1, 13)])
+    operator.settle()
+    assert robots.verticalScrollBar().maximum() > 0
+    robots.activate('bot12')
+    row = robots.row('bot12')
+    assert not row.visibleRegion().isEmpty()
+    assert min(row.box.width(), row.box.height(), row.height()) >= 36

@@ -1,0 +1,104 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Stop all: on press, from every finger; released in two steps or not at all."""
+import pytest
+from python_qt_binding.QtCore import QEvent, Qt
+from python_qt_binding.QtTest import QTest
+
+from mhri.gui import stop_bar
+from mhri.gui.stop_bar import StopBar
+
+
+@pytest.fixture
+def bar(operator):
+    widget = StopBar()
+    widget.resize(1000, 90)
+    return operator.show(widget)
+
+
+@pytest.fixture
+def stopped(bar):
+    bar.show_stop(True, '')
+    return bar
+
+
+def test_it_acts_on_press_not_on_release(bar, heard):
+    asked = heard(bar.stop_requested)
+    QTest.mousePress(bar.stop_button, Qt.LeftButton)
+    assert asked == [()]
+    QTest.mouseRelease(bar.stop_button, Qt.LeftButton)
+    assert asked == [()]
+
+
+def test_it_acts_on_the_first_contact_of_a_finger(bar, heard, touch):
+    asked = heard(bar.stop_requested)
+    touch(bar.stop_button, QEvent.TouchBegin, Qt.TouchPointPressed, 20, 20)
+    assert asked == [()] and bar.stop_button.isDown()
+    touch(bar.stop_button, QEvent.TouchEnd, Qt.TouchPointReleased, 20, 20)
+    assert asked == [()] and not bar.stop_button.isDown()
+
+
+def test_it_says_stopping_until_it_is_said_to_be_stopped(bar, operator):
+    bar.request_stop()
+    assert bar.stop_button.text() == 'STOPPING ...' and bar.stop_button.isVisible()
+    bar.show_stop(True, '')
+    assert not bar.stop_button.isVisible() and bar.release_button.isVisible()
+
+
+def test_a_stop_that_nobody_grants_is_offered_again(bar, operator):
+    bar.request_stop()
+    operator.wait_until(lambda: bar.stop_button.text() == 'STOP ALL')
+
+
+def test_release_takes_two_steps(stopped, operator, heard):
+    released = heard(stopped.release_requested)
+    assert not stopped.confirm_button.isVisible()
+    place = stopped.release_button.mapTo(stopped, stopped.release_button.rect().center())
+    operator.click(stopped.release_button)
+    assert stopped.confirm_button.isVisible() and released == []
+    assert stopped.childAt(place) is stopped.cancel_button, 'a double click cancels'
+    operator.click(stopped.confirm_button)
+    assert released == [()] and not stopped.confirm_button.isVisible()
+    stopped.show_stop(False, '')
+    assert stopped.stop_button.isVisible()
+
+
+def test_cancel_goes_back(stopped, operator, heard):
+    released = heard(stopped.release_requested)
+    operator.click(stopped.release_button)
+    operator.click(stopped.cancel_button)
+    assert not stopped.confirm_button.isVisible() and stopped.release_button.isVisible()
+    assert released == []
+
+
+def test_an_unanswered_question_goes_away(operator, monkeypatch):
+    monkeypatch.setattr(stop_bar, 'CONFIRM_WITHIN_S', 0.05)
+    bar = operator.show(StopBar())
+    bar.show_stop(True, '')
+    operator.click(bar.release_button)
+    assert bar.confirm_button.isVisible()
+    operator.wait_until(lambda: not bar.confirm_button.isVisible())
+
+
+def test_a_refused_release_says_why_and_can_be_tried_again(stopped, operator):
+    operator.click(stopped.release_button)
+    operator.click(stopped.confirm_button)
+    assert not stopped.release_button.isEnabled()
+    stopped.show_stop(True, 'centre the stick first')
+    assert stopped.release_button.isEnabled()
+    assert stopped._note_line.text() == 'centre the stick first'
+
+
+def test_a_new_stop_takes_the_question_back(stopped, operator):
+    operator.click(stopped.release_button)
+    stopped.request_stop()
+    assert not stopped.confirm_button.isVisible()
+
+
+def test_its_size_never_changes(bar, operator):
+    operator.settle()
+    before = bar.sizeHint().height()
+    for shown in ((True, ''), (True, 'x' * 300), (False, '')):
+        bar.show_stop(*shown)
+        assert bar.sizeHint().height() == before
+    assert before >= 36

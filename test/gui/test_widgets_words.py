@@ -1,0 +1,106 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What numbers and waiting look like: words, and the values that bridge a request's time."""
+import math
+
+import pytest
+
+from mhri.core import views
+from mhri.gui import words
+from mhri.gui.pending import Pace, Pending
+
+NAN = float('nan')
+
+
+@pytest.mark.parametrize('function, value, text', [
+    (words.age_text, 0.0, '0 ms'),
+    (words.age_text, -1.0, '0 ms'),
+    (words.age_text, 0.0124, '12 ms'),
+    (words.age_text, 0.0994, '99 ms'),
+    (words.age_text, 0.0996, '100 ms'),
+    (words.age_text, 0.123, '120 ms'),
+    (words.age_text, 0.9951, '1.0 s'),
+    (words.age_text, 3.2, '3.2 s'),
+    (words.age_text, 59.96, '1 min'),
+    (words.age_text, 240.0, '4 min'),
+    (words.age_text, 7200.0, '2 h'),
+    (words.age_text, None, ''),
+    (words.age_text, NAN, ''),
+    (words.linear_text, 0.314, '0.31 m/s'),
+    (words.linear_text, -0.314, 'back 0.31 m/s'),
+    (words.linear_text, -0.004, '0.00 m/s'),
+    (words.linear_text, None, '–'),
+    (words.linear_text, math.inf, '–'),
+    (words.turn_text, 0.2, 'left 0.20 rad/s'),
+    (words.turn_text, -1.234, 'right 1.23 rad/s'),
+    (words.turn_text, 0.0, '0.00 rad/s'),
+    (words.rate_text, 3.14, '3.14 rad/s'),
+    (words.heading_text, math.radians(47), '47 deg'),
+    (words.heading_text, -math.pi, '180 deg'),
+    (words.heading_text, math.radians(270), '-90 deg'),
+    (words.heading_text, None, '–'),
+    (words.metres_text, -1.254, '-1.25 m'),
+    (words.metres_text, -0.001, '0.00 m'),
+    (words.metres_text, NAN, '–'),
+    (words.battery_text, 0.824, '82 %'),
+    (words.battery_text, 1.7, '100 %'),
+    (words.battery_text, None, ''),
+])
+def test_words(function, value, text):
+    assert function(value) == text
+
+
+@pytest.mark.parametrize('link, age_s, text', [
+    (views.LIVE, 0.012, 'live 12 ms'),
+    (views.SILENT, 3.2, 'silent 3.2 s'),
+    (views.GONE, 3.2, 'gone'),
+    (views.WAITING, None, 'waiting'),
+])
+def test_link_text(link, age_s, text):
+    assert words.link_text(views.RobotView('bot1', link=link, age_s=age_s)) == text
+
+
+@pytest.mark.parametrize('stick, text', [
+    ((1.0, 1.0), ('forward 0.50 m/s', 'left 1.50 rad/s')),
+    ((-0.5, -0.5), ('back 0.25 m/s', 'right 0.75 rad/s')),
+    ((0.0, 0.0), ('0.00 m/s', '0.00 rad/s')),
+])
+def test_command_texts(stick, text):
+    assert words.command_texts(*stick, limits=(0.5, 1.5)) == text
+
+
+class Clock:
+    """A clock that is set by hand."""
+
+    now = 100.0
+
+    def __call__(self):
+        return self.now
+
+
+@pytest.mark.parametrize('asked, actual, after_s, shown, left', [
+    (None, 'a', 0.0, 'a', None),
+    ('b', 'a', 0.0, 'b', 'b'),
+    ('b', 'a', 1.99, 'b', 'b'),
+    ('b', 'a', 2.0, 'a', None),
+    ('b', 'b', 0.5, 'b', None),
+    ('b', 'c', 0.5, 'b', 'b'),
+])
+def test_pending(asked, actual, after_s, shown, left):
+    clock = Clock()
+    pending = Pending(2.0, clock)
+    if asked:
+        pending.ask(asked)
+    clock.now += after_s
+    assert pending.settle(actual) == shown
+    assert pending.value == left
+
+
+def test_pace_lets_four_through_in_a_second():
+    clock = Clock()
+    pace = Pace(0.25, clock)
+    passed = 0
+    for _ in range(20):
+        passed += pace.due()
+        clock.now += 0.05
+    assert passed == 4

@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""doc/ros_api.md says what the running nodes do, no more and no less."""
+import os
+import re
+import sys
+import unittest
+
+import rosgraph
+import rospkg
+import rostest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
+
+from mhri.ros.resources import read_text, robot_types  # noqa: E402
+from support.ros_system import System, wait_for  # noqa: E402
+
+EVERYWHERE = ('/rosout', '/clock')
+ROW = re.compile(r'^\| (publishes|subscribes|serves) \| `([^`]+)` \| (?:`([^`]+)`|[^|]+) \|', re.M)
+
+
+def documented(section):
+    """Return {(direction, name, type)} of one section of the page."""
+    path = os.path.join(rospkg.RosPack().get_path('mhri'), 'doc', 'ros_api.md')
+    text = read_text(path).split('\n## {}\n'.format(section), 1)[1].split('\n## ', 1)[0]
+    return set(ROW.findall(text))
+
+
+def running(node):
+    """Return {(direction, name, type)} of a node as the master knows it."""
+    master = rosgraph.Master('/api_test')
+    publishers, subscribers, services = master.getSystemState()
+    types = dict(master.getTopicTypes())
+    found = {('publishes', name, types[name]) for name, nodes in publishers
+             if node in nodes and name not in EVERYWHERE}
+    found |= {('subscribes', name, types[name]) for name, nodes in subscribers
+              if node in nodes and name not in EVERYWHERE}
+    found |= {('serves', name, 'std_srvs/SetBool') for name, nodes in services
+              if node in nodes and not name.endswith(('/get_loggers', '/set_logger_level'))}
+    return found
+
+
+def camera_topics(template):
+    """Return the topics of a template's simulated cameras, below the robot."""
+    topics = []
+    for names, transport in ((template.rgb, 'compressed'), (template.depth, 'compressedDepth')):
+        if names:
+            topics += [names[0], names[0] + '/' + transport,
+                       names[0].rpartition('/')[0] + '/camera_info']
+    return topics
+
+
+class ApiTest(unittest.TestCase):
+
+    maxDiff = None
+
+    @classmethod
+    def setUpClass(cls):
+        cls.system = System()
+        cls.system.screen()
+        cls.system.start_master()
+        cls.system.node('mux', '__name:=mux')
+        for number, kind in enumerate(('turtlebot2', 'turtlebot3_burger')):
+            cls.system.launch('turtlebot.launch', 'name:=bot{}'.format(number + 1),
+                              'type:=' + kind, 'x:={}'.format(1 + 2 * number), 'y:=1')
+        cls.system.node('panel', '--fresh', '--select', 'bot1')
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.system.close()
+
+    def test_mux(self):
+        wait_for(lambda: running('/mux') == documented('mux'), 15, lambda: 'mux')
+        self.assertEqual(running('/mux'), documented('mux'))
+
+    def test_panel(self):
+        turtlebot2 = robot_types()[0]['turtlebot2']
+        wanted = set()
+        for direction, name, kind in documented('mhri_panel'):
+            if '<command>' in name:
+                wanted |= {(direction, '/bot1/' + topic, kind) for topic in turtlebot2.command}
+            elif '<odometry>' in name:
+                wanted.add((direction, '/bot1/odom', 'nav_msgs/Odometry'))
+            elif '<imu>' in name:
+                wanted.add((direction, '/bot1/' + turtlebot2.imu[0], kind))
+            else:
+                wanted.add((direction, name, kind))
+        try:
+            wait_for(lambda: running('/mhri_panel') == wanted, 25, 'the panel')
+        except AssertionError:
+            self.assertEqual(running('/mhri_panel'), wanted)
+
+    def test_simulated_robots(self):
+        pages = documented('Simulated robot')
+        for robot, kind, node in (('bot1', 'turtlebot2', '/bot1/base'),
+                                  ('bot2', 'turtlebot3', '/bot2/base')):
+            template = robot_types()[0][kind]
+            own = {'/tf'} | {'/{}/{}'.format(robot, topic) for topic in (
+                *template.command, *template.imu, *template.odometry, *template.scan,
+                *template.battery, *camera_topics(template))}
+            wanted = {(direction, name.replace('<robot>', robot), kind)
+                      for direction, name, kind in pages
+                      if name.replace('<robot>', robot) in own}
+            self.assertEqual({name for _, name, _ in wanted}, own)
+            try:
+                wait_for(lambda: running(node) == wanted, 25, node)
+            except AssertionError:
+                self.assertEqual(running(node), wanted)
+
+
+if __name__ == '__main__':
+    rostest.rosrun('mhri', 'api', ApiTest)

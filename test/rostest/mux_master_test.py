@@ -1,0 +1,151 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The master restarted under a mux that drives: it stops the robots, registers again, and works.
+
+The master of rostest itself cannot be restarted, so this test runs one of its own on a free port,
+and is no ROS node towards the outer one.
+"""
+import os
+import signal
+import sys
+import time
+import unittest
+
+from rostest_tools import (
+    FORWARD, free_port, measured, moves, NEUTRAL, Process, Recorder, rests, start_mux, Stick,
+    twist_recorder, wait_until)
+import rosgraph
+import rospy
+import rostest
+from std_msgs.msg import String
+from std_srvs.srv import SetBool
+
+PORT = free_port()
+MASTER = {'ROS_MASTER_URI': 'http://127.0.0.1:{}'.format(PORT), 'ROS_IP': '127.0.0.1'}
+
+
+def start_master():
+    """Start a master on the port of this test and wait until it answers."""
+    master = Process(['rosmaster', '--core', '-p', str(PORT)], MASTER)
+    wait_until(rosgraph.Master('/mux_master_test').is_online, 'no master')
+    return master
+
+
+class MuxMaster(unittest.TestCase):
+    """One mux, one stick, one listener; all of them outlive the master."""
+
+    @classmethod
+    def setUpClass(cls):
+        """Start a master, a mux and a stick."""
+        cls.master = start_master()
+        rospy.init_node('mux_master_listener', disable_signals=True)
+        cls.mux = start_mux()
+        cls.twists = twist_recorder()
+        cls.waits = Recorder('/mux/waits_for', String, lambda message: message.data)
+        cls.stick = Stick('/mux_in/joy').wait_listener()
+        cls.twists.wait_publisher()
+        cls.waits.wait_publisher()
+        wait_until(lambda: '/diagnostics' in cls._registered()[0], 'the mux is not complete')
+        rospy.wait_for_service('/mux/set_stop_all', 10.0)
+
+    @classmethod
+    def tearDownClass(cls):
+        """End all of them."""
+        cls.stick.silence()
+        cls.mux.end()
+        cls.master.end()
+
+    def _drive(self):
+        self.stick.hold(NEUTRAL)
+        self.waits.wait(lambda _: self.waits.last() == '')
+        start = self.stick.hold(FORWARD)
+        self.twists.wait(moves, start)
+
+    @staticmethod
+    def _registered():
+        """Return the topics and services of the mux the master knows: [published, read, served]."""
+        state = rosgraph.Master('/mux_master_test').getSystemState()
+        return [{name for name, nodes in group if '/mux' in nodes} for group in state]
+
+    def _kill_master(self):
+        begun = self.master.send(signal.SIGKILL)
+        self.master.wait()
+        return begun
+
+    def test_restarted_master_stops_the_robots_and_knows_the_mux_again(self):
+        """As if nothing had been: topics, services, parameters, and a new listener hears it."""
+        before = self._registered()
+        rospy.ServiceProxy('/mux/set_stop_all', SetBool)(True)
+        wait_until(lambda: rospy.get_param('/mux/stop_all', None) is True, 'not written down')
+        self.stick.hold(NEUTRAL)
+        wait_until(lambda: rospy.ServiceProxy('/mux/set_stop_all', SetBool)(False).success,
+                   'not released')
+        self._drive()
+        begun = self._kill_master()
+        first = self.twists.wait(rests, begun)
+        measured('first zero after the master was killed', first.at - begun)
+        self.waits.wait(lambda _: self.waits.last() == 'neutral')
+        self.twists.wait_silence(0.7)
+        self.assertFalse([item for item in self.twists.since(first.at) if moves(item.value)])
+
+        begun = time.monotonic()
+        type(self).master = start_master()
+        self._assert_registered(before)
+        measured('registered again after the restart', time.monotonic() - begun)
+        wait_until(lambda: rospy.get_param('/mux/stop_all', None) is False, 'stop-all forgotten')
+        self.assertEqual(rospy.get_param('/mux/sources')[0]['name'], 'joy')
+        self._drive()
+        self._assert_new_listener_hears('/mux/mode', 'source: "joy"')
+        self._assert_new_listener_hears('/robot_controller/twist', 'linear:')
+        answer = Process(['rosservice', 'call', '/mux/set_stop_all', 'true'], MASTER)
+        self.assertEqual(answer.wait(), 0, answer.said())
+        answer.end()
+        self.waits.wait(lambda _: self.waits.last() == 'release')
+
+    def test_master_restarted_within_half_a_second(self):
+        """Too quick to be missed, but everything it knew is gone: robots stop all the same."""
+        self.stick.hold(NEUTRAL)
+        wait_until(lambda: rospy.ServiceProxy('/mux/set_stop_all', SetBool)(False).success,
+                   'not released')
+        self._drive()
+        before = self._registered()
+        begun = self._kill_master()
+        type(self).master = start_master()
+        measured('master away for', time.monotonic() - begun)
+        first = self.twists.wait(rests, begun)
+        measured('first zero after a quick restart of the master', first.at - begun)
+        self._assert_registered(before)
+        self._drive()
+
+    def test_registered_again_whatever_asks_the_new_master_first(self):
+        """Also where something has made the new master know the node by its name alone."""
+        before = self._registered()
+        for _ in range(5):
+            self._kill_master()
+            type(self).master = start_master()
+            self._assert_registered(before)
+
+    def _assert_registered(self, before):
+        """The master knows again all that it knew of the mux; else say what is missing."""
+        try:
+            wait_until(lambda: self._registered() == before, '')
+        except AssertionError:
+            self.fail('missing {}, additional {}; the mux said: {}'.format(
+                [sorted(old - new) for old, new in zip(before, self._registered())],
+                [sorted(new - old) for old, new in zip(before, self._registered())],
+                self.mux.said()))
+
+    def _assert_new_listener_hears(self, topic, words):
+        """A process that has never met the mux finds it through the new master."""
+        late = Process(['rostopic', 'echo', '-n1', topic], MASTER)
+        try:
+            self.assertEqual(late.wait(), 0)
+            self.assertIn(words, late.said())
+        finally:
+            late.end()
+
+
+if __name__ == '__main__':
+    os.environ.update(MASTER)
+    rostest.rosrun('mhri', 'mux_master', MuxMaster, sys.argv)

@@ -1,0 +1,255 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each promise of "Driving: what the mux promises", by name, to a mux on a real master."""
+import sys
+import time
+import unittest
+
+from geometry_msgs.msg import Twist
+from rostest_tools import (
+    FORWARD, measured, moves, NEUTRAL, Recorder, rests, Stick, StickProcess, twist_recorder,
+    wait_until)
+import rospy
+import rostest
+from sensor_msgs.msg import Joy
+from std_msgs.msg import Bool, String
+from std_srvs.srv import SetBool
+
+from mhri.msg import ControlMode
+
+DRIVE = (0.5, 0.0)
+
+
+class MuxPromises(unittest.TestCase):
+    """One operator, two sticks, one mux."""
+
+    @classmethod
+    def setUpClass(cls):
+        """Open everything once; connections take longer than tests."""
+        cls.twists = twist_recorder()
+        cls.modes = Recorder('/mux/mode', ControlMode, lambda message: message.source)
+        cls.stops = Recorder('/robot_controller/stop_all', Bool, lambda message: message.data)
+        cls.waits = Recorder('/mux/waits_for', String, lambda message: message.data)
+        cls.stick, cls.pedal = (Stick('/mux_in/' + name) for name in ('joy', 'pedal'))
+        cls.select = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
+        cls.limit = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=10)
+        cls.set_stop = rospy.ServiceProxy('/mux/set_stop_all', SetBool)
+        cls.set_stop.wait_for_service(10.0)
+        for stick in (cls.stick, cls.pedal):
+            stick.wait_listener()
+        wait_until(lambda: cls.select.get_num_connections() and cls.limit.get_num_connections(),
+                   'the mux does not listen')
+        for recorder in (cls.twists, cls.modes, cls.stops):
+            recorder.wait_publisher()
+
+    def setUp(self):
+        """Begin each promise with the virtual joystick in force, silent, and nothing moving."""
+        self.pedal.silence()
+        self._mode('joy')
+        self.stick.hold(NEUTRAL)
+        self.waits.wait(lambda _: self.waits.last() in ('', 'release'))
+        self.set_stop(False)
+        self.stick.silence()
+        self.twists.wait_silence(0.7)
+
+    def _mode(self, name):
+        """Select a source; return when."""
+        now = time.monotonic()
+        self.select.publish(source=name)
+        self.modes.wait(lambda _: self.modes.last() == name)
+        return now
+
+    def _drive(self, stick=None):
+        """Make the robots move; return when the first command came."""
+        stick = stick or self.stick
+        stick.hold(NEUTRAL)
+        self.waits.wait(lambda _: self.waits.last() == '')
+        now = stick.hold(FORWARD)
+        return self.twists.wait(moves, now).at
+
+    def _assert_stops(self, begun, within_s, what):
+        """A zero at once, zeros at 20 Hz for 0.5 s, then silence; nothing moves meanwhile."""
+        first = self.twists.wait(rests, begun)
+        self.assertLess(measured('first zero after ' + what, first.at - begun), within_s)
+        last = self.twists.wait_silence(1.0)
+        zeros = self.twists.since(first.at)
+        self.assertTrue(all(rests(item.value) for item in zeros), zeros)
+        self.assertTrue(0.40 <= last.at - first.at <= 0.56, zeros)
+        self.assertTrue(9 <= len(zeros) <= 12, zeros)
+
+    def test_only_the_active_source_drives(self):
+        """Every message of another source is ignored."""
+        self.pedal.hold(NEUTRAL)
+        self.pedal.hold(FORWARD)
+        self._drive()
+        self.stick.hold((0.0, 0.5))
+        start = self.twists.wait(lambda value: value == (0.25, 0.0)).at
+        self.twists.wait(lambda _: len(self.twists.since(start)) > 30)
+        self.assertEqual({item.value for item in self.twists.since(start)}, {(0.25, 0.0)})
+
+    def test_published_at_once(self):
+        """Not at the next tick of 20 Hz: the median of a hundred is far below it."""
+        self._drive()
+        self.stick.silence()
+        taken = []
+        for number in range(100):
+            axes = (0.0, 0.5 + number / 250.0)
+            sent = self.stick.once(axes)
+            got = self.twists.wait(lambda value: abs(value[0] - axes[1] / 2.0) < 1e-6, sent)
+            taken.append(got.at - sent)
+        taken.sort()
+        measured('stick event to command, p99', taken[98])
+        self.assertLess(measured('stick event to command, p50', taken[50]), 0.010)
+
+    def test_repeated_at_20_hz_while_fresh(self):
+        """A stick held still sends nothing new."""
+        self._drive()
+        sent = self.stick.silence()
+        stop = self.twists.wait(rests, sent).at
+        repeats = [item.at for item in self.twists.since(sent + 0.03) if item.at < stop]
+        self.assertTrue(8 <= len(repeats) <= 10, repeats)
+        gaps = [later - sooner for sooner, later in zip(repeats, repeats[1:])]
+        self.assertLess(measured('longest gap between repetitions', max(gaps)), 0.075)
+
+    def test_silent_source_zero_within_550_ms(self):
+        """Counted from its last message."""
+        self._drive()
+        self._assert_stops(self.stick.silence(), 0.55, 'a silent source')
+
+    def test_killed_source_zero_within_550_ms(self):
+        """SIGKILL of the process that holds the stick."""
+        source = StickProcess('/mux_in/joy')
+        try:
+            source.hold(NEUTRAL)
+            self.waits.wait(lambda _: self.waits.last() == '')
+            source.hold(FORWARD)
+            self.twists.wait(moves, time.monotonic())
+            self._assert_stops(source.process.send(9), 0.55, 'SIGKILL of the source')
+        finally:
+            source.process.end()
+
+    def test_released_stick_zero_at_once_then_silence(self):
+        """Although the stick goes on saying neutral."""
+        self._drive()
+        begun = self.stick.hold(NEUTRAL)
+        first = self.twists.wait(rests, begun)
+        self.assertLess(measured('first zero after a released stick', first.at - begun), 0.05)
+        self.assertLess(self.twists.wait_silence(1.0).at - begun, 0.56)
+
+    def test_changed_mode_zero_at_once_20_hz_then_silence(self):
+        """And the mode in force says so."""
+        self._drive()
+        begun = time.monotonic()
+        self.select.publish(source='pedal')
+        self._assert_stops(begun, 0.05, 'a changed mode')
+        self.assertEqual(self.modes.last(), 'pedal')
+
+    def test_stop_all_zero_at_once_20_hz_then_silence(self):
+        """Latched, with the stick still held."""
+        self._drive()
+        begun = time.monotonic()
+        answer = self.set_stop(True)
+        measured('answer of /mux/set_stop_all', time.monotonic() - begun)
+        self.assertTrue(answer.success)
+        self._assert_stops(begun, 0.05, 'stop-all')
+        self.assertEqual(self.stops.last(), True)
+
+    def test_neutral_interlock_after_a_changed_mode(self):
+        """The pedal held while it becomes active moves nothing until it was released."""
+        self.pedal.hold(FORWARD)
+        begun = self._mode('pedal')
+        self._assert_interlock(self.pedal, begun)
+
+    def test_neutral_interlock_after_a_stale_source(self):
+        """The stick that comes back out of range comes back held."""
+        self._drive()
+        self.twists.wait(rests, self.stick.silence())
+        self._assert_interlock(self.stick, self.stick.hold(FORWARD))
+
+    def test_neutral_interlock_after_a_newly_connected_device(self):
+        """Another publisher takes the stick over, held."""
+        self._drive()
+        source = StickProcess('/mux_in/joy')
+        try:
+            source.hold(FORWARD)
+            begun = self.twists.wait(rests, time.monotonic()).at
+            self.stick.silence()
+            self.waits.wait(lambda _: self.waits.last() == 'neutral')
+            self._assert_interlock(source, begun)
+        finally:
+            source.process.end()
+
+    def test_neutral_interlock_after_a_released_stop_all(self):
+        """Release itself needs neutral; then the stick has to be centred once more."""
+        self._drive()
+        self.set_stop(True)
+        self.assertFalse(self.set_stop(False).success, 'released with the stick held')
+        self.assertTrue(self.stops.last())
+        self.stick.hold(NEUTRAL)
+        wait_until(lambda: self.set_stop(False).success, 'not released at neutral')
+        self.stops.wait(lambda _: self.stops.last() is False)
+        self._drive()
+
+    def _assert_interlock(self, stick, begun):
+        """The stick, held, moves nothing; centred once, it drives."""
+        self.waits.wait(lambda _: self.waits.last() == 'neutral')
+        self.twists.wait_silence(0.7)
+        self.assertFalse([item for item in self.twists.since(begun) if moves(item.value)])
+        stick.hold(NEUTRAL)
+        self.waits.wait(lambda _: self.waits.last() == '')
+        stick.hold(FORWARD)
+        self.twists.wait(moves, begun)
+
+    def test_speed_limit_is_set_live(self):
+        """A robot that moves follows without a new stick event."""
+        self._drive()
+        limit = Twist()
+        try:
+            limit.linear.x, limit.angular.z = 0.2, 1.0
+            begun = time.monotonic()
+            self.limit.publish(limit)
+            got = self.twists.wait(lambda value: value == (0.2, 0.0), begun)
+            measured('speed limit to command', got.at - begun)
+            self.stick.hold((1.0, 0.0))
+            self.twists.wait(lambda value: value == (0.0, 1.0), begun)
+            limit.linear.x = float('nan')
+            self.limit.publish(limit)
+            start = time.monotonic()
+            self.twists.wait(lambda _: len(self.twists.since(start)) > 20)
+            self.assertEqual({item.value for item in self.twists.since(start)}, {(0.0, 1.0)})
+        finally:
+            limit.linear.x, limit.angular.z = 0.5, 1.5
+            self.limit.publish(limit)
+            self.twists.wait(lambda value: value == (0.0, 1.5), time.monotonic())
+
+    def test_mode_is_latched_and_owned_by_the_mux(self):
+        """Whoever comes late hears it; an unknown one changes nothing."""
+        self._mode('pedal')
+        self.select.publish(source='telepathy')
+        late = Recorder('/mux/mode', ControlMode, lambda message: message.source)
+        self.assertEqual(late.wait(lambda value: True).value, 'pedal')
+        late.close()
+        self._mode('joy')
+        self.assertNotIn('telepathy', [item.value for item in self.modes.since(0.0)])
+
+    def test_twist_of_the_mux_alone_and_planar(self):
+        """Only the mux publishes, and only the two components of a plane."""
+        self._drive()
+        self.assertEqual({item.sender for item in self.twists.since(0.0)}, {'/mux'})
+
+    def test_a_burst_of_unusable_messages_leaves_a_driving_robot_driving(self):
+        """The good messages in between count."""
+        self._drive()
+        start = time.monotonic()
+        garbage = rospy.Publisher('/mux_in/joy', Joy, queue_size=10)
+        wait_until(garbage.get_num_connections, 'nobody listens')
+        for axes in ((float('nan'), 0.0), (), (0.5,)):
+            garbage.publish(Joy(axes=axes))
+        self.twists.wait(lambda _: len(self.twists.since(start)) > 30)
+        self.assertEqual({item.value for item in self.twists.since(start)}, {DRIVE})
+
+
+if __name__ == '__main__':
+    rospy.init_node('mux_promises')
+    rostest.rosrun('mhri', 'mux_promises', MuxPromises, sys.argv)

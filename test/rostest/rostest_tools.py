@@ -1,0 +1,262 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the rostests share: messages noted with their times, sticks held, processes begun and ended.
+
+Nothing here sleeps to let something happen: whoever waits, waits for a condition.
+"""
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+from geometry_msgs.msg import Twist
+import roslib.packages
+import rospy
+from sensor_msgs.msg import Joy
+
+PATIENCE_S = 10.0
+FORWARD = (0.0, 1.0)
+NEUTRAL = (0.0, 0.0)
+
+
+def measured(what, seconds):
+    """Print a time that was measured, and return it."""
+    print('MEASURED {}: {:.3f} ms'.format(what, seconds * 1000.0))
+    sys.stdout.flush()
+    return seconds
+
+
+class Noted:
+    """One message: when it came [s, monotonic], what it said, and which node sent it."""
+
+    def __init__(self, value, sender):
+        self.at = time.monotonic()
+        self.value = value
+        self.sender = sender
+
+    def __repr__(self):
+        """Say it in one line of a failed test."""
+        return '{:.3f} {!r} from {}'.format(self.at, self.value, self.sender)
+
+
+class Recorder:
+    """Notes every message of a topic.
+
+    :param read: function from the message to a value
+    """
+
+    def __init__(self, topic, message_class, read):
+        self.topic = topic
+        self._read = read
+        self._noted = []
+        self._changed = threading.Condition()
+        self._subscriber = rospy.Subscriber(topic, message_class, self._on_message,
+                                            queue_size=1000, tcp_nodelay=True)
+
+    def _on_message(self, message):
+        with self._changed:
+            self._noted.append(Noted(self._read(message), message._connection_header['callerid']))
+            self._changed.notify_all()
+
+    def since(self, start):
+        """Return what was noted after a time."""
+        with self._changed:
+            return [item for item in self._noted if item.at >= start]
+
+    def last(self):
+        """Return the newest value, or None."""
+        with self._changed:
+            return self._noted[-1].value if self._noted else None
+
+    def wait(self, good, start=0.0, patience_s=PATIENCE_S):
+        """Wait for the first message after a time of which ``good(value)`` is true; return it.
+
+        :raises AssertionError: none came
+        """
+        deadline = time.monotonic() + patience_s
+        with self._changed:
+            while True:
+                for item in self._noted:
+                    if item.at >= start and good(item.value):
+                        return item
+                left = deadline - time.monotonic()
+                if left <= 0.0:
+                    raise AssertionError('nothing of the kind on {} in {} s, only {}'.format(
+                        self.topic, patience_s, [item for item in self._noted
+                                                 if item.at >= start][-20:]))
+                self._changed.wait(left)
+
+    def wait_silence(self, seconds, patience_s=PATIENCE_S):
+        """Wait until nothing has come for so long; return the newest message, None without one.
+
+        :raises AssertionError: messages never ceased
+        """
+        deadline = time.monotonic() + patience_s
+        begun = time.monotonic()
+        with self._changed:
+            while True:
+                newest = self._noted[-1].at if self._noted else begun
+                left = max(newest, begun) + seconds - time.monotonic()
+                if left <= 0.0:
+                    return self._noted[-1] if self._noted else None
+                if time.monotonic() > deadline:
+                    raise AssertionError('{} never falls silent'.format(self.topic))
+                self._changed.wait(left)
+
+    def wait_publisher(self, patience_s=PATIENCE_S):
+        """Wait until somebody who publishes is connected."""
+        wait_until(lambda: self._subscriber.get_num_connections() > 0,
+                   'no publisher of ' + self.topic, patience_s)
+
+    def close(self):
+        """Stop listening."""
+        self._subscriber.unregister()
+
+
+def twist_recorder():
+    """Return a recorder of the one velocity command, as (m/s, rad/s)."""
+    return Recorder('/robot_controller/twist', Twist,
+                    lambda twist: (twist.linear.x, twist.angular.z))
+
+
+def moves(value):
+    """Tell whether a command is other than zero."""
+    return value != (0.0, 0.0)
+
+
+def rests(value):
+    """Tell whether a command is zero."""
+    return value == (0.0, 0.0)
+
+
+def wait_until(condition, words, patience_s=PATIENCE_S):
+    """Wait until a condition that cannot be subscribed to holds, looking every 5 ms."""
+    deadline = time.monotonic() + patience_s
+    while not condition():
+        if time.monotonic() > deadline:
+            raise AssertionError(words)
+        time.sleep(0.005)
+
+
+class Stick:
+    """A stick on a Joy topic, held at 50 Hz as a pad's driver does, by this process."""
+
+    def __init__(self, topic):
+        self._publisher = rospy.Publisher(topic, Joy, queue_size=10, tcp_nodelay=True)
+        self._held = None
+        self._changed = threading.Condition()
+        self.last_sent = 0.0
+        rospy.on_shutdown(self.silence)
+        threading.Thread(target=self._run, daemon=True).start()
+
+    def wait_listener(self):
+        """Wait until the mux listens."""
+        wait_until(lambda: self._publisher.get_num_connections() > 0, 'nobody listens')
+        return self
+
+    def _run(self):
+        with self._changed:
+            while not rospy.is_shutdown():
+                if self._held is not None:
+                    self._send(*self._held)
+                self._changed.wait(None if self._held is None else 0.02)
+
+    def _send(self, axes, buttons):
+        self.last_sent = time.monotonic()
+        self._publisher.publish(Joy(axes=axes, buttons=buttons))
+
+    def hold(self, axes, buttons=()):
+        """Hold the stick like this from now on; return the time of it."""
+        with self._changed:
+            self._held = (axes, buttons)
+            self._changed.notify()
+            return time.monotonic()
+
+    def silence(self):
+        """Send nothing from now on; return when the last message was sent."""
+        with self._changed:
+            self._held = None
+            self._changed.notify()
+            return self.last_sent
+
+    def once(self, axes, buttons=()):
+        """Send one message; return when."""
+        with self._changed:
+            self._send(axes, buttons)
+            return self.last_sent
+
+
+def free_port():
+    """Return a TCP port that nobody uses."""
+    with socket.socket() as probe:
+        probe.bind(('127.0.0.1', 0))
+        return probe.getsockname()[1]
+
+
+class Process:
+    """A process of its own, with what it said; ended at the latest by :meth:`end`."""
+
+    def __init__(self, command, env=None, stdin=None):
+        self._said = tempfile.NamedTemporaryFile('w+', suffix='.log')
+        self._popen = subprocess.Popen(command, stdout=self._said, stderr=subprocess.STDOUT,
+                                       stdin=stdin, env=dict(os.environ, **(env or {})))
+        self.stdin = self._popen.stdin
+
+    def said(self):
+        """Return everything the process has written."""
+        with open(self._said.name, encoding='utf-8', errors='replace') as stream:
+            return stream.read()
+
+    def send(self, number):
+        """Send a signal; return the time of it."""
+        now = time.monotonic()
+        self._popen.send_signal(number)
+        return now
+
+    def running(self):
+        """Tell whether the process lives."""
+        return self._popen.poll() is None
+
+    def wait(self, patience_s=PATIENCE_S):
+        """Wait for its end; return its exit code.
+
+        :raises subprocess.TimeoutExpired: it does not end
+        """
+        return self._popen.wait(patience_s)
+
+    def end(self):
+        """Make sure that it is gone."""
+        if self.running():
+            self._popen.send_signal(signal.SIGCONT)
+            self._popen.kill()
+        self._popen.wait()
+        if self.stdin:
+            self.stdin.close()
+        self._said.close()
+
+
+def start_mux(*arguments, env=None):
+    """Start the real mux node, e.g. with '__name:=other'."""
+    path = roslib.packages.find_node('mhri', 'mux')[0]
+    return Process([path] + list(arguments), env)
+
+
+class StickProcess:
+    """A stick in a process of its own, to be killed: it holds what it was last told.
+
+    :param name: name of its node
+    """
+
+    def __init__(self, topic, name='stick_process'):
+        self.process = Process([sys.executable, os.path.join(os.path.dirname(__file__),
+                                                             'stick_process.py'),
+                                topic, '__name:=' + name], stdin=subprocess.PIPE)
+
+    def hold(self, axes):
+        """Hold the stick like this from now on."""
+        self.process.stdin.write((' '.join(str(value) for value in axes) + '\n').encode())
+        self.process.stdin.flush()

@@ -1,0 +1,96 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The launch files, as roslaunch reads them."""
+from pathlib import Path
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+import roslaunch.config
+import roslaunch.xmlloader
+
+LAUNCH = Path(__file__).resolve().parents[2] / 'launch'
+MHRI = LAUNCH / 'mhri.launch'
+
+
+def load(path, *arguments):
+    """Return roslaunch's configuration of a launch file with ARG:=VALUE arguments.
+
+    :raises RLException: the file or an argument is wrong
+    """
+    config = roslaunch.config.ROSLaunchConfig()
+    roslaunch.xmlloader.XmlLoader(resolve_anon=False).load(
+        str(path), config, argv=list(arguments), verbose=False)
+    assert config.config_errors == []
+    return config
+
+
+def nodes(config):
+    """Return {full name: node}."""
+    return {node.namespace + node.name: node for node in config.nodes}
+
+
+@pytest.mark.parametrize('path', sorted(LAUNCH.glob('*')), ids=lambda path: path.name)
+def test_file_says_its_licence_and_its_arguments(path):
+    text = path.read_text()
+    assert '<!-- SPDX-FileCopyrightText: ' in text
+    assert '<!-- SPDX-License-Identifier: BSD-3-Clause -->' in text
+    assert [arg.get('name') for arg in ElementTree.fromstring(text).findall('arg')
+            if not arg.get('doc')] == []
+
+
+def test_host_by_default():
+    config = load(MHRI)
+    found = nodes(config)
+    assert sorted(found) == ['/mux', '/panel']
+    assert found['/panel'].required and '--gui auto' in found['/panel'].args
+    assert '--demo ' not in found['/panel'].args + ' '
+    assert not found['/mux'].respawn, 'two hosts on one master would fight for its name'
+    assert Path(config.params['/mux/config'].value).is_file()
+
+
+@pytest.mark.parametrize('arguments, said, unsaid', [
+    (['gui:=rqt'], ['--gui rqt'], ['--demo ']),
+    (['gui:=standalone', 'robots:=bot1 bot2'], ['--gui standalone', "--robots 'bot1 bot2'"], []),
+    (['demo:=true', 'screenshot:=/tmp/a b.png', 'demo_result:=/tmp/c d'],
+     ['--demo ', "--screenshot '/tmp/a b.png'", "--demo-result '/tmp/c d'"], []),
+    (['demo:=false', 'screenshot:=/tmp/a.png'], [], ['--demo ']),
+])
+def test_panels_command_line(arguments, said, unsaid):
+    args = nodes(load(MHRI, *arguments))['/panel'].args
+    assert [text for text in said if text not in args] == []
+    assert [text for text in unsaid if text in args] == []
+
+
+def test_arguments_of_the_host():
+    assert sorted(nodes(load(MHRI, 'gui:=none'))) == ['/mux']
+    assert not nodes(load(MHRI, 'required:=false'))['/panel'].required
+    assert load(MHRI, 'mux_config:=/x.yaml').params['/mux/config'].value == '/x.yaml'
+
+
+@pytest.mark.parametrize('argument', ['sim:=many', 'demo:=perhaps', 'required:=perhaps'])
+def test_wrong_value_is_refused(argument):
+    with pytest.raises(Exception, match='many|perhaps|not supported'):
+        load(MHRI, argument)
+
+
+@pytest.mark.parametrize('count', [1, 3, 12])
+def test_simulated_robots(count):
+    config = load(MHRI, 'sim:={}'.format(count))
+    names = ['bot{}'.format(number) for number in range(1, count + 1)]
+    types = [config.params['/{}/robot_type'.format(name)].value for name in names]
+    assert all(robot_type.startswith('turtlebot') for robot_type in types)
+    assert '/bot{}/robot_type'.format(count + 1) not in config.params
+    assert len([node for node in config.nodes if node.type == 'sim_robot']) == count
+
+
+def test_simulated_robots_of_given_types_and_names():
+    config = load(MHRI, 'sim:=3', 'sim_types:=turtlebot2 turtlebot3_burger', 'sim_prefix:=r')
+    types = [config.params['/r{}/robot_type'.format(number)].value for number in (1, 2, 3)]
+    assert types[0] == types[2] == 'turtlebot2' and types[1].startswith('turtlebot3')
+
+
+def test_test_nodes_have_names_of_their_own():
+    """A result file is called after its test node: a second one would write over the first."""
+    names = [test.get('test-name') for path in sorted(LAUNCH.parent.glob('test/rostest/*.test'))
+             for test in ElementTree.parse(str(path)).getroot().iter('test')]
+    assert sorted(names) == sorted(set(names))

@@ -1,0 +1,121 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each linter over the whole package, and over a bad sample to see that it would speak up."""
+import ast
+import os
+from pathlib import Path
+import subprocess
+import sys
+
+import pytest
+
+REPO = Path(__file__).resolve().parents[2]
+TOOLS = REPO / '.ws' / 'tools'  # mhri_test.sh installs there what the system does not package
+PYTHON_TREES = ('src', 'test', 'utils', 'scripts')
+
+
+def run(command, cwd=REPO):
+    """Return (exit status, all output) of a command."""
+    path = os.pathsep.join([str(TOOLS), os.environ.get('PYTHONPATH', '')])
+    done = subprocess.run([str(part) for part in command], cwd=str(cwd), stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          universal_newlines=True, env=dict(os.environ, PYTHONPATH=path))
+    return done.returncode, done.stdout
+
+
+def python_files():
+    """Return every Python file of the package, those without an ending in scripts/ too."""
+    found = [REPO / 'setup.py']
+    for tree in PYTHON_TREES:
+        found += (REPO / tree).rglob('*.py')
+    found += [path for path in (REPO / 'scripts').iterdir() if path.is_file()]
+    return sorted(set(found))
+
+
+def shell_files():
+    """Return every shell file: by its ending, or by its first line."""
+    def is_shell(path):
+        return path.suffix == '.sh' or path.read_bytes()[:32].startswith(
+            (b'#!/usr/bin/env bash', b'#!/bin/bash', b'#!/bin/sh'))
+    return sorted(path for tree in ('utils', '.ci', 'test', 'scripts', 'doc')
+                  for path in (REPO / tree).rglob('*') if path.is_file() and is_shell(path))
+
+
+def flake8(files, cwd=REPO):
+    return run([sys.executable, '-m', 'flake8', '--config', REPO / 'setup.cfg'] + files, cwd)
+
+
+def vermin(files):
+    """Return (exit status, output): whether all of it is Python 3.8, annotations included."""
+    return run([sys.executable, '-c', 'import vermin; vermin.main()', '-t=3.8-', '--violations',
+                '--no-tips', '--eval-annotations'] + files)
+
+
+def test_flake8_with_docstrings():
+    status, output = flake8([str(path.relative_to(REPO)) for path in python_files()])
+    assert status == 0, output
+    assert 'flake8-docstrings' in run([sys.executable, '-m', 'flake8', '--version'])[1]
+
+
+@pytest.mark.parametrize('code, text', [
+    ('F401', '"""Text."""\nimport os\n'),
+    ('D103', '"""Text."""\n\n\ndef public():\n    return 1\n'),
+    ('E501', '"""Text."""\nX = "' + 'x' * 100 + '"\n'),
+    ('C901', '"""Text."""\n\n\ndef branchy(x):\n    """Text."""\n' +
+     ''.join('    if x == {0}:\n        return {0}\n'.format(n) for n in range(11))),
+])
+def test_flake8_would_speak_up(tmp_path, code, text):
+    (tmp_path / 'sample.py').write_text(text)
+    status, output = flake8(['sample.py'], tmp_path)
+    assert status != 0 and code in output
+
+
+def test_shellcheck():
+    status, output = run(['shellcheck', '-x'] + shell_files())
+    assert status == 0, output
+
+
+def test_shellcheck_would_speak_up(tmp_path):
+    sample = tmp_path / 'sample.sh'
+    sample.write_text('#!/bin/bash\nrm -rf $1/x\n')
+    status, output = run(['shellcheck', sample])
+    assert status != 0 and 'SC2086' in output
+
+
+def test_shell_files_parse():
+    for path in shell_files():
+        assert run(['bash', '-n', path]) == (0, '')
+
+
+def test_catkin_lint(tmp_path):
+    # It wants the folder to be called as the package is, which a checkout need not be.
+    (tmp_path / 'mhri').symlink_to(REPO)
+    status, output = run(['catkin_lint', '--strict', '-W2', tmp_path / 'mhri'])
+    assert status == 0, output
+    assert 'checked 1 packages and found 0 problems' in output
+
+
+def test_python_3_8_syntax():
+    for path in python_files():
+        ast.parse(path.read_text(encoding='utf-8'), str(path), feature_version=(3, 8))
+
+
+def test_python_3_8_library():
+    status, output = vermin(python_files())
+    assert "No module named 'vermin'" not in output, (
+        'vermin is not there: mhri_test.sh installs it with pip and could not, see above')
+    assert status == 0, output
+
+
+@pytest.mark.parametrize('text', [
+    'match = 1\nmatch match:\n    case 1:\n        pass\n',
+    'from functools import cache\n',
+    'import math\nmath.lcm(1, 2)\n',
+    'def f(x: list[int]):\n    return x\n',
+    '{} | dict()\n',
+])
+def test_python_3_8_check_would_speak_up(tmp_path, text):
+    sample = tmp_path / 'sample.py'
+    sample.write_text(text)
+    status, output = vermin([sample])
+    assert status != 0 and 'sample.py' in output

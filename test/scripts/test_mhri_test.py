@@ -1,0 +1,154 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""mhri_test.sh on a package with small tests that fail in every way: its count is right.
+
+The package is built and its tests are run by catkin, for real.
+"""
+import shutil
+import signal
+import time
+
+from conftest import Checkout, children_with, REPO
+import pytest
+
+ROSTEST = """<launch>
+  <test test-name="{name}" pkg="mhri" type="{name}.py" time-limit="20"/>
+</launch>
+"""
+NODE_TEST = """#!/usr/bin/env python3
+import os
+import unittest
+import rosunit
+
+
+class Case(unittest.TestCase):
+    def test_one(self):
+        {}
+
+    def test_two(self):
+        pass
+
+
+rosunit.unitrun('mhri', '{}', Case)
+"""
+SMALL_TESTS = {
+    'unit/test_good.py': 'import pytest\n\n\ndef test_a():\n    print("a figure: 42 ms")\n\n\n'
+                         '@pytest.mark.skip\ndef test_b():\n    pass\n',
+    'gui/test_screen.py': 'import subprocess\n\n\ndef test_display():\n'
+                          '    subprocess.check_call(["xdpyinfo"], stdout=subprocess.DEVNULL)\n',
+    'rostest/good.test': ROSTEST.format(name='good'),
+    'rostest/good.py': NODE_TEST.format('pass', 'good'),
+}
+BAD_TESTS = {
+    'unit/test_bad.py': 'def test_bad():\n    assert 1 == 2\n',
+    'gui/test_crash.py': 'import os\n\n\ndef test_a():\n    os.abort()\n\n\n'
+                         'def test_b():\n    pass\n',
+    'faults/test_import.py': 'import no_such_module\n',
+    'faults/test_none.py': '',
+    'faults/test_leak.py': 'import subprocess\n\n\ndef test_leak():\n'
+                           '    subprocess.Popen(["sleep", "600"], start_new_session=True)\n',
+    'rostest/bad.test': ROSTEST.format(name='bad'),
+    'rostest/bad.py': NODE_TEST.format('self.fail("so")', 'bad'),
+    'rostest/crash.test': ROSTEST.format(name='crash'),
+    'rostest/crash.py': NODE_TEST.format('os._exit(3)', 'crash'),
+}
+GROUPS = [word for group in ('unit', 'rostest', 'gui', 'faults') for word in ('--only', group)]
+
+
+@pytest.fixture(scope='module')
+def package(tmp_path_factory):
+    """Return a checkout with the small tests; only what would change this machine is a stand-in."""
+    made = Checkout(tmp_path_factory.mktemp('package'), 'mhri',
+                    stand_ins=('dpkg-query', 'apt-get', 'sudo'))
+    for name in ('src', 'launch', 'resource'):
+        shutil.copytree(str(REPO / name), str(made.root / name))
+    shutil.copy(str(REPO / 'plugin.xml'), str(made.root))
+    made.environment['DISPLAY'] = ''
+    made.environment['CI'] = 'true'
+    write_tests(made, SMALL_TESTS)
+    return made
+
+
+def write_tests(package, tests):
+    for name, text in tests.items():
+        path = package.root / 'test' / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        path.chmod(0o755)
+
+
+def run_tests(package, *arguments):
+    """Return (exit status, output) of mhri_test.sh."""
+    return package.run(*arguments, script=package.script.with_name('mhri_test.sh'), limit_s=240)
+
+
+def test_good_tests(package):
+    status, output = run_tests(package, *GROUPS[:-2])
+    assert output.splitlines()[-1] == '4 passed, 0 failed, 1 skipped', output
+    assert status == 0
+    assert 'a figure: 42 ms' in output
+    assert package.called('apt-get', 'sudo') == []
+
+
+def test_bad_tests_are_all_counted(package):
+    write_tests(package, BAD_TESTS)
+    status, output = run_tests(package, *GROUPS)
+    assert status == 1
+    failed = [line for line in output.splitlines() if line.startswith('FAILED')
+              and '.xml: ' in line]
+    for name in ('test_bad', 'MISSING-pytest-gui-test_crash', 'faults-test_import',
+                 'pytest-faults-test_none.xml: no test ran', 'rosunit-bad',
+                 'rosunit-crash.xml: is not a whole result file'):
+        assert [line for line in failed if name in line], (name, output)
+    assert output.splitlines()[-1] == '6 passed, 6 failed, 1 skipped', output
+    assert 'ending what was left running' in output and 'sleep 600' in output
+
+
+def test_results_of_the_last_run_do_not_count(package):
+    status, output = run_tests(package, '--only', 'gui')
+    assert output.splitlines()[-1] == '1 passed, 1 failed', output
+    shutil.rmtree(str(package.root / 'test' / 'unit'))
+    status, output = run_tests(package, '--only', 'unit')
+    assert output.splitlines()[-1] == '0 passed, 1 failed', output
+
+
+def test_interrupted_run_leaves_nothing(package):
+    write_tests(package, {
+        'faults/test_long.py': 'import time\n\n\ndef test_long():\n'
+                               '    print("up", flush=True)\n    time.sleep(600)\n'})
+    process = package.start('--only', 'faults', script=package.script.with_name('mhri_test.sh'))
+    for line in process.stdout:
+        if line.strip().endswith('up'):
+            break
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=20)
+    assert process.returncode == 130
+    end = time.monotonic() + 5.0
+    while children_with(str(package.calls_file)):
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+@pytest.mark.parametrize('arguments, said', [
+    (['--frobnicate'], 'there is no option --frobnicate'),
+    (['--only'], "there is no group ''"),
+    (['--only', 'nothing'], "there is no group 'nothing'"),
+    (['--only', 'unit gui'], "there is no group 'unit gui'"),
+    (['unit'], "'unit' is not an option"),
+])
+def test_wrong_arguments_are_refused(checkout, arguments, said):
+    status, output = run_tests(checkout, *arguments)
+    assert status == 2 and said in output
+    assert checkout.calls == []
+
+
+def test_path_with_a_space_is_refused(checkout):
+    status, output = run_tests(checkout)
+    assert status == 1 and 'path with a space' in output and str(checkout.root) in output
+    assert checkout.calls == []
+
+
+def test_help_is_the_manual(checkout):
+    status, output = run_tests(checkout, '--help')
+    assert status == 0 and checkout.calls == []
+    assert '--only' in output and '--bench' in output and 'exit status' in output

@@ -1,0 +1,195 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The one command, for real: nothing stands in for anything but the robots, which are simulated."""
+import os
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import time
+import uuid
+import xmlrpc.client
+
+from conftest import children_with, REPO
+import cv2
+import pytest
+
+SCRIPT = REPO / 'utils' / 'host' / 'mhri_run.sh'
+# A network of its own with nothing in it but itself.
+NO_NETWORK = ['unshare', '--map-root-user', '--net', 'sh', '-c',
+              'ip link set lo up && exec "$0" "$@"']
+
+
+def has_own_network():
+    """Tell whether this machine lets us make a network with nothing in it."""
+    return subprocess.run(NO_NETWORK + ['true'], stderr=subprocess.DEVNULL).returncode == 0
+
+
+def wait_for(truth, what, limit_s=60.0):
+    """Wait until something becomes true."""
+    end = time.monotonic() + limit_s
+    while not truth():
+        assert time.monotonic() < end, 'waited {} s in vain for {}'.format(limit_s, what)
+        time.sleep(0.05)
+
+
+class Run:
+    """One run of the script, without a display, as the operator of a bare machine has it."""
+
+    def __init__(self, folder, arguments, before=(), script=SCRIPT):
+        self.mark = 'MHRI_E2E={}'.format(uuid.uuid4())
+        name, value = self.mark.split('=')
+        environment = dict(os.environ, ROS_HOME=str(folder / 'ros'), **{name: value})
+        for name in ('DISPLAY', 'WAYLAND_DISPLAY', 'XAUTHORITY', 'ROS_MASTER_URI', 'ROS_IP'):
+            environment.pop(name, None)
+        self._log = folder / 'log-{}'.format(value)
+        with self._log.open('w') as log:
+            self.process = subprocess.Popen(
+                list(before) + [str(script)] + list(arguments), cwd=str(folder), env=environment,
+                stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT,
+                preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+
+    @property
+    def output(self):
+        return self._log.read_text()
+
+    def wait(self, limit_s):
+        """Return the exit status; nothing of the run is left then."""
+        status = self.process.wait(timeout=limit_s)
+        assert children_with(self.mark) == []
+        return status
+
+    def end(self):
+        """End it, whatever it does, for a test that failed."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+            self.process.wait(timeout=40)
+
+
+@pytest.fixture
+def start(tmp_path):
+    """Return a function that starts the script; what it started ends with the test."""
+    runs = []
+
+    def starter(*arguments, **keywords):
+        runs.append(Run(tmp_path, arguments, **keywords))
+        return runs[-1]
+    yield starter
+    for run in runs:
+        run.end()
+
+
+@pytest.fixture
+def master():
+    """Return (address, proxy) of a master that the script will start."""
+    with socket.socket() as sock:
+        sock.bind(('127.0.0.1', 0))
+        uri = 'http://127.0.0.1:{}'.format(sock.getsockname()[1])
+    return uri, xmlrpc.client.ServerProxy(uri)
+
+
+def node_uri(proxy, node):
+    """Return the address of a registered node, or None."""
+    try:
+        code, _, uri = proxy.lookupNode('/test', node)
+    except OSError:
+        return None
+    return uri if code == 1 else None
+
+
+def publishers(proxy, topic):
+    try:
+        return dict(proxy.getSystemState('/test')[2][0]).get(topic, [])
+    except OSError:
+        return []
+
+
+def test_demo_drives_three_robots_without_hands(start, tmp_path):
+    before = NO_NETWORK if has_own_network() else ()
+    run = start('--demo', '--screenshot', 'drive.png', before=before)
+    status = run.wait(180)
+    print('\n' + '\n'.join(line for line in run.output.splitlines() if 'bot' in line))
+    assert status == 0, run.output
+    for robot in ('bot1', 'bot2', 'bot3'):
+        assert re.search(r'\b{}\b'.format(robot), run.output), run.output
+    assert 'the demo went well' in run.output
+    picture = cv2.imread(str(tmp_path / 'drive.png'))
+    assert picture is not None and picture.shape[0] >= 400 and picture.shape[1] >= 600
+    assert picture.std() > 5, 'the picture shows something'
+
+
+@pytest.mark.parametrize('name, arguments, space', [
+    ('my robots', [], 'devel'),
+    ('robots', ['--install-space'], 'install'),
+], ids=['devel space, path with a space', 'install space'])
+def test_new_checkout_builds_and_runs(start, tmp_path, name, arguments, space):
+    shutil.copytree(str(REPO), str(tmp_path / name),
+                    ignore=shutil.ignore_patterns('.ws', '.git', '__pycache__'))
+    run = start('--demo', *arguments, script=tmp_path / name / 'utils' / 'host' / 'mhri_run.sh')
+    assert run.wait(240) == 0, run.output
+    place = tmp_path / name / '.ws' / ('src' if space == 'devel' else space)
+    assert '{}/'.format(place) in run.output
+    assert cv2.imread(str(tmp_path / 'mhri-demo.png')) is not None
+
+
+def test_ctrl_c_takes_everything_down(start, master):
+    uri, proxy = master
+    run = start('--sim', '1', '--master', uri)
+    wait_for(lambda: node_uri(proxy, '/mux') and node_uri(proxy, '/panel'), 'mux and panel')
+    wait_for(lambda: publishers(proxy, '/bot1/odom'), 'the robot')
+    assert 'there is no display: the panel runs under Xvfb' in run.output
+    run.process.send_signal(signal.SIGINT)
+    assert run.wait(30) == 130, run.output
+    assert 'left running' not in run.output
+
+
+def test_end_of_the_panel_ends_everything(start, master):
+    uri, proxy = master
+    run = start('--sim', '1', '--master', uri)
+    wait_for(lambda: node_uri(proxy, '/panel'), 'the panel')
+    panel = xmlrpc.client.ServerProxy(node_uri(proxy, '/panel'))
+    os.kill(panel.getPid('/test')[2], signal.SIGTERM)
+    assert run.wait(30) == 0, run.output
+
+
+@pytest.mark.skipif(not has_own_network(), reason='no network namespaces for us here')
+def test_simulated_robots_need_no_network(start, tmp_path):
+    run = start('--sim', '2', 'gui:=none', before=NO_NETWORK)
+    wait_for(lambda: 'bot2' in run.output and 'process[mux' in run.output, 'the robots')
+    assert 'installed with' not in run.output
+    [pid] = [pid for pid in children_with(run.mark) if is_script(pid)]
+    os.kill(pid, signal.SIGINT)
+    assert run.wait(30) == 130, run.output
+
+
+def is_script(pid):
+    with open('/proc/{}/cmdline'.format(pid)) as file:
+        return str(SCRIPT) in file.read()
+
+
+def test_two_hosts_on_one_master_do_not_fight(start, master):
+    uri, proxy = master
+    start('gui:=none', '--master', uri)
+    wait_for(lambda: node_uri(proxy, '/mux'), 'the first mux')
+    first = node_uri(proxy, '/mux')
+    start('gui:=none', '--master', uri)
+    wait_for(lambda: node_uri(proxy, '/mux') not in (None, first), 'the second mux')
+    second = node_uri(proxy, '/mux')
+    # Longer than it takes to start a mux again.
+    seen, end = set(), time.monotonic() + 4.0
+    while time.monotonic() < end:
+        seen.add(node_uri(proxy, '/mux'))
+        time.sleep(0.05)
+    # None: this call came while the master was busy with another.
+    assert seen - {None} == {second}
+    assert len(publishers(proxy, '/robot_controller/twist')) == 1
+
+
+def test_mux_that_was_killed_comes_back(start, master):
+    uri, proxy = master
+    start('gui:=none', '--master', uri)
+    wait_for(lambda: node_uri(proxy, '/mux'), 'the mux')
+    first = node_uri(proxy, '/mux')
+    os.kill(xmlrpc.client.ServerProxy(first).getPid('/test')[2], signal.SIGKILL)
+    wait_for(lambda: node_uri(proxy, '/mux') not in (None, first), 'the mux to come back', 15.0)

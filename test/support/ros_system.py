@@ -1,0 +1,144 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A ROS system of a test's own: its master, its nodes, its screen; it ends what it started."""
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import uuid
+import xmlrpc.client
+
+import psutil
+
+
+def wait_for(condition, timeout_s=10.0, what='the condition', poll_s=0.002):
+    """Return the first true value of a condition.
+
+    :raises AssertionError: it did not come true in time
+    """
+    deadline = time.monotonic() + timeout_s
+    while True:
+        value = condition()
+        if value:
+            return value
+        if time.monotonic() > deadline:
+            raise AssertionError('waited {:g} s for {}'.format(timeout_s, what))
+        time.sleep(poll_s)
+
+
+def free_port():
+    """Return a TCP port on loopback that nobody listens on."""
+    with socket.socket() as probe:
+        probe.bind(('127.0.0.1', 0))
+        return probe.getsockname()[1]
+
+
+def answers(port):
+    """Tell whether something accepts connections on a loopback port."""
+    with socket.socket() as probe:
+        probe.settimeout(0.2)
+        return probe.connect_ex(('127.0.0.1', port)) == 0
+
+
+class System:
+    """Processes around one master on a port of its own; use it as a context manager.
+
+    ``adopt`` puts the environment into this process too, for tests that are nodes themselves.
+    """
+
+    def __init__(self, adopt=True):
+        self.port = free_port()
+        self.home = tempfile.mkdtemp(prefix='mhri_test_')
+        self.env = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:{}'.format(self.port),
+                        ROS_IP='127.0.0.1', ROS_HOME=self.home, PYTHONUNBUFFERED='1',
+                        ROS_LOG_DIR=os.path.join(self.home, 'log'))
+        self.env.pop('ROS_HOSTNAME', None)
+        if adopt:
+            os.environ.pop('ROS_HOSTNAME', None)
+            for key in ('ROS_MASTER_URI', 'ROS_IP', 'ROS_HOME', 'ROS_LOG_DIR'):
+                os.environ[key] = self.env[key]
+        self._processes = []
+        self.master = None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def start(self, *command, log=None):
+        """Start a process in a group of its own; its output goes to a file in ``home``."""
+        path = os.path.join(self.home, log or 'out_{}.log'.format(len(self._processes)))
+        with open(path, 'ab') as output:
+            process = subprocess.Popen(command, env=self.env, stdout=output,
+                                       stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
+                                       start_new_session=True)
+        process.log = path
+        self._processes.append(process)
+        return process
+
+    def start_master(self):
+        """Start (or restart) the bare master and wait until it answers."""
+        self.master = self.start(
+            'rosmaster', '--core', '-p', str(self.port), log='master.log')
+        wait_for(lambda: answers(self.port), 15.0, 'the master to answer')
+        # As roscore does: two roslaunch at once would each set a run_id of their own, and one fail.
+        xmlrpc.client.ServerProxy(self.env['ROS_MASTER_URI']).setParam(
+            '/ros_system', '/run_id', str(uuid.uuid1()))
+        return self.master
+
+    def node(self, name, *args):
+        """Start one of mhri's executables by the name of its module."""
+        return self.start(sys.executable, '-c',
+                          'from mhri.nodes.{} import main; main()'.format(name), *args)
+
+    def launch(self, *args):
+        """Start roslaunch with a file of this package."""
+        return self.start('roslaunch', 'mhri', *args)
+
+    def screen(self, size='1920x1080x24'):
+        """Start a virtual screen for this system and adopt it."""
+        reading, writing = os.pipe()
+        process = subprocess.Popen(
+            ['Xvfb', '-displayfd', str(writing), '-screen', '0', size, '-nolisten', 'tcp'],
+            pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            start_new_session=True)
+        os.close(writing)
+        self._processes.append(process)
+        with os.fdopen(reading) as stream:
+            display = ':' + stream.readline().strip()
+        self.env['DISPLAY'] = os.environ['DISPLAY'] = display
+        return display
+
+    @staticmethod
+    def kill(process, number=signal.SIGKILL, family=True):
+        """Send a signal to a process, to all it started as well unless told not to; await its end.
+
+        roslaunch gives its nodes sessions of their own, so a process group is not enough.
+        """
+        try:
+            members = psutil.Process(process.pid).children(recursive=True) if family else []
+            for member in [psutil.Process(process.pid)] + members:
+                member.send_signal(number)
+        except psutil.NoSuchProcess:
+            pass
+        process.wait(20)
+
+    def close(self):
+        """End everything that was started here, newest first."""
+        for process in reversed(self._processes):
+            if process.poll() is None:
+                try:
+                    os.killpg(process.pid, signal.SIGTERM)
+                except ProcessLookupError:
+                    continue
+        for process in reversed(self._processes):
+            try:
+                process.wait(10)
+            except subprocess.TimeoutExpired:
+                self.kill(process)
+        shutil.rmtree(self.home, ignore_errors=True)

@@ -1,0 +1,262 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The rules of driving: stop-all, dead-man, limits, and whatever may come in any order."""
+import random
+
+import pytest
+from test_arbiter import DRIVE, FORWARD, HELD, NEUTRAL, RELEASED, Rig, rig_in
+
+from mhri.core.arbiter import DRIVING, READY, STOPPED, WAIT_NEUTRAL
+from mhri.core.limits import Velocity, ZERO
+from mhri.core.profile import JoyRefused
+
+
+def test_stop_all_is_released_only_with_the_active_source_at_neutral():
+    """The reason is a sentence; the stop stays until it is met."""
+    rig = rig_in(DRIVING)
+    rig.arbiter.engage_stop_all(rig.now)
+    assert 'centre' in rig.arbiter.release_stop_all(rig.now)
+    assert rig.arbiter.stop_all and rig.arbiter.waits_for(rig.now) == 'release'
+    rig.joy(NEUTRAL)
+    assert rig.arbiter.release_stop_all(rig.now) is None
+    assert rig.arbiter.state == WAIT_NEUTRAL and rig.arbiter.cause == 'released'
+    assert rig.joy(FORWARD) is None, 'neutral before the release is not neutral after it'
+    rig.joy(NEUTRAL)
+    assert rig.joy(FORWARD) == DRIVE
+
+
+@pytest.mark.parametrize('forget', [
+    lambda rig: rig.arbiter.on_mode('other', rig.now),
+    lambda rig: rig.arbiter.on_lost('stick', 'lost', rig.now),
+])
+def test_stop_all_is_not_released_where_nothing_is_known_of_the_source(forget):
+    """A source never heard since it became active may be held over."""
+    rig = rig_in(STOPPED)
+    forget(rig)
+    assert 'nothing has been heard' in rig.arbiter.release_stop_all(rig.now)
+    assert rig.arbiter.state == STOPPED
+
+
+def test_release_without_a_stop_changes_nothing():
+    """Pressing release twice is no error, and no stop of a driving robot."""
+    for state in (WAIT_NEUTRAL, READY, DRIVING):
+        rig = rig_in(state)
+        assert rig.arbiter.release_stop_all(rig.now) is None
+        assert rig.arbiter.state == state
+
+
+def test_release_does_not_cut_the_zeros_of_the_stop_short():
+    """A stop that is released at once still gets its half second of zeros."""
+    rig = rig_in(DRIVING)
+    rig.note(rig.arbiter.engage_stop_all(rig.now))
+    begun = rig.now
+    rig.run(0.02)
+    rig.joy(NEUTRAL)
+    rig.arbiter.release_stop_all(rig.now)
+    rig.run(5.0)
+    assert max(rig.zeros()) - begun == pytest.approx(0.475, abs=0.026)
+
+
+def test_stop_all_is_released_on_the_last_word_of_a_silent_source_but_nothing_moves():
+    """A pad switched off at rest must not keep the stop for ever; the interlock guards the rest."""
+    rig = rig_in(STOPPED)
+    rig.run(60.0)
+    assert rig.arbiter.release_stop_all(rig.now) is None
+    rig.forget()
+    for _ in range(20):
+        rig.joy(FORWARD)
+        rig.run(0.05)
+    assert rig.sent == []
+
+
+def test_stop_all_engaged_again_sends_zeros_again():
+    """Pressing it twice can only help."""
+    rig = rig_in(STOPPED)
+    assert rig.note(rig.arbiter.engage_stop_all(rig.now)) == ZERO
+    rig.run(5.0)
+    assert len(rig.zeros()) in (10, 11)
+
+
+def test_dead_man_released_means_zero():
+    """At once, and pressed again with the stick still out it drives on."""
+    rig = rig_in(DRIVING)
+    assert rig.joy(FORWARD, RELEASED) == ZERO
+    assert rig.arbiter.waits_for(rig.now) == 'dead_man'
+    assert rig.joy(FORWARD, HELD) == DRIVE
+    assert rig.arbiter.waits_for(rig.now) == ''
+
+
+def test_dead_man_released_does_not_stand_in_for_neutral():
+    """The interlock asks for the stick itself."""
+    rig = rig_in(WAIT_NEUTRAL)
+    assert rig.joy(FORWARD, RELEASED) is None
+    assert rig.joy(FORWARD, HELD) is None
+    assert rig.arbiter.state == WAIT_NEUTRAL
+
+
+def test_a_profile_without_dead_man_needs_no_buttons():
+    """Nothing to hold."""
+    rig = rig_in(READY, dead_man=None)
+    assert rig.joy(FORWARD, ()) == DRIVE
+
+
+def test_limits_are_live():
+    """A moving robot follows at once, a resting one stays at rest, repetitions follow too."""
+    rig = rig_in(DRIVING)
+    assert rig.arbiter.set_limits(0.1, 1.0, rig.now) == Velocity(0.1, 0.0)
+    assert rig.arbiter.tick(rig.now + 0.06) == Velocity(0.1, 0.0)
+    assert rig.arbiter.limits == (0.1, 1.0)
+    rig = rig_in(READY)
+    assert rig.arbiter.set_limits(0.1, 1.0, rig.now) is None
+
+
+@pytest.mark.parametrize('linear, angular', [
+    (float('nan'), 1.0), (0.5, float('nan')), (float('inf'), 1.0), (0.5, float('-inf')),
+    (-0.1, 1.0), (0.5, -0.1), (5.1, 1.0), (0.5, 10.1)])
+def test_limits_that_cannot_be_are_refused(linear, angular):
+    """The old ones stay, the message is counted, nothing is sent."""
+    rig = rig_in(DRIVING)
+    with pytest.raises(ValueError, match='speed limit'):
+        rig.arbiter.set_limits(linear, angular, rig.now)
+    assert rig.arbiter.limits == (0.5, 1.5) and rig.arbiter.refused['speed_limit'] == 1
+    assert rig.arbiter.tick(rig.now + 0.06) == DRIVE
+
+
+def test_a_limit_does_not_revive_a_stale_source():
+    """Between the timeout and the tick that notices it, a limit must not drive."""
+    rig = rig_in(DRIVING)
+    assert rig.arbiter.set_limits(0.1, 1.0, rig.now + 0.5) is None
+
+
+WAITS = {
+    'release': lambda: rig_in(STOPPED), 'source': Rig, 'neutral': lambda: rig_in(WAIT_NEUTRAL),
+    '': lambda: rig_in(READY)}
+
+
+@pytest.mark.parametrize('word', sorted(WAITS))
+def test_waits_for_says_what_stands_between(word):
+    """One word for the status line of the panel."""
+    rig = WAITS[word]()
+    assert rig.arbiter.waits_for(rig.now) == word
+
+
+def test_a_source_that_says_neutral_once_a_second_does_not_cause_endless_zeros():
+    """It goes stale after each message; it must not block navigation for ever."""
+    rig = rig_in(READY)
+    for _ in range(20):
+        rig.run(1.0)
+        rig.joy(NEUTRAL)
+    rig.forget()
+    for _ in range(10):
+        rig.run(1.0)
+        rig.joy(NEUTRAL)
+    assert rig.zeros() == []
+
+
+class Oracle:
+    """What an outsider may demand of any sequence of events, kept apart from the arbiter's code."""
+
+    def __init__(self, rig):
+        self.rig = rig
+        self.stopped = False
+        self.neutral_since = {'stick': False, 'other': False}
+        self.heard_at = None
+        self.device = None
+        self.moving = False
+
+    def cause(self):
+        """Something happened after which neutral has to be seen."""
+        self.neutral_since = {name: False for name in self.neutral_since}
+
+    def stale(self):
+        """Tell whether the active source is too old to drive."""
+        return self.heard_at is None or self.rig.now - self.heard_at >= 0.5
+
+    def heard(self, axes, device):
+        """Note an accepted message of the active source."""
+        if self.stale() or device != self.device:
+            self.cause()
+        self.heard_at, self.device = self.rig.now, device
+        if max(abs(value) for value in axes) <= 0.02 and not self.stopped:
+            self.neutral_since[self.rig.arbiter.mode] = True
+
+    def check(self, sent, must_rest):
+        """Judge what was sent after one event (None: nothing)."""
+        arbiter = self.rig.arbiter
+        if sent is not None and not sent.is_zero():
+            assert not self.stopped and not self.stale()
+            assert self.neutral_since[arbiter.mode]
+            assert abs(sent.linear_mps) <= arbiter.limits[0] + 1e-9
+            assert abs(sent.angular_rad_s) <= arbiter.limits[1] + 1e-9
+        if self.moving and must_rest:
+            assert sent is not None and sent.is_zero(), 'motion ended without a zero'
+        if sent is not None:
+            self.moving = not sent.is_zero()
+
+
+def _random_event(dice, rig, oracle):
+    """Do one thing; return (sent, whether the robots must rest after it)."""
+    kind = dice.choices(('joy', 'tick', 'mode', 'lost', 'stop', 'release', 'limits', 'hold'),
+                        (120, 60, 2, 1, 2, 4, 3, 1))[0]
+    arbiter, now = rig.arbiter, rig.now
+    if kind == 'joy':
+        return _random_joy(dice, rig, oracle)
+    if kind == 'mode':
+        name = dice.choice(('stick', 'other'))
+        changed = name != arbiter.mode
+        if changed:
+            oracle.cause()
+            oracle.heard_at = oracle.device = None
+        return arbiter.on_mode(name, now), changed
+    if kind == 'lost':
+        oracle.cause()
+        oracle.heard_at = oracle.device = None
+        return arbiter.on_lost(arbiter.mode, 'lost', now), True
+    if kind == 'stop':
+        oracle.stopped = True
+        oracle.cause()
+        return arbiter.engage_stop_all(now), True
+    if kind == 'release':
+        if arbiter.release_stop_all(now) is None:
+            oracle.stopped = False
+        return None, oracle.stopped and oracle.moving
+    if kind == 'limits':
+        return arbiter.set_limits(dice.uniform(0, 1), dice.uniform(0, 2), now), False
+    if kind == 'hold':
+        oracle.cause()
+        return arbiter.on_hold('master', now), True
+    return arbiter.tick(now), oracle.stale()
+
+
+def _random_joy(dice, rig, oracle):
+    """Send a message of either source: neutral, out, beyond the end, or unusable."""
+    name = dice.choice((rig.arbiter.mode, rig.arbiter.mode, 'stick', 'other'))
+    axes = dice.choice(((0.0, 0.0), (0.0, 0.0), (dice.uniform(-1.5, 1.5), dice.uniform(-1.5, 1.5)),
+                        (0.0, 1.0), (float('nan'), 0.0), (1.0,), ()))
+    buttons = dice.choice((HELD, HELD, HELD, RELEASED))
+    device = dice.choice(('/pad',) * 19 + ('/pad2',))
+    active = name == rig.arbiter.mode
+    try:
+        sent = rig.arbiter.on_joy(name, axes, buttons, device, rig.now)
+    except JoyRefused:
+        return None, False
+    if active:
+        oracle.heard(axes, device)
+    resting = active and (max(abs(value) for value in axes) == 0.0 or (
+        name == 'stick' and buttons == RELEASED))
+    return sent, resting
+
+
+@pytest.mark.parametrize('seed', range(40))
+def test_no_order_of_events_moves_a_robot_that_must_rest(seed):
+    """Random sequences, judged by an oracle of its own."""
+    dice = random.Random(seed)
+    rig = Rig()
+    oracle = Oracle(rig)
+    moved = 0
+    for _ in range(1500):
+        rig.now += dice.choice((0.001, 0.01, 0.05, 0.1, 0.2) if dice.random() < 0.98 else (0.7,))
+        sent, must_rest = _random_event(dice, rig, oracle)
+        oracle.check(sent, must_rest)
+        moved += oracle.moving
+    assert moved > 30, 'the sequence says nothing if nothing ever moved'

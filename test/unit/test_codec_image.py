@@ -1,0 +1,199 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Colour pictures, compressed and raw: the right colours at the right size, and what is refused."""
+import os
+import struct
+import sys
+
+import cv2
+import numpy as np
+import pytest
+
+from mhri.core.frames import FrameError, check_size, fit
+from mhri.core.image_codec import decode_compressed, read_size
+from mhri.core.raw_image import decode_raw
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from mhri.core.picture import RawImage  # noqa: E402
+from support.pictures import colour_picture  # noqa: E402
+
+RED = (220, 30, 20)
+PICTURE = colour_picture(320, 240)
+
+
+def flat(rgb=RED, width=64, height=48):
+    return np.full((height, width, 3), rgb, np.uint8)
+
+
+def encode(rgb, ending='.jpg', order=cv2.COLOR_RGB2BGR):
+    return cv2.imencode(ending, rgb if order is None else cv2.cvtColor(rgb, order))[1].tobytes()
+
+
+@pytest.mark.parametrize('fmt, ending, order', [
+    ('jpeg', '.jpg', cv2.COLOR_RGB2BGR), ('jpg', '.jpg', cv2.COLOR_RGB2BGR),
+    ('', '.jpg', cv2.COLOR_RGB2BGR), ('png', '.png', cv2.COLOR_RGB2BGR),
+    ('rgb8; jpeg compressed bgr8', '.jpg', cv2.COLOR_RGB2BGR),
+    ('bgr8; jpeg compressed bgr8', '.jpg', cv2.COLOR_RGB2BGR),
+    ('bgra8; png compressed bgr8', '.png', cv2.COLOR_RGB2BGR),
+    ('bgr8; png compressed ', '.png', cv2.COLOR_RGB2BGR),
+    # Written without the change to bgr8: the coder's colours are the other way round.
+    ('rgb8; png compressed ', '.png', None), ('rgb8; png compressed', '.png', None),
+    ('rgb8; jpeg compressed rgb8', '.jpg', cv2.COLOR_RGB2BGR),
+])
+def test_red_is_red(fmt, ending, order):
+    rgb, full, kind = decode_compressed(fmt, encode(flat(), ending, order))
+    assert full == (64, 48) and kind == {'.jpg': 'jpeg', '.png': 'png'}[ending]
+    assert rgb.dtype == np.uint8 and rgb.shape == (48, 64, 3) and rgb.flags.c_contiguous
+    assert np.abs(rgb.astype(int) - RED).max() <= (4 if kind == 'jpeg' else 0)
+
+
+@pytest.mark.parametrize('ending, fmt', [('.jpg', 'mono8; jpeg compressed '),
+                                         ('.png', 'mono8; png compressed '),
+                                         ('.png', 'mono16; png compressed ')])
+def test_grey_is_grey(ending, fmt):
+    grey = np.full((48, 64), 90, np.uint8)
+    if '16' in fmt:
+        grey = grey * np.uint16(257)
+    rgb = decode_compressed(fmt, encode(grey, ending, None))[0]
+    assert np.abs(rgb.astype(int) - 90).max() <= 1 and rgb.shape == (48, 64, 3)
+
+
+def test_png_is_exact():
+    assert np.array_equal(decode_compressed('png', encode(PICTURE, '.png'))[0], PICTURE)
+
+
+@pytest.mark.parametrize('ending', ['.jpg', '.png'])
+@pytest.mark.parametrize('view, shape', [
+    (None, (240, 320)), ((320, 240), (240, 320)), ((1000, 1000), (240, 320)),
+    ((200, 200), (150, 200)), ((160, 120), (120, 160)), ((160, 500), (120, 160)),
+    ((100, 100), (75, 100)), ((80, 60), (60, 80)), ((33, 33), (25, 33)), ((1, 1), (1, 1)),
+])
+def test_size_shown(ending, view, shape):
+    rgb, full, _ = decode_compressed('', encode(PICTURE, ending), view)
+    assert rgb.shape == shape + (3,) and full == (320, 240)
+    if shape[0] >= 60:
+        expected = cv2.resize(PICTURE, shape[::-1], interpolation=cv2.INTER_AREA)
+        assert np.abs(cv2.blur(rgb, (5, 5)).astype(int) - cv2.blur(expected, (5, 5))).mean() < 4.0
+
+
+JPEG, PNG = encode(PICTURE), encode(PICTURE, '.png')
+
+
+def with_size(jpeg, width, height):
+    place = jpeg.index(b'\xff\xc0')
+    return jpeg[:place + 5] + struct.pack('>HH', height, width) + jpeg[place + 9:]
+
+
+@pytest.mark.parametrize('what, data, words', [
+    ('nothing', b'', 'empty'), ('text', b'hello world, hello', 'neither jpeg nor png'),
+    ('half a jpeg', JPEG[:len(JPEG) // 2], 'truncated'), ('no end', JPEG[:-2], 'truncated'),
+    ('a jpeg head', JPEG[:30], 'truncated'), ('three bytes', JPEG[:3], 'truncated'),
+    ('a jpeg without size', b'\xff\xd8\xff\xda\x00\x02\xff\xd9', 'its size'),
+    ('no marker', JPEG[:20] + b'\0' * 400, 'no marker'),
+    ('an absurd jpeg', with_size(JPEG, 65000, 65000), '65000 x 65000'),
+    ('an empty jpeg', with_size(JPEG, 0, 10), '0 x 10'),
+    ('half a png', PNG[:len(PNG) // 2], 'truncated'), ('a png head', PNG[:20], 'truncated'),
+    ('an absurd png', PNG[:16] + struct.pack('>II', 1 << 30, 4) + PNG[24:], 'pixels'),
+    ('a damaged png', PNG[:3000] + b'\0' * 64 + PNG[3064:], 'corrupted'),
+])
+def test_wrong_pictures_are_refused(what, data, words):
+    with pytest.raises(FrameError, match=words):
+        decode_compressed('jpeg', data)
+
+
+def test_what_cameras_add_is_borne():
+    assert read_size(JPEG + b'\0' * 100) == ('jpeg', (320, 240))
+    comment = b'\xff\xfe' + struct.pack('>H', 20) + b'\xff\xd9' * 9
+    assert read_size(JPEG[:2] + comment + JPEG[2:]) == ('jpeg', (320, 240))
+    progressive = cv2.imencode('.jpg', PICTURE, [cv2.IMWRITE_JPEG_PROGRESSIVE, 1])[1].tobytes()
+    assert decode_compressed('jpeg', progressive)[1] == (320, 240)
+    assert decode_compressed('jpeg', memoryview(bytearray(JPEG)))[0].shape == (240, 320, 3)
+
+
+def raw(encoding, data, width=64, height=48, step=0, is_bigendian=0):
+    return RawImage(height, width, encoding, is_bigendian, step, data)
+
+
+def bayer(pattern, rgb=RED, width=64, height=48):
+    mosaic = np.empty((height, width), np.uint8)
+    for place, colour in enumerate(pattern):
+        mosaic[place // 2::2, place % 2::2] = rgb['rgb'.index(colour)]
+    return mosaic
+
+
+def yuv(pattern, width=64, height=48):
+    # That of cameras: ITU-R BT.601, 16..235.
+    r, g, b = RED
+    y = round(16 + (65.738 * r + 129.057 * g + 25.064 * b) / 256)
+    u = round(128 + (-37.945 * r - 74.494 * g + 112.439 * b) / 256)
+    v = round(128 + (112.439 * r - 94.154 * g - 18.285 * b) / 256)
+    pair = [{'y': y, 'u': u, 'v': v}[letter] for letter in pattern]
+    return np.tile(np.array(pair, np.uint8), width * height // 2)
+
+
+@pytest.mark.parametrize('encoding, data', [
+    ('rgb8', flat()), ('bgr8', flat(RED[::-1])), ('8UC3', flat(RED[::-1])),
+    ('rgba8', np.dstack([flat(), flat()[..., 0]])),
+    ('bgra8', np.dstack([flat(RED[::-1]), flat()[..., 0]])),
+    ('bayer_rggb8', bayer('rggb')), ('bayer_bggr8', bayer('bggr')), ('bayer_gbrg8', bayer('gbrg')),
+    ('bayer_grbg8', bayer('grbg')), ('yuv422', yuv('uyvy')), ('yuv422_yuy2', yuv('yuyv')),
+    ('yuyv', yuv('yuyv')),
+])
+@pytest.mark.parametrize('view', [None, (32, 24)])
+def test_raw_red_is_red(encoding, data, view):
+    rgb, full = decode_raw(raw(encoding, data.tobytes()), view)
+    assert full == (64, 48) and rgb.shape == ((24, 32, 3) if view else (48, 64, 3))
+    assert rgb.flags.c_contiguous and np.abs(rgb.astype(int) - RED).max() <= 3
+
+
+@pytest.mark.parametrize('encoding, kind', [('mono8', 'u1'), ('8UC1', 'u1'), ('mono16', '<u2')])
+def test_raw_grey(encoding, kind):
+    pixels = np.full((48, 64), 90 if kind == 'u1' else 90 * 256, kind)
+    assert (decode_raw(raw(encoding, pixels.tobytes()))[0] == 90).all()
+
+
+def test_raw_big_endian_and_padded_rows():
+    pixels = np.arange(48 * 64).reshape(48, 64).astype('>u2') * 21
+    padded = np.zeros((48, 70), '>u2')
+    padded[:, :64] = pixels
+    rgb = decode_raw(raw('mono16', padded.tobytes(), step=140, is_bigendian=1))[0]
+    assert np.array_equal(rgb[..., 0], pixels.astype(int) >> 8)
+    # The last row may end with its last pixel.
+    rows = np.zeros((48, 200), np.uint8)
+    rows[:, :192] = PICTURE[:48, :64].reshape(48, 192)
+    assert np.array_equal(decode_raw(raw('rgb8', rows.tobytes()[:-8], step=200))[0],
+                          PICTURE[:48, :64])
+
+
+def test_raw_is_not_changed_and_not_shared():
+    data = bytearray(PICTURE.tobytes())
+    rgb = decode_raw(raw('bgr8', data, 320, 240))[0]
+    assert bytes(data) == PICTURE.tobytes()
+    assert np.array_equal(rgb, PICTURE[..., ::-1])
+
+
+@pytest.mark.parametrize('image, words', [
+    (raw('rgb8', b'\0' * 100), 'truncated'), (raw('', b'\0' * 100), 'encoding'),
+    (raw('bayer_rggb12', b'\0' * 9999), 'encoding'), (raw('16UC1', b'\0' * 9999), 'encoding'),
+    (raw('rgb8', b'\0' * 9216, step=100), 'rows of 100'), (raw('rgb8', b'', 0, 0), '0 x 0'),
+    (raw('rgb8', b'', 4000000000, 4000000000), '4000000000 x'),
+    (raw('yuv422', b'\0' * 9999, width=63), 'odd width'),
+])
+def test_wrong_raw_is_refused(image, words):
+    with pytest.raises(FrameError, match=words):
+        decode_raw(image)
+
+
+@pytest.mark.parametrize('full, view, expected', [
+    ((640, 480), None, (640, 480)), ((640, 480), (320, 480), (320, 240)),
+    ((640, 480), (1280, 960), (640, 480)), ((1, 1000), (10, 10), (1, 10)),
+])
+def test_fit(full, view, expected):
+    assert fit(full, view) == expected
+
+
+@pytest.mark.parametrize('size', [(0, 1), (1, 0), (-1, -1), (100000, 1000)])
+def test_check_size(size):
+    with pytest.raises(FrameError):
+        check_size('it', *size)

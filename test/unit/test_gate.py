@@ -1,0 +1,130 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The gate of one robot: every event in every state, staleness to the millisecond."""
+import random
+
+import pytest
+
+from mhri.core.gate import GateRule, STALE_S
+from mhri.core.limits import Velocity, ZERO
+from mhri.core.robot_types import Limits
+
+LIMITS = Limits(0.5, 1.0)
+GO = Velocity(0.4, 0.2)
+
+STATES = {
+    'deselected': lambda gate: None,
+    'selected': lambda gate: gate.select(True, 0.0),
+    'driving': lambda gate: (gate.select(True, 0.0), gate.on_command(GO, 1.0)),
+    'stopped': lambda gate: (gate.select(True, 0.0), gate.stop('mux', True, 0.5)),
+    'stopped_deselected': lambda gate: gate.stop('mux', True, 0.5),
+    'closed': lambda gate: (gate.select(True, 0.0), gate.close(0.5)),
+}
+EVENTS = {
+    'command': lambda gate: gate.on_command(GO, 1.0),
+    'zero': lambda gate: gate.on_command(ZERO, 1.0),
+    'nan': lambda gate: gate.on_command(Velocity(float('nan'), 0.0), 1.0),
+    'too_fast': lambda gate: gate.on_command(Velocity(1.0, 0.6), 1.0),
+    'select': lambda gate: gate.select(True, 1.0),
+    'deselect': lambda gate: gate.select(False, 1.0),
+    'stop': lambda gate: gate.stop('panel', True, 1.0),
+    'stop_withdrawn': lambda gate: gate.stop('mux', False, 1.0),
+    'fresh_tick': lambda gate: gate.tick(1.0 + STALE_S - 0.001),
+    'stale_tick': lambda gate: gate.tick(1.0 + STALE_S),
+    'close': lambda gate: gate.close(1.0),
+}
+HALVED = Velocity(0.5, 0.3)
+# What each event sends; events left out send nothing.
+TABLE = {
+    'deselected': {'stop': ZERO, 'close': ZERO},
+    'selected': {'command': GO, 'zero': ZERO, 'nan': ZERO, 'too_fast': HALVED, 'deselect': ZERO,
+                 'stop': ZERO, 'close': ZERO},
+    'driving': {'command': GO, 'zero': ZERO, 'nan': ZERO, 'too_fast': HALVED, 'deselect': ZERO,
+                'stop': ZERO, 'stale_tick': ZERO, 'close': ZERO},
+    'stopped': {'close': ZERO},
+    'stopped_deselected': {'close': ZERO},
+    'closed': {},
+}
+
+
+@pytest.mark.parametrize('event', sorted(EVENTS))
+@pytest.mark.parametrize('state', sorted(TABLE))
+def test_every_event_in_every_state(state, event):
+    """The table is the gate."""
+    gate = GateRule(LIMITS)
+    STATES[state](gate)
+    sent = EVENTS[event](gate)
+    assert sent == TABLE[state].get(event)
+    assert gate.driving == (sent is not None and not sent.is_zero()
+                            or sent is None and state == 'driving')
+
+
+@pytest.mark.parametrize('end', ['deselect', 'stop', 'stale_tick', 'close', 'zero'])
+def test_one_zero_then_silence(end):
+    """Endless zeros would block a robot's own navigation."""
+    gate = GateRule(LIMITS)
+    STATES['driving'](gate)
+    assert EVENTS[end](gate) == ZERO
+    assert gate.next_tick() is None
+    assert [gate.tick(2.0 + count) for count in range(10)] == [None] * 10
+
+
+def test_stale_to_the_millisecond():
+    """Each command renews the lease; next_tick says when it ends."""
+    gate = GateRule(LIMITS)
+    gate.select(True, 0.0)
+    gate.on_command(GO, 10.0)
+    gate.on_command(GO, 10.25)
+    assert gate.next_tick() == 10.75
+    assert gate.tick(10.749) is None and gate.tick(10.75) == ZERO
+
+
+def test_the_stop_ends_only_when_every_reason_is_withdrawn():
+    """The panel's own press outlives the mux's word, and the other way round."""
+    gate = GateRule(LIMITS)
+    STATES['driving'](gate)
+    assert gate.stop('panel', True, 2.0) == ZERO
+    assert gate.stop('mux', True, 2.1) is None
+    gate.stop('panel', False, 2.2)
+    assert gate.stopped and gate.on_command(GO, 2.3) is None
+    gate.stop('mux', False, 2.4)
+    assert not gate.stopped and gate.on_command(GO, 2.5) == GO
+
+
+def test_selection_made_while_stopped_counts_after_it():
+    """And needs no second zero."""
+    gate = GateRule(LIMITS)
+    gate.stop('mux', True, 0.0)
+    gate.select(True, 0.1)
+    gate.stop('mux', False, 0.2)
+    assert gate.on_command(GO, 0.3) == GO
+    gate.stop('mux', True, 0.4)
+    assert gate.select(False, 0.5) is None
+    gate.stop('mux', False, 0.6)
+    assert gate.on_command(GO, 0.7) is None
+
+
+@pytest.mark.parametrize('seed', range(20))
+def test_motion_never_ends_without_a_zero_and_never_begins_unselected(seed):
+    """Random sequences; whoever ends motion says so at once, silence within a tick."""
+    dice = random.Random(seed)
+    gate, now, selected, stops, moving = GateRule(LIMITS), 0.0, False, set(), False
+    for _ in range(1000):
+        now += dice.choice((0.01, 0.05, 0.3))
+        kind = dice.choice(('command', 'command', 'command', 'select', 'stop', 'tick'))
+        if kind == 'command':
+            sent = gate.on_command(Velocity(dice.uniform(-3, 3), dice.uniform(-3, 3)), now)
+        elif kind == 'select':
+            selected = dice.random() < 0.7
+            sent = gate.select(selected, now)
+        elif kind == 'stop':
+            reason, stopped = dice.choice(('mux', 'panel')), dice.random() < 0.3
+            (stops.add if stopped else stops.discard)(reason)
+            sent = gate.stop(reason, stopped, now)
+        else:
+            sent = gate.tick(now)
+        if sent is not None:
+            moving = not sent.is_zero()
+            assert abs(sent.linear_mps) <= 0.5 + 1e-9 and abs(sent.angular_rad_s) <= 1.0 + 1e-9
+        assert not moving or (selected and not stops), 'moves though {}'.format(kind)
+        assert moving == gate.driving

@@ -1,0 +1,34 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The link of a robot: how it moves, whether it is heard, and in which words."""
+import pytest
+
+from mhri.core.link import link_note, link_state, Motion
+from mhri.core.views import GONE, LIVE, SILENT, WAITING
+
+
+@pytest.mark.parametrize('linear, angular, still', [
+    (0.0, 0.0, True), (0.01, 0.03, True), (-0.01, -0.03, True), (0.011, 0.0, False),
+    (0.0, 0.031, False), (-0.2, 0.0, False), (float('nan'), 0.0, False),
+    (0.0, float('inf'), False)])
+def test_standstill(linear, angular, still):
+    """Both speeds, and no number is no rest."""
+    assert Motion(linear, angular).is_standstill() == still
+
+
+@pytest.mark.parametrize('age_s, connections, state', [
+    (None, 0, WAITING), (None, 1, WAITING), (0.0, 1, LIVE), (1.0, 1, LIVE), (1.001, 1, SILENT),
+    (1.001, 0, GONE), (0.5, 0, LIVE), (3600.0, 2, SILENT)])
+def test_link_state(age_s, connections, state):
+    """Gone is without a connection, silent with one."""
+    assert link_state(age_s, connections) == state
+
+
+@pytest.mark.parametrize('state, age_s, waited_s, words', [
+    (LIVE, 0.1, 9.0, ''), (SILENT, 3.21, 9.0, 'nothing for 3.2 s'),
+    (GONE, 9.0, 9.0, 'switched off or out of reach; last heard 14:02:11'),
+    (WAITING, None, 1.0, ''),
+    (WAITING, None, 3.1, 'nothing heard yet: is it switched on, and is this its name?')])
+def test_link_note(state, age_s, waited_s, words):
+    """What an operator should know, or nothing."""
+    assert link_note(state, age_s, '14:02:11', waited_s) == words

@@ -1,0 +1,31 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Names of robots."""
+import pytest
+
+from mhri.core.names import name_problem, tidy_name
+
+
+@pytest.mark.parametrize('name', ['bot1', 'a', 'B_2', 'robot_', 'x' * 64])
+def test_good_names(name):
+    """One segment of a ROS name."""
+    assert name_problem(name) is None
+
+
+@pytest.mark.parametrize('name, reason', [
+    ('', 'type the name'), ('1bot', 'begins with a letter'), ('_bot', 'begins with a letter'),
+    ('bot 1', 'a space'), ('bot-1', '"-"'), ('lab/bot1', '"/"'), ('/bot1', '"/"'),
+    ('böt', '"ö"'), ('öbot', 'begins with a letter'), ('bot1\n', 'cannot be seen'),
+    ('bot\u200b', 'cannot be seen'), ('bot\u0661', '"\u0661"'), ('x' * 65, 'at most 64'),
+    ('bot;reboot', '";"'), ('~bot', 'begins with'), ('bot$(x)', '"$"')])
+def test_bad_names_and_their_reason(name, reason):
+    """The reason stands next to the field."""
+    assert reason in name_problem(name)
+
+
+@pytest.mark.parametrize('text, name', [
+    (' bot1 ', 'bot1'), ('/bot1', 'bot1'), ('bot1/', 'bot1'), (' /bot1/ ', 'bot1'), ('', ''),
+    ('/', ''), ('a/b', 'a/b')])
+def test_tidy_name(text, name):
+    """What the user most likely meant."""
+    assert tidy_name(text) == name

@@ -1,0 +1,117 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Profiles: axes and buttons into fractions, and files into profiles."""
+import math
+
+import pytest
+
+from mhri.core.config import ConfigError
+from mhri.core.profile import Axis, JoyRefused, parse_profile, Profile, Stick
+
+PAD = Profile('pad', Axis(1, -1.0), Axis(0, -1.0), dead_zone=0.1, neutral=0.15, dead_man=2)
+HELD = (0, 0, 1)
+
+READ = {
+    'rest': ((0.0, 0.0), HELD, Stick(0.0, 0.0, True)),
+    'full_forward': ((0.0, -1.0), HELD, Stick(1.0, 0.0, False)),
+    'full_back': ((0.0, 1.0), HELD, Stick(-1.0, 0.0, False)),
+    'full_left': ((-1.0, 0.0), HELD, Stick(0.0, 1.0, False)),
+    'dead_zone': ((0.1, -0.1), HELD, Stick(0.0, 0.0, True)),
+    'half_stretched': ((0.0, -0.55), HELD, Stick(0.5, 0.0, False)),
+    'overshoot_cut': ((-1.7, -32767.0), HELD, Stick(1.0, 1.0, False)),
+    'released': ((0.0, -1.0), (1, 1, 0), Stick(0.0, 0.0, False, False)),
+    'released_at_rest': ((0.0, 0.0), (0, 0, 0), Stick(0.0, 0.0, True, False)),
+    'more_than_needed': ((0.0, -1.0, 0.3), HELD + (1,), Stick(1.0, 0.0, False)),
+}
+
+
+@pytest.mark.parametrize('case', sorted(READ))
+def test_read(case):
+    """Each way to hold a pad."""
+    axes, buttons, expected = READ[case]
+    stick = PAD.read(axes, buttons)
+    assert (stick.forward, stick.turn) == pytest.approx((expected.forward, expected.turn))
+    assert (stick.neutral, stick.held) == (expected.neutral, expected.held)
+    assert stick.is_zero() == (expected.forward == expected.turn == 0.0)
+
+
+REFUSED = {
+    'no_axes': ((), HELD), 'too_few_axes': ((0.0,), HELD), 'too_few_buttons': ((0.0, 0.0), (1, 1)),
+    'not_finite': ((float('nan'), 0.0), HELD)}
+
+
+@pytest.mark.parametrize('kind', sorted(REFUSED))
+def test_refused(kind):
+    """The kind is the word it is counted under; the text says what is missing."""
+    with pytest.raises(JoyRefused) as refusal:
+        PAD.read(*REFUSED[kind])
+    assert refusal.value.kind == kind and str(refusal.value)
+
+
+@pytest.mark.parametrize('value', [float('nan'), float('inf'), float('-inf')])
+@pytest.mark.parametrize('place', [0, 1, 2])
+def test_not_finite_is_refused_even_in_an_axis_nobody_reads(value, place):
+    """A driver that sends NaN anywhere is not to be believed anywhere."""
+    axes = [0.0, 0.0, 0.0]
+    axes[place] = value
+    with pytest.raises(JoyRefused, match='NaN'):
+        PAD.read(tuple(axes), HELD)
+
+
+def test_stretch_is_monotonic_odd_and_bounded():
+    """No jump at the edge of the dead zone, full travel stays full speed."""
+    values = [PAD.read((0.0, count / 100.0), HELD).forward for count in range(-100, 101)]
+    assert values == sorted(values, reverse=True)
+    assert values[0] == 1.0 and values[-1] == -1.0
+    assert values == pytest.approx([-value for value in reversed(values)])
+    assert max(abs(a - b) for a, b in zip(values, values[1:])) < 0.012
+
+
+GOOD = """
+name: pad
+forward: {axis: 1, scale: -1}
+turn: {axis: 0}
+"""
+
+
+def test_parse_defaults():
+    """Scale 1, no dead zone, no dead-man button, neutral within 2 %."""
+    profile = parse_profile(GOOD, 'pad.yaml')
+    assert profile == Profile('pad', Axis(1, -1.0), Axis(0, 1.0), 0.0, 0.02, None)
+
+
+def test_parse_everything():
+    """Neutral is never narrower than the dead zone unless the file says so."""
+    profile = parse_profile(GOOD + 'dead_zone: 0.2\ndead_man_button: 0\n', 'pad.yaml')
+    assert (profile.dead_zone, profile.neutral, profile.dead_man) == (0.2, 0.2, 0)
+    assert parse_profile(GOOD + 'neutral: 0.3\n', 'pad.yaml').neutral == 0.3
+
+
+BAD = {
+    'dead_zone': GOOD + 'dead_zone: 1.0\n',
+    'neutral': GOOD + 'neutral: -0.1\n',
+    'dead_man_button': GOOD + 'dead_man_button: -1\n',
+    'dead_mann': GOOD + 'dead_mann: 4\n',
+    'forward': 'name: pad\nturn: {axis: 0}\n',
+    'forward.axis': 'name: pad\nforward: {axis: 1.5}\nturn: {axis: 0}\n',
+    'forward.scale': 'name: pad\nforward: {axis: 1, scale: 0}\nturn: {axis: 0}\n',
+    'turn.sign': 'name: pad\nforward: {axis: 1}\nturn: {axis: 0, sign: 1}\n',
+    'turn.scale': 'name: pad\nforward: {axis: 1}\nturn: {axis: 0, scale: .nan}\n',
+    'name': 'forward: {axis: 1}\nturn: {axis: 0}\n',
+}
+
+
+@pytest.mark.parametrize('key', sorted(BAD))
+def test_parse_names_file_and_key(key):
+    """What is wrong and where, in the error."""
+    with pytest.raises(ConfigError) as error:
+        parse_profile(BAD[key], 'pad.yaml')
+    assert str(error.value).startswith('pad.yaml: {}:'.format(key))
+
+
+def test_axis_never_leaves_its_range():
+    """Whatever the scale."""
+    for scale in (-10.0, -1.0, 0.001, 10.0):
+        for value in (-1e300, -1.0, 0.0, 0.5, 1e300):
+            assert -1.0 <= Axis(0, scale).read((value,)) <= 1.0
+            assert not math.isnan(Axis(0, scale).read((value,)))

@@ -1,0 +1,143 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Robot types: the shipped templates, the parameters over them, and slips in both."""
+import glob
+import os
+
+import pytest
+
+from mhri.core.config import ConfigError
+from mhri.core.robot_types import (
+    Limits, load_robot_types, parse_robot_type, resolve_robot_type)
+
+RESOURCE = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'robots')
+GOOD = 'name: crawler\nlimits: {linear_mps: 0.3, angular_rad_s: 1.0}\ncommand: cmd_vel\n'
+
+
+def shipped():
+    """Return the templates that come with mhri."""
+    files = []
+    for path in sorted(glob.glob(os.path.join(RESOURCE, '*.yaml'))):
+        with open(path, encoding='utf-8') as stream:
+            files.append((path, stream.read()))
+    types, errors = load_robot_types(files)
+    assert errors == []
+    return types
+
+
+CONTRACT = {
+    'turtlebot2': ((0.65, 3.14), ('teleop/input', 'cmd_vel_mux/input/teleop'),
+                   ('mobile_base/sensors/imu_data',), ('odom',), ('camera/rgb/image_raw',),
+                   ('camera/depth_registered/image_raw',), ('scan',), ()),
+    'turtlebot3': ((0.22, 1.82), ('cmd_vel',), ('imu',), ('odom',),
+                   ('camera/rgb/image_raw', 'raspicam_node/image'), (), ('scan',),
+                   ('battery_state',)),
+    'turtlesim': ((2.0, 2.0), ('turtle1/cmd_vel',), (), ('turtle1/pose',), (), (), (), ()),
+    'generic': ((0.5, 1.0), ('cmd_vel',), ('imu', 'imu/data'), ('odom',),
+                ('camera/rgb/image_raw', 'camera/image_raw'), ('camera/depth/image_raw',),
+                ('scan',), ('battery_state',)),
+}
+
+
+@pytest.mark.parametrize('name', sorted(CONTRACT))
+def test_shipped_templates_are_those_of_the_contract(name):
+    """Topics and limits are public interface."""
+    kind = shipped()[name]
+    limits = (kind.limits.linear_mps, kind.limits.angular_rad_s)
+    assert (limits, kind.command, kind.imu, kind.odometry, kind.rgb, kind.depth, kind.scan,
+            kind.battery) == CONTRACT[name]
+    assert kind.odometry_type == ('turtlesim/Pose' if name == 'turtlesim' else 'nav_msgs/Odometry')
+
+
+@pytest.mark.parametrize('model, limits', [
+    ('burger', (0.22, 2.84)), ('waffle', (0.26, 1.82)), ('waffle_pi', (0.26, 1.82)),
+    (None, (0.22, 1.82)), ('sandwich', (0.22, 1.82))])
+def test_models_of_turtlebot3(model, limits):
+    """Without a known model, no component is faster than any model allows."""
+    params = {'robot_type': 'turtlebot3'}
+    if model:
+        params['robot_model'] = model
+    kind, errors = resolve_robot_type(shipped(), 'bot1', params)
+    assert (kind.limits.linear_mps, kind.limits.angular_rad_s) == limits
+    assert [error.key for error in errors] == (['robot_model'] if model == 'sandwich' else [])
+    assert kind.label == 'TurtleBot3' + (
+        ' ' + model.replace('_', ' ').title() if model in kind.models else '')
+
+
+def test_unknown_type_is_driven_as_generic_and_said():
+    """The robot is usable, the slip is not hidden."""
+    kind, errors = resolve_robot_type(shipped(), 'bot1', {'robot_type': 'turtlebot9'})
+    assert kind.name == 'generic' and 'turtlebot9' in str(errors[0])
+    assert resolve_robot_type(shipped(), 'bot1', {})[1] == []
+
+
+def test_parameters_override_any_of_it():
+    """Only what is named."""
+    kind, errors = resolve_robot_type(shipped(), 'bot1', {'robot_type': 'turtlebot2', 'mhri': {
+        'command': 'go', 'scan': [], 'label': 'Lab 2', 'limits': {'linear_mps': 0.1}}})
+    assert errors == []
+    assert (kind.command, kind.scan, kind.label) == (('go',), (), 'Lab 2')
+    assert kind.limits == Limits(0.1, 3.14) and kind.odometry == ('odom',)
+
+
+OVERRIDES = {
+    'mhri': 'fast', 'mhri.limits.linear_mps': {'limits': {'linear_mps': -1}},
+    'mhri.limits.linear': {'limits': {'linear': 1}}, 'mhri.colour': {'colour': 'red'},
+    'mhri.command': {'command': 3}, 'mhri.limits': {'limits': 3}}
+UNCHECKED = {
+    'mhri.odometry_type': {'mhri': {'odometry_type': 'foo/Bar'}},
+    'mhri.command': {'mhri': {'command': []}},
+    'robot_type': {'robot_type': ['turtlebot2']},
+    'robot_model': {'robot_model': {'a': 1}},
+}
+
+
+@pytest.mark.parametrize('key', sorted(OVERRIDES))
+def test_override_that_cannot_be_used_is_reported_and_left_out(key):
+    """The robot keeps its template."""
+    params = {'robot_type': 'turtlebot2', 'mhri': OVERRIDES[key]}
+    kind, errors = resolve_robot_type(shipped(), 'bot1', params)
+    assert kind == shipped()['turtlebot2']
+    assert [str(error).startswith('/bot1: {}:'.format(key)) for error in errors] == [True]
+
+
+@pytest.mark.parametrize('key', sorted(UNCHECKED))
+def test_parameter_that_cannot_be_used_is_reported(key):
+    """Anybody may write a parameter; none of them may stop the panel."""
+    kind, errors = resolve_robot_type(shipped(), 'bot1', UNCHECKED[key])
+    assert [error.key for error in errors] == [key] and kind == shipped()['generic']
+
+
+def test_defaults_of_a_template():
+    """A name, limits and one command are enough."""
+    kind = parse_robot_type(GOOD, 'crawler.yaml')
+    assert (kind.label, kind.window, kind.command) == ('crawler', 'turtlebot', ('cmd_vel',))
+    assert kind.odometry == kind.imu == () and kind.models == {}
+
+
+BAD = {
+    'command': GOOD.replace('command: cmd_vel', ''),
+    'limits': 'name: crawler\ncommand: cmd_vel\n',
+    'limits.linear_mps': GOOD.replace('0.3', '0'),
+    'limits.angular_rad_s': GOOD.replace('1.0', '.inf'),
+    'odometry_type': GOOD + 'odometry_type: geometry_msgs/Pose\n',
+    'wheels': GOOD + 'wheels: 4\n',
+    'models.big.linear_mps': GOOD + 'models: {big: {angular_rad_s: 1}}\n',
+    'name': GOOD.replace('crawler', '3'),
+}
+
+
+@pytest.mark.parametrize('key', sorted(BAD))
+def test_template_error_names_file_and_key(key):
+    """A lab writes these."""
+    with pytest.raises(ConfigError) as error:
+        parse_robot_type(BAD[key], 'crawler.yaml')
+    assert str(error.value).startswith('crawler.yaml: {}:'.format(key))
+
+
+def test_one_bad_file_never_hides_the_good_ones():
+    """And of two with one name the first stays."""
+    types, errors = load_robot_types([
+        ('bad.yaml', '['), ('a.yaml', GOOD), ('b.yaml', GOOD.replace('0.3', '0.9'))])
+    assert types['crawler'].limits.linear_mps == 0.3
+    assert [error.origin for error in errors] == ['bad.yaml', 'b.yaml']

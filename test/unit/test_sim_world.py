@@ -1,0 +1,283 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The building that the processes of all simulated robots share."""
+import fcntl
+import multiprocessing
+import os
+from pathlib import Path
+import stat
+import threading
+import time
+
+import numpy as np
+import pytest
+
+from mhri.sim import world as world_module
+from mhri.sim.body import parse_bodies
+from mhri.sim.world import GHOST_S, SLOTS, World, world_path, WorldFull
+
+BODY = parse_bodies((Path(__file__).resolve().parents[2] / 'resource' / 'sim'
+                     / 'bodies.yaml').read_text(), 'bodies.yaml')['turtlebot2']
+PROCESSES = multiprocessing.get_context('spawn')
+PATIENCE_S = 60.0
+
+
+class Clock:
+    """Time, the same for all."""
+
+    def __init__(self):
+        self.now = 1000.0
+
+    def __call__(self):
+        return self.now
+
+
+@pytest.fixture
+def clock():
+    return Clock()
+
+
+@pytest.fixture
+def enter(tmp_path, clock):
+    """Return a function that lets a robot in at a place."""
+    def _enter(name, x=0.0, y=0.0, key='one building'):
+        world = World(world_path(key, str(tmp_path)), name, BODY, clock)
+        world.publish(x, y, 0.5)
+        return world
+    return _enter
+
+
+def seen(world):
+    return sorted(map(tuple, world.discs().tolist()))
+
+
+def test_each_sees_the_others_but_not_itself(enter):
+    one = enter('bot1', 1.0, 2.0)
+    assert seen(one) == []
+    two, three = enter('bot2', 3.0, 4.0), enter('bot3', 5.0, 6.0)
+    radius = BODY.radius_m
+    assert seen(one) == [(3.0, 4.0, radius), (5.0, 6.0, radius)]
+    assert seen(two) == [(1.0, 2.0, radius), (5.0, 6.0, radius)]
+    three.publish(5.5, 6.5, 0.0)
+    assert seen(one)[1] == (5.5, 6.5, radius)
+
+
+def test_what_a_camera_sees_of_another(enter):
+    one = enter('bot1')
+    enter('bot2', 3.0, 4.0)
+    row, = one.others()
+    assert (row['name'], row['x'], row['y'], row['yaw']) == (b'bot2', 3.0, 4.0, 0.5)
+    assert (row['radius'], row['height']) == (BODY.radius_m, BODY.height_m)
+    assert tuple(row['colour']) == BODY.colour
+    row['x'] = 99.0
+    assert one.others()['x'] == 3.0, 'it is a copy'
+
+
+def test_a_robot_that_has_not_said_where_it_is_is_out_of_sight(enter, tmp_path, clock):
+    one = enter('bot1')
+    World(world_path('one building', str(tmp_path)), 'bot2', BODY, clock)
+    assert (one.discs()[:, :2] > 1e6).all()
+
+
+def test_buildings_are_apart(enter, tmp_path):
+    one = enter('bot1')
+    enter('bot2', key='another')
+    assert seen(one) == []
+    assert world_path('one building') != world_path('another')
+    path = tmp_path / Path(world_path('one building')).name
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+
+
+def test_who_leaves_is_gone_and_the_last_removes_the_file(enter, tmp_path):
+    one, two = enter('bot1'), enter('bot2')
+    two.leave()
+    assert seen(one) == [] and os.listdir(str(tmp_path))
+    one.leave()
+    assert os.listdir(str(tmp_path)) == []
+    one.leave()
+    assert seen(enter('bot3')) == []
+
+
+def test_killed_robot_stays_as_a_body_until_its_ghost_fades(enter, clock):
+    one = enter('bot1')
+    enter('bot2', 3.0, 4.0)
+    clock.now += GHOST_S - 0.1
+    one.publish(0.0, 0.0, 0.0)
+    assert len(seen(one)) == 1
+    clock.now += 0.2
+    assert seen(one) == []
+
+
+def test_restarted_robot_takes_its_body_back(enter):
+    one = enter('bot1')
+    enter('bot2', 3.0, 4.0)
+    again = enter('bot2', 7.0, 8.0)
+    assert seen(one) == [(7.0, 8.0, BODY.radius_m)]
+    assert len(seen(again)) == 1
+
+
+def test_older_of_two_with_one_name_does_not_take_the_newer_away(enter):
+    """The master ends the older one: it leaves after the newer has come."""
+    one = enter('bot1')
+    older = enter('bot2', 3.0, 4.0)
+    newer = enter('bot2', 7.0, 8.0)
+    older.leave()
+    assert seen(one) == [(7.0, 8.0, BODY.radius_m)]
+    older = enter('bot2', 3.0, 4.0)
+    older.leave()
+    newer.publish(7.0, 8.0, 0.0)
+    assert seen(one) == [(7.0, 8.0, BODY.radius_m)], 'and comes back if it went all the same'
+
+
+def test_sleeper_whose_place_was_given_away_takes_another(enter, clock):
+    sleeper = enter('sleeper', 1.0, 1.0)
+    clock.now += GHOST_S + 1.0
+    one, two = enter('bot1', 3.0, 3.0), enter('bot2', 5.0, 5.0)
+    assert seen(one) == [(5.0, 5.0, BODY.radius_m)]
+    sleeper.publish(2.0, 2.0, 0.0)
+    assert [place[0] for place in seen(one)] == [2.0, 5.0]
+    assert [place[0] for place in seen(two)] == [2.0, 3.0]
+    assert [place[0] for place in seen(sleeper)] == [3.0, 5.0]
+
+
+def test_full_building(enter, clock):
+    robots = [enter('bot{}'.format(number)) for number in range(SLOTS)]
+    assert len(seen(robots[0])) == SLOTS - 1
+    with pytest.raises(WorldFull, match=str(SLOTS)):
+        enter('late')
+    enter('bot5')
+    robots[7].leave()
+    enter('late')
+    with pytest.raises(WorldFull):
+        robots[7].publish(0.0, 0.0, 0.0)
+    clock.now += GHOST_S + 1.0
+    assert seen(enter('next day')) == []
+
+
+def test_leftovers_of_a_crash(tmp_path, clock):
+    """A short file, a file of noise, stamps of another boot: none keeps a robot out."""
+    path = Path(world_path('crashed', str(tmp_path)))
+    size = world_module._SIZE
+    noise = np.random.default_rng(1).bytes(size)
+    for content in (b'', b'x' * 100, b'\xff' * size, noise):
+        path.write_bytes(content)
+        world = World(str(path), 'bot1', BODY, clock)
+        world.publish(1.0, 2.0, 0.0)
+        assert seen(world) == []
+        other = World(str(path), 'bot2', BODY, clock)
+        assert seen(other) == [(1.0, 2.0, BODY.radius_m)]
+    path.unlink()
+    World(str(path), 'bot1', BODY, lambda: clock.now + 1e6).publish(0.0, 0.0, 0.0)
+    assert seen(World(str(path), 'bot2', BODY, clock)) == [], 'written before the clock began anew'
+
+
+def test_a_stamp_of_this_moment_is_not_of_the_future(enter, clock):
+    """Another process writes between a look at the clock and a look at the slots."""
+    one, two = enter('bot1'), enter('bot2')
+    clock.now += 0.001
+    two.publish(3.0, 3.0, 0.0)
+    clock.now -= 0.001
+    assert len(seen(one)) == 1
+    assert len(seen(enter('bot3'))) == 2, 'and its slot is not taken for free'
+
+
+@pytest.mark.parametrize('make', [
+    lambda path: path.mkdir(),
+    lambda path: path.symlink_to(path.parent / 'elsewhere'),
+], ids=['folder', 'link'])
+def test_a_file_that_cannot_be_used_is_an_os_error(make, tmp_path, clock):
+    path = Path(world_path('taken', str(tmp_path)))
+    make(path)
+    with pytest.raises(OSError):
+        World(str(path), 'bot1', BODY, clock)
+
+
+def test_file_that_the_last_one_removes_under_our_hands_is_made_again(
+        tmp_path, clock, enter, monkeypatch):
+    """Between opening it and having the lock."""
+    last = enter('last')
+    flock = fcntl.flock
+    calls = []
+
+    def late(handle, how):
+        calls.append(how)
+        if len(calls) == 1:
+            last.leave()
+        flock(handle, how)
+    monkeypatch.setattr(fcntl, 'flock', late)
+    one = World(world_path('one building', str(tmp_path)), 'bot1', BODY, clock)
+    one.publish(1.0, 2.0, 0.0)
+    assert seen(enter('bot2')) == [(1.0, 2.0, BODY.radius_m)]
+
+
+def test_nobody_enters_while_another_takes_a_place(enter, tmp_path):
+    enter('bot1')
+    door = os.open(str(next(tmp_path.iterdir())), os.O_RDWR)
+    fcntl.flock(door, fcntl.LOCK_EX)
+    comer = threading.Thread(target=enter, args=('bot2',), daemon=True)
+    comer.start()
+    comer.join(0.2)
+    assert comer.is_alive()
+    os.close(door)
+    comer.join(PATIENCE_S)
+    assert not comer.is_alive()
+
+
+def live(path, name, place, begin, done, answers):
+    """Be a robot in a process of its own: enter, look when all are in, leave when told."""
+    begin.wait(PATIENCE_S)
+    world = World(path, name, BODY, time.monotonic)
+    world.publish(place, -place, 0.0)
+    answers.put((name, 'in', None))
+    done.wait(PATIENCE_S)
+    world.publish(place, -place, 0.0)
+    answers.put((name, 'saw', sorted(world.discs()[:, 0].tolist())))
+    world.leave()
+
+
+def test_processes_that_enter_at_once_all_have_a_place(tmp_path):
+    path, count = world_path('crowd', str(tmp_path)), 8
+    begin, done = PROCESSES.Event(), PROCESSES.Event()
+    answers = PROCESSES.Queue()
+    robots = [PROCESSES.Process(target=live, args=(path, 'bot{}'.format(number), float(number),
+                                                   begin, done, answers))
+              for number in range(count)]
+    for robot in robots:
+        robot.start()
+    begin.set()
+    assert {answers.get(timeout=PATIENCE_S)[1] for _ in robots} == {'in'}
+    # Two robots in one slot would be one to the watcher.
+    watcher = World(path, 'watcher', BODY, time.monotonic)
+    assert sorted(watcher.discs()[:, 0].tolist()) == [float(number) for number in range(count)]
+    watcher.leave()
+    done.set()
+    for robot in robots:
+        name, _, places = answers.get(timeout=PATIENCE_S)
+        assert float(name[3:]) not in places and set(places) <= set(map(float, range(count)))
+    for robot in robots:
+        robot.join(PATIENCE_S)
+        assert robot.exitcode == 0
+    assert os.listdir(str(tmp_path)) == []
+
+
+def come_and_go(path, name, rounds, answers):
+    """Enter and leave again and again: the file is removed and made under everybody's hands."""
+    for _ in range(rounds):
+        world = World(path, name, BODY, time.monotonic)
+        world.publish(1.0, 1.0, 0.0)
+        world.leave()
+    answers.put(name)
+
+
+def test_coming_and_going_at_once(tmp_path):
+    path, answers = world_path('inn', str(tmp_path)), PROCESSES.Queue()
+    robots = [PROCESSES.Process(target=come_and_go,
+                                args=(path, 'bot{}'.format(number), 200, answers))
+              for number in range(4)]
+    for robot in robots:
+        robot.start()
+    assert len({answers.get(timeout=PATIENCE_S) for _ in robots}) == 4
+    for robot in robots:
+        robot.join(PATIENCE_S)
+        assert robot.exitcode == 0
+    assert os.listdir(str(tmp_path)) == []

@@ -1,0 +1,67 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The one line at the bottom: never empty, and the one thing that matters most."""
+from itertools import product
+
+import pytest
+
+from mhri.core.status import ATTENTION, CALM, status_line, STOPPED
+from mhri.core.views import (
+    GONE, LINK_STATES, LIVE, PanelView, ROS_CONNECTED, ROS_NO_MASTER, ROS_STARTING, RobotView,
+    SILENT)
+
+SOURCES = (('joy', 'Virtual joystick'), ('ps3joy', 'PS3 Controller'))
+
+
+def panel(robots=(), ros=ROS_CONNECTED, mode='joy', **values):
+    """Return a view with the given robots."""
+    return PanelView(ros=ros, sources=SOURCES, mode=mode, robots=tuple(robots), **values)
+
+
+DRIVEN = RobotView('bot1', link=LIVE, selected=True, driven=True)
+READY = RobotView('bot2', link=LIVE, selected=True)
+IDLE = RobotView('bot3', link=LIVE)
+MUTE = RobotView('bot4', link=SILENT, selected=True, note='nothing for 3.2 s')
+LOST = RobotView('bot5', link=GONE, selected=True, note='switched off')
+
+CASES = {
+    'starting': (panel(ros=ROS_STARTING, mode=None), None, 'connecting', CALM),
+    'no_master': (panel(ros=ROS_NO_MASTER, stop_all=True), '', 'http://host:11311', ATTENTION),
+    'stopped': (panel([MUTE], stop_all=True), 'release', 'everything is stopped', STOPPED),
+    'no_mux': (panel([READY], mode=None), None, 'the mux is not running', ATTENTION),
+    'no_robots': (panel(), 'source', 'no robots yet', CALM),
+    'none_selected': (panel([IDLE]), '', 'no robot selected', CALM),
+    'silent': (panel([DRIVEN, MUTE]), '', 'bot4 has sent nothing for 3.2 s', ATTENTION),
+    'gone': (panel([LOST]), '', 'bot5: switched off', ATTENTION),
+    'idle_and_silent': (panel([READY, RobotView('x', link=SILENT, note='nothing')]), '', 'ready',
+                        CALM),
+    'neutral': (panel([READY, IDLE]), 'neutral',
+                '1 of 2 robots  \u2013  Virtual joystick  \u2013  centre the stick', CALM),
+    'source': (panel([READY], mode='ps3joy'), 'source', 'PS3 Controller  \u2013  nothing is heard',
+               ATTENTION),
+    'dead_man': (panel([READY]), 'dead_man', 'hold the dead-man button', CALM),
+    'ready': (panel([READY]), '', 'ready', CALM),
+    'driving': (panel([DRIVEN, READY]), '',
+                '2 of 2 robots  \u2013  Virtual joystick  \u2013  driving', CALM),
+    'unknown_source': (panel([READY], mode='brain'), '', 'brain', CALM),
+}
+
+
+@pytest.mark.parametrize('case', sorted(CASES))
+def test_status_line(case):
+    """The first thing that keeps it all from working, or who drives what."""
+    view, waits_for, words, level = CASES[case]
+    sentence, said = status_line(view, waits_for, 'http://host:11311')
+    assert words in sentence and said == level
+
+
+def test_never_empty_whatever_the_view():
+    """Every combination there is."""
+    robots = [RobotView('bot', link=link, selected=selected, note='a note')
+              for link, selected in product(LINK_STATES, (False, True))]
+    for ros, mode, stop, robot, waits in product(
+            (ROS_STARTING, ROS_NO_MASTER, ROS_CONNECTED), (None, 'joy'), (False, True),
+            [None] + robots, (None, '', 'release', 'source', 'neutral', 'dead_man')):
+        view = panel([robot] if robot else [], ros=ros, mode=mode, stop_all=stop)
+        sentence, level = status_line(view, waits)
+        assert sentence.strip() and level in (CALM, ATTENTION, STOPPED)
