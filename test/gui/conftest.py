@@ -3,26 +3,18 @@
 """A real Qt on a real X server for every GUI test: the one at hand, else an Xvfb of our own."""
 import atexit
 import os
-import subprocess
+import sys
 
 import pytest
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-def _start_xvfb():
-    """Start Xvfb on a display nobody uses, and end it with this process."""
-    read_end, write_end = os.pipe()
-    server = subprocess.Popen(
-        ['Xvfb', '-displayfd', str(write_end), '-screen', '0', '1600x1200x24', '-nolisten', 'tcp'],
-        pass_fds=(write_end,), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    atexit.register(server.terminate)
-    os.close(write_end)
-    with os.fdopen(read_end) as answer:
-        return ':' + answer.readline().strip()
-
+from support.xvfb import start_xvfb  # noqa: E402
 
 # Before the first import of Qt by a test module.
 if not os.environ.get('DISPLAY'):
-    os.environ['DISPLAY'] = _start_xvfb()
+    _server, os.environ['DISPLAY'] = start_xvfb('1600x1200x24')
+    atexit.register(_server.terminate)
 os.environ['QT_QPA_PLATFORM'] = 'xcb'
 
 from python_qt_binding.QtCore import (  # noqa: E402
@@ -42,7 +34,7 @@ class Operator:
     def __init__(self, application):
         self.application = application
 
-    def wait_until(self, condition, within_s=4.0):
+    def wait_until(self, condition, within_s=10.0):
         """Run the event loop until a condition holds; fail after a deadline."""
         timer, watch = QTimer(), QElapsedTimer()
         timer.start(5)

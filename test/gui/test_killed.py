@@ -28,8 +28,8 @@ def test_the_robots_stand_still_within_600_ms():
         system.launch('sim.launch', 'n:=2')
         robots = [Witness('bot1'), Witness('bot2')]
         panel = system.node('panel', '--fresh', '--select', 'bot1 bot2')
-        window = wait_for(lambda: xdotool('search', '--onlyvisible', '--name', '^mhri'), 20,
-                          'the window of the panel')[0]
+        window = wait_for(lambda: xdotool('search', '--onlyvisible', '--name', '^mhri'), 60,
+                          'the window of the panel', poll_s=0.1)[0]
 
         def keepers():
             publishers = dict(rosgraph.Master('/killed_test').getSystemState()[0])

@@ -14,6 +14,8 @@ import xmlrpc.client
 
 import psutil
 
+from support.xvfb import start_xvfb
+
 
 def wait_for(condition, timeout_s=10.0, what='the condition', poll_s=0.002):
     """Return the first true value of a condition.
@@ -67,8 +69,20 @@ class System:
     def __enter__(self):
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, failure, *_):
+        if failure is not None:
+            self._tell_ends()
         self.close()
+
+    def _tell_ends(self):
+        """Print how each process was and the end of what it said: for a failure on a far machine."""
+        for process in self._processes:
+            state = process.poll()
+            print('\n--- {}: {}'.format(' '.join(process.args)[:200], 'running' if state is None
+                                       else 'ended with {}'.format(state)))
+            if hasattr(process, 'log'):
+                with open(process.log, errors='replace') as log:
+                    print(log.read()[-2000:])
 
     def start(self, *command, log=None):
         """Start a process in a group of its own; its output goes to a file in ``home``."""
@@ -102,15 +116,8 @@ class System:
 
     def screen(self, size='1920x1080x24'):
         """Start a virtual screen for this system and adopt it."""
-        reading, writing = os.pipe()
-        process = subprocess.Popen(
-            ['Xvfb', '-displayfd', str(writing), '-screen', '0', size, '-nolisten', 'tcp'],
-            pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-            start_new_session=True)
-        os.close(writing)
+        process, display = start_xvfb(size)
         self._processes.append(process)
-        with os.fdopen(reading) as stream:
-            display = ':' + stream.readline().strip()
         self.env['DISPLAY'] = os.environ['DISPLAY'] = display
         return display
 

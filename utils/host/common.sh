@@ -181,24 +181,41 @@ build_workspace() {
 # make_scratch: a private folder for this run, SCRATCH; clean_up removes it.
 make_scratch() { SCRATCH=$(mktemp -d "${TMPDIR:-/tmp}/mhri.XXXXXX"); }
 
-# start_xvfb: a display in memory on a free number, in DISPLAY; only this run has its key.
+# start_xvfb: a display in memory on a free number, in DISPLAY; only this run has its key. The number
+# is chosen here: with -displayfd a server takes no lock, and one that starts while another ends may
+# lose its socket to it.
 start_xvfb() {
-  local number='' cookie
+  local cookie attempt
   cookie=$(mcookie)
   export XAUTHORITY="$SCRATCH/xauthority"
-  : >"$XAUTHORITY"
-  xauth -q add :0 . "$cookie"
-  mkfifo "$SCRATCH/display"
-  # In a session of its own, so that Ctrl-C does not end the display before the panel has sent its
-  # last zero; and ended by the kernel should this script be killed.
-  setsid setpriv --pdeathsig TERM Xvfb -displayfd 3 -screen 0 1920x1080x24 \
-    -nolisten tcp -auth "$XAUTHORITY" 3>"$SCRATCH/display" >"$SCRATCH/xvfb.log" 2>&1 &
-  XVFB_PID=$!
-  read -r -t 20 number <"$SCRATCH/display" || true
-  [ -n "$number" ] || die "Xvfb did not start: $(tail -n 3 "$SCRATCH/xvfb.log" | tr '\n' ' ')"
-  export DISPLAY=":$number"
-  xauth -q add "$DISPLAY" . "$cookie"
   unset WAYLAND_DISPLAY
+  for attempt in 1 2 3 4 5; do
+    export DISPLAY=":$((10000 + RANDOM % 40000))"
+    : >"$XAUTHORITY"
+    xauth -q add "$DISPLAY" . "$cookie"
+    # In a session of its own, so that Ctrl-C does not end the display before the panel has sent its
+    # last zero; and ended by the kernel should this script be killed.
+    setsid setpriv --pdeathsig TERM Xvfb "$DISPLAY" -screen 0 1920x1080x24 -nolisten tcp \
+      -auth "$XAUTHORITY" >"$SCRATCH/xvfb.log" 2>&1 &
+    XVFB_PID=$!
+    if xvfb_answers; then return; fi
+    kill "$XVFB_PID" 2>/dev/null || true
+    wait "$XVFB_PID" 2>/dev/null || true
+    XVFB_PID=
+  done
+  die "Xvfb did not start in $attempt attempts: $(tail -n 3 "$SCRATCH/xvfb.log" | tr '\n' ' ')"
+}
+
+# xvfb_answers: waits until the display that was started can be used; false where it ended.
+xvfb_answers() {
+  local deadline=$((SECONDS + 20))
+  while [ "$SECONDS" -lt "$deadline" ] && kill -0 "$XVFB_PID" 2>/dev/null; do
+    if python3 -c 'import socket, sys
+socket.socket(socket.AF_UNIX).connect("/tmp/.X11-unix/X" + sys.argv[1])' "${DISPLAY#:}" \
+      2>/dev/null; then return 0; fi
+    sleep 0.05
+  done
+  return 1
 }
 
 # end_leftovers: ends what this run started and did not end itself, known by its mark; prints each.

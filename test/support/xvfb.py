@@ -1,0 +1,35 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Virtual screens that do not take each other's place."""
+import random
+import subprocess
+import time
+
+_FIRST, _LAST = 200, 9999
+_START_S = 30.0
+
+
+def start_xvfb(size='1920x1080x24'):
+    """Start Xvfb on a display of its own and wait until it answers.
+
+    The number is chosen here: with ``-displayfd`` a server takes no lock, and one that starts while
+    another ends may lose its socket to it.
+
+    :param size: width x height x depth
+    :returns: (process, display such as ``:4711``)
+    :raises RuntimeError: no server answered in half a minute
+    """
+    deadline = time.monotonic() + _START_S
+    while time.monotonic() < deadline:
+        display = ':{}'.format(random.randint(_FIRST, _LAST))
+        process = subprocess.Popen(
+            ['Xvfb', display, '-screen', '0', size, '-nolisten', 'tcp'],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+        while process.poll() is None and time.monotonic() < deadline:
+            if subprocess.call(['xdpyinfo', '-display', display], stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL) == 0:
+                return process, display
+            time.sleep(0.05)
+        process.kill()
+        process.wait()
+    raise RuntimeError('no Xvfb answers')
