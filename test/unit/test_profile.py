@@ -6,7 +6,8 @@ import math
 import pytest
 
 from mhri.core.config import ConfigError
-from mhri.core.profile import Axis, JoyRefused, parse_profile, Profile, Stick
+from mhri.core.profile import (
+    ACTIONS, Axis, JoyRefused, Match, parse_profile, Profile, Stick)
 
 PAD = Profile('pad', Axis(1, -1.0), Axis(0, -1.0), dead_zone=0.1, neutral=0.15, dead_man=2)
 HELD = (0, 0, 1)
@@ -98,6 +99,12 @@ BAD = {
     'turn.sign': 'name: pad\nforward: {axis: 1}\nturn: {axis: 0, sign: 1}\n',
     'turn.scale': 'name: pad\nforward: {axis: 1}\nturn: {axis: 0, scale: .nan}\n',
     'name': 'forward: {axis: 1}\nturn: {axis: 0}\n',
+    'curve': GOOD + 'curve: 1.1\n',
+    'without_turbo': GOOD + 'turbo_button: 5\nwithout_turbo: 0\n',
+    'stop_all_button': GOOD + 'stop_all_button: L1\n',
+    'forward.rest': 'name: pad\nforward: {axis: 5, rest: -2}\nturn: {axis: 0}\n',
+    'match.guids': GOOD + 'match: {guids: [xyz]}\n',
+    'match.nmes': GOOD + 'match: {nmes: [Sony]}\n',
 }
 
 
@@ -115,3 +122,40 @@ def test_axis_never_leaves_its_range():
         for value in (-1e300, -1.0, 0.0, 0.5, 1e300):
             assert -1.0 <= Axis(0, scale).read((value,)) <= 1.0
             assert not math.isnan(Axis(0, scale).read((value,)))
+
+
+@pytest.mark.parametrize('rest, value, expected', [
+    (-1.0, -1.0, 0.0), (-1.0, 0.0, 0.5), (-1.0, 1.0, 1.0),
+    (1.0, 1.0, 0.0), (1.0, -1.0, -1.0), (0.0, 0.5, 0.5)])
+def test_a_trigger_counts_from_its_rest(rest, value, expected):
+    """Most triggers say -1 while nobody touches them, some pedals +1."""
+    assert Axis(0, 1.0, rest).read((value,)) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize('curve, travel, expected', [
+    (0.0, 0.5, 0.5), (1.0, 0.5, 0.125), (0.5, 0.5, 0.3125), (1.0, 1.0, 1.0), (1.0, -0.5, -0.125)])
+def test_the_curve_bends_the_middle_and_keeps_the_ends(curve, travel, expected):
+    profile = Profile('pad', Axis(1, 1.0), Axis(0, 1.0), curve=curve)
+    assert profile.read((0.0, travel), ()).forward == pytest.approx(expected)
+
+
+@pytest.mark.parametrize('buttons, expected', [((0, 1), 1.0), ((0, 0), 0.4), ((), 0.4)])
+def test_without_its_turbo_button_a_pad_is_slow(buttons, expected):
+    """A pad that lacks the button is slow, never fast."""
+    profile = Profile('pad', Axis(1, 1.0), Axis(0, 1.0), turbo=1, without_turbo=0.4)
+    assert profile.read((0.0, 1.0), buttons).forward == pytest.approx(expected)
+
+
+def test_actions_of_buttons():
+    text = GOOD + ''.join('{}_button: {}\n'.format(action, number)
+                          for number, action in enumerate(ACTIONS))
+    profile = parse_profile(text, 'pad.yaml')
+    assert profile.pressed((1, 0, 0, 1)) == {ACTIONS[0], ACTIONS[3]}
+    assert profile.pressed(()) == frozenset()
+
+
+def test_what_a_profile_is_for():
+    guid = '030000004C0500006802000011010000'
+    profile = parse_profile(GOOD + 'match: {{guids: [{}], names: [Sony]}}\n'.format(
+        "'" + guid + "'"), 'pad.yaml')
+    assert profile.match == Match((guid.lower(),), ('Sony',))

@@ -3,9 +3,14 @@
 """Profiles: which axis and button of a device means what."""
 import math
 from dataclasses import dataclass
-from typing import Optional
+from typing import Optional, Tuple
 
 from mhri.core.config import parse_yaml
+
+# What a button may ask for besides driving; the keys of a profile are these and ``_button``.
+STOP_ALL = 'stop_all'
+NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL = 'next_robot', 'previous_robot', 'select_all'
+ACTIONS = (STOP_ALL, NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL)
 
 
 class JoyRefused(ValueError):
@@ -18,14 +23,20 @@ class JoyRefused(ValueError):
 
 @dataclass(frozen=True)
 class Axis:
-    """One axis of a device: its index and the sign that makes forward and left positive."""
+    """One axis of a device: its index and the sign that makes forward and left positive.
+
+    ``rest`` is what the driver reports while nobody touches it: 0 for a stick, -1 for the triggers
+    of most pads.
+    """
 
     index: int
     scale: float
+    rest: float = 0.0
 
     def read(self, axes):
-        """Return the value in [-1, 1]; a driver's overshoot is cut off."""
-        return max(-1.0, min(1.0, axes[self.index] * self.scale))
+        """Return the value in [-1, 1], 0 at rest; a driver's overshoot is cut off."""
+        travel = (axes[self.index] - self.rest) / (1.0 + abs(self.rest))
+        return max(-1.0, min(1.0, travel * self.scale))
 
 
 @dataclass(frozen=True)
@@ -48,12 +59,26 @@ class Stick:
 
 
 @dataclass(frozen=True)
+class Match:
+    """Which devices a profile is for.
+
+    ``guids`` are those of SDL (32 hexadecimal digits), ``names`` parts of a device's name in any
+    case.
+    """
+
+    guids: Tuple[str, ...] = ()
+    names: Tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Profile:
     """The mapping of one device, read from ``resource/pads/<name>.yaml``.
 
     ``dead_zone`` is the fraction of travel around the centre that counts as zero (the rest is
     stretched, so that full travel stays full speed); ``neutral`` the fraction inside which the
-    stick counts as released for the interlock.
+    stick counts as released for the interlock; ``curve`` bends the response, 0 straight to 1
+    cubic, for fine control near the centre. ``turbo`` is a button; while it is not held, everything
+    is multiplied by ``without_turbo``. ``actions`` are (button, one of ``ACTIONS``).
     """
 
     name: str
@@ -62,6 +87,11 @@ class Profile:
     dead_zone: float = 0.0
     neutral: float = 0.02
     dead_man: Optional[int] = None
+    curve: float = 0.0
+    turbo: Optional[int] = None
+    without_turbo: float = 0.5
+    actions: Tuple[Tuple[int, str], ...] = ()
+    match: Match = Match()
 
     def read(self, axes, buttons):
         """Turn the axes and buttons of a ``sensor_msgs/Joy`` into a :class:`Stick`.
@@ -85,19 +115,33 @@ class Profile:
         neutral = max(abs(forward), abs(turn)) <= self.neutral
         if not held:
             return Stick(0.0, 0.0, neutral, False)
-        return Stick(self._stretch(forward), self._stretch(turn), neutral)
+        # A pad without that button is slow, never fast.
+        slow = self.turbo is not None and not is_pressed(buttons, self.turbo)
+        factor = self.without_turbo if slow else 1.0
+        return Stick(factor * self._respond(forward), factor * self._respond(turn), neutral)
 
-    def _stretch(self, value):
-        """Take the dead zone out of one axis."""
+    def pressed(self, buttons):
+        """Return the actions whose buttons are down, as a set; missing buttons are up."""
+        return frozenset(action for button, action in self.actions if is_pressed(buttons, button))
+
+    def _respond(self, value):
+        """Take the dead zone out of one axis and bend the rest."""
         size = abs(value)
         if size <= self.dead_zone:
             return 0.0
-        return math.copysign((size - self.dead_zone) / (1.0 - self.dead_zone), value)
+        size = (size - self.dead_zone) / (1.0 - self.dead_zone)
+        return math.copysign((1.0 - self.curve) * size + self.curve * size ** 3, value)
+
+
+def is_pressed(buttons, index):
+    """Tell whether a button is down; one that the device does not have is up."""
+    return index < len(buttons) and bool(buttons[index])
 
 
 def _axis(section):
-    """Read ``{axis: 1, scale: -1}``."""
-    axis = Axis(section.index('axis'), section.number('scale', -10.0, 10.0, 1.0))
+    """Read ``{axis: 1, scale: -1}``, for a trigger with ``rest: -1``."""
+    axis = Axis(section.index('axis'), section.number('scale', -10.0, 10.0, 1.0),
+                section.number('rest', -1.0, 1.0, 0.0))
     if axis.scale == 0.0:
         raise section.error('scale', 'must not be 0: the axis would do nothing')
     section.close()
@@ -111,12 +155,32 @@ def parse_profile(text, origin):
     """
     section = parse_yaml(text, origin)
     dead_zone = section.number('dead_zone', 0.0, 0.9, 0.0)
+    buttons = [(section.index(action + '_button', None), action) for action in ACTIONS]
     profile = Profile(
         name=section.text('name'),
         forward=_axis(section.section('forward')),
         turn=_axis(section.section('turn')),
         dead_zone=dead_zone,
         neutral=section.number('neutral', 0.0, 0.9, max(0.02, dead_zone)),
-        dead_man=section.index('dead_man_button', None))
+        dead_man=section.index('dead_man_button', None),
+        curve=section.number('curve', 0.0, 1.0, 0.0),
+        turbo=section.index('turbo_button', None),
+        without_turbo=section.number('without_turbo', 0.05, 1.0, 0.5),
+        actions=tuple((button, action) for button, action in buttons if button is not None),
+        match=_match(section.section('match', None)))
     section.close()
     return profile
+
+
+def _match(section):
+    """Read ``{guids: [...], names: [...]}``."""
+    if section is None:
+        return Match()
+    match = Match(tuple(guid.lower() for guid in section.texts('guids', ())),
+                  section.texts('names', ()))
+    for guid in match.guids:
+        if len(guid) != 32 or not set(guid) <= set('0123456789abcdef'):
+            raise section.error('guids', 'expected 32 hexadecimal digits as SDL shows them, got '
+                                '{!r}'.format(guid))
+    section.close()
+    return match
