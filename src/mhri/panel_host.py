@@ -12,6 +12,7 @@ from python_qt_binding.QtWidgets import QApplication
 from mhri.core.names import tidy_name
 from mhri.gui.panel import PanelWidget
 from mhri.gui.windows import free_corner, window_class
+from mhri.requests_host import RequestsHost
 from mhri.ros.resources import resource_path
 from mhri.window_host import WindowHost
 
@@ -42,6 +43,8 @@ class PanelHost(QObject):
         self._mode = None
         self._closed = False
         self._build()
+        self.requests = RequestsHost(operator, self.panel.show_look_result, self._select,
+                                     self._recording_wish)
         self._connect()
 
     def _build(self):
@@ -60,6 +63,8 @@ class PanelHost(QObject):
         panel.look_requested.connect(self._look)
         panel.add_requested.connect(self._add)
         panel.remove_requested.connect(self._remove)
+        panel.record_requested.connect(self.requests.record)
+        panel.stop_record_requested.connect(self.requests.stop_recording)
         panel.selection_requested.connect(self._select)
         panel.activated.connect(self._activate)
         panel.open_requested.connect(self._open)
@@ -106,8 +111,11 @@ class PanelHost(QObject):
         for kind, value in self.operator.take_events():
             if kind == 'found':
                 self._show_found(value)
+            elif kind == 'request':
+                self.requests.carry_out(*value)
             else:
                 self.panel.show_look_result(value)
+        self.requests.tell_ends()
 
     def _draw_next(self):
         """Draw one window; the others have their turn later, so that a click never waits for all.
@@ -168,6 +176,14 @@ class PanelHost(QObject):
     def _request_mode(self, name):
         self._mode = name
         self.operator.request_mode(name)
+
+    def _recording_wish(self, name):
+        """Return (path, choices) of a recording: those of its window, or as they were there."""
+        if name in self.windows:
+            row = self.windows[name].recording
+            return row.path, row.chosen_extras()
+        extras = self._looks.get(name, {}).get('recording', {}).get('extras', ())
+        return '', [key for key in self.operator.recordable(name) if key in extras]
 
     def _activate(self, name):
         """Bring the window of the highlighted robot to the front; open it where it is selected."""

@@ -7,13 +7,12 @@ from datetime import datetime
 import cv2
 
 from mhri.core.frames import DEPTH, RGB
+from mhri.core.mocap import DriftMeter, Pose
+from mhri.core.views import StateView
 from mhri.gui.camera_view import still_name
-from mhri.ros.bot_feeds import IMU, SCAN
+from mhri.ros.bot_feeds import IMU, MOCAP, SCAN
 
-# The camera budget: while one robot is highlighted, the windows of the others show few and small
-# pictures.
-THUMBNAIL_HZ = 5.0
-THUMBNAIL_WIDTH = 320
+_CAMERA_NAMES = {RGB: 'RGB', DEPTH: 'depth'}
 
 
 def recordings_folder():
@@ -33,6 +32,7 @@ class WindowHost:
         self._operator = operator
         self._name = window.name
         self._notes = []
+        self._drift = DriftMeter()
         self.prominent = True
         window.camera.transport_chosen.connect(self._choose_transport)
         window.camera.still_requested.connect(self._save_still)
@@ -51,7 +51,7 @@ class WindowHost:
         if feeds is None:
             return
         window.offer(feeds.offers())
-        feeds.want(window.wanted())
+        feeds.want(window.wanted() | {MOCAP} if window.is_watched() else ())
         window.recording.offer_extras(self._operator.recordable(self._name))
         window.recording.show_recording(self._operator.recordings.status(self._name))
         series = feeds.get(IMU)
@@ -63,8 +63,27 @@ class WindowHost:
         camera = feeds.get(window.camera.kind) if window.camera.kind in (RGB, DEPTH) else None
         if camera is not None:
             self._draw_camera(camera)
+        self._draw_state(view, feeds)
         while self._notes:
             window.camera.show_note(*self._notes.pop())
+
+    def _draw_state(self, view, feeds):
+        """Show how old each stream is, and what motion capture says.
+
+        The age of the odometry is that of the link, in the header.
+        """
+        ages = []
+        for key, name in ((IMU, 'IMU'), (SCAN, 'scan'), *_CAMERA_NAMES.items()):
+            feed = feeds.get(key)
+            if feed is not None:
+                ages.append((name, feed.age_s()))
+        tracker = feeds.get(MOCAP)
+        captured = tracker.pose() if tracker else None
+        if captured is not None:
+            ages.append(('capture', tracker.age_s()))
+        odometry = None if view.x_m is None else Pose(view.x_m, view.y_m, view.heading_rad)
+        self.window.state_line.show_state(
+            StateView(tuple(ages), captured, self._drift.drift(odometry, captured)))
 
     def _operator_folder(self):
         """Let the file dialog begin where recordings go unless told otherwise."""
@@ -88,8 +107,10 @@ class WindowHost:
         if self.prominent:
             feed.set_view(width, height)
         else:
-            small = min(width, THUMBNAIL_WIDTH)
-            feed.set_view(small, max(1, round(height * small / max(1, width))), THUMBNAIL_HZ)
+            settings = self._operator.settings
+            small = min(width, settings.thumbnail_width_px)
+            feed.set_view(small, max(1, round(height * small / max(1, width))),
+                          settings.thumbnail_hz)
         frame = feed.take()
         camera = self.window.camera
         if frame is not None:

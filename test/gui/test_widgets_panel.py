@@ -142,13 +142,13 @@ def test_tab_order_is_the_reading_order(panel, operator, application, four_robot
     panel.robot_list.activate('bot1')
     panel.look_button.setFocus(Qt.TabFocusReason)
     seen = ['look_button']
-    for _ in range(14):
+    for _ in range(15):
         operator.hit(application.focusWidget(), Qt.Key_Tab)
         seen.append(application.focusWidget().objectName())
     assert seen == ['look_button', 'name_edit', 'add_button', 'robot_list', 'check_bot1',
                     'check_bot2', 'check_bot3', 'check_bot4', 'all_button', 'none_button',
-                    'remove_button', 'mode_combo', 'linear_slider', 'angular_slider',
-                    'stop_button']
+                    'record_button', 'remove_button', 'mode_combo', 'linear_slider',
+                    'angular_slider', 'stop_button']
 
 
 def test_settings_survive_json_and_nonsense_is_left_out(panel, operator, ui_dir):
@@ -185,3 +185,44 @@ def test_shapes_and_text_stand_out_in_light_and_dark(ground, text):
     for name in (theme.DRIVE, theme.STOP):
         ink = theme.colour(name, palette)
         assert contrast(theme.readable_on(ink), ink) >= 3.0, 'large bold text'
+
+
+def test_record_selected_asks_for_those_that_are_and_then_for_the_end(
+        panel, operator, heard, four_robots):
+    recorded, ended = heard(panel.record_requested), heard(panel.stop_record_requested)
+    robots = [replace(robot, selected=robot.name in ('bot1', 'bot3'))
+              for robot in four_robots.robots]
+    panel.show_view(replace(four_robots, robots=tuple(robots)))
+    operator.click(panel.record_button)
+    assert (recorded, ended) == ([['bot1', 'bot3']], [])
+    going = tuple(replace(robot, recording=robot.name in ('bot1', 'bot2')) for robot in robots)
+    panel.show_view(replace(four_robots, robots=going))
+    assert panel.record_button.text() == 'Stop recording (2)'
+    pill = panel.robot_list.row('bot2').recording
+    assert pill.word == 'rec'
+    assert panel.robot_list.row('bot3').recording.word == ''
+    operator.click(panel.record_button)
+    assert (recorded, ended) == ([['bot1', 'bot3']], [['bot1', 'bot2']])
+
+
+def test_nothing_to_record_without_a_selection(panel, four_robots):
+    robots = tuple(replace(robot, selected=False) for robot in four_robots.robots)
+    panel.show_view(replace(four_robots, robots=robots))
+    assert not panel.record_button.isEnabled()
+
+
+@pytest.mark.parametrize('bits, text', [(0.0, ''), (float('nan'), ''),
+                                        (12.34e6, 'cameras 12.3 Mbit/s')])
+def test_what_the_cameras_take_of_the_network(panel, operator, four_robots, bits, text):
+    def shown():
+        panel.show_view(replace(four_robots, camera_bits_per_s=bits))
+        return panel.cameras_label.text() == text
+    operator.wait_until(shown)
+
+
+def test_in_a_narrow_dock_the_name_is_the_last_to_give_way(panel, operator, four_robots):
+    panel.resize(640, 480)
+    panel.show_view(four_robots)
+    operator.settle()
+    title = panel.robot_list.row('bot1').title
+    assert title.toolTip() == '' and title.width() >= title.fontMetrics().horizontalAdvance('bot1')

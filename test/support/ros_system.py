@@ -75,11 +75,11 @@ class System:
         self.close()
 
     def _tell_ends(self):
-        """Print how each process was and the end of what it said: for a failure on a far machine."""
+        """Print how each process was and the end of what it said: to explain a failure far away."""
         for process in self._processes:
-            state = process.poll()
-            print('\n--- {}: {}'.format(' '.join(process.args)[:200], 'running' if state is None
-                                       else 'ended with {}'.format(state)))
+            code = process.poll()
+            state = 'running' if code is None else 'ended with {}'.format(code)
+            print('\n--- {}: {}'.format(' '.join(process.args)[:200], state))
             if hasattr(process, 'log'):
                 with open(process.log, errors='replace') as log:
                     print(log.read()[-2000:])

@@ -8,6 +8,8 @@ thread and hands it to the widgets, which draw it and know nothing else.
 from dataclasses import dataclass
 from typing import Optional, Tuple
 
+from mhri.core.mocap import Drift, Pose
+
 # Link states of a robot.
 WAITING = 'waiting'   # added, nothing heard yet
 LIVE = 'live'         # its odometry arrives
@@ -41,7 +43,8 @@ class RobotView:
     ``age_s`` is the age of the newest odometry [s]; speeds are the robot's own odometry [m/s,
     rad/s], ``heading_rad`` its yaw in (-pi, pi], x and y in metres in its ``odom`` frame; None
     where nothing has been heard. ``battery`` is a fraction in [0, 1]. ``driven`` is true while
-    commands other than zero are being forwarded to it. ``note`` is what is worth saying in words
+    commands other than zero are being forwarded to it, ``recording`` while a bag of it is open.
+    ``note`` is what is worth saying in words
     about the link, e.g. "nothing for 3.2 s"; '' while all is well.
     """
 
@@ -63,6 +66,21 @@ class RobotView:
     proof: Optional[ProofView] = None
     max_linear_mps: Optional[float] = None
     max_angular_rad_s: Optional[float] = None
+    recording: bool = False
+
+
+@dataclass(frozen=True)
+class StateView:
+    """What else is known of a robot while its window is open.
+
+    ``ages`` are (name of a stream that is shown, age of its newest message [s], None where nothing
+    has come yet). ``captured`` is where motion capture sees the robot, ``drift`` how far its
+    odometry is off since the window was opened; None where nobody tracks it.
+    """
+
+    ages: Tuple[Tuple[str, Optional[float]], ...] = ()
+    captured: Optional[Pose] = None
+    drift: Optional[Drift] = None
 
 
 @dataclass(frozen=True)
@@ -73,6 +91,7 @@ class PanelView:
     ``sources`` are (name, label) of the drop-down in order. ``stop_all`` is true while everything
     is stopped. ``limits`` are the operator's speed limits in force [m/s, rad/s]. ``status`` is the
     one line at the bottom, never empty; ``status_level`` one of 'calm', 'attention', 'stopped'.
+    ``camera_bits_per_s`` is what all pictures on show take of the network.
     """
 
     ros: str = ROS_STARTING
@@ -84,3 +103,4 @@ class PanelView:
     status: str = 'starting'
     status_level: str = 'calm'
     robots: Tuple[RobotView, ...] = ()
+    camera_bits_per_s: float = 0.0

@@ -15,6 +15,7 @@ from mhri.gui.labels import Pill, Sign, TextLine
 from mhri.gui.pending import Pace
 from mhri.gui.recording_row import RecordingRow
 from mhri.gui.scan_view import ScanView
+from mhri.gui.state_line import StateLine
 from mhri.gui.stop_button import StopButton
 from mhri.gui.view_switches import DEPTH, IMU, RECORD, RGB, SCAN, ViewSwitches
 
@@ -84,8 +85,8 @@ class BotWindow(QDialog):
         """Load the form and set what a form cannot say."""
         self.setFont(theme.base_font(self.font()))
         load_form(ui_dir, 'bot_window.ui', self, (
-            CameraView, ImuGraph, Pill, RecordingRow, ScanView, Sign, StopButton, TextLine,
-            ViewSwitches))
+            CameraView, ImuGraph, Pill, RecordingRow, ScanView, Sign, StateLine, StopButton,
+            TextLine, ViewSwitches))
         self.setObjectName('window_' + self.name)
         self.setWindowFlags(Qt.Window)
         self.setAttribute(Qt.WA_ShowWithoutActivating)
@@ -157,11 +158,13 @@ class BotWindow(QDialog):
         if first and not self.isVisible():
             self.resize(self.sizeHint())
 
+    def is_watched(self):
+        """Tell whether anybody can see the window: it is neither hidden nor minimised."""
+        return self.isVisible() and not self.isMinimized()
+
     def wanted(self):
-        """Return the set of views to be fed now: empty while the window is hidden or minimised."""
-        if not self.isVisible() or self.isMinimized():
-            return set()
-        return self.switches.wanted()
+        """Return the set of views to be fed now: empty while nobody can see the window."""
+        return self.switches.wanted() if self.is_watched() else set()
 
     def camera_size(self):
         """Return (width, height) that the picture has room for, in pixels of the screen."""

@@ -21,6 +21,8 @@ from mhri.gui.virtual_joystick import VirtualJoystick
 
 VIRTUAL_JOYSTICK = 'joy'
 NUMBERS_PERIOD_S = 0.25
+RECORD = 'Record selected'
+STOP_RECORDING = 'Stop recording ({})'
 
 _WIDGETS = (
     ModeCombo, RobotList, Sign, SpeedLimits, StatusLine, StopBar, TextLine, VirtualJoystick)
@@ -39,6 +41,9 @@ class PanelWidget(QWidget):
     look_requested = Signal()
     #: text of the name field
     add_requested = Signal(str)
+    #: the robots to record, or to stop recording: names in list order
+    record_requested = Signal(list)
+    stop_record_requested = Signal(list)
     #: robot to take off the list
     remove_requested = Signal(str)
     #: every name that should be selected now, in list order
@@ -75,7 +80,7 @@ class PanelWidget(QWidget):
         self.setFocusPolicy(Qt.ClickFocus)
         touch = theme.touch_size(self)
         for button in (self.look_button, self.add_button, self.all_button, self.none_button,
-                       self.remove_button, self.name_edit, self.mode_combo):
+                       self.record_button, self.remove_button, self.name_edit, self.mode_combo):
             button.setMinimumHeight(touch)
             if isinstance(button, QPushButton):
                 button.setFocusPolicy(Qt.TabFocus)
@@ -84,6 +89,11 @@ class PanelWidget(QWidget):
             label.setFont(theme.number_font(theme.larger(self.font(), 1.1)))
             label.setAlignment(side | Qt.AlignVCenter)
         self.drive_note.setAlignment(Qt.AlignCenter)
+        self.record_button.setMinimumWidth(touch // 2 + max(
+            theme.text_width(self.font(), text) for text in (RECORD, STOP_RECORDING.format(88))))
+        self.cameras_label.setFont(theme.number_font(self.font()))
+        self.cameras_label.fix_width('cameras 000.0 Mbit/s')
+        self.cameras_label.setAlignment(Qt.AlignRight | Qt.AlignVCenter)
         self.name_edit.setTextMargins(touch // 6, 0, touch // 6, 0)
         self.splitter.setCollapsible(0, False)
         self.splitter.setCollapsible(1, False)
@@ -95,6 +105,7 @@ class PanelWidget(QWidget):
         self.name_edit.returnPressed.connect(self._add)
         self.name_edit.textEdited.connect(self._on_name_edited)
         self.remove_button.clicked.connect(self._remove)
+        self.record_button.clicked.connect(self._record)
         self.all_button.clicked.connect(self.robot_list.select_all)
         self.none_button.clicked.connect(self.robot_list.select_none)
         for name in ('selection_requested', 'activated', 'open_requested'):
@@ -131,6 +142,8 @@ class PanelWidget(QWidget):
         self.status_line.show_status(view.status, view.status_level)
         self._show_buttons()
         self._show_stick(numbers)
+        if numbers:
+            self.cameras_label.show_text(words.bandwidth_text(view.camera_bits_per_s), theme.MUTED)
 
     def show_name_problem(self, text):
         """Say below the name field why a name was refused; '' clears it."""
@@ -202,6 +215,15 @@ class PanelWidget(QWidget):
         if self.robot_list.current is not None:
             self.remove_requested.emit(self.robot_list.current)
 
+    def _record(self):
+        """Ask for recordings of all selected robots, or for the end of every recording."""
+        running = [robot.name for robot in self._view.robots if robot.recording]
+        if running:
+            self.stop_record_requested.emit(running)
+        else:
+            self.record_requested.emit(
+                [robot.name for robot in self._view.robots if robot.selected])
+
     def _on_stop(self):
         """Stop: the stick goes to neutral first, then everything else is told."""
         self.centre_stick()
@@ -221,6 +243,12 @@ class PanelWidget(QWidget):
     def _show_buttons(self):
         """Enable what has something to act on."""
         self.remove_button.setEnabled(self.robot_list.current is not None)
+        running = sum(robot.recording for robot in self._view.robots)
+        text = STOP_RECORDING.format(running) if running else RECORD
+        if text != self.record_button.text():
+            self.record_button.setText(text)
+        self.record_button.setEnabled(
+            bool(running) or any(robot.selected for robot in self._view.robots))
         self.all_button.setEnabled(bool(self._view.robots))
         self.none_button.setEnabled(bool(self._view.robots))
 

@@ -11,6 +11,9 @@ from mhri.gui.labels import Pill, Sign, TextLine
 
 DRIVING = 'DRIVING'
 MOVING = 'moving'
+RECORDING = 'rec'
+# What a name asks for before it gives way, in average characters; longer ones end in "...".
+_NAME_CHARACTERS = 12
 _EDGE_PX = 6
 
 
@@ -87,9 +90,16 @@ class RobotRow(QWidget):
         self.title = TextLine(self)
         self.title.setFont(theme.larger(font, 1.25, bold=True))
         self.title.show_text(self.name)
+        # The name is the last to give way in a narrow dock: the type goes first, then the age.
+        metrics = self.title.fontMetrics()
+        self.title.setMinimumWidth(min(
+            theme.text_width(self.title.font(), self.name),
+            _NAME_CHARACTERS * metrics.averageCharWidth()))
         self.kind = TextLine(self)
         self.sign = Sign(self)
         self.link = self._fixed_line(numbers, 'waiting')
+        self.recording = Pill(self)
+        self.recording.set_words((RECORDING,))
         self.age = self._fixed_line(numbers, '000 ms', Qt.AlignRight)
         self.linear = self._fixed_line(numbers, 'back 0.00 m/s')
         self.turn = self._fixed_line(numbers, 'right 0.00 rad/s')
@@ -117,8 +127,8 @@ class RobotRow(QWidget):
         grid.setHorizontalSpacing(unit // 3)
         grid.setVerticalSpacing(0)
         first, second = QHBoxLayout(), QHBoxLayout()
-        for widget, stretch in ((self.title, 5), (self.kind, 6), (self.sign, 0), (self.link, 0),
-                                (self.age, 0)):
+        for widget, stretch in ((self.title, 5), (self.kind, 6), (self.recording, 0),
+                                (self.sign, 0), (self.link, 0), (self.age, 0)):
             first.addWidget(widget, stretch)
         for widget, stretch in ((self.trouble_sign, 0), (self.trouble, 1), (self.linear, 0),
                                 (self.turn, 0), (self.note, 1), (self.pill, 0),
@@ -161,6 +171,7 @@ class RobotRow(QWidget):
         if numbers:
             self._show_numbers(view)
         self._show_second_line(view)
+        self.recording.say(RECORDING if view.recording else '', filled=False)
         if view.driven != self._driven:
             self._driven = view.driven
             self.update()

@@ -92,6 +92,13 @@ def battery_text(fraction):
     return '{:.0f} %'.format(100.0 * min(1.0, max(0.0, fraction)))
 
 
+def bandwidth_text(bits_per_s):
+    """Return what pictures take of the network, e.g. "cameras 12.3 Mbit/s"; '' for nothing."""
+    if not _is_number(bits_per_s) or bits_per_s <= 0.0:
+        return ''
+    return 'cameras {:.1f} Mbit/s'.format(bits_per_s / 1e6)
+
+
 def link_text(view):
     """Return the word for a robot's link and, where it helps, the age: "live 12 ms"."""
     age = age_text(view.age_s) if view.link in (views.LIVE, views.SILENT) else ''

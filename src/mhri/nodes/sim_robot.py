@@ -5,7 +5,8 @@
 Parameters: ``robot_type`` and ``robot_model`` of the robot's namespace (its template), ``~plan``
 (path, default ``resource/sim/plan.yaml``), ``~x``, ``~y`` [m], ``~yaw`` [rad] (default: the start
 place of the plan that the number at the end of the name says), ``~depth_format`` (``png`` or
-``rvl``, of compressedDepth), ``~seed`` (whole number; default: chance).
+``rvl``, of compressedDepth), ``~mocap`` (true: a motion capture system tells its pose), ``~seed``
+(whole number; default: chance).
 """
 import math
 import random
@@ -97,7 +98,8 @@ def build(name, parameters):
                 chance)
     SimCamera(name, template, plan, lambda: (body.x, body.y, body.yaw), world.others,
               rospy.get_param('~depth_format', 'png')).start()
-    return SimRobot(name, template, body, ImuSensor(chance), laser, world, plan.discs())
+    return SimRobot(name, template, body, ImuSensor(chance), laser, world, plan.discs(),
+                    bool(rospy.get_param('~mocap', False)))
 
 
 def main():

@@ -4,9 +4,10 @@
 from mhri.core.frames import DEPTH, RGB
 from mhri.ros.camera_feed import CameraFeed
 from mhri.ros.imu_feed import ImuFeed
+from mhri.ros.mocap_feed import MocapFeed
 from mhri.ros.scan_feed import ScanFeed
 
-IMU, SCAN, RECORD = 'imu', 'scan', 'record'
+IMU, SCAN, RECORD, MOCAP = 'imu', 'scan', 'record', 'mocap'
 
 # A further view is a further row: key, whether a type has it, what makes its feed.
 _ROWS = (
@@ -15,6 +16,7 @@ _ROWS = (
     (RGB, lambda kind: kind.rgb, lambda robot, kind: CameraFeed(robot, kind.rgb, RGB)),
     (DEPTH, lambda kind: kind.depth, lambda robot, kind: CameraFeed(robot, kind.depth, DEPTH)),
     (SCAN, lambda kind: kind.scan, lambda robot, kind: ScanFeed(robot, kind.scan)),
+    (MOCAP, lambda kind: True, lambda robot, kind: MocapFeed(robot)),
 )
 
 
@@ -37,7 +39,7 @@ class BotFeeds:
 
     def offers(self):
         """Return the keys of the views that a robot of this type can have."""
-        return frozenset(self._makers) | ({RECORD} if self._type.imu else frozenset())
+        return frozenset(self._makers) - {MOCAP} | ({RECORD} if self._type.imu else frozenset())
 
     def want(self, keys):
         """Say which views are to be fed from now on; returns at once."""

@@ -96,6 +96,10 @@ class CameraFeed:
         session = self._session
         return session.status(self._clock()) if session is not None else StreamStatus()
 
+    def age_s(self):
+        """Return the age of the newest good picture [s], None before the first."""
+        return self.status().age_s
+
     def transports(self):
         """Return the names of the transports on offer now, best first; [] while not open."""
         with self._changed:

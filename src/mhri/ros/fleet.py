@@ -22,12 +22,14 @@ class Fleet:
     :param types: {name: RobotType}
     :param bank: :class:`mhri.ros.gates.GateBank`
     :param worker: :class:`mhri.ros.worker.Worker` for the feeds of the windows
+    :param on_sent: see :class:`mhri.ros.gates.Gate`
     """
 
-    def __init__(self, types, bank, worker, clock=time.monotonic):
+    def __init__(self, types, bank, worker, on_sent, clock=time.monotonic):
         self._types = types
         self._bank = bank
         self._worker = worker
+        self._on_sent = on_sent
         self._clock = clock
         self._lock = threading.Lock()
         self._links = {}
@@ -69,7 +71,7 @@ class Fleet:
         if old is not None:
             self._bank.remove(name)
             old.close()
-        link = RobotLink(name, robot_type, Gate(name, robot_type),
+        link = RobotLink(name, robot_type, Gate(name, robot_type, self._on_sent),
                          BotFeeds(name, robot_type, self._worker))
         with self._lock:
             self._links[name] = link
@@ -111,6 +113,12 @@ class Fleet:
         with self._lock:
             link = self._links.get(name)
         return link.robot_type if link else None
+
+    def camera_bits_per_s(self):
+        """Return what the pictures on show of all robots take of the network now [bit/s]."""
+        with self._lock:
+            links = list(self._links.values())
+        return sum(link.feeds.bits_per_s() for link in links)
 
     def feeds(self, name):
         """Return the :class:`BotFeeds` of a robot, None before its link is made."""

@@ -25,9 +25,11 @@ class Gate:
 
     :param name: the robot
     :param robot_type: :class:`mhri.core.robot_types.RobotType`
+    :param on_sent: called with (robot, topic, message) after each message that left; quick
     """
 
-    def __init__(self, name, robot_type):
+    def __init__(self, name, robot_type, on_sent=lambda robot, topic, message: None):
+        self._on_sent = on_sent
         self.name = name
         self.rule = GateRule(robot_type.limits)
         self.topics = ['/{}/{}'.format(name, topic) for topic in robot_type.command]
@@ -47,6 +49,7 @@ class Gate:
         self._used = chosen
         if chosen is not None:
             chosen.publish(message)
+            self._on_sent(self.name, chosen.name, message)
 
     def driven_topic(self):
         """Return the topic that carries something other than zero now, or None."""

@@ -102,6 +102,10 @@ class _Intake:
             self._sort_in()
             return self.ring.copy()
 
+    def age_s(self):
+        with self._lock:
+            return None if self._heard_at == -math.inf else self._clock() - self._heard_at
+
 
 def _with_angles(rows):
     """Turn quaternions into roll, pitch and yaw."""
@@ -150,3 +154,8 @@ class ImuFeed:
         rings = dict(self._empty)
         rings.update({keys: intake.snapshot() for keys, intake in self._intakes.items()})
         return Series(self._clock(), {key: ring for keys, ring in rings.items() for key in keys})
+
+    def age_s(self):
+        """Return the age of the newest IMU message [s]; None before the first, or without IMU."""
+        intake = self._intakes.get(IMU_KEYS)
+        return intake.age_s() if intake and intake.topics else None

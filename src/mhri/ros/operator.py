@@ -15,8 +15,9 @@ import rospy
 
 from mhri.core.discovery import parse_ignore_list
 from mhri.core.names import name_problem
-from mhri.core.recording import CHOICES
+from mhri.core.recording import CHOICES, RECORDING
 from mhri.core.selection import Selection
+from mhri.core.settings import NAMESPACE, PanelSettings, parse_settings
 from mhri.core.status import status_line
 from mhri.core.views import (
     PanelView, ROS_CONNECTED, ROS_NO_MASTER, ROS_STARTING, RobotView)
@@ -28,11 +29,14 @@ from mhri.ros.master_api import MasterApi, MasterError
 from mhri.ros.master_watch import LOST, MasterWatch
 from mhri.ros.mux_client import MuxClient
 from mhri.ros.panel_diagnostics import PanelDiagnostics
+from mhri.ros.panel_requests import PanelRequests
 from mhri.ros.recordings import Recordings
 from mhri.ros.resources import read_resource, resource_path, robot_types
 from mhri.ros.worker import Worker
 
 NODE_NAME = 'mhri_panel'
+# The robots in the panel's list, in its order.
+ROBOTS_PARAMETER = '/mhri/robots'
 FLUSH_S = 0.1
 
 
@@ -51,9 +55,13 @@ class Operator:
         self._keeper = KeeperLink()
         self._bank = GateBank(self._keeper, on_stop=self._on_stop)
         self._feeder = Worker('feeds')
-        self._fleet = Fleet(self._types, self._bank, self._feeder)
+        self._fleet = Fleet(self._types, self._bank, self._feeder, self.recordings.put_command)
+        self.settings = PanelSettings()
+        self._setting_errors = ()
+        self._told_robots = None
         self._mux = None
         self._watch = None
+        self._requests = None
         self._sources = ()
         self._first_limits = None
         self._first_mode = None
@@ -91,6 +99,7 @@ class Operator:
         if self._first_limits:
             mux.request_limits(*self._first_limits)
         mux.select(self.selection.selected)
+        self._requests = PanelRequests(self._events)
         PanelDiagnostics(self).start()
         self._feeder.start()
         self._worker.start()
@@ -101,7 +110,28 @@ class Operator:
         """Mend what is missing: the sources of the mux, the links and types of robots."""
         if self._watch.state != LOST:
             self._meet_mux()
+            self._settle_parameters()
             self._fleet.supervise()
+
+    def _settle_parameters(self):
+        """Read the panel's parameters, and write the list of robots for voice and pad."""
+        robots = list(self.selection.robots)
+        calls = [('getParam', NAMESPACE)]
+        if robots != self._told_robots:
+            calls.append(('setParam', ROBOTS_PARAMETER, robots))
+        try:
+            parameters = MasterApi(rospy.get_name()).call_many(calls)[0]
+        except MasterError as error:
+            rospy.logdebug('the parameters cannot be read now: %s', error)
+            return
+        self._told_robots = robots
+        self.settings, errors = parse_settings(parameters, self.settings)
+        self.recordings.limits = self.settings.recording_limits()
+        errors = tuple(str(error) for error in errors)
+        if errors != self._setting_errors:
+            self._setting_errors = errors
+            for text in errors:
+                rospy.logwarn('%s', text)
 
     def _meet_mux(self):
         """Read the names of the mux's sources, and ask for the mode of the last run."""
@@ -235,7 +265,8 @@ class Operator:
         selected = name in self.selection.selected
         if self._ros == ROS_STARTING or self._mux is None:
             return RobotView(name=name, selected=selected)
-        return self._fleet.view(name, selected)
+        return replace(self._fleet.view(name, selected),
+                       recording=self.recordings.status(name).state == RECORDING)
 
     def view(self):
         """Return the :class:`PanelView` of this moment."""
@@ -246,7 +277,8 @@ class Operator:
         view = PanelView(
             ros=ros, sources=self._sources, mode=mode, stop_all=self._bank.stopped,
             stop_note=self._stop_note, limits=limits or self._first_limits or (0.5, 1.5),
-            robots=tuple(self.robot_view(name) for name in self.selection.robots))
+            robots=tuple(self.robot_view(name) for name in self.selection.robots),
+            camera_bits_per_s=self._fleet.camera_bits_per_s())
         status, level = status_line(view, waits_for, self.master_uri)
         return replace(view, status=status, status_level=level)
 
@@ -276,3 +308,4 @@ class Operator:
         self._fleet.close()
         self._bank.unregister()
         self._mux.unregister()
+        self._requests.unregister()

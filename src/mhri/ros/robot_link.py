@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """One robot as this program hears it: its odometry, its link and the proof of its stops."""
 import importlib
+import math
 import threading
 import time
 
 import rospy
+from sensor_msgs.msg import BatteryState
 
 from mhri.core.link import link_note, link_state
 from mhri.core.stop_proof import StopProof
@@ -14,6 +16,18 @@ from mhri.ros.convert import motion_from_odometry, motion_from_turtle_pose
 
 _READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
             'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
+
+
+def battery_fraction(message):
+    """Return the charge in a ``sensor_msgs/BatteryState`` as a fraction in [0, 1], or None.
+
+    The message asks for a fraction; drivers that write percent are understood, and those that
+    divide by a nominal voltage may say a little over 1 (turtlebot3_core does).
+    """
+    value = message.percentage
+    if not math.isfinite(value) or value < 0.0:
+        return None
+    return min(1.0, value / 100.0 if value > 1.5 else value)
 
 
 class Feed:
@@ -77,7 +91,11 @@ class RobotLink:
         self._pending = None
         self._motion = None
         self._proof = None
+        self._battery = None
         self._feeds = self._open_feeds()
+        self._battery_feeds = [
+            Feed('/{}/{}'.format(name, topic), BatteryState, battery_fraction, self._on_battery)
+            for topic in robot_type.battery]
 
     def _open_feeds(self):
         """Subscribe the odometry topics of the template."""
@@ -98,6 +116,9 @@ class RobotLink:
             if self._proof is not None:
                 self._take()
                 self._proof.on_motion(self._motion, now)
+
+    def _on_battery(self, feed, message, now):
+        self._battery = feed.value(message)
 
     def _take(self):
         """Read the newest message, where it has not been read yet."""
@@ -135,7 +156,7 @@ class RobotLink:
             note=link_note(state, age, self._heard_wall, now - self._added_at),
             linear_mps=motion and motion.linear_mps, angular_rad_s=motion and motion.angular_rad_s,
             heading_rad=motion and motion.heading_rad, x_m=motion and motion.x_m,
-            y_m=motion and motion.y_m, selected=self.gate.rule.selected,
+            y_m=motion and motion.y_m, battery=self._battery, selected=self.gate.rule.selected,
             driven=self.gate.rule.driving and self.gate.reachable(),
             moving=motion is not None and age < 1.0 and not motion.is_standstill(), proof=proof,
             max_linear_mps=limits.linear_mps, max_angular_rad_s=limits.angular_rad_s)
@@ -143,6 +164,6 @@ class RobotLink:
     def close(self):
         """Stop listening and give the velocity topics back (blocking: it asks the master)."""
         self.feeds.close()
-        for feed in self._feeds:
+        for feed in self._feeds + self._battery_feeds:
             feed.unregister()
         self.gate.unregister()

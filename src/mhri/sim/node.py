@@ -3,13 +3,15 @@
 """The simulated robot on ROS: exactly the topics of its template, at the rates of the real one.
 
 Publishes odometry at 50 Hz, IMU at 100 Hz, laser scan at 10 Hz, ``/tf`` at 50 Hz and, where the
-template has one, the battery at 1 Hz; reads every velocity topic of the template. Frames are
-``<robot>/odom``, ``<robot>/base_link``, ``<robot>/imu_link`` and ``<robot>/laser`` (REP-105).
+template has one, the battery at 1 Hz; on request also the true pose at 50 Hz as a motion capture
+system would tell it (``/vrpn_client_node/<robot>/pose``, frame ``world``). Reads every velocity
+topic of the template. Frames are ``<robot>/odom``, ``<robot>/base_link``, ``<robot>/imu_link`` and
+``<robot>/laser`` (REP-105).
 """
 import math
 import time
 
-from geometry_msgs.msg import TransformStamped, Twist
+from geometry_msgs.msg import PoseStamped, TransformStamped, Twist
 from nav_msgs.msg import Odometry
 import numpy as np
 import rospy
@@ -36,9 +38,10 @@ class SimRobot:
     :param laser: :class:`mhri.sim.sensors.Laser`
     :param world: :class:`mhri.sim.world.World`
     :param landmarks: array (n, 3) of x, y, radius [m]
+    :param tracked: whether motion capture sees the robot
     """
 
-    def __init__(self, name, template, body, imu, laser, world, landmarks):
+    def __init__(self, name, template, body, imu, laser, world, landmarks, tracked=False):
         self._name = name
         self._body = body
         self._imu = imu
@@ -56,6 +59,8 @@ class SimRobot:
         self._tf_pub = rospy.Publisher('/tf', TFMessage, queue_size=10)
         self._battery_pub = rospy.Publisher(prefix + template.battery[0], BatteryState,
                                             queue_size=1) if template.battery else None
+        self._mocap_pub = rospy.Publisher('/vrpn_client_node/{}/pose'.format(name), PoseStamped,
+                                          queue_size=1) if tracked else None
         for topic in template.command:
             rospy.Subscriber(prefix + topic, Twist, self._on_twist, queue_size=1, tcp_nodelay=True)
 
@@ -116,6 +121,8 @@ class SimRobot:
         self._publish_imu(dt, stamp)
         if self._odometry_due.at(tick):
             self._publish_odometry(stamp)
+            if self._mocap_pub is not None and self._mocap_pub.get_num_connections():
+                self._publish_true_pose(stamp)
         if self._scan_due.at(tick) and self._scan_pub.get_num_connections():
             self._publish_scan(stamp)
         if self._battery_pub is not None and self._battery_due.at(tick):
@@ -159,6 +166,14 @@ class SimRobot:
         self._scan.header.stamp = stamp
         self._scan.ranges = self._laser.scan(body.x, body.y, body.yaw, discs).tolist()
         self._scan_pub.publish(self._scan)
+
+    def _publish_true_pose(self, stamp):
+        body, message = self._body, PoseStamped()
+        message.header.stamp, message.header.frame_id = stamp, 'world'
+        message.pose.position.x, message.pose.position.y = body.x, body.y
+        message.pose.orientation.z = math.sin(0.5 * body.yaw)
+        message.pose.orientation.w = math.cos(0.5 * body.yaw)
+        self._mocap_pub.publish(message)
 
     def _publish_battery(self, stamp, now):
         left = max(0.0, 1.0 - (now - self._begun) / BATTERY_LIFE_S)

@@ -1,0 +1,116 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The real panel in this process, on a screen and a master of its own, with simulated robots."""
+import subprocess
+import sys
+
+import numpy as np
+from python_qt_binding.QtGui import QImage
+from python_qt_binding.QtWidgets import QApplication
+
+from support.ros_system import System, wait_for
+
+START_S = 60.0
+
+
+class PanelSession:
+    """An operator at the panel; every process and the screen belong to it alone.
+
+    :param launches: the words of one roslaunch each, e.g. ``('sim.launch', 'n:=2')``
+    :param robots: the names of the robots that these bring
+    """
+
+    def __init__(self, launches, robots):
+        self.system = System()
+        self.host = None
+        try:
+            self._start(launches, robots)
+        except BaseException:
+            self.close(*sys.exc_info())
+            raise
+
+    def _start(self, launches, robots):
+        from mhri.demo import Hands
+        from mhri.panel_host import PanelHost
+        from mhri.ros.operator import Operator
+        # Before there is an application: it takes the screen that is named then.
+        self.system.screen()
+        self.system.start_master()
+        self.system.node('mux', '__name:=mux')
+        for words in launches:
+            self.system.launch(*words)
+        self.app = QApplication.instance() or QApplication(['panel'])
+        self.host = PanelHost(Operator(['panel']))
+        self.operator = self.host.operator
+        self.host.panel.resize(1000, 600)
+        self.host.panel.show()
+        self.hands = Hands(self.host.panel)
+        self.host.start(robots)
+        self.until(lambda: all(self.operator.robot_view(name).link == 'live' for name in robots),
+                   START_S, 'live robots')
+        self.until(lambda: self.operator.view().mode, START_S, 'the mux')
+
+    def until(self, condition, timeout_s=START_S, what='the condition'):
+        """Let Qt work until a condition comes true; return what is true."""
+        def turn():
+            self.app.processEvents()
+            return condition()
+        return wait_for(turn, timeout_s, what)
+
+    def open(self, name):
+        """Click a robot's check box, wait for its window, and return that, in front of all."""
+        if name not in self.host.windows:
+            self.hands.click('check_' + name)
+        self.until(lambda: name in self.host.windows, what='the window of ' + name)
+        window = self.host.windows[name]
+        window.raise_()
+        self.until(lambda: window.windowHandle().isExposed(), what='the window to be seen')
+        self.until(lambda: self.operator.feeds(name) is not None, what='the feeds of ' + name)
+        return window
+
+    def switch(self, window, name, on=True):
+        """Click one of a window's switches where it is not as it shall be."""
+        if self.hands.widget(name, window).isChecked() != on:
+            self.hands.click(name, window)
+        assert self.hands.widget(name, window).isChecked() == on
+
+    def picture(self, window, kind):
+        """Show a camera's picture by its switch and wait until it is there and live."""
+        self.switch(window, 'camera_' + kind)
+        camera = window.camera
+        self.until(lambda: camera.picture.frame is not None and camera.picture.frame.kind == kind
+                   and not camera.picture.warning, what='the {} picture'.format(kind))
+        return camera.picture
+
+    def point_at(self, widget, x, y):
+        """Move the pointer of the X server to a place of a widget [px]."""
+        place = widget.mapToGlobal(widget.rect().topLeft())
+        subprocess.run(['xdotool', 'mousemove', '--sync', str(place.x() + round(x)),
+                        str(place.y() + round(y))], check=True, timeout=START_S)
+
+    def seen(self, widget):
+        """Return what the screen shows where a widget is: uint8 (h, w, 3), red, green, blue.
+
+        It is read from the X server: what another window covers is not the widget's.
+        """
+        self.app.processEvents()
+        place = widget.mapToGlobal(widget.rect().topLeft())
+        image = self.app.primaryScreen().grabWindow(
+            0, place.x(), place.y(), widget.width(), widget.height()).toImage()
+        return pixels(image)
+
+    def close(self, *failure):
+        """End everything that was started."""
+        import rospy
+        if self.host is not None:
+            self.host.close()
+        rospy.signal_shutdown('done')
+        self.system.__exit__(*(failure or (None, None, None)))
+
+
+def pixels(image):
+    """Return the pixels of a ``QImage`` as uint8 (h, w, 3), red, green, blue."""
+    image = image.convertToFormat(QImage.Format_RGB888)
+    data = image.constBits().asstring(image.byteCount())
+    rows = np.frombuffer(data, np.uint8).reshape(image.height(), image.bytesPerLine())
+    return rows[:, :3 * image.width()].reshape(image.height(), image.width(), 3).copy()
