@@ -4,6 +4,7 @@
 
 Nothing here sleeps to let something happen: whoever waits, waits for a condition.
 """
+import contextlib
 import os
 import signal
 import socket
@@ -148,6 +149,7 @@ class Stick:
     def __init__(self, topic):
         self._publisher = rospy.Publisher(topic, Joy, queue_size=10, tcp_nodelay=True)
         self._held = None
+        self._frame = ''
         self._changed = threading.Condition()
         self.last_sent = 0.0
         rospy.on_shutdown(self.silence)
@@ -167,7 +169,18 @@ class Stick:
 
     def _send(self, axes, buttons):
         self.last_sent = time.monotonic()
-        self._publisher.publish(Joy(axes=axes, buttons=buttons))
+        message = Joy(axes=axes, buttons=buttons)
+        message.header.frame_id = self._frame
+        self._publisher.publish(message)
+
+    @contextlib.contextmanager
+    def frame(self, frame_id):
+        """Send with this ``header.frame_id`` for a while."""
+        self._frame = frame_id
+        try:
+            yield
+        finally:
+            self._frame = ''
 
     def hold(self, axes, buttons=()):
         """Hold the stick like this from now on; return the time of it."""

@@ -1,14 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The rules of driving: stop-all, dead-man, limits, and whatever may come in any order."""
+from dataclasses import replace
 import random
 
 import pytest
-from test_arbiter import DRIVE, FORWARD, HELD, NEUTRAL, RELEASED, Rig, rig_in
+from test_arbiter import DRIVE, FORWARD, HELD, make_config, NEUTRAL, RELEASED, Rig, rig_in
 
-from mhri.core.arbiter import DRIVING, READY, STOPPED, WAIT_NEUTRAL
+from mhri.core.arbiter import (
+    Arbiter, DRIVING, ENABLING_TIMEOUT_S, READY, STOPPED, WAIT_NEUTRAL)
 from mhri.core.limits import Velocity, ZERO
-from mhri.core.profile import JoyRefused
+from mhri.core.profile import Axis, JoyRefused, Profile
 
 
 def test_stop_all_is_released_only_with_the_active_source_at_neutral():
@@ -260,3 +262,131 @@ def test_no_order_of_events_moves_a_robot_that_must_rest(seed):
         oracle.check(sent, must_rest)
         moved += oracle.moving
     assert moved > 30, 'the sequence says nothing if nothing ever moved'
+
+
+# Hand-over: whoever takes over finds robots that stand still, and starts from neutral.
+
+def enabled_rig(**changes):
+    """A rig whose second source is an enabling pedal."""
+    rig = Rig()
+    rig.arbiter = Arbiter(replace(make_config(), enabling='other', **changes), rig.now)
+    return rig
+
+
+def pedal(rig, pressed):
+    return rig.joy(NEUTRAL, (int(pressed),), name='other', device='/pedal')
+
+
+def test_nothing_moves_without_the_enabling_pedal():
+    rig = enabled_rig()
+    rig.joy(NEUTRAL)
+    assert rig.arbiter.waits_for(rig.now) == 'enabling'
+    assert rig.joy(FORWARD) in (None, ZERO) and rig.arbiter.state != DRIVING
+    rig.joy(NEUTRAL)
+    pedal(rig, True)
+    assert rig.arbiter.waits_for(rig.now) == ''
+    assert rig.joy(FORWARD) == DRIVE
+
+
+@pytest.mark.parametrize('end', ['released', 'silent', 'without buttons'])
+def test_the_enabling_pedal_released_or_silent_means_zero(end):
+    rig = enabled_rig()
+    rig.joy(NEUTRAL)
+    pedal(rig, True)
+    assert rig.joy(FORWARD) == DRIVE
+    rig.forget()
+    begun = rig.now
+    if end == 'released':
+        assert pedal(rig, False) == ZERO
+    elif end == 'without buttons':
+        assert rig.joy(NEUTRAL, (), name='other', device='/pedal') == ZERO
+    else:
+        for _ in range(6):
+            rig.run(0.1)
+            rig.joy(FORWARD)
+        first = next(time for time, velocity in rig.sent if velocity == ZERO)
+        assert first - begun == pytest.approx(ENABLING_TIMEOUT_S, abs=0.001)
+    assert rig.arbiter.state == WAIT_NEUTRAL and rig.arbiter.cause == 'enabling'
+    pedal(rig, True)
+    assert rig.joy(FORWARD) is None, 'a foot that comes back sets nothing in motion'
+    rig.joy(NEUTRAL)
+    pedal(rig, True)
+    assert rig.joy(FORWARD) == DRIVE
+
+
+def test_a_stick_held_out_before_the_pedal_has_to_be_centred():
+    rig = enabled_rig()
+    rig.joy(NEUTRAL)
+    rig.joy(FORWARD)
+    pedal(rig, True)
+    assert rig.joy(FORWARD) is None and rig.arbiter.waits_for(rig.now) == 'neutral'
+
+
+def test_a_new_limit_does_not_move_a_robot_that_is_not_enabled():
+    rig = enabled_rig()
+    rig.joy(NEUTRAL)
+    pedal(rig, True)
+    rig.joy(FORWARD)
+    rig.now += ENABLING_TIMEOUT_S
+    assert rig.arbiter.set_limits(1.0, 1.0, rig.now) is None
+
+
+def test_a_robot_that_joins_while_others_are_driven_makes_all_wait_for_neutral():
+    rig = rig_in(READY)
+    assert rig.arbiter.on_selection(('a',), rig.now) is None
+    assert rig.joy(FORWARD) == DRIVE
+    assert rig.arbiter.on_selection((), rig.now) is None, 'one that leaves is stopped by its gate'
+    assert rig.arbiter.on_selection(('a', 'b'), rig.now) == ZERO
+    assert rig.arbiter.waits_for(rig.now) == 'neutral' and rig.arbiter.cause == 'selection'
+    assert rig.joy(FORWARD) is None
+    rig.joy(NEUTRAL)
+    assert rig.joy(FORWARD) == DRIVE
+    assert rig.arbiter.on_selection(('b', 'a'), rig.now) is None, 'the same robots'
+
+
+def automatic_rig():
+    rig = Rig()
+    rig.arbiter = Arbiter(replace(make_config(), automatic_switching=True), rig.now)
+    rig.heard(1.0, NEUTRAL)
+    return rig
+
+
+def test_a_device_that_is_touched_takes_over_and_has_to_be_centred_first():
+    rig = automatic_rig()
+    rig.joy(NEUTRAL, name='other')
+    assert rig.arbiter.mode == 'stick', 'lying there is not touching'
+    assert rig.joy(FORWARD, name='other') == ZERO
+    assert rig.arbiter.mode == 'other' and rig.arbiter.state == WAIT_NEUTRAL
+    assert rig.joy(FORWARD, name='other') is None
+    rig.joy(NEUTRAL, name='other')
+    assert rig.joy(FORWARD, name='other') == DRIVE
+
+
+@pytest.mark.parametrize('block', ['moving', 'just stopped', 'stop-all', 'never at neutral',
+                                   'another device', 'switched off'])
+def test_a_device_that_is_touched_does_not_take_over(block):
+    rig = automatic_rig() if block != 'switched off' else rig_in(READY)
+    if block != 'never at neutral':
+        rig.joy(NEUTRAL, name='other', device='/x' if block == 'another device' else '/pad')
+    if block in ('moving', 'just stopped'):
+        rig.joy(FORWARD)
+    if block == 'just stopped':
+        rig.joy(NEUTRAL)
+    if block == 'stop-all':
+        rig.arbiter.engage_stop_all(rig.now)
+        rig.heard(1.0, NEUTRAL)
+    rig.forget()
+    assert rig.joy(FORWARD, name='other') is None and rig.arbiter.mode == 'stick'
+    if block == 'moving':
+        rig.joy(NEUTRAL)
+        rig.heard(1.0, NEUTRAL)
+        assert rig.joy(FORWARD, name='other') is None, 'held out all the while: not touched'
+
+
+def test_another_profile_reads_the_axes_of_its_device():
+    rig = rig_in(READY)
+    swapped = Profile('swapped', Axis(0, -1.0), Axis(1, 1.0))
+    rig.arbiter.on_joy('stick', NEUTRAL, (), ('/pad', 'profile:swapped'), rig.now, swapped)
+    sent = rig.arbiter.on_joy('stick', (-1.0, 0.0), (), ('/pad', 'profile:swapped'), rig.now,
+                              swapped)
+    assert sent == DRIVE

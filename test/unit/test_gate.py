@@ -5,7 +5,7 @@ import random
 
 import pytest
 
-from mhri.core.gate import GateRule, STALE_S
+from mhri.core.gate import GateRule, JOIN_S, STALE_S
 from mhri.core.limits import Velocity, ZERO
 from mhri.core.robot_types import Limits
 
@@ -128,3 +128,57 @@ def test_motion_never_ends_without_a_zero_and_never_begins_unselected(seed):
             assert abs(sent.linear_mps) <= 0.5 + 1e-9 and abs(sent.angular_rad_s) <= 1.0 + 1e-9
         assert not moving or (selected and not stops), 'moves though {}'.format(kind)
         assert moving == gate.driving
+
+
+def joining():
+    """A gate whose robot is selected while others are driven."""
+    gate = GateRule(LIMITS)
+    assert gate.on_command(GO, 1.0) is None
+    assert gate.select(True, 1.02) is None
+    return gate
+
+
+def test_who_joins_a_drive_waits_for_the_zero_of_the_mux():
+    gate = joining()
+    assert gate.on_command(GO, 1.05) is None, 'nobody leaps'
+    assert gate.on_command(ZERO, 1.06) == ZERO
+    assert gate.on_command(GO, 1.5) == GO, 'after neutral, the mux lets all drive'
+
+
+def test_who_joins_a_drive_of_something_that_is_no_mux_joins_a_little_later():
+    """The newest command comes through then, even if it was the last one."""
+    gate = joining()
+    assert gate.on_command(GO, 1.1) is None
+    assert gate.next_tick() == pytest.approx(1.02 + JOIN_S)
+    assert gate.tick(1.02 + JOIN_S - 0.001) is None
+    assert gate.tick(1.02 + JOIN_S) == GO
+    late = joining()
+    assert late.on_command(GO, 1.02 + JOIN_S) == GO
+
+
+def test_a_wait_that_ends_in_silence_starts_nothing():
+    gate = joining()
+    assert gate.tick(1.0 + STALE_S) is None and not gate.driving
+    assert gate.next_tick() is None
+
+
+@pytest.mark.parametrize('end', [lambda gate: gate.select(False, 1.1),
+                                 lambda gate: gate.stop('mux', True, 1.1),
+                                 lambda gate: gate.close(1.1)])
+def test_who_waits_can_still_be_deselected_stopped_and_closed(end):
+    gate = joining()
+    end(gate)
+    assert gate.tick(1.02 + JOIN_S) is None and not gate.driving
+    assert gate.on_command(GO, 1.4) is None
+
+
+def test_who_is_selected_while_nothing_moves_is_driven_at_once():
+    gate = GateRule(LIMITS)
+    gate.on_command(GO, 1.0)
+    gate.on_command(ZERO, 1.1)
+    gate.select(True, 1.2)
+    assert gate.on_command(GO, 1.21) == GO
+    late = GateRule(LIMITS)
+    late.on_command(GO, 1.0)
+    late.select(True, 1.0 + STALE_S)
+    assert late.on_command(GO, 1.6) == GO, 'that drive was over'

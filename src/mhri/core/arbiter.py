@@ -15,11 +15,12 @@ States and what leads out of them::
     READY          fresh source at neutral              deflected -> DRIVING
     DRIVING        a command other than zero            neutral or dead-man released -> READY
 
-A silent, suspended, lost or exchanged source, a change of mode and the loss of the master lead from
-READY and DRIVING to WAIT_NEUTRAL; stop-all leads from anywhere to STOPPED. Each of them starts the
-zeros (but for silence at rest, where they have been sent): one at once, more at :data:`REPEAT_HZ`
-for :data:`ZEROS_S`, then silence, since endless zeros would block a robot's own navigation behind
-its ``cmd_vel_mux`` (rqt_common_plugins#180).
+A silent, suspended, lost or exchanged source, a change of mode, a robot that joins the selection,
+an enabling pedal that is released and the loss of the master lead from READY and DRIVING to
+WAIT_NEUTRAL; stop-all leads from anywhere to STOPPED. Each of them starts the zeros (but for
+silence at rest, where they have been sent): one at once, more at :data:`REPEAT_HZ` for
+:data:`ZEROS_S`, then silence, since endless zeros would block a robot's own navigation behind its
+``cmd_vel_mux`` (rqt_common_plugins#180).
 """
 from collections import Counter
 
@@ -33,6 +34,8 @@ DRIVING = 'driving'
 
 REPEAT_HZ = 20.0
 ZEROS_S = 0.5
+# An enabling pedal that has not been heard for so long counts as released.
+ENABLING_TIMEOUT_S = 0.25
 _PERIOD_S = 1.0 / REPEAT_HZ
 
 
@@ -53,6 +56,11 @@ class Arbiter:
         self._stick = None
         self._stick_at = None
         self._device = None
+        self._selected = frozenset()
+        self._enabling = config.enabling
+        self._enabled_at = None
+        self._automatic = config.automatic_switching
+        self._rested = {}
         self._zeros_until = now + ZEROS_S
         self._next_repeat = now
         self.refused = Counter()
@@ -87,7 +95,8 @@ class Arbiter:
         """Say what stands between the operator and moving robots.
 
         :returns: '' (nothing: ready or driving), 'release' (stop-all), 'source' (nothing fresh is
-            heard from the active source), 'neutral' (the stick is not centred) or 'dead_man'
+            heard from the active source), 'neutral' (the stick is not centred), 'enabling' (the
+            enabling pedal is not pressed) or 'dead_man'
         """
         if self._state == STOPPED:
             return 'release'
@@ -95,6 +104,8 @@ class Arbiter:
             return 'source'
         if self._state == WAIT_NEUTRAL:
             return 'neutral'
+        if not self._enabled(now):
+            return 'enabling'
         return '' if self._stick.held else 'dead_man'
 
     @property
@@ -102,25 +113,30 @@ class Arbiter:
         """Event that last led to WAIT_NEUTRAL or STOPPED, e.g. 'stale', 'mode', 'start'."""
         return self._cause
 
-    def on_joy(self, name, axes, buttons, device, now):
+    def on_joy(self, name, axes, buttons, device, now, profile=None):
         """Take in one Joy message of a source.
 
         :param name: the source it came from
         :param device: whatever tells one publisher from another (its ROS name); another publisher
             is a newly connected device
+        :param profile: :class:`mhri.core.profile.Profile` of the device, default that of the source
         :returns: the velocity to send now, or None
         :raises JoyRefused: the message cannot be used; it changes nothing but the counters
         :raises KeyError: no such source
         """
         source = self._sources[name]
-        if name != self._mode:
+        if name == self._enabling:
+            return self._on_enabling(bool(buttons and buttons[0]), now)
+        if name != self._mode and not self._automatic:
             self.ignored[name] += 1
             return None
         try:
-            stick = source.profile.read(axes, buttons)
+            stick = (profile or source.profile).read(axes, buttons)
         except JoyRefused as refusal:
             self.refused[refusal.kind] += 1
             raise
+        if name != self._mode:
+            return self._on_other(name, stick, device, now)
         exchanged = self._device not in (None, device) and self._state in (READY, DRIVING)
         was_fresh = self._fresh(now)
         self._stick, self._stick_at, self._device = stick, now, device
@@ -139,13 +155,57 @@ class Arbiter:
             idle = self._cause == 'idle'
             self._enter(READY)
             return self._later_zero(now) if idle else self._zeros(now)
-        if stick.is_zero():
+        if stick.is_zero() or not self._enabled(now):
             if self._state == DRIVING:
                 self._enter(READY)
                 return self._zeros(now)
             return self._later_zero(now)
         self._enter(DRIVING)
         return self._drive(now)
+
+    def _on_enabling(self, pressed, now):
+        """Take in the enabling pedal.
+
+        Released, everything stops; pressed while the stick is deflected, nothing moves before that
+        has been centred: a foot that comes back must not set robots in motion.
+        """
+        was, self._enabled_at = self._enabled(now), now if pressed else None
+        if was and not pressed and self._state == DRIVING:
+            return self._interlock('enabling', now)
+        if pressed and not was and self._state == READY and not self._stick.neutral:
+            self._enter(WAIT_NEUTRAL, 'enabling')
+        return None
+
+    def _enabled(self, now):
+        """Tell whether the enabling pedal allows motion; without one, it is always allowed."""
+        return self._enabling is None or (
+            self._enabled_at is not None and now - self._enabled_at < ENABLING_TIMEOUT_S)
+
+    def _on_other(self, name, stick, device, now):
+        """Change over to a source that is touched while everything stands still.
+
+        It has to be seen at neutral first, and once more before it moves anything. One that is
+        deflected while another drives has to be let go before it counts.
+        """
+        still = self._state in (READY, WAIT_NEUTRAL) and now >= self._zeros_until
+        if stick.neutral:
+            self._rested[name] = device
+        elif self._rested.pop(name, None) == device and still:
+            return self.on_mode(name, now)
+        self.ignored[name] += 1
+        return None
+
+    def on_selection(self, names, now):
+        """Take note of the robots that are selected.
+
+        One that joins while others are driven must not leap: all wait until the stick was centred.
+
+        :returns: the velocity to send now, or None
+        """
+        joined, self._selected = frozenset(names) - self._selected, frozenset(names)
+        if joined and self._state == DRIVING:
+            return self._interlock('selection', now)
+        return None
 
     def on_mode(self, name, now):
         """Change the active source; the one already active is no change.
@@ -159,6 +219,7 @@ class Arbiter:
         if name == self._mode:
             return None
         self._mode = name
+        self._rested.clear()
         self._stick = self._stick_at = self._device = None
         return self._interlock('mode', now)
 
@@ -213,7 +274,7 @@ class Arbiter:
             self.refused['speed_limit'] += 1
             raise ValueError(problem)
         self._limits = (linear_mps, angular_rad_s)
-        if self._state == DRIVING and self._fresh(now):
+        if self._state == DRIVING and self._fresh(now) and self._enabled(now):
             return self._drive(now)
         return None
 
@@ -224,6 +285,8 @@ class Arbiter:
         """
         if self._state == DRIVING and not self._fresh(now):
             return self._interlock('stale', now)
+        if self._state == DRIVING and not self._enabled(now):
+            return self._interlock('enabling', now)
         if self._state == READY and not self._fresh(now):
             # At rest already, and said so: a device that speaks now and then must not cause
             # zeros without end.
@@ -242,6 +305,8 @@ class Arbiter:
         times = [now + 1.0]
         if self._state in (READY, DRIVING):
             times.append(self._stick_at + self.source.timeout_s)
+        if self._state == DRIVING and self._enabling is not None:
+            times.append(self._enabled_at + ENABLING_TIMEOUT_S)
         if self._state == DRIVING or now < self._zeros_until:
             times.append(self._next_repeat)
         return min(times)

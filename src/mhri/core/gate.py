@@ -4,6 +4,9 @@
 from mhri.core.limits import ZERO, clamp_keeping_curvature
 
 STALE_S = 0.5
+# A robot that is selected while others are driven waits for the zero by which the mux answers, or
+# for so long.
+JOIN_S = 0.3
 
 
 class GateRule:
@@ -22,6 +25,9 @@ class GateRule:
         self._closed = False
         self._last = ZERO
         self._last_at = None
+        self._heard = ZERO
+        self._heard_at = None
+        self._joins_at = None
 
     @property
     def selected(self):
@@ -40,13 +46,29 @@ class GateRule:
 
     def on_command(self, velocity, now):
         """Take in the one velocity command; return what this robot gets of it, or None."""
-        if self._closed or self._stops or not self._selected:
+        self._heard, self._heard_at = velocity, now
+        if velocity.is_zero() or self._joins_at is not None and now >= self._joins_at:
+            self._joins_at = None
+        return self._forward(velocity, now)
+
+    def _forward(self, velocity, now):
+        """Return what the robot gets of a command: nothing while anything is in the way."""
+        if self._closed or self._stops or not self._selected or self._joins_at is not None:
             return None
         return self._say(clamp_keeping_curvature(velocity, self.limits), now)
 
     def select(self, selected, now):
-        """Select or deselect the robot; deselected, it gets one zero."""
+        """Select or deselect the robot; deselected, it gets one zero.
+
+        One that is selected in the middle of a drive joins at the next zero (the mux sends one and
+        waits for neutral), or after :data:`JOIN_S` where whoever drives is not our mux.
+        """
         was, self._selected = self._selected, selected
+        if not selected:
+            self._joins_at = None
+        elif not was:
+            under_way = not self._heard.is_zero() and now - self._heard_at < STALE_S
+            self._joins_at = now + JOIN_S if under_way else None
         if was and not selected and not self._closed and not self._stops:
             return self._say(ZERO, now)
         return None
@@ -73,16 +95,22 @@ class GateRule:
         return self._say(ZERO, now)
 
     def tick(self, now):
-        """Let time pass: commands that went stale are ended by one zero."""
+        """Let time pass: commands that went stale are ended by one zero; who waited joins."""
+        if self._joins_at is not None and now >= self._joins_at:
+            self._joins_at = None
+            if now - self._heard_at < STALE_S:
+                return self._forward(self._heard, now)
         if self.driving and now - self._last_at >= STALE_S and not self._closed:
             return self._say(ZERO, now)
         return None
 
     def next_tick(self):
         """Return when :meth:`tick` has to be called next [s], or None: not before a command."""
-        if self.driving and not self._closed:
-            return self._last_at + STALE_S
-        return None
+        if self._closed:
+            return None
+        if self._joins_at is not None:
+            return self._joins_at
+        return self._last_at + STALE_S if self.driving else None
 
     def _say(self, velocity, now):
         self._last, self._last_at = velocity, now

@@ -28,12 +28,19 @@ class Source:
 
 @dataclass(frozen=True)
 class MuxConfig:
-    """The content of ``mux.yaml``: the sources in order, the first mode and the first limits."""
+    """The content of ``mux.yaml``: the sources in order, the first mode and the first limits.
+
+    ``enabling`` is the source whose first button is a dead-man for whatever drives, None where
+    there is none. With ``automatic_switching``, a source that is touched while everything stands
+    still becomes the active one.
+    """
 
     sources: Tuple[Source, ...]
     default: str
     linear_mps: float
     angular_rad_s: float
+    enabling: Optional[str] = None
+    automatic_switching: bool = False
 
 
 def parse_mux_config(text, origin, read_profile):
@@ -58,10 +65,19 @@ def parse_mux_config(text, origin, read_profile):
         raise section.error('default', 'no source {!r}'.format(default))
     limits = section.section('speed_limit')
     config = MuxConfig(tuple(sources), default, limits.number('linear_mps', 0.0, 5.0),
-                       limits.number('angular_rad_s', 0.0, 10.0))
+                       limits.number('angular_rad_s', 0.0, 10.0),
+                       _enabling(section, sources), section.flag('automatic_switching', False))
     limits.close()
     section.close()
     return config
+
+
+def _enabling(section, sources):
+    """Read the name of the enabling source, None where there is none."""
+    name = section.text('enabling', None)
+    if name is not None and name not in [source.name for source in sources]:
+        raise section.error('enabling', 'no source {!r}'.format(name))
+    return name
 
 
 def _source(row, read_profile):

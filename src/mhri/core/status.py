@@ -68,6 +68,7 @@ def _driving(view, waits_for):
     who = '{} of {} robots'.format(count, len(view.robots))
     words = {'neutral': 'centre the stick to drive',
              'source': 'nothing is heard from it yet',
+             'enabling': 'press the enabling pedal to drive',
              'dead_man': 'hold the dead-man button to drive'}.get(waits_for)
     if words:
         return '{}  \u2013  {}  \u2013  {}'.format(who, label, words), \

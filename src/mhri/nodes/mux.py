@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The executable ``mux``: reads its parameters and runs :class:`mhri.ros.mux.Mux`."""
+from dataclasses import replace
 import signal
 import sys
 
@@ -31,6 +32,21 @@ def config_path(argv):
     return MasterApi(name, timeout_s=5.0).call_many([('getParam', name + '/config')])[0] or ''
 
 
+def adjusted(config):
+    """Return the configuration with what the node's parameters say instead of the file.
+
+    :raises ConfigError: a parameter that cannot be used
+    """
+    enabling = rospy.get_param('~enabling', config.enabling or '')
+    automatic = rospy.get_param('~automatic_switching', config.automatic_switching)
+    if enabling and enabling not in [source.name for source in config.sources]:
+        raise ConfigError(rospy.resolve_name('~enabling'), '', 'no source {!r}'.format(enabling))
+    if not isinstance(automatic, bool):
+        raise ConfigError(rospy.resolve_name('~automatic_switching'), '',
+                          'expected true or false, got {!r}'.format(automatic))
+    return replace(config, enabling=enabling or None, automatic_switching=automatic)
+
+
 def main():
     """Run until shut down; exit with 1 where the sources' file cannot be used."""
     try:
@@ -44,6 +60,10 @@ def main():
     stopped = bool(rospy.get_param(STOP_PARAMETER, False))
     if stopped:
         rospy.logwarn('stop-all was in force when the last mux ended: it still is')
+    try:
+        config = adjusted(config)
+    except ConfigError as error:
+        sys.exit('the mux cannot start: {}'.format(error))
     end_other_muxes()
     Mux(config).start(stopped)
     rospy.spin()

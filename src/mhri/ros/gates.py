@@ -140,6 +140,7 @@ class GateBank:
             now = self._clock()
             for name, gate in self._gates.items():
                 gate.send(gate.rule.select(name in self._selected, now))
+            self._changed.notify()
 
     def deselect_others(self, names):
         """Close the gates of all but these robots; opening is the word of robot_select alone."""

@@ -5,14 +5,16 @@
 Interfaces (all global names; units SI):
 
 - subscribes to each source's topic (``sensor_msgs/Joy``), ``/mux_in/mode_select``
-  (``mhri/ControlMode``) and ``/mux_in/speed_limit`` (``geometry_msgs/Twist``: ``linear.x`` m/s,
-  ``angular.z`` rad/s)
+  (``mhri/ControlMode``), ``/mux_in/speed_limit`` (``geometry_msgs/Twist``: ``linear.x`` m/s,
+  ``angular.z`` rad/s) and ``/robot_controller/robot_select`` (``mhri/RobotSelect``)
 - publishes ``/robot_controller/twist`` (``geometry_msgs/Twist``, on events and at 20 Hz),
   ``/robot_controller/stop_all`` (``std_msgs/Bool``, latched), ``/mux/mode`` (``mhri/ControlMode``,
   latched), ``/mux/speed_limit`` (``geometry_msgs/Twist``, latched), ``/mux/waits_for``
-  (``std_msgs/String``, latched: '' or one of release, source, neutral, dead_man)
+  (``std_msgs/String``, latched: '' or one of release, source, neutral, enabling, dead_man) and
+  ``/panel_in/request`` (``mhri/PanelRequest``: what the pad's buttons ask of the panel)
 - serves ``/mux/set_stop_all`` (``std_srvs/SetBool``)
-- parameters: ``~config`` (path of the sources' YAML, default ``resource/mux.yaml``),
+- parameters: ``~config`` (path of the sources' YAML, default ``resource/mux.yaml``), ``~enabling``
+  and ``~automatic_switching`` (default: what that file says),
   ``/mux/sources`` (written: list of {name, label}), ``/mux/stop_all`` (written, and read at start,
   so that a mux that crashed while everything was stopped comes back stopped)
 """
@@ -25,19 +27,25 @@ from sensor_msgs.msg import Joy
 from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool, SetBoolResponse
 
-from mhri.core.arbiter import Arbiter, REPEAT_HZ, ZEROS_S
+from mhri.core.arbiter import Arbiter, DRIVING, REPEAT_HZ, ZEROS_S
+from mhri.core.buttons import ButtonEdges
 from mhri.core.limits import ZERO
-from mhri.core.profile import JoyRefused
-from mhri.msg import ControlMode
+from mhri.core.profile import JoyRefused, NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL, STOP_ALL
+from mhri.msg import ControlMode, PanelRequest, RobotSelect
 from mhri.ros.convert import to_twist
+from mhri.ros.device_profiles import DeviceProfiles
 from mhri.ros.master_api import MasterError
 from mhri.ros.master_watch import MasterWatch
 from mhri.ros.mux_diagnostics import MuxDiagnostics
 from mhri.ros.mux_takeover import is_superseded
 from mhri.ros.suspender import Suspender
+from mhri.ros.worker import Worker
 
 STOP_PARAMETER = '/mux/stop_all'
 SOURCES_PARAMETER = '/mux/sources'
+# What a button asks of the panel, in the words of its messages.
+_REQUESTS = {NEXT_ROBOT: PanelRequest.NEXT, PREVIOUS_ROBOT: PanelRequest.PREVIOUS,
+             SELECT_ALL: PanelRequest.SELECT_ALL}
 
 
 class Mux:
@@ -60,13 +68,23 @@ class Mux:
         self._stop = rospy.Publisher('/robot_controller/stop_all', Bool, queue_size=10, latch=True)
         self._limit = rospy.Publisher('/mux/speed_limit', Twist, queue_size=10, latch=True)
         self._waits = rospy.Publisher('/mux/waits_for', String, queue_size=10, latch=True)
-        self._suspender = Suspender([source.suspend_service for source in config.sources
-                                     if source.suspend_service])
+        self._ask = rospy.Publisher('/panel_in/request', PanelRequest, queue_size=10,
+                                    tcp_nodelay=True)
+        services = {source.name: source.suspend_service for source in config.sources
+                    if source.suspend_service}
+        self._suspender = Suspender(services.values(), awake=[
+            service for name, service in services.items()
+            if config.automatic_switching or name == config.enabling])
+        self._profiles = DeviceProfiles()
+        self._buttons = ButtonEdges()
+        self._memory = Worker('stop_memory')
         self._watch = MasterWatch(
             on_lost=lambda reason: self._hold('master'),
             parameters={SOURCES_PARAMETER: [{'name': source.name, 'label': source.label}
                                             for source in config.sources]})
         self._config = config
+        self._joys = {}
+        self._own = {source.name: source.profile for source in config.sources}
         self._remembering = threading.Lock()
         self._diagnostics = MuxDiagnostics(self._arbiter, self._changed, self._suspender, clock,
                                            config)
@@ -80,12 +98,16 @@ class Mux:
         if stopped:
             self._arbiter.engage_stop_all(self._clock())
         self._watch.start()
+        self._memory.start()
         self._service = rospy.Service('/mux/set_stop_all', SetBool, self._on_stop_all)
         self._listen('/mux_in/mode_select', ControlMode, self._on_mode, queue_size=10)
         self._listen('/mux_in/speed_limit', Twist, self._on_limit, queue_size=1)
+        self._listen('/robot_controller/robot_select', RobotSelect, self._on_selection,
+                     queue_size=1, tcp_nodelay=True)
         for source in self._config.sources:
-            self._listen(source.topic, Joy, self._on_joy, callback_args=source.name,
-                         queue_size=1, tcp_nodelay=True)
+            self._joys[source.name] = self._listen(
+                source.topic, Joy, self._on_joy, callback_args=source.name, queue_size=1,
+                tcp_nodelay=True)
         self._suspender.activate(self._arbiter.source.suspend_service)
         threading.Thread(target=self._run, name='mux_timer', daemon=True).start()
         self._diagnostics.start()
@@ -93,13 +115,12 @@ class Mux:
             self._announce()
 
     def _listen(self, *args, **kwargs):
-        """Subscribe, unless this mux has been told to end while it was starting.
+        """Subscribe and return that, unless this mux has been told to end while it was starting.
 
         A registration made after a newer mux has taken the name would end that one as well
         (ros_comm#2018).
         """
-        if not self._closing:
-            rospy.Subscriber(*args, **kwargs)
+        return None if self._closing else rospy.Subscriber(*args, **kwargs)
 
     def _announce(self):
         """Publish the latched state anew."""
@@ -125,14 +146,48 @@ class Mux:
 
     def _on_joy(self, message, name):
         """Guard of the thread of one Joy subscriber."""
-        device = message._connection_header.get('callerid') if message._connection_header else None
+        header = message._connection_header or {}
+        device = (header.get('callerid'), message.header.frame_id)
+        switched = False
         try:
+            profile = self._profiles.of(name, message.header.frame_id) or self._own[name]
             with self._changed:
+                self._press(name, device, profile.pressed(message.buttons))
+                before = self._arbiter.mode
                 self._send(self._arbiter.on_joy(
-                    name, message.axes, message.buttons, device, self._clock()))
+                    name, message.axes, message.buttons, device, self._clock(), profile))
+                switched = self._arbiter.mode != before
+                if switched:
+                    self._tell_mode()
         except JoyRefused as refusal:
             # Not while the lock is held: a log that blocks must not hold up a zero.
             rospy.logwarn_throttle(1.0, 'refused from {}: {}'.format(name, refusal))
+        if switched:
+            rospy.loginfo('driving with %s, which was touched', name)
+
+    def _press(self, name, device, pressed):
+        """Do what newly pressed buttons ask for (with the lock held).
+
+        A stop counts from every source; all else from the one that drives.
+        """
+        newly = self._buttons.newly(name, device, pressed)
+        if STOP_ALL in newly:
+            self._send(self._arbiter.engage_stop_all(self._clock()))
+            self._stop.publish(data=True)
+            self._memory.do(self._remember_stop)
+        if name == self._arbiter.mode:
+            for action in newly - {STOP_ALL}:
+                self._ask.publish(action=_REQUESTS[action])
+
+    def _on_selection(self, message):
+        with self._changed:
+            self._send(self._arbiter.on_selection(message.robots, self._clock()))
+
+    def _tell_mode(self):
+        """Publish another mode, and wake and suspend the input nodes (with the lock held)."""
+        self._mode.publish(source=self._arbiter.mode)
+        self._suspender.activate(self._arbiter.source.suspend_service)
+        self._profiles.forget()
 
     def _on_mode(self, message):
         try:
@@ -141,8 +196,9 @@ class Mux:
                 self._send(self._arbiter.on_mode(message.source, self._clock()))
                 changed = self._arbiter.mode != before
                 if changed:
-                    self._mode.publish(source=self._arbiter.mode)
-                self._suspender.activate(self._arbiter.source.suspend_service)
+                    self._tell_mode()
+                else:
+                    self._suspender.activate(self._arbiter.source.suspend_service)
         except KeyError:
             rospy.logwarn_throttle(
                 1.0, 'no source {!r}: the mode stays {!r}. Sources are rows of mux.yaml'.format(
@@ -202,9 +258,16 @@ class Mux:
     def _send_due(self, now):
         """Let the arbiter's time pass; ask a silent input node once more."""
         was_waiting = self._said_waiting
+        if self._arbiter.state == DRIVING and self._is_gone(self._arbiter.mode):
+            self._send(self._arbiter.on_lost(self._arbiter.mode, 'lost', now))
         self._send(self._arbiter.tick(now))
         if self._said_waiting == 'source' and was_waiting == 'source':
             self._suspender.resume_again()
+
+    def _is_gone(self, name):
+        """Tell whether nobody publishes a source any more: its node has ended or was killed."""
+        subscriber = self._joys.get(name)
+        return subscriber is not None and not subscriber.get_num_connections()
 
     def close(self):
         """Stop the robots: a zero now, more for half a second, then nothing ever again.
@@ -220,6 +283,7 @@ class Mux:
             self._twist.publish(zero)
             self._changed.notify()
         self._diagnostics.stop()
+        self._memory.stop()
         self._watch.stop()
         uri = self._service.uri if self._service else None
         for _ in range(int(ZEROS_S * REPEAT_HZ)):

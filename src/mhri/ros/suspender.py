@@ -61,9 +61,11 @@ class Suspender:
     """The ``set_suspended`` services of all input nodes.
 
     :param services: names of services of type ``mhri/SetSuspended``
+    :param awake: those of them that are never suspended
     """
 
-    def __init__(self, services):
+    def __init__(self, services, awake=()):
+        self._awake = frozenset(awake)
         self._callers = {service: _Caller(service) for service in services}
         self._active = None
 
@@ -75,7 +77,7 @@ class Suspender:
         """Resume one service (None: none of them) and suspend all the others."""
         self._active = service
         for name, caller in self._callers.items():
-            caller.wish(name != service)
+            caller.wish(name != service and name not in self._awake)
 
     def resume_again(self):
         """Ask the active node once more: nothing is heard from it, it may have been restarted."""
