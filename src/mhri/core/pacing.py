@@ -1,0 +1,51 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""When an input device's state is published: on change, but not too often, and again while held."""
+
+# At most so often; what changes in between is coalesced and its newest state sent.
+MIN_PERIOD_S = 0.01
+# A stick that is held still sends nothing by itself, and the mux takes silence for a loss.
+REPEAT_S = 0.05
+
+
+class Pacer:
+    """Holds the newest state of a device and says when to publish it.
+
+    Times are seconds of a clock that never goes back. The newest state is never dropped: it is
+    returned by the first :meth:`take` at or after its time.
+    """
+
+    def __init__(self):
+        self._newest = None
+        self._changed = False
+        self._sent_at = None
+
+    def offer(self, state):
+        """Take in a state (anything but None); it replaces one that was not published yet."""
+        self._newest = state
+        self._changed = True
+
+    @property
+    def holding_back(self):
+        """Whether a change waits for its time."""
+        return self._changed
+
+    def due_in(self, now):
+        """Return how long until something is to be published [s], 0.0: now.
+
+        Without any state it is the time of a repetition, so that a caller has something to wait by.
+        """
+        if self._newest is None:
+            return REPEAT_S
+        if self._sent_at is None:
+            return 0.0
+        period_s = MIN_PERIOD_S if self._changed else REPEAT_S
+        return max(0.0, self._sent_at + period_s - now)
+
+    def take(self, now):
+        """Return the state to publish now, or None where it is not time for one."""
+        if self._newest is None or self.due_in(now) > 0.0:
+            return None
+        self._sent_at = now
+        self._changed = False
+        return self._newest

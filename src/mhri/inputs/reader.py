@@ -1,0 +1,66 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What every input device looks like to :class:`mhri.ros.input_node.InputNode`."""
+from dataclasses import dataclass
+from typing import Tuple
+
+
+class DeviceAbsent(Exception):
+    """No device can be opened; the text says what was looked for and the remedy."""
+
+
+class DeviceLost(Exception):
+    """The open device is gone, or must not be used any longer; the text says why."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """The whole state of a device: what a ``sensor_msgs/Joy`` carries.
+
+    ``axes`` are finite, as the driver gives them; ``buttons`` are 0 or 1. ``profile`` is the name
+    of the profile that says what they mean ('' where the source's row says it). ``rest`` are the
+    values of the axes while nobody touches the device, () where all of them rest at 0: a trigger
+    rests at -1, and at 0 it would be a half pressed one.
+    """
+
+    axes: Tuple[float, ...]
+    buttons: Tuple[int, ...] = ()
+    profile: str = ''
+    rest: Tuple[float, ...] = ()
+
+    def neutral(self):
+        """Return the reading of the same device with nothing touched."""
+        rest = self.rest + (0.0,) * (len(self.axes) - len(self.rest))
+        return Reading(rest[:len(self.axes)], (0,) * len(self.buttons), self.profile, self.rest)
+
+
+class Reader:
+    """A device that is read on one thread: every method is called on that thread alone.
+
+    ``kind`` is the word for it in messages, e.g. 'pad'; ``note`` what the operator has to know of
+    the open device ('': nothing), e.g. that it waits for something.
+    """
+
+    kind = 'device'
+    note = ''
+
+    def open(self):
+        """Open the device and return a text that describes it; the next reading is a whole one.
+
+        :raises DeviceAbsent: there is none, or it cannot be opened
+        """
+        raise NotImplementedError
+
+    def read(self, timeout_s):
+        """Wait at most so long for a change.
+
+        :param timeout_s: 0.0: only look
+        :returns: a :class:`Reading`, or None where nothing changed, or the device's state is not
+            known yet
+        :raises DeviceLost: it is gone; it has to be closed and opened again
+        """
+        raise NotImplementedError
+
+    def close(self):
+        """Give the device back; does nothing where none is open."""
+        raise NotImplementedError
