@@ -1,0 +1,100 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The foot pedal as an input device: which one, of whichever kind, and its readings.
+
+Axes and buttons are those of the contract (see :mod:`mhri.core.pedals`), whatever the device, so
+that no profile has to go with them.
+"""
+import os
+
+from mhri.core.pedal_choice import choose, NoPedal, Wish
+from mhri.core.pedals import AXES, DRIVE, KEYS
+from mhri.inputs.pedal_axes import PedalAxes
+from mhri.inputs.pedal_keys import PedalKeys
+from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader
+
+
+class PedalReader(Reader):
+    """Opens the pedal that is wanted and reads it; the ``want_`` methods may be called anywhere.
+
+    :param profiles: function returning {name: PedalProfile}; called whenever a pedal is looked
+        for, so that a new profile needs no restart
+    :param role: DRIVE or ENABLE
+    :param sources: {kind: PedalKeys or PedalAxes}, the shipped ones where None
+    """
+
+    kind = 'foot pedal'
+
+    def __init__(self, profiles, role=DRIVE, sources=None):
+        self._profiles = profiles
+        self._wish = self._opened_for = Wish()
+        self._sources = sources or {KEYS: PedalKeys(role), AXES: PedalAxes(role)}
+        self._open = None
+
+    def want_device(self, device):
+        """Choose the pedal: see :class:`mhri.core.pedal_choice.Wish`; '' leaves it to the profiles.
+
+        One that is open already is given up within 50 ms like a lost one.
+        """
+        self._wish = Wish(str(device).strip(), self._wish.profile)
+
+    def want_profile(self, profile):
+        """Choose the profile by its name; '' is the one that is for the device."""
+        self._wish = Wish(self._wish.device, str(profile).strip())
+
+    def open(self):
+        """Open the pedal; see :class:`mhri.inputs.reader.Reader`."""
+        self.close()
+        self._opened_for = self._wish
+        profiles = self._profiles()
+        candidates, problems = self._look(profiles)
+        try:
+            candidate, profile = choose(candidates, self._resolved(candidates), profiles)
+        except NoPedal as problem:
+            raise DeviceAbsent('; '.join([str(problem)] + problems))
+        source = self._sources[candidate.kind]
+        source.open(candidate, profile)
+        self._open = source
+        return '{} with profile {}'.format(candidate, profile.name)
+
+    @property
+    def note(self):
+        """What the operator has to do before every pedal counts, '' where nothing."""
+        source = self._open
+        return source.note if source else ''
+
+    def _resolved(self, candidates):
+        """Return the wish, a link to a device (as in /dev/input/by-id) taken for the device."""
+        wish = self._opened_for
+        if wish.device.startswith('/'):
+            for path in (place for item in candidates for place in item.places):
+                if os.path.realpath(path) == os.path.realpath(wish.device):
+                    return Wish(path, wish.profile)
+        return wish
+
+    def _look(self, profiles):
+        """Return (candidates, problems) of all kinds of devices that are asked for."""
+        wished = profiles.get(self._opened_for.profile)
+        candidates, problems = [], []
+        for kind, source in self._sources.items():
+            if wished is not None and kind != wished.kind:
+                continue
+            try:
+                candidates += source.look()
+            except DeviceAbsent as problem:
+                problems.append(str(problem))
+        return candidates, problems
+
+    def read(self, timeout_s):
+        """Wait for a change; see :class:`mhri.inputs.reader.Reader`."""
+        if self._open is None:
+            raise DeviceLost('no foot pedal is open')
+        if self._wish != self._opened_for:
+            raise DeviceLost('another pedal or profile was asked for')
+        return self._open.read(timeout_s)
+
+    def close(self):
+        """Give the pedal back; see :class:`mhri.inputs.reader.Reader`."""
+        source, self._open = self._open, None
+        if source is not None:
+            source.close()

@@ -1,0 +1,46 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The executable ``mhri_pedal``: the foot pedal, through :class:`mhri.ros.input_node.InputNode`.
+
+Publishes ``/mux_in/pedal`` (``sensor_msgs/Joy``; see :mod:`mhri.core.pedals`), serves
+``/mhri_pedal/set_suspended`` (``mhri/SetSuspended``). Parameters:
+
+- ``~device``: ``vendor:product``, path or part of the name of the pedal; '' (default) is the one
+  that a profile is for
+- ``~profile``: name of a file in ``$ROS_HOME/mhri/pedals`` or ``resource/pedals``, without its
+  ending; '' (default) is the one that is for the device
+- ``~role``: ``drive`` (default), or ``enable``: the pedal only allows the active source to drive,
+  see :mod:`mhri.ros.enabling_node`
+
+The first two take effect within two seconds while the node is resumed.
+"""
+import signal
+import sys
+
+import rospy
+
+from mhri.core.pedals import DRIVE, ENABLE, ROLES
+from mhri.inputs.pedal import PedalReader
+from mhri.ros.enabling_node import EnablingNode
+from mhri.ros.input_node import InputNode
+from mhri.ros.live_parameter import LiveParameter
+from mhri.ros.pedal_profiles import PedalProfiles
+
+
+def main():
+    """Run until shut down; exit with 1 where the role is none."""
+    rospy.init_node('mhri_pedal')
+    # A terminal that is closed must not end the node without a neutral pedal.
+    signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
+    role = rospy.get_param('~role', DRIVE)
+    if role not in ROLES:
+        # Guessing could make a pedal drive that was meant to stop.
+        sys.exit('mhri_pedal cannot start: ~role is {!r}, expected {}'.format(
+            role, ' or '.join(ROLES)))
+    reader = PedalReader(PedalProfiles(), role)
+    node_class = EnablingNode if role == ENABLE else InputNode
+    node = node_class(reader, '/mux_in/pedal', '~set_suspended')
+    LiveParameter('~device', '', reader.want_device, node.resumed).start()
+    LiveParameter('~profile', '', reader.want_profile, node.resumed).start()
+    node.start()
+    rospy.spin()
