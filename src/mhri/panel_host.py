@@ -10,6 +10,7 @@ from python_qt_binding.QtGui import QGuiApplication
 from python_qt_binding.QtWidgets import QApplication
 
 from mhri.core.names import tidy_name
+from mhri.core.views import GONE, SILENT
 from mhri.gui.panel import PanelWidget
 from mhri.gui.windows import free_corner, window_class
 from mhri.requests_host import RequestsHost
@@ -39,6 +40,7 @@ class PanelHost(QObject):
         self._window_due = set()
         self._to_add = []
         self._due = []
+        self._lost = set()
         self._stopped = False
         self._mode = None
         self._closed = False
@@ -71,6 +73,7 @@ class PanelHost(QObject):
         panel.mode_requested.connect(self._request_mode)
         panel.stick_moved.connect(operator.send_stick)
         panel.limits_requested.connect(operator.request_limits)
+        panel.talk_requested.connect(operator.talk)
         panel.stop_requested.connect(operator.stop_all)
         panel.release_requested.connect(operator.release)
         self._draw_timer.timeout.connect(self.draw)
@@ -100,6 +103,7 @@ class PanelHost(QObject):
         view = self.operator.view()
         self._mode = view.mode or self._mode
         self.panel.show_view(view)
+        self._feel_losses(view)
         for robot in view.robots:
             if robot.name in self._window_due and robot.type_label:
                 self._open(robot.name)
@@ -116,6 +120,14 @@ class PanelHost(QObject):
             else:
                 self.panel.show_look_result(value)
         self.requests.tell_ends()
+
+    def _feel_losses(self, view):
+        """Shake the pad when a selected robot is lost."""
+        lost = {robot.name for robot in view.robots
+                if robot.selected and robot.link in (SILENT, GONE)}
+        if lost - self._lost:
+            self.operator.alarm()
+        self._lost = lost
 
     def _draw_next(self):
         """Draw one window; the others have their turn later, so that a click never waits for all.

@@ -126,3 +126,23 @@ def test_the_camera_budget_follows_its_parameters(session):
 def test_the_list_is_told_to_voice_and_pad(session):
     import rospy
     session.until(lambda: rospy.get_param('/mhri/robots', None) == ROBOTS)
+
+
+def test_a_lost_robot_shakes_the_pad_once_and_talking_opens_the_ear(session):
+    import rospy
+    from std_msgs.msg import Bool, Empty
+    shakes, talk = [], []
+    ears = [rospy.Subscriber('/mhri_joy/rumble', Empty, shakes.append),
+            rospy.Subscriber('/mhri_voice/push_to_talk', Bool,
+                             lambda message: talk.append(message.data))]
+    session.until(lambda: all(ear.get_num_connections() for ear in ears))
+    session.operator.talk(True)
+    session.until(lambda: talk.count(True) >= 3, what='to be told again while it is held')
+    session.operator.talk(False)
+    session.until(lambda: talk[-1] is False)
+    session.host._select(['bot3'])
+    gone = session.system.start('rosnode', 'kill', '/bot3/base')
+    session.until(lambda: gone.poll() is not None and shakes, what='the shake')
+    session.until(lambda: session.operator.robot_view('bot3').link == 'gone')
+    session.host.draw()
+    assert len(shakes) == 1

@@ -226,3 +226,35 @@ def test_in_a_narrow_dock_the_name_is_the_last_to_give_way(panel, operator, four
     operator.settle()
     title = panel.robot_list.row('bot1').title
     assert title.toolTip() == '' and title.width() >= title.fontMetrics().horizontalAdvance('bot1')
+
+
+def test_push_to_talk_by_button_and_key_and_only_with_the_voice(panel, heard, four_robots):
+    talked = heard(panel.talk_requested)
+    panel.show_view(four_robots)
+    assert not panel.talk_button.isVisible()
+    QTest.keyPress(panel, Qt.Key_T)
+    QTest.keyRelease(panel, Qt.Key_T)
+    assert True not in talked, 'another source drives'
+    panel.show_view(replace(four_robots, mode='voice'))
+    assert panel.talk_button.isVisible()
+    talked.clear()
+    QTest.mousePress(panel.talk_button, Qt.LeftButton)
+    QTest.mouseRelease(panel.talk_button, Qt.LeftButton)
+    assert talked == [True, False]
+    talked.clear()
+    QTest.keyPress(panel, Qt.Key_T)
+    assert talked[-1] is True and panel.talk_button.isDown()
+    panel.drive_keys.release()
+    assert talked[-1] is False and not panel.talk_button.isDown(), 'focus lost, ear closed'
+
+
+@pytest.mark.parametrize('heard_view, words', [
+    (None, 'wake word'),
+    (views.HeardView('robot forward', 'forward 0.5', True), 'heard "robot forward": forward 0.5'),
+    (views.HeardView('forward', 'forward 0.5', False, 'no wake word'), 'no wake word'),
+    (views.HeardView('well', '', False, ''), 'not a command')])
+def test_what_was_heard_is_told_while_the_voice_drives(panel, four_robots, heard_view, words):
+    panel.show_view(replace(four_robots, mode='voice', heard=heard_view))
+    assert words in panel.drive_note.text()
+    panel.show_view(replace(four_robots, mode='joy', heard=heard_view))
+    assert words not in panel.drive_note.text()

@@ -41,7 +41,7 @@ def test_file_says_its_licence_and_its_arguments(path):
 def test_host_by_default():
     config = load(MHRI)
     found = nodes(config)
-    assert sorted(found) == ['/mux', '/panel']
+    assert sorted(found) == ['/mhri_joy', '/mhri_pedal', '/mux', '/panel']
     assert found['/panel'].required and '--gui auto' in found['/panel'].args
     assert '--demo ' not in found['/panel'].args + ' '
     assert not found['/mux'].respawn, 'two hosts on one master would fight for its name'
@@ -62,7 +62,13 @@ def test_panels_command_line(arguments, said, unsaid):
 
 
 def test_arguments_of_the_host():
-    assert sorted(nodes(load(MHRI, 'gui:=none'))) == ['/mux']
+    assert sorted(nodes(load(MHRI, 'gui:=none', 'inputs:=none'))) == ['/mux']
+    assert sorted(nodes(load(MHRI, 'gui:=none', 'inputs:=joy'))) == ['/mhri_joy', '/mux']
+    enabled = load(MHRI, 'enabling:=pedal').params
+    assert enabled['/mhri_pedal/role'].value == 'enable'
+    assert enabled['/mux/enabling'].value == 'pedal'
+    assert load(MHRI, 'automatic_switching:=true').params['/mux/automatic_switching'].value is True
+    assert '/mux/automatic_switching' not in load(MHRI).params, "the file's word counts then"
     assert not nodes(load(MHRI, 'required:=false'))['/panel'].required
     assert load(MHRI, 'mux_config:=/x.yaml').params['/mux/config'].value == '/x.yaml'
 

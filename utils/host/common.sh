@@ -24,6 +24,7 @@ DEBIAN_RUN=(
   python3-std-msgs python3-geometry-msgs python3-sensor-msgs python3-nav-msgs python3-std-srvs
   python3-tf2-msgs python3-rosgraph-msgs python3-diagnostic-msgs python3-diagnostic-updater
   python3-cv-bridge python3-python-qt-binding python3-pyqt5 python3-pyqtgraph python3-pygame
+  python3-evdev
   python3-numpy python3-opencv python3-yaml python3-genpy fonts-dejavu-core
   xvfb xauth hostname util-linux
 )

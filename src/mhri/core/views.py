@@ -84,6 +84,16 @@ class StateView:
 
 
 @dataclass(frozen=True)
+class HeardView:
+    """What the voice node heard last, the command it made of it ('' for none), and why not."""
+
+    text: str
+    command: str = ''
+    accepted: bool = False
+    reason: str = ''
+
+
+@dataclass(frozen=True)
 class PanelView:
     """Everything the panel shows at one instant.
 
@@ -91,7 +101,8 @@ class PanelView:
     ``sources`` are (name, label) of the drop-down in order. ``stop_all`` is true while everything
     is stopped. ``limits`` are the operator's speed limits in force [m/s, rad/s]. ``status`` is the
     one line at the bottom, never empty; ``status_level`` one of 'calm', 'attention', 'stopped'.
-    ``camera_bits_per_s`` is what all pictures on show take of the network.
+    ``camera_bits_per_s`` is what all pictures on show take of the network. ``heard`` is what the
+    voice node heard last, None before that.
     """
 
     ros: str = ROS_STARTING
@@ -104,3 +115,4 @@ class PanelView:
     status_level: str = 'calm'
     robots: Tuple[RobotView, ...] = ()
     camera_bits_per_s: float = 0.0
+    heard: Optional[HeardView] = None

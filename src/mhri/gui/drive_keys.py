@@ -24,6 +24,7 @@ _DIGIT_POSITIONS = {code: (code - 9) % 10 for code in range(10, 20)}
 _DIGITS = {int(Qt.Key_0) + digit: digit for digit in range(10)}
 _ENTER = (int(Qt.Key_Return), int(Qt.Key_Enter))
 _SPACE = int(Qt.Key_Space)
+_TALK = int(Qt.Key_T)
 
 _KEYS = frozenset((QEvent.KeyPress, QEvent.KeyRelease, QEvent.ShortcutOverride))
 # After one of these the releases of held keys may go to somebody else.
@@ -79,9 +80,10 @@ class DriveKeys(QObject):
     """Event filter for the application: ``QApplication.instance().installEventFilter(keys)``.
 
     Arrows, and W A S D by their place, hold the stick; several at once add up. Space centres it:
-    the keys held then are dead until released. Digits are the switches of the robots. Return
-    activates the focused button, since space never does. Without effect while a text field has the
-    focus or a list is open, and with Ctrl, Alt or Meta; but Shift+Space stops everything, always.
+    the keys held then are dead until released. T held is push-to-talk. Digits are the switches of
+    the robots. Return activates the focused button, since space never does. Without effect while a
+    text field has the focus or a list is open, and with Ctrl, Alt or Meta; but Shift+Space stops
+    everything, always.
 
     :param panel: the panel; a key that no widget has the focus for is its own
     """
@@ -96,6 +98,8 @@ class DriveKeys(QObject):
     robot_pressed = Signal(int)
     #: the digit 0
     all_pressed = Signal()
+    #: T was pressed or let go (push-to-talk)
+    talk_changed = Signal(bool)
 
     def __init__(self, panel):
         super().__init__(panel)
@@ -103,6 +107,12 @@ class DriveKeys(QObject):
         self._held = {}
         self._dead = set()
         self._deflection = (0.0, 0.0)
+        self._talk = None
+
+    @property
+    def talking(self):
+        """Whether T is held."""
+        return self._talk is not None
 
     def deflection(self):
         """Return (forward, turn) as held by the keys now."""
@@ -112,6 +122,7 @@ class DriveKeys(QObject):
         """Count every key as released; one that is still down has to be pressed again."""
         self._held.clear()
         self._dead.clear()
+        self._set_talk(None)
         self._update()
 
     def centre(self):
@@ -160,6 +171,10 @@ class DriveKeys(QObject):
     def _on_release(self, event):
         """Take a release wherever it arrives, so that no key is held for ever."""
         identity = _identity(event)
+        if identity == self._talk:
+            if not event.isAutoRepeat():
+                self._set_talk(None)
+            return True
         if identity not in self._held and identity not in self._dead:
             return False
         if not event.isAutoRepeat():
@@ -190,6 +205,8 @@ class DriveKeys(QObject):
             return self.centre_pressed.emit
         if key in _ENTER:
             return self._enter_action(focus)
+        if key == _TALK:
+            return lambda: self._set_talk(_identity(event))
         direction = _direction(event)
         if direction is not None:
             if key in _ARROWS and self._keeps_arrows(focus):
@@ -211,6 +228,13 @@ class DriveKeys(QObject):
         if isinstance(focus, QAbstractButton) and focus.isEnabled():
             return focus.click
         return focus.showPopup if isinstance(focus, QComboBox) else None
+
+    def _set_talk(self, identity):
+        """Hold the key of push-to-talk, or let it go (None)."""
+        changed = (identity is None) != (self._talk is None)
+        self._talk = identity
+        if changed:
+            self.talk_changed.emit(identity is not None)
 
     def _press(self, identity, direction):
         """Hold a key."""

@@ -19,7 +19,7 @@ from mhri.gui.status_line import StatusLine
 from mhri.gui.stop_bar import StopBar
 from mhri.gui.virtual_joystick import VirtualJoystick
 
-VIRTUAL_JOYSTICK = 'joy'
+VIRTUAL_JOYSTICK, VOICE = 'joy', 'voice'
 NUMBERS_PERIOD_S = 0.25
 RECORD = 'Record selected'
 STOP_RECORDING = 'Stop recording ({})'
@@ -56,6 +56,8 @@ class PanelWidget(QWidget):
     mode_requested = Signal(str)
     #: forward (ahead +) and turn (left +), each in [-1, 1]; at once on every change
     stick_moved = Signal(float, float)
+    #: push-to-talk: held or let go
+    talk_requested = Signal(bool)
     #: m/s, rad/s
     limits_requested = Signal(float, float)
     stop_requested = Signal()
@@ -65,6 +67,7 @@ class PanelWidget(QWidget):
         super().__init__(parent)
         self._view = PanelView()
         self._stick = (0.0, 0.0)
+        self._talk_pressed = False
         self._numbers = Pace(NUMBERS_PERIOD_S)
         self._build(ui_dir)
         self._connect()
@@ -80,7 +83,8 @@ class PanelWidget(QWidget):
         self.setFocusPolicy(Qt.ClickFocus)
         touch = theme.touch_size(self)
         for button in (self.look_button, self.add_button, self.all_button, self.none_button,
-                       self.record_button, self.remove_button, self.name_edit, self.mode_combo):
+                       self.record_button, self.remove_button, self.name_edit, self.mode_combo,
+                       self.talk_button):
             button.setMinimumHeight(touch)
             if isinstance(button, QPushButton):
                 button.setFocusPolicy(Qt.TabFocus)
@@ -115,6 +119,9 @@ class PanelWidget(QWidget):
         self.speed_limits.limits_requested.connect(self.limits_requested)
         self.stop_bar.stop_requested.connect(self._on_stop)
         self.stop_bar.release_requested.connect(self.release_requested)
+        self.talk_button.pressed.connect(self._press_talk)
+        self.talk_button.released.connect(self._let_talk_go)
+        self.drive_keys.talk_changed.connect(self._tell_talk)
         self.joystick.moved.connect(self._on_stick)
         self.drive_keys.moved.connect(self._on_stick)
         self.drive_keys.centre_pressed.connect(self.centre_stick)
@@ -224,6 +231,22 @@ class PanelWidget(QWidget):
             self.record_requested.emit(
                 [robot.name for robot in self._view.robots if robot.selected])
 
+    def _press_talk(self):
+        """Begin to talk by the button."""
+        self._talk_pressed = True
+        self._tell_talk()
+
+    def _let_talk_go(self):
+        """End talking by the button."""
+        self._talk_pressed = False
+        self._tell_talk()
+
+    def _tell_talk(self, *_):
+        """Tell whether button or key are held; the key shows as a pressed button."""
+        talking = self._talk_pressed or self.drive_keys.talking
+        self.talk_button.setDown(talking)
+        self.talk_requested.emit(talking and self.talk_button.isVisible())
+
     def _on_stop(self):
         """Stop: the stick goes to neutral first, then everything else is told."""
         self.centre_stick()
@@ -257,10 +280,13 @@ class PanelWidget(QWidget):
         view = self._view
         in_force = view.mode == VIRTUAL_JOYSTICK and not view.stop_all
         self.joystick.show_active(in_force)
+        self.talk_button.setVisible(view.mode == VOICE)
         if view.stop_all:
             note = 'no effect: everything is stopped'
         elif view.mode is None:
             note = 'no effect: the mode is not known yet'
+        elif view.mode == VOICE:
+            note = words.heard_text(view.heard)
         elif not in_force:
             note = 'no effect: {} drives'.format(self.mode_combo.label_of(view.mode))
         else:

@@ -92,6 +92,17 @@ def battery_text(fraction):
     return '{:.0f} %'.format(100.0 * min(1.0, max(0.0, fraction)))
 
 
+def heard_text(heard):
+    """Return what the voice node made of what it heard, e.g. 'heard "robot forward": forward 0.5'.
+
+    :param heard: :class:`mhri.core.views.HeardView`, None before the first
+    """
+    if heard is None:
+        return 'say the wake word, or hold the button and talk; "stop" is always heard'
+    outcome = heard.command if heard.accepted else heard.reason or 'not a command'
+    return 'heard "{}": {}'.format(heard.text, outcome)
+
+
 def bandwidth_text(bits_per_s):
     """Return what pictures take of the network, e.g. "cameras 12.3 Mbit/s"; '' for nothing."""
     if not _is_number(bits_per_s) or bits_per_s <= 0.0:

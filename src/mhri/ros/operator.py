@@ -21,6 +21,7 @@ from mhri.core.settings import NAMESPACE, PanelSettings, parse_settings
 from mhri.core.status import status_line
 from mhri.core.views import (
     PanelView, ROS_CONNECTED, ROS_NO_MASTER, ROS_STARTING, RobotView)
+from mhri.ros.device_client import DeviceClient
 from mhri.ros.fleet import Fleet
 from mhri.ros.gates import GateBank
 from mhri.ros.graph import look_for_robots
@@ -62,6 +63,7 @@ class Operator:
         self._mux = None
         self._watch = None
         self._requests = None
+        self._devices = None
         self._sources = ()
         self._first_limits = None
         self._first_mode = None
@@ -100,6 +102,7 @@ class Operator:
             mux.request_limits(*self._first_limits)
         mux.select(self.selection.selected)
         self._requests = PanelRequests(self._events)
+        self._devices = DeviceClient()
         PanelDiagnostics(self).start()
         self._feeder.start()
         self._worker.start()
@@ -222,6 +225,16 @@ class Operator:
         except (MasterError, ValueError, OSError) as error:
             self._events.put(('look_failed', str(error)))
 
+    def talk(self, pressed):
+        """Open or close the ear of the voice node (push-to-talk)."""
+        if self._devices:
+            self._devices.talk(pressed)
+
+    def alarm(self):
+        """Let the operator feel that a robot was lost."""
+        if self._devices:
+            self._devices.rumble()
+
     def stop_all(self):
         """Stop every robot in the list, now."""
         if self._mux:
@@ -278,7 +291,8 @@ class Operator:
             ros=ros, sources=self._sources, mode=mode, stop_all=self._bank.stopped,
             stop_note=self._stop_note, limits=limits or self._first_limits or (0.5, 1.5),
             robots=tuple(self.robot_view(name) for name in self.selection.robots),
-            camera_bits_per_s=self._fleet.camera_bits_per_s())
+            camera_bits_per_s=self._fleet.camera_bits_per_s(),
+            heard=self._devices.heard() if self._devices else None)
         status, level = status_line(view, waits_for, self.master_uri)
         return replace(view, status=status, status_level=level)
 
@@ -297,6 +311,8 @@ class Operator:
         self._feeder.stop()
         if self._watch:
             self._watch.stop()
+        if self._devices:
+            self._devices.close()
         if self._mux:
             self._mux.close()
             time.sleep(FLUSH_S)
@@ -309,3 +325,4 @@ class Operator:
         self._bank.unregister()
         self._mux.unregister()
         self._requests.unregister()
+        self._devices.unregister()
