@@ -16,6 +16,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 from mhri.ros.resources import read_text, robot_types  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
+INPUTS = ('mhri_joy', 'mhri_pedal')
 EVERYWHERE = ('/rosout', '/clock')
 ROW = re.compile(r'^\| (publishes|subscribes|serves) \| `([^`]+)` \| (?:`([^`]+)`|[^|]+) \|', re.M)
 
@@ -36,7 +37,8 @@ def running(node):
              if node in nodes and name not in EVERYWHERE}
     found |= {('subscribes', name, types[name]) for name, nodes in subscribers
               if node in nodes and name not in EVERYWHERE}
-    found |= {('serves', name, 'std_srvs/SetBool') for name, nodes in services
+    found |= {('serves', name, 'mhri/SetSuspended' if name.endswith('/set_suspended')
+               else 'std_srvs/SetBool') for name, nodes in services
               if node in nodes and not name.endswith(('/get_loggers', '/set_logger_level'))}
     return found
 
@@ -61,6 +63,8 @@ class ApiTest(unittest.TestCase):
         cls.system.screen()
         cls.system.start_master()
         cls.system.node('mux', '__name:=mux')
+        for name in INPUTS:
+            cls.system.node(name, '__name:=' + name)
         for number, kind in enumerate(('turtlebot2', 'turtlebot3_burger')):
             cls.system.launch('turtlebot.launch', 'name:=bot{}'.format(number + 1),
                               'type:=' + kind, 'x:={}'.format(1 + 2 * number), 'y:=1')
@@ -85,11 +89,18 @@ class ApiTest(unittest.TestCase):
             elif '<imu>' in name:
                 wanted.add((direction, '/bot1/' + turtlebot2.imu[0], kind))
             else:
-                wanted.add((direction, name, kind))
+                wanted.add((direction, name.replace('<robot>', 'bot1'), kind))
         try:
             wait_for(lambda: running('/mhri_panel') == wanted, 25, 'the panel')
         except AssertionError:
             self.assertEqual(running('/mhri_panel'), wanted)
+
+    def test_input_nodes(self):
+        for name in INPUTS:
+            try:
+                wait_for(lambda: running('/' + name) == documented(name), 30, name)
+            except AssertionError:
+                self.assertEqual(running('/' + name), documented(name))
 
     def test_simulated_robots(self):
         pages = documented('Simulated robot')

@@ -8,8 +8,8 @@ from mhri.core.profile import parse_profile
 
 GENERIC = 'generic'
 _HEXADECIMAL = set('0123456789abcdef')
-# Kernel drivers show these beside the pad that they belong to; nobody drives with them.
-_NO_PADS = ('motion sensors', 'touchpad', 'accelerometer')
+# What kernel drivers show beside the pad that it belongs to, and what is for the feet.
+_NO_PADS = ('motion sensors', 'touchpad', 'accelerometer', 'pedal', 'rudder', 'footswitch')
 
 
 @dataclass(frozen=True)
