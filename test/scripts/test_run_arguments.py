@@ -52,7 +52,7 @@ def test_wrong_arguments_are_refused(checkout, arguments, said):
     assert said in output and '--help' in output
     assert len(output.strip().splitlines()) <= 2, 'one line that says what is wrong'
     assert checkout.calls == []
-    assert not (checkout.root / '.ws').exists()
+    assert not (checkout.root / 'build').exists()
     assert not list(checkout.root.parent.rglob('hacked'))
 
 

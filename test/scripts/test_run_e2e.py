@@ -125,10 +125,10 @@ def test_demo_drives_three_robots_without_hands(start, tmp_path):
 ], ids=['devel space, path with a space', 'install space'])
 def test_new_checkout_builds_and_runs(start, tmp_path, name, arguments, space):
     shutil.copytree(str(REPO), str(tmp_path / name),
-                    ignore=shutil.ignore_patterns('.ws', '.git', '__pycache__'))
+                    ignore=shutil.ignore_patterns('build', '.git', '__pycache__'))
     run = start('--demo', *arguments, script=tmp_path / name / 'utils' / 'host' / 'mhri_run.sh')
     assert run.wait(240) == 0, run.output
-    place = tmp_path / name / '.ws' / ('src' if space == 'devel' else space)
+    place = tmp_path / name / 'build' / ('src' if space == 'devel' else space)
     assert '{}/'.format(place) in run.output
     assert cv2.imread(str(tmp_path / 'mhri-demo.png')) is not None
 

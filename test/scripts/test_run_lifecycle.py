@@ -65,18 +65,18 @@ def test_install_space_in_a_path_with_a_space_is_refused(checkout):
 
 def test_moved_checkout_is_built_anew(checkout, tmp_path):
     checkout.run(*HERE)
-    (checkout.root / '.ws' / 'build' / 'old').touch()
+    (checkout.root / 'build' / 'build' / 'old').touch()
     moved = tmp_path / 'moved'
     shutil.move(str(checkout.root), str(moved))
     checkout.root = moved
     assert checkout.run(*HERE)[0] == 0
     assert len(checkout.called('catkin_make')) == 2
-    assert not (moved / '.ws' / 'build' / 'old').exists()
+    assert not (moved / 'build' / 'build' / 'old').exists()
 
 
 def test_workspace_of_the_tests_is_left_to_them(checkout):
     checkout.run(*HERE)
-    (checkout.root / '.ws' / 'build' / 'CMakeCache.txt').write_text(
+    (checkout.root / 'build' / 'build' / 'CMakeCache.txt').write_text(
         'CATKIN_ENABLE_TESTING:BOOL=ON\n')
     (checkout.root / 'msg' / 'New.msg').write_text('bool x\n')
     checkout.run(*HERE)
@@ -85,7 +85,7 @@ def test_workspace_of_the_tests_is_left_to_them(checkout):
 
 
 def test_workspace_that_cannot_be_written(checkout):
-    (checkout.root / '.ws').write_text('in the way, even of root')
+    (checkout.root / 'build').write_text('in the way, even of root')
     status, output = checkout.run(*HERE)
     assert status == 1 and 'cannot write to' in output
     assert checkout.called('roslaunch') == []
@@ -100,7 +100,7 @@ def test_from_anywhere_and_through_a_link(checkout, tmp_path, name):
     status, output = checkout.run(*HERE, script=link, cwd=elsewhere)
     assert status == 0, output
     assert checkout.called('roslaunch') == ['roslaunch mhri mhri.launch sim:=0']
-    assert (checkout.root / '.ws').is_dir()
+    assert (checkout.root / 'build').is_dir()
     assert list(elsewhere.iterdir()) == []
 
 
