@@ -144,6 +144,10 @@ class Demo(QObject):
         return lambda: all(self._robot(name).link == LIVE and not self._robot(name).moving
                            for name in names)
 
+    def _reads(self, words):
+        """Return a condition: the line at the bottom of the panel ends with these words."""
+        return lambda: self._operator.view().status.endswith(words)
+
     def _found_three(self):
         """Return a condition: three robots are live; until then it looks again every second."""
         looked_at = [-math.inf]
@@ -186,8 +190,12 @@ class Demo(QObject):
         self._say('deselecting {} and selecting {} while they move'.format(one, three))
         hands.click('check_' + one)
         hands.click('check_' + three)
-        hands.hold_stick(0.4, -0.35)
+        yield 'the panel to ask for a centred stick', self._reads('centre the stick to drive')
         yield '{} to stand still'.format(one), self._rests(one)
+        self._say('{} does not leap: the stick has to be centred first'.format(three))
+        hands.let_go()
+        yield 'the panel to be ready', self._reads('ready')
+        hands.hold_stick(0.4, -0.35)
         yield '{} and {} to move'.format(two, three), self._moves(two, three)
         yield '{} to drive on'.format(three), self._travelled(three, 0.3)
         self._take_screenshot()
