@@ -10,7 +10,7 @@ import sys
 import pytest
 
 REPO = Path(__file__).resolve().parents[2]
-TOOLS = REPO / 'build' / 'tools'  # mhri_test.sh installs there what the system does not package
+TOOLS = REPO / 'build' / '.ws' / 'tools'  # mhri_test.sh installs there what the system does not package
 PYTHON_TREES = ('src', 'test', 'utils', 'scripts')
 
 

@@ -128,7 +128,7 @@ def test_new_checkout_builds_and_runs(start, tmp_path, name, arguments, space):
                     ignore=shutil.ignore_patterns('build', '.git', '__pycache__'))
     run = start('--demo', *arguments, script=tmp_path / name / 'utils' / 'host' / 'mhri_run.sh')
     assert run.wait(240) == 0, run.output
-    place = tmp_path / name / 'build' / ('src' if space == 'devel' else space)
+    place = tmp_path / name / 'build' / '.ws' / ('src' if space == 'devel' else space)
     assert '{}/'.format(place) in run.output
     assert cv2.imread(str(tmp_path / 'mhri-demo.png')) is not None
 

@@ -65,18 +65,18 @@ def test_install_space_in_a_path_with_a_space_is_refused(checkout):
 
 def test_moved_checkout_is_built_anew(checkout, tmp_path):
     checkout.run(*HERE)
-    (checkout.root / 'build' / 'build' / 'old').touch()
+    (checkout.root / 'build' / '.ws' / 'build' / 'old').touch()
     moved = tmp_path / 'moved'
     shutil.move(str(checkout.root), str(moved))
     checkout.root = moved
     assert checkout.run(*HERE)[0] == 0
     assert len(checkout.called('catkin_make')) == 2
-    assert not (moved / 'build' / 'build' / 'old').exists()
+    assert not (moved / 'build' / '.ws' / 'build' / 'old').exists()
 
 
 def test_workspace_of_the_tests_is_left_to_them(checkout):
     checkout.run(*HERE)
-    (checkout.root / 'build' / 'build' / 'CMakeCache.txt').write_text(
+    (checkout.root / 'build' / '.ws' / 'build' / 'CMakeCache.txt').write_text(
         'CATKIN_ENABLE_TESTING:BOOL=ON\n')
     (checkout.root / 'msg' / 'New.msg').write_text('bool x\n')
     checkout.run(*HERE)

@@ -5,7 +5,7 @@
 # screen. Sourced, never run.
 
 REPO=$(cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
-WS="$REPO/build"
+WS="$REPO/build/.ws"
 # The tests point these elsewhere to see what happens on other systems.
 OS_RELEASE=${MHRI_OS_RELEASE:-/etc/os-release}
 NOETIC=${MHRI_NOETIC:-/opt/ros/noetic}
@@ -143,15 +143,16 @@ needs_plain_path() {
     die "$1 cannot work in a path with a space in it: move the checkout ($REPO)"
 }
 
-# build_workspace TESTING [MAKE_TARGET]: builds this checkout in its own workspace, the folder build
-# (the one name that rosrun leaves out where it searches a package); TESTING is ON or OFF.
+# build_workspace TESTING [MAKE_TARGET]: builds this checkout in its own workspace; TESTING is ON or
+# OFF. The workspace is in build, which rosrun leaves out where it searches a package, and hidden,
+# which roslaunch leaves out: either would find every file of the package twice.
 build_workspace() {
   local testing=$1 target=${2:-} stamp="$WS/built" log="$WS/build.log"
   mkdir -p "$WS/src" 2>/dev/null ||
-    die "cannot write to $REPO: the workspace is built there, in the folder build"
+    die "cannot write to $REPO: the workspace is built there, in build/.ws"
   exec {BUILD_LOCK}>"$WS/lock"
   flock "$BUILD_LOCK"
-  ln -sfn ../.. "$WS/src/mhri"
+  ln -sfn ../../.. "$WS/src/mhri"
   if [ -z "$target" ] && [ "$testing" = OFF ] && nothing_changed "$stamp"; then
     exec {BUILD_LOCK}>&-
     return 0

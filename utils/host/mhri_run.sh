@@ -42,7 +42,7 @@ Other
 Without a display (DISPLAY and WAYLAND_DISPLAY not set) the panel runs under Xvfb, 1920x1080.
 
 Works on Debian 12, and on Ubuntu 20.04 with ROS Noetic. sudo is asked for only when packages are
-missing. The workspace is the folder build in the checkout; deleting it costs a minute at the next
+missing. The workspace is build/.ws in the checkout; deleting it costs a minute at the next
 start.
 
 Exit status: 0 ended by itself, 1 could not start or the demo failed, 2 wrong option,

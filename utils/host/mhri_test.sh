@@ -12,9 +12,9 @@ help_text() {
   cat <<'HELP'
 Usage: mhri_test.sh [--only GROUP]... [--bench]
 
-Installs what is missing, builds in the folder build and runs every test, one after the other, on
-this machine alone (127.0.0.1). The last line is the count, e.g. "412 passed, 0 failed"; the exit
-status is 0 only where something ran and nothing failed.
+Installs what is missing, builds in build/.ws and runs every test, one after the other, on this
+machine alone (127.0.0.1). The last line is the count, e.g. "412 passed, 0 failed"; the exit status
+is 0 only where something ran and nothing failed.
 
   --only GROUP   run one group only (may be given again): lint, unit, rostest, gui, scripts, faults,
                  bench
@@ -27,7 +27,7 @@ status is 0 only where something ran and nothing failed.
   faults   what happens when parts are killed; prints the measured times
   bench    each benchmark; prints its table
 
-The result files (JUnit) are in build/build/test_results. Works on Debian 12, and on Ubuntu 20.04
+The result files (JUnit) are in build/.ws/build/test_results. Works on Debian 12, and on Ubuntu 20.04
 with ROS Noetic. The first run needs a network for what is missing, the second none.
 HELP
 }
