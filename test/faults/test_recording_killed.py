@@ -1,0 +1,151 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The whole panel is killed (SIGKILL) while it records a robot: what is in the file then.
+
+The panel is a program of its own on a screen of its own; its check box is found by its looks and
+clicked with the pointer of the X server. What the robot published is known from another node.
+"""
+from glob import glob
+import os
+import subprocess
+import sys
+import threading
+import time
+
+import cv2
+import pytest
+import rosbag
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.ros_system import wait_for  # noqa: E402
+
+IMU = '/bot1/mobile_base/sensors/imu_data'
+START_S = 60.0
+LEAST_ALIKE = 0.8
+
+
+class Listener:
+    """Another node's knowledge of a topic: (number, time of receipt [s]) of every message."""
+
+    def __init__(self, topic):
+        import rospy
+        from sensor_msgs.msg import Imu
+        self._lock = threading.Lock()
+        self._heard = []
+        self._subscriber = rospy.Subscriber(topic, Imu, self._hear, tcp_nodelay=True)
+
+    def _hear(self, message):
+        with self._lock:
+            self._heard.append((message.header.seq, time.time()))
+
+    def heard(self):
+        with self._lock:
+            return list(self._heard)
+
+    def connected(self):
+        return self._subscriber.get_num_connections() > 0
+
+
+@pytest.fixture(scope='module')
+def robot(system):
+    """A screen, the mux and one simulated robot; the listener to its IMU."""
+    system.screen()
+    system.node('mux', '__name:=mux')
+    system.launch('turtlebot.launch', 'name:=bot1', 'type:=turtlebot2')
+    listener = Listener(IMU)
+    wait_for(lambda: len(listener.heard()) > 20, START_S, 'the IMU of the robot')
+    return listener
+
+
+def recordings(system):
+    return glob(os.path.join(system.home, 'bot1_*.bag.active'))
+
+
+def place_of_check():
+    """Return the middle of the check box "Save IMU Data" on the screen [px], or None."""
+    from python_qt_binding.QtWidgets import QApplication
+    from mhri.gui import theme
+    from mhri.gui.switches import SwitchBox
+    from support.panel_session import pixels
+    app = QApplication.instance() or QApplication(['looker'])
+    box = SwitchBox('Save IMU Data')
+    box.setFont(theme.base_font(box.font()))
+    box.resize(box.sizeHint())
+    looks = pixels(box.grab().toImage())
+    screen = pixels(app.primaryScreen().grabWindow(0).toImage())
+    likeness = cv2.matchTemplate(screen, looks, cv2.TM_CCOEFF_NORMED)
+    _, best, _, (x, y) = cv2.minMaxLoc(likeness)
+    return (x + looks.shape[1] // 2, y + looks.shape[0] // 2) if best > LEAST_ALIKE else None
+
+
+def begin_recording(system):
+    """Click the check box until a file is there: a window may still move when it is seen first."""
+    def begun():
+        place = place_of_check()
+        if place is None:
+            return False
+        subprocess.run(['xdotool', 'mousemove', '--sync', str(place[0]), str(place[1]), 'click',
+                        '1'], check=True, timeout=START_S)
+        try:
+            return wait_for(lambda: recordings(system), 15, 'a file')
+        except AssertionError:
+            return False
+    wait_for(begun, START_S, 'the recording', poll_s=0.2)
+
+
+def bag_size(system):
+    paths = recordings(system)
+    return os.path.getsize(paths[0]) if paths else 0
+
+
+@pytest.mark.parametrize('messages', [330, 512])
+def test_at_most_a_second_is_missing(system, robot, messages):
+    panel = system.node('panel', '--fresh', '--select', 'bot1')
+    begin_recording(system)
+    wait_for(lambda: bag_size(system) > 20000, START_S, 'the first chunks of the recording')
+    before = len(robot.heard())
+    wait_for(lambda: len(robot.heard()) - before >= messages, START_S, 'some seconds of it')
+    killed_at = time.time()
+    system.kill(panel, family=False)
+    wait_for(lambda: robot.heard()[-1][1] > killed_at, START_S, 'the robot to go on')
+    path, = recordings(system)
+    found = reindexed(path)
+    published = [number for number, when in robot.heard() if when <= killed_at]
+    missing_s, missing = killed_at - found[-1][1], published[-1] - found[-1][0]
+    print('MEASURED SIGKILL of the panel while it records: {} messages saved, the last {:.2f} s '
+          'old; {} of those published since are missing'.format(len(found), missing_s, missing))
+    numbers = [number for number, _ in found]
+    assert numbers == list(range(numbers[0], numbers[-1] + 1)), 'a hole in the middle'
+    assert len(found) >= messages - 100
+    assert 0.0 <= missing_s <= 1.0 and missing <= 100
+    use(system, path)
+
+
+def reindexed(path):
+    """Mend a file as its owner would; return (number, time of receipt [s]) of what is in it."""
+    done = subprocess.run(['rosbag', 'reindex', path], stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT)
+    assert done.returncode == 0, done.stdout.decode()
+    with rosbag.Bag(path) as bag:
+        return [(message.header.seq, when.to_sec()) for topic, message, when in bag.read_messages()
+                if topic == IMU]
+
+
+def use(system, path):
+    """Check that the tools take the file and that it plays all it holds."""
+    import rospy
+    for tool in ('info', 'check'):
+        done = subprocess.run(['rosbag', tool, path], stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT)
+        assert done.returncode == 0, done.stdout.decode()
+    with rosbag.Bag(path) as bag:
+        held = bag.get_message_count(IMU)
+    played = Listener('/played')
+    player = system.start('rosbag', 'play', '--quiet', '--rate=4', '--queue=10000',
+                          '--wait-for-subscribers', path, '{}:=/played'.format(IMU))
+    wait_for(lambda: len(played.heard()) >= held, START_S, 'the file to be played')
+    assert player.wait(30) == 0 and len(played.heard()) == held
+    played._subscriber.unregister()
+    os.rename(path, path + '.seen')
+    assert not rospy.is_shutdown()
