@@ -10,7 +10,8 @@ import sys
 import pytest
 
 REPO = Path(__file__).resolve().parents[2]
-TOOLS = REPO / 'build' / '.ws' / 'tools'  # mhri_test.sh installs there what the system does not package
+# mhri_test.sh installs there what the system does not package.
+TOOLS = REPO / 'build' / '.ws' / 'tools'
 PYTHON_TREES = ('src', 'test', 'utils', 'scripts')
 
 
