@@ -4,7 +4,6 @@
 """The gate of the contract, on a real master, through real connections."""
 import os
 import socket
-import subprocess
 import sys
 import time
 import unittest
@@ -21,30 +20,9 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 
 from mhri.msg import RobotSelect  # noqa: E402
 from mhri.ros.gates import Gate, GateBank  # noqa: E402
-from mhri.ros.keeper import KeeperLink  # noqa: E402
 from mhri.ros.resources import robot_types  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
-
-
-class Robot:
-    """The receiving end of one velocity topic."""
-
-    def __init__(self, topic):
-        self.received = []
-        self._subscriber = rospy.Subscriber(topic, Twist, self._on_twist, queue_size=50,
-                                            tcp_nodelay=True)
-
-    def _on_twist(self, message):
-        self.received.append((time.monotonic(), message.linear.x, message.angular.z))
-
-    def connected(self):
-        return self._subscriber.get_num_connections() > 0
-
-    def after(self, when):
-        return [entry for entry in list(self.received) if entry[0] >= when]
-
-    def values(self):
-        return [entry[1:] for entry in list(self.received)]
+from support.velocity import VelocityEnd  # noqa: E402
 
 
 class StuckRobot:
@@ -79,7 +57,7 @@ class GateTest(unittest.TestCase):
         cls.stop = rospy.Publisher('/robot_controller/stop_all', Bool, queue_size=10)
 
     def setUp(self):
-        self.bank = GateBank(KeeperLink())
+        self.bank = GateBank()
         self.bank.start()
         wait_for(lambda: all(publisher.get_num_connections() for publisher in (
             self.twist, self.select, self.stop)), what='the gates to listen')
@@ -92,9 +70,9 @@ class GateTest(unittest.TestCase):
         """Add a robot; return its name, its gate and its receiving end."""
         GateTest.number += 1
         name = 'gate{}'.format(GateTest.number)
-        gate = Gate(name, self.types[kind])
+        gate = Gate.of_type(name, self.types[kind])
         self.bank.add(gate)
-        end = Robot('/{}/{}'.format(name, topic or self.types[kind].command[0]))
+        end = VelocityEnd('/{}/{}'.format(name, topic or self.types[kind].command[0]))
         wait_for(end.connected, what='the robot to connect')
         wait_for(gate.reachable, what='the gate to connect')
         return name, gate, end
@@ -225,7 +203,7 @@ class GateTest(unittest.TestCase):
         name, gate, end = self.robot('turtlebot2', second)
         self.choose(name)
         self.assertEqual(self.drive_until(end, 0.2), (0.2, 0.0))
-        first_end = Robot(gate.topics[0])
+        first_end = VelocityEnd(gate.topics[0])
         wait_for(first_end.connected, what='the first topic')
         wait_for(lambda: gate._publishers[0].get_num_connections(), what='the first topic')
         self.assertEqual(self.drive_until(first_end, 0.3), (0.3, 0.0))
@@ -248,7 +226,7 @@ class GateTest(unittest.TestCase):
         name, _, end = self.robot()
         GateTest.number += 1
         dead = 'gate{}'.format(GateTest.number)
-        gate = Gate(dead, self.types['generic'])
+        gate = Gate.of_type(dead, self.types['generic'])
         self.bank.add(gate)
         stuck = StuckRobot(gate.topics[0])
         self.addCleanup(stuck.close)
@@ -266,57 +244,6 @@ class GateTest(unittest.TestCase):
               '{:.2f} ms'.format(len(delays), delays[1500] * 1e3, delays[2970] * 1e3,
                                  delays[-1] * 1e3))
         self.assertLess(delays[2970], 0.25)
-
-    def test_a_killed_panel_leaves_a_keeper_that_sends_the_zeros(self):
-        GateTest.number += 1
-        name = 'gate{}'.format(GateTest.number)
-        end = Robot('/{}/cmd_vel'.format(name))
-        panel = subprocess.Popen([sys.executable, '-c', KILLED_PANEL, name],
-                                 stdout=subprocess.PIPE, universal_newlines=True)
-        self.addCleanup(panel.stdout.close)
-        self.assertEqual(panel.stdout.readline().strip(), 'driving')
-        wait_for(lambda: (0.2, 0.0) in end.values(), what='the robot to be driven')
-        when = time.monotonic()
-        panel.kill()
-        panel.wait()
-        wait_for(lambda: end.values()[-1] == (0.0, 0.0), 3.0, 'the zero of the keeper')
-        first = [entry for entry in end.after(when) if entry[1:] == (0.0, 0.0)][0]
-        print('MEASURED first zero after SIGKILL of the panel: {:.1f} ms'.format(
-            (first[0] - when) * 1e3))
-
-
-KILLED_PANEL = """
-import sys, time
-import rospy
-from mhri.core.limits import Velocity
-from mhri.ros.gates import Gate, GateBank
-from mhri.ros.keeper import KeeperLink
-from mhri.ros.resources import robot_types
-rospy.init_node('killed_panel', disable_signals=True)
-keeper = KeeperLink()
-keeper.start()
-bank = GateBank(keeper)
-bank.start()
-gate = Gate(sys.argv[1], robot_types()[0]['generic'])
-bank.add(gate)
-bank.select([sys.argv[1]])
-while gate._publishers[0].get_num_connections() < 1:
-    time.sleep(0.01)
-import rosgraph
-def keeper_listens():
-    publishers = dict(rosgraph.Master('/x').getSystemState()[0])
-    return len(publishers.get('/' + sys.argv[1] + '/cmd_vel', [])) == 2
-while not keeper_listens():
-    time.sleep(0.02)
-time.sleep(0.3)
-print('driving', flush=True)
-from geometry_msgs.msg import Twist
-while True:
-    message = Twist()
-    message.linear.x = 0.2
-    bank._on_twist(message)
-    time.sleep(0.05)
-"""
 
 
 if __name__ == '__main__':

@@ -4,20 +4,25 @@
 import signal
 import sys
 
-from geometry_msgs.msg import Twist
 import rospy
 
+from mhri.ros.gates import GateBank
 from mhri.ros.keeper import Keeper
-from mhri.ros.master_watch import log_without_master
+from mhri.ros.master_watch import MasterWatch
 
 
 def main():
-    """Run until the panel is gone; the signals that end a panel's group must not end this first."""
+    """Run until the panel is gone; the signals that end a panel's group must not end this first.
+
+    The last word on the command line is the file descriptor to answer by.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if not sys.argv[1:] or not sys.argv[-1].isdigit():
+        sys.exit('gate_keeper: the panel starts this; it is of no use by itself')
     rospy.init_node('mhri_gate_keeper', anonymous=True, disable_signals=True, disable_rostime=True)
-    log_without_master()
-    keeper = Keeper(sys.stdin, lambda topic: rospy.Publisher(
-        topic, Twist, queue_size=1, tcp_nodelay=True))
-    for topic in keeper.run():
-        rospy.logwarn('the panel was killed while driving: zero sent to %s', topic)
+    MasterWatch().start()
+    bank = GateBank()
+    bank.start()
+    for name in Keeper(sys.stdin, int(sys.argv[-1]), bank).run():
+        rospy.logwarn('the panel was killed while driving: zero sent to %s', name)
     rospy.signal_shutdown('the panel has ended')

@@ -71,7 +71,7 @@ class Fleet:
         if old is not None:
             self._bank.remove(name)
             old.close()
-        link = RobotLink(name, robot_type, Gate(name, robot_type, self._on_sent),
+        link = RobotLink(name, robot_type, Gate.of_type(name, robot_type, self._on_sent),
                          BotFeeds(name, robot_type, self._worker))
         with self._lock:
             self._links[name] = link

@@ -12,8 +12,16 @@ import rospy
 from std_msgs.msg import Bool
 
 from mhri.core.gate import GateRule
+from mhri.core.limits import ZERO
 from mhri.msg import RobotSelect
 from mhri.ros.convert import from_twist, to_twist
+
+# A gate that takes over says a zero again that is not older than this.
+REPEAT_ZERO_S = 1.0
+
+
+def _nobody(*_words):
+    """There is no other process to tell."""
 
 
 class Gate:
@@ -23,21 +31,33 @@ class Gate:
     newest wins, and a thread of its own, so that a dead robot delays nobody); what is sent goes to
     the first one that has a subscriber.
 
+    There may be two of a robot, in two processes (:mod:`mhri.ros.keeper`). One of them leads; the
+    other one follows: it decides the same and keeps its words to itself.
+
     :param name: the robot
-    :param robot_type: :class:`mhri.core.robot_types.RobotType`
-    :param on_sent: called with (robot, topic, message) after each message that left; quick
+    :param topics: absolute names of its velocity topics, in order of preference
+    :param limits: :class:`mhri.core.robot_types.Limits`
+    :param on_sent: called with (robot, topic, message) after each message; quick
     """
 
-    def __init__(self, name, robot_type, on_sent=lambda robot, topic, message: None):
+    def __init__(self, name, topics, limits, on_sent=lambda robot, topic, message: None):
         self._on_sent = on_sent
         self.name = name
-        self.rule = GateRule(robot_type.limits)
-        self.topics = ['/{}/{}'.format(name, topic) for topic in robot_type.command]
+        self.topics = list(topics)
+        self.rule = GateRule(limits)
         self._publishers = [rospy.Publisher(topic, Twist, queue_size=1, tcp_nodelay=True)
                             for topic in self.topics]
         self._used = None
+        self._follows = False
+        self._zero_at = None
 
-    def send(self, velocity):
+    @classmethod
+    def of_type(cls, name, robot_type, on_sent=lambda robot, topic, message: None):
+        """Return the gate of a robot of a type (:class:`mhri.core.robot_types.RobotType`)."""
+        topics = ['/{}/{}'.format(name, topic) for topic in robot_type.command]
+        return cls(name, topics, robot_type.limits, on_sent)
+
+    def send(self, velocity, now):
         """Publish what the rule returned (None: nothing)."""
         if velocity is None:
             return
@@ -45,15 +65,31 @@ class Gate:
                        if publisher.get_num_connections()), None)
         message = to_twist(velocity.linear_mps, velocity.angular_rad_s)
         if self._used not in (None, chosen):
-            self._used.publish(Twist())
+            self._publish(self._used, Twist())
         self._used = chosen
+        self._zero_at = now if velocity.is_zero() else None
         if chosen is not None:
-            chosen.publish(message)
+            self._publish(chosen, message)
             self._on_sent(self.name, chosen.name, message)
 
-    def driven_topic(self):
-        """Return the topic that carries something other than zero now, or None."""
-        return self._used.name if self.rule.driving and self._used is not None else None
+    def _publish(self, publisher, message):
+        if not self._follows:
+            publisher.publish(message)
+
+    def follow(self):
+        """From now on the other gate of this robot speaks."""
+        self._follows = True
+
+    def lead(self):
+        """Speak from now on."""
+        self._follows = False
+
+    def take_over(self, now):
+        """Speak again: the other gate has ended, and may have taken its last zero with it."""
+        if self._follows:
+            self.lead()
+            if self._zero_at is not None and now - self._zero_at < REPEAT_ZERO_S:
+                self.send(ZERO, self._zero_at)
 
     def reachable(self):
         """Tell whether any velocity topic has a subscriber."""
@@ -74,12 +110,10 @@ class GateBank:
     ``/robot_controller/robot_select`` (``mhri/RobotSelect``) and ``/robot_controller/stop_all``
     (``std_msgs/Bool``).
 
-    :param keeper: :class:`mhri.ros.keeper.KeeperLink`
     :param on_stop: called with (stopped, when [s]) on each change of stop-all, on a ROS thread
     """
 
-    def __init__(self, keeper, clock=time.monotonic, on_stop=lambda stopped, when: None):
-        self._keeper = keeper
+    def __init__(self, clock=time.monotonic, on_stop=lambda stopped, when: None):
         self._clock = clock
         self._on_stop = on_stop
         self._gates = {}
@@ -88,6 +122,7 @@ class GateBank:
         self._pressed = False
         self._closed = False
         self._subscribers = []
+        self._tell = _nobody
         self._changed = threading.Condition(threading.RLock())
 
     def start(self):
@@ -98,7 +133,8 @@ class GateBank:
             rospy.Subscriber('/robot_controller/robot_select', RobotSelect,
                              lambda message: self.select(message.robots), queue_size=1,
                              tcp_nodelay=True),
-            rospy.Subscriber('/robot_controller/stop_all', Bool, self._on_stop_all, queue_size=10,
+            rospy.Subscriber('/robot_controller/stop_all', Bool,
+                             lambda message: self.hear_stop(message.data), queue_size=10,
                              tcp_nodelay=True)]
         threading.Thread(target=self._run, name='gates', daemon=True).start()
 
@@ -117,21 +153,58 @@ class GateBank:
         with self._changed:
             now = self._clock()
             self._gates[gate.name] = gate
-            self._keeper.open(gate.topics)
             gate.rule.select(gate.name in self._selected, now)
             if self._stopped:
-                gate.send(gate.rule.stop('mux', True, now))
+                gate.send(gate.rule.stop('mux', True, now), now)
             if self._pressed:
-                gate.send(gate.rule.stop('panel', True, now))
+                gate.send(gate.rule.stop('panel', True, now), now)
+            self._tell_of(gate)
 
     def remove(self, name):
         """Close the gate of a robot with a zero; return it, or None where there is none."""
         with self._changed:
             gate = self._gates.pop(name, None)
+            self._tell('close', name)
             if gate is not None:
-                gate.send(gate.rule.close(self._clock()))
-                self._keeper.close(gate.topics)
+                now = self._clock()
+                gate.send(gate.rule.close(now), now)
             return gate
+
+    def gates(self):
+        """Return the gates of all robots."""
+        with self._changed:
+            return tuple(self._gates.values())
+
+    def meet(self, tell):
+        """Tell another process all that its gates have to know, now and from now on.
+
+        :param tell: called with the words of :mod:`mhri.ros.keeper`, under the lock; quick
+        """
+        with self._changed:
+            self._tell = tell
+            tell('select', sorted(self._selected))
+            tell('stopped', self._stopped)
+            tell('press' if self._pressed else 'withdraw')
+            for gate in self._gates.values():
+                self._tell_of(gate)
+
+    def _tell_of(self, gate):
+        limits = gate.rule.limits
+        self._tell('open', gate.name, gate.topics, limits.linear_mps, limits.angular_rad_s)
+
+    def follow(self, name):
+        """Let the gate of a robot, where there is one, follow that of another process."""
+        with self._changed:
+            if name in self._gates:
+                self._gates[name].follow()
+
+    def take_over(self):
+        """Let all gates speak for themselves: the other process has ended."""
+        with self._changed:
+            self._tell = _nobody
+            now = self._clock()
+            for gate in self._gates.values():
+                gate.take_over(now)
 
     def select(self, names):
         """Let exactly these robots through; the others get a zero where they were selected."""
@@ -139,12 +212,13 @@ class GateBank:
             self._selected = frozenset(names)
             now = self._clock()
             for name, gate in self._gates.items():
-                gate.send(gate.rule.select(name in self._selected, now))
+                gate.send(gate.rule.select(name in self._selected, now), now)
             self._changed.notify()
 
     def deselect_others(self, names):
         """Close the gates of all but these robots; opening is the word of robot_select alone."""
         with self._changed:
+            self._tell('hold', sorted(names))
             self.select(self._selected & frozenset(names))
 
     def press_stop(self):
@@ -153,6 +227,7 @@ class GateBank:
             now = self._clock()
             newly = not self.stopped
             self._pressed = True
+            self._tell('press')
             self._stop_gates('panel', True, now)
         if newly:
             self._on_stop(True, now)
@@ -161,11 +236,12 @@ class GateBank:
         """The mux has taken the stop over, or released it: its word alone counts from now on."""
         with self._changed:
             self._pressed = False
+            self._tell('withdraw')
             self._stop_gates('panel', False, self._clock())
 
     def _stop_gates(self, reason, stopped, now):
         for gate in self._gates.values():
-            gate.send(gate.rule.stop(reason, stopped, now))
+            gate.send(gate.rule.stop(reason, stopped, now), now)
 
     def _on_twist(self, message):
         """Forward; the one path on which every millisecond counts."""
@@ -173,21 +249,17 @@ class GateBank:
         with self._changed:
             now = self._clock()
             for gate in self._gates.values():
-                gate.send(gate.rule.on_command(velocity, now))
-            self._tell_keeper()
+                gate.send(gate.rule.on_command(velocity, now), now)
             self._changed.notify()
 
-    def _tell_keeper(self):
-        topics = tuple(gate.driven_topic() for gate in self._gates.values())
-        self._keeper.drive(tuple(topic for topic in topics if topic))
-
-    def _on_stop_all(self, message):
+    def hear_stop(self, stopped):
+        """Take in the word of the mux on stop-all."""
         with self._changed:
             now = self._clock()
             was = self.stopped
-            self._stopped = message.data
-            self._stop_gates('mux', message.data, now)
-            if message.data:
+            self._stopped = stopped
+            self._stop_gates('mux', stopped, now)
+            if stopped:
                 self.withdraw_press()
             newly = self.stopped != was
         if newly:
@@ -199,8 +271,7 @@ class GateBank:
             while not self._closed:
                 now = self._clock()
                 for gate in self._gates.values():
-                    gate.send(gate.rule.tick(now))
-                self._tell_keeper()
+                    gate.send(gate.rule.tick(now), now)
                 times = [time_s for time_s in (gate.rule.next_tick()
                                                for gate in self._gates.values())
                          if time_s is not None]
@@ -212,9 +283,8 @@ class GateBank:
             self._closed = True
             now = self._clock()
             for gate in self._gates.values():
-                gate.send(gate.rule.close(now))
+                gate.send(gate.rule.close(now), now)
             self._changed.notify()
-        self._keeper.end()
 
     def unregister(self):
         """Stop listening (blocking: it asks the master)."""

@@ -1,117 +1,224 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The last zero of a panel that was killed.
+"""The gate keeper: a child process of the panel in which the gates do their work.
 
-A program that gets SIGKILL (or runs out of memory) cannot say zero any more, and not every robot
-has a watchdog (turtlebot3#1154). So the panel keeps a child process which knows the velocity topics
-of the robots being driven. Their pipe breaks the moment the panel is gone, however it went, and the
-child sends the zeros. A panel that ends in good order says so first.
+A panel that draws four cameras and graphs shares one interpreter lock among all that, and a command
+waits its turn; and a panel that gets SIGKILL (or runs out of memory) cannot say zero any more, while
+not every robot has a watchdog (turtlebot3#1154). So the gates are there twice. Those of the keeper
+speak to the robots; those of the panel follow: they decide the same, show what is decided, and speak
+for any robot that the keeper does not reach yet, or when it has ended.
 
-The pipe carries one JSON list per line: ``["open", topic]``, ``["close", topic]``,
-``["driven", [topic, ...]]``, ``["bye"]``.
+- The panel ends, however it went: their pipe breaks, and the keeper sends the zeros.
+- The keeper ends: its pipe breaks, and the panel's gates take over, with a zero where one was just
+  said. A keeper that is silent for :data:`SILENCE_S` is ended.
+
+The pipes carry one JSON list per line. To the keeper: ``["open", name, [topic, ...], m/s, rad/s]``,
+``["close", name]``, ``["select", [name, ...]]``, ``["hold", [name, ...]]`` (close all but these),
+``["stopped", bool]`` (by the mux), ``["press"]``, ``["withdraw"]``, ``["bye"]``. From it:
+``["alive"]`` ten times a second, ``["leads", name]``, ``["closed"]`` after bye.
 """
 import json
 import os
+import select
 import subprocess
 import sys
+import threading
 import time
 
-from geometry_msgs.msg import Twist
 import rospy
 
 from mhri.core.arbiter import REPEAT_HZ, ZEROS_S
+from mhri.core.limits import ZERO
+from mhri.core.robot_types import Limits
+from mhri.ros.gates import Gate
+from mhri.ros.worker import Worker
+
+ALIVE_S = 0.1
+SILENCE_S = 0.5
+START_S = 60.0
+RESTART_S = 1.0
+# The zeros of a panel that ends are due within 50 ms: past this it says them itself.
+CLOSE_S = 0.03
+FLUSH_S = 0.1
 
 
 class KeeperLink:
-    """The panel's end of the pipe; a keeper that cannot be started or has died is done without."""
+    """The panel's side; a keeper that cannot be started, or has ended, is done without.
 
-    def __init__(self):
+    :param bank: :class:`mhri.ros.gates.GateBank` of the panel
+    """
+
+    def __init__(self, bank):
+        self._bank = bank
         self._process = None
-        self._driven = ()
-        self._open = set()
+        self._ending = threading.Event()
+        self._closed = threading.Event()
 
     def start(self):
-        """Start the child (on a ROS thread: it takes a moment)."""
-        command = [sys.executable, '-c', 'from mhri.nodes.gate_keeper import main; main()']
-        try:
-            self._process = subprocess.Popen(command, stdin=subprocess.PIPE,
-                                             start_new_session=True)
-        except OSError as error:
-            rospy.logwarn('no gate keeper: a robot without a watchdog would drive on if this '
-                          'program were killed (%s)', error)
-            return
-        os.set_blocking(self._process.stdin.fileno(), False)
-        for topic in sorted(self._open):
-            self._say('open', topic)
-
-    def open(self, topics):
-        """Let the child connect to the velocity topics of a robot."""
-        for topic in topics:
-            self._open.add(topic)
-            self._say('open', topic)
-
-    def close(self, topics):
-        """Let the child forget them."""
-        for topic in topics:
-            self._open.discard(topic)
-            self._say('close', topic)
-
-    def drive(self, topics):
-        """Tell which topics would need a zero now; said only when it changes."""
-        if topics != self._driven:
-            self._driven = topics
-            self._say('driven', list(topics))
+        """Start the child and look after it, on a thread."""
+        threading.Thread(target=self._run, name='gate_keeper', daemon=True).start()
 
     def end(self):
-        """Say goodbye: the gates have sent their zeros themselves."""
+        """Let the keeper send its zeros and end; returns within :data:`CLOSE_S`."""
+        self._ending.set()
+        if self._process is None:
+            return
         self._say('bye')
-        if self._process:
+        if not self._closed.wait(CLOSE_S):
+            self._bank.take_over()
+
+    def _run(self):
+        while not self._ending.is_set():
+            try:
+                answers = self._spawn()
+            except OSError as error:
+                rospy.logwarn('no gate keeper: a robot without a watchdog would drive on if this '
+                              'program were killed (%s)', error)
+                return
+            self._listen(answers)
+            os.close(answers)
+            if not self._closed.is_set():
+                self._bank.take_over()
             self._process.stdin.close()
-            self._process = None
+            status = self._process.wait()
+            if not self._ending.wait(RESTART_S):
+                rospy.logwarn('the gate keeper has ended (%s): the panel drives the robots itself '
+                              'until there is another one', status)
+
+    def _spawn(self):
+        """Start a child that knows all there is to know; return the pipe it answers by."""
+        answers, answer_to = os.pipe()
+        command = [sys.executable, '-c', 'from mhri.nodes.gate_keeper import main; main()',
+                   str(answer_to)]
+        try:
+            self._process = subprocess.Popen(command, stdin=subprocess.PIPE,
+                                             pass_fds=(answer_to,), start_new_session=True)
+        except OSError:
+            os.close(answers)
+            raise
+        finally:
+            os.close(answer_to)
+        os.set_blocking(self._process.stdin.fileno(), False)
+        self._bank.meet(self._say)
+        if self._ending.is_set():
+            self._say('bye')
+        return answers
 
     def _say(self, *words):
-        """Write one line; never wait for the child."""
-        process = self._process
-        if process is None:
-            return
+        """Write one line, never waiting; a child that does not read its pipe is ended."""
         try:
-            os.write(process.stdin.fileno(), (json.dumps(words) + '\n').encode('ascii'))
-        except OSError as error:
-            rospy.logwarn_throttle(10.0, 'the gate keeper does not listen: {}'.format(error))
+            os.write(self._process.stdin.fileno(), (json.dumps(words) + '\n').encode('ascii'))
+        except BlockingIOError:
+            self._process.kill()
+        except (OSError, ValueError) as error:
+            rospy.logdebug('the gate keeper has ended: %s', error)
+
+    def _listen(self, answers):
+        """Follow what the keeper says until its pipe breaks."""
+        rest, patience_s = b'', START_S
+        while True:
+            if not select.select([answers], [], [], patience_s)[0]:
+                rospy.logwarn('the gate keeper has been silent for %g s: ending it', patience_s)
+                self._process.kill()
+            data = os.read(answers, 4096)
+            if not data:
+                return
+            *lines, rest = (rest + data).split(b'\n')
+            patience_s = SILENCE_S
+            for line in lines:
+                self._take(*json.loads(line))
+
+    def _take(self, word, *rest):
+        if word == 'leads':
+            self._bank.follow(*rest)
+        elif word == 'closed':
+            self._closed.set()
 
 
 class Keeper:
-    """The child: reads the pipe until it breaks, then sends zeros where they are needed.
+    """The child: does what the panel says until the pipe breaks.
 
     :param lines: iterable of text lines, ends when the panel is gone
-    :param advertise: function from a topic to something with ``publish`` and ``unregister``
+    :param answer: file descriptor to answer by
+    :param bank: :class:`mhri.ros.gates.GateBank`, started
     """
 
-    def __init__(self, lines, advertise, sleep=time.sleep):
+    def __init__(self, lines, answer, bank):
         self._lines = lines
-        self._advertise = advertise
-        self._sleep = sleep
-        self._publishers = {}
-        self._driven = []
+        self._answer_to = answer
+        self._bank = bank
+        self._leads = {}
+        self._closed = threading.Event()
+        # Whatever asks the master: it may be out of reach, and a stop must not wait for it.
+        self._worker = Worker('gate_keeper')
 
     def run(self):
-        """Return when the panel has ended; return the topics that were sent zeros."""
+        """Return when the panel has ended; return the names of robots it was driving then."""
+        self._worker.start()
+        threading.Thread(target=self._live, name='alive', daemon=True).start()
         for line in self._lines:
             word, *rest = json.loads(line)
             if word == 'bye':
+                self._closed.set()
+                self._bank.close()
+                self._answer('closed')
+                time.sleep(FLUSH_S)
                 return []
             self._obey(word, *rest)
-        for _ in range(int(ZEROS_S * REPEAT_HZ) if self._driven else 0):
-            for topic in self._driven:
-                self._publishers[topic].publish(Twist())
-            self._sleep(1.0 / REPEAT_HZ)
-        return self._driven
+        return self._last_words()
 
-    def _obey(self, word, value):
+    def _obey(self, word, *rest):
         """Follow one line of the panel."""
-        if word == 'open' and value not in self._publishers:
-            self._publishers[value] = self._advertise(value)
-        elif word == 'close' and value in self._publishers:
-            self._publishers.pop(value).unregister()
-        elif word == 'driven':
-            self._driven = [topic for topic in value if topic in self._publishers]
+        if word == 'open':
+            self._worker.do(self._open, *rest)
+        elif word == 'close':
+            self._worker.do(self._close, rest[0], self._bank.remove(rest[0]))
+        else:
+            {'select': self._bank.select, 'hold': self._bank.deselect_others,
+             'stopped': self._bank.hear_stop, 'press': self._bank.press_stop,
+             'withdraw': self._bank.withdraw_press}[word](*rest)
+
+    def _open(self, name, topics, linear_mps, angular_rad_s):
+        gate = Gate(name, topics, Limits(linear_mps, angular_rad_s))
+        gate.follow()
+        self._bank.add(gate)
+
+    def _close(self, name, gate):
+        """Give the topics back; the gate is None where it was not open yet when it was closed."""
+        gate = gate or self._bank.remove(name)
+        if gate:
+            gate.unregister()
+
+    def _live(self):
+        """Say that all is well, and lead each robot once it is connected."""
+        while not self._closed.is_set():
+            gates = {gate.name: gate for gate in self._bank.gates()}
+            self._leads = {name: gate for name, gate in self._leads.items()
+                           if gates.get(name) is gate}
+            for name, gate in gates.items():
+                if name not in self._leads and gate.reachable():
+                    self._leads[name] = gate
+                    gate.lead()
+                    self._answer('leads', name)
+            self._answer('alive')
+            self._closed.wait(ALIVE_S)
+
+    def _answer(self, *words):
+        try:
+            os.write(self._answer_to, (json.dumps(words) + '\n').encode('ascii'))
+        except OSError:
+            # The panel has ended: the other pipe says so, too, and that one is acted upon.
+            self._closed.set()
+
+    def _last_words(self):
+        """Send zeros as the panel would have; to those that were driven, for a while."""
+        self._closed.set()
+        driven = [gate for gate in self._bank.gates() if gate.rule.driving]
+        self._bank.take_over()
+        self._bank.close()
+        for _ in range(int(ZEROS_S * REPEAT_HZ) if driven else 0):
+            time.sleep(1.0 / REPEAT_HZ)
+            for gate in driven:
+                gate.send(ZERO, time.monotonic())
+        time.sleep(FLUSH_S)
+        return [gate.name for gate in driven]

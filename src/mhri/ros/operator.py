@@ -53,8 +53,8 @@ class Operator:
         self.selection = Selection()
         self.recordings = Recordings()
         self._events = queue.Queue()
-        self._keeper = KeeperLink()
-        self._bank = GateBank(self._keeper, on_stop=self._on_stop)
+        self._bank = GateBank(on_stop=self._on_stop)
+        self._keeper = KeeperLink(self._bank)
         self._feeder = Worker('feeds')
         self._fleet = Fleet(self._types, self._bank, self._feeder, self.recordings.put_command)
         self.settings = PanelSettings()
@@ -306,6 +306,7 @@ class Operator:
         if self._closing.is_set():
             return
         self._closing.set()
+        self._keeper.end()
         self._bank.close()
         self._worker.stop()
         self._feeder.stop()

@@ -1,0 +1,28 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The receiving end of a velocity topic: what a robot is sent, and when."""
+import time
+
+from geometry_msgs.msg import Twist
+import rospy
+
+
+class VelocityEnd:
+    """The receiving end of one velocity topic."""
+
+    def __init__(self, topic):
+        self.received = []
+        self._subscriber = rospy.Subscriber(topic, Twist, self._on_twist, queue_size=50,
+                                            tcp_nodelay=True)
+
+    def _on_twist(self, message):
+        self.received.append((time.monotonic(), message.linear.x, message.angular.z))
+
+    def connected(self):
+        return self._subscriber.get_num_connections() > 0
+
+    def after(self, when):
+        return [entry for entry in list(self.received) if entry[0] >= when]
+
+    def values(self):
+        return [entry[1:] for entry in list(self.received)]
