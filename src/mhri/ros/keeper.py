@@ -114,9 +114,9 @@ class KeeperLink:
             rospy.logdebug('the gate keeper has ended: %s', error)
 
     def _listen(self, answers):
-        """Follow what the keeper says until its pipe breaks."""
+        """Follow what the keeper says until it has closed or its pipe breaks."""
         rest, patience_s = b'', START_S
-        while True:
+        while not self._closed.is_set():
             if not select.select([answers], [], [], patience_s)[0]:
                 rospy.logwarn('the gate keeper has been silent for %g s: ending it', patience_s)
                 self._process.kill()
