@@ -73,6 +73,7 @@ class PanelHost(QObject):
         panel.mode_requested.connect(self._request_mode)
         panel.stick_moved.connect(operator.send_stick)
         panel.limits_requested.connect(operator.request_limits)
+        panel.together_requested.connect(operator.keep_together)
         panel.talk_requested.connect(operator.talk)
         panel.stop_requested.connect(operator.stop_all)
         panel.release_requested.connect(operator.release)
@@ -272,7 +273,7 @@ class PanelHost(QObject):
             self._keep_look(name)
         return {'robots': list(self.operator.selection.robots), 'mode': self._mode,
                 'limits': list(self.operator.view().limits), 'windows': self._places,
-                'looks': self._looks,
+                'together': self.operator.view().together, 'looks': self._looks,
                 'panel': self.panel.save_settings()}
 
     def restore_state(self, state):
@@ -284,6 +285,7 @@ class PanelHost(QObject):
             self.operator.restore_mode(state['mode'])
         if state.get('limits'):
             self.operator.request_limits(*state['limits'])
+        self.operator.keep_together(state.get('together') is True)
         self._places.update(state.get('windows', {}))
         self._looks.update(state.get('looks', {}))
         self.panel.restore_settings(state.get('panel', {}))

@@ -23,7 +23,7 @@ class PanelWindow(QMainWindow):
         self._host = host
         self.setWindowTitle('mhri')
         self.setCentralWidget(host.panel)
-        self.resize(1000, 600)
+        self.resize(940, 600)
 
     def closeEvent(self, event):  # noqa: N802
         """Stop the robots before the window goes."""

@@ -83,7 +83,7 @@ class WindowHost:
             ages.append(('capture', tracker.age_s()))
         odometry = None if view.x_m is None else Pose(view.x_m, view.y_m, view.heading_rad)
         self.window.state_line.show_state(
-            StateView(tuple(ages), captured, self._drift.drift(odometry, captured)))
+            StateView(tuple(ages), view.figures, captured, self._drift.drift(odometry, captured)))
 
     def _operator_folder(self):
         """Let the file dialog begin where recordings go unless told otherwise."""

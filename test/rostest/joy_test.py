@@ -168,8 +168,8 @@ class Joy(unittest.TestCase):
         self.assertTrue(20.0 < rate_hz <= 101.0, rate_hz)
         newest = self.node.joys.wait(lambda joy: abs(joy.axes[0] - value) < 1e-3, ended - 0.02)
         self.assertLess(newest.at - ended, 0.2)
-        # Two stamps alone may be closer: the first thread to be held up between looking at the clock
-        # and writing the stamp shows that. Hence the rate above, and this figure.
+        # Two stamps alone may be closer, where the thread was held up between looking at the clock
+        # and writing the first. Hence the rate above, and this figure.
         stamps = [item.value.stamp for item in self.node.joys.since(begun)]
         print('MEASURED storm: closest two messages {:.1f} ms apart'.format(
             1e3 * min(after - before for before, after in zip(stamps, stamps[1:]))))

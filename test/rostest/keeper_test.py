@@ -18,6 +18,7 @@ from std_msgs.msg import Bool
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
+from mhri.core.robot_types import Limits  # noqa: E402
 from mhri.msg import RobotSelect  # noqa: E402
 from mhri.ros.gates import Gate, GateBank  # noqa: E402
 from mhri.ros.keeper import KeeperLink  # noqa: E402
@@ -152,6 +153,33 @@ class KeeperTest(unittest.TestCase):
             wait_for(lambda: not gate.rule.selected and not gate.rule.stopped, 5.0, 'the release')
             self.select.publish([name])
             wait_for(lambda: end.values()[-1] == (0.2, 0.0), 10.0, 'it to be driven again')
+
+    def test_a_group_keeps_together_and_to_a_slow_link(self):
+        name, gate, end = self.robot()
+        KeeperTest.number += 1
+        slow = 'kept{}'.format(KeeperTest.number)
+        slow_end = VelocityEnd('/{}/cmd_vel'.format(slow))
+        slow_gate = Gate(slow, ['/{}/cmd_vel'.format(slow)], Limits(0.1, 1.0))
+        self.bank.add(slow_gate)
+        self.led(slow_gate)
+        self.select.publish([name, slow])
+        self.pilot.drive(0.2)
+
+        def told(speeds):
+            wait_for(lambda: (end.values()[-1:], slow_end.values()[-1:])
+                     == tuple([(speed, 0.0)] for speed in speeds), 10.0, str(speeds))
+        told((0.2, 0.1))
+        self.bank.set_pace(True, 1.0)
+        told((0.1, 0.1))
+        self.bank.set_pace(False, 0.5)
+        told((0.1, 0.1))
+        self.pilot.drive(0.1)
+        told((0.05, 0.05))
+        self.bank.set_pace(True, 1.0)
+        self.pilot.drive(0.2)
+        told((0.1, 0.1))
+        self.select.publish([name])
+        told((0.2, 0.0))
 
     def test_closing_is_one_zero_by_the_keeper(self):
         _, _, end = self.driven()

@@ -5,7 +5,7 @@ import random
 
 import pytest
 
-from mhri.core.gate import GateRule, JOIN_S, STALE_S
+from mhri.core.gate import common_limits, GateRule, JOIN_S, STALE_S
 from mhri.core.limits import Velocity, ZERO
 from mhri.core.robot_types import Limits
 
@@ -182,3 +182,22 @@ def test_who_is_selected_while_nothing_moves_is_driven_at_once():
     late.on_command(GO, 1.0)
     late.select(True, 1.0 + STALE_S)
     assert late.on_command(GO, 1.6) == GO, 'that drive was over'
+
+
+def test_a_group_keeps_to_its_slowest_along_the_same_curve():
+    quick, slow = Limits(0.65, 3.14), Limits(0.22, 2.84)
+    group = common_limits([quick, slow])
+    assert group == Limits(0.22, 2.84)
+    said = []
+    for limits in (quick, slow):
+        gate = GateRule(limits)
+        gate.select(True, 0.0)
+        gate.hold_to(group, 1.0)
+        said.append(gate.on_command(Velocity(0.5, 1.0), 1.0))
+    for velocity in said:
+        assert (velocity.linear_mps, velocity.angular_rad_s) == pytest.approx((0.22, 0.44))
+    gate.hold_to(limits, 0.5)
+    assert gate.on_command(Velocity(0.2, 0.4), 1.1) == Velocity(0.1, 0.2)
+    gate.hold_to(Limits(9.0, 9.0), 1.0)
+    velocity = gate.on_command(Velocity(0.5, 1.0), 1.2)
+    assert velocity.linear_mps == pytest.approx(0.22), 'its own limits hold'

@@ -1,12 +1,21 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The gate of one robot: what of the one velocity command reaches it. No ROS, no clock."""
-from mhri.core.limits import ZERO, clamp_keeping_curvature
+from mhri.core.limits import Velocity, ZERO, clamp_keeping_curvature
+from mhri.core.robot_types import Limits
 
 STALE_S = 0.5
 # A robot that is selected while others are driven waits for the zero by which the mux answers, or
 # for so long.
 JOIN_S = 0.3
+
+
+def common_limits(limits):
+    """Return what every robot of a group can do: the least of each of their limits.
+
+    :param limits: several :class:`mhri.core.robot_types.Limits`
+    """
+    return Limits(min(one.linear_mps for one in limits), min(one.angular_rad_s for one in limits))
 
 
 class GateRule:
@@ -20,6 +29,8 @@ class GateRule:
 
     def __init__(self, limits):
         self.limits = limits
+        self._group = limits
+        self._share = 1.0
         self._selected = False
         self._stops = set()
         self._closed = False
@@ -44,6 +55,14 @@ class GateRule:
         """Whether the robot was last sent something other than zero."""
         return not self._last.is_zero()
 
+    def hold_to(self, group, share):
+        """Let the robot keep to its group from the next command on.
+
+        :param group: :class:`mhri.core.robot_types.Limits` of the group, or its own
+        :param share: how much of a command is passed on, in (0, 1]
+        """
+        self._group, self._share = group, share
+
     def on_command(self, velocity, now):
         """Take in the one velocity command; return what this robot gets of it, or None."""
         self._heard, self._heard_at = velocity, now
@@ -55,7 +74,10 @@ class GateRule:
         """Return what the robot gets of a command: nothing while anything is in the way."""
         if self._closed or self._stops or not self._selected or self._joins_at is not None:
             return None
-        return self._say(clamp_keeping_curvature(velocity, self.limits), now)
+        share = self._share
+        wanted = Velocity(share * velocity.linear_mps, share * velocity.angular_rad_s)
+        return self._say(clamp_keeping_curvature(
+            clamp_keeping_curvature(wanted, self._group), self.limits), now)
 
     def select(self, selected, now):
         """Select or deselect the robot; deselected, it gets one zero.

@@ -16,12 +16,14 @@ class PanelSettings:
     ``thumbnail_hz`` and ``thumbnail_width_px`` are the rate and the width of the pictures in the
     windows of robots that are not highlighted; ``record_warn_free_mb`` and ``record_stop_free_mb``
     the free space [MB] at which a recording warns and at which it stops and closes its file.
+    ``slow_with_link`` lets the pace of all fall with the slowest link among the selected robots.
     """
 
     thumbnail_hz: float = 5.0
     thumbnail_width_px: int = 320
     record_warn_free_mb: float = 1000.0
     record_stop_free_mb: float = 256.0
+    slow_with_link: bool = False
 
     def recording_limits(self):
         """Return the :class:`mhri.core.recording.RecordingLimits` that these settings ask for."""
@@ -32,6 +34,19 @@ class PanelSettings:
 # Key: least and greatest value.
 _RANGES = {'thumbnail_hz': (0.1, 60.0), 'thumbnail_width_px': (32.0, 4096.0),
            'record_warn_free_mb': (1.0, 1e9), 'record_stop_free_mb': (1.0, 1e9)}
+
+_FLAGS = ('slow_with_link',)
+
+
+def _read(section, key):
+    """Return one setting, its default where it is not given.
+
+    :raises ConfigError: it cannot be used
+    """
+    default = getattr(PanelSettings, key)
+    if key in _FLAGS:
+        return section.flag(key, default)
+    return type(default)(section.number(key, *_RANGES[key], default))
 
 
 def parse_settings(parameters, before=PanelSettings()):
@@ -46,10 +61,9 @@ def parse_settings(parameters, before=PanelSettings()):
     except ConfigError as error:
         return before, [error]
     values = {}
-    for key, (low, high) in _RANGES.items():
-        default = getattr(PanelSettings, key)
+    for key in (*_RANGES, *_FLAGS):
         try:
-            values[key] = type(default)(section.number(key, low, high, default))
+            values[key] = _read(section, key)
         except ConfigError as error:
             errors.append(error)
             values[key] = getattr(before, key)

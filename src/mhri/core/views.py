@@ -37,15 +37,29 @@ class ProofView:
 
 
 @dataclass(frozen=True)
+class LinkFigures:
+    """What was measured of a robot's link; None where it is not known.
+
+    ``round_trip_s`` is the time there and back [s], ``offset_s`` by how much the robot's clock is
+    ahead of the one here [s], ``loss`` the part of its odometry that did not arrive, in [0, 1].
+    """
+
+    round_trip_s: Optional[float] = None
+    offset_s: Optional[float] = None
+    loss: Optional[float] = None
+
+
+@dataclass(frozen=True)
 class RobotView:
     """One robot as its row and its window show it.
 
     ``age_s`` is the age of the newest odometry [s]; speeds are the robot's own odometry [m/s,
     rad/s], ``heading_rad`` its yaw in (-pi, pi], x and y in metres in its ``odom`` frame; None
     where nothing has been heard. ``battery`` is a fraction in [0, 1]. ``driven`` is true while
-    commands other than zero are being forwarded to it, ``recording`` while a bag of it is open.
-    ``note`` is what is worth saying in words
-    about the link, e.g. "nothing for 3.2 s"; '' while all is well.
+    commands other than zero are being forwarded to it, ``recording`` while a bag of it is open,
+    ``guarded`` while its commands go through a guard on the robot. ``note`` is what is worth saying
+    in words about the link, e.g. "nothing for 3.2 s"; '' while all is well. ``figures`` are what
+    was measured of the link, ``slow`` is true where they are past what driving needs.
     """
 
     name: str
@@ -67,6 +81,9 @@ class RobotView:
     max_linear_mps: Optional[float] = None
     max_angular_rad_s: Optional[float] = None
     recording: bool = False
+    guarded: bool = False
+    figures: LinkFigures = LinkFigures()
+    slow: bool = False
 
 
 @dataclass(frozen=True)
@@ -74,11 +91,13 @@ class StateView:
     """What else is known of a robot while its window is open.
 
     ``ages`` are (name of a stream that is shown, age of its newest message [s], None where nothing
-    has come yet). ``captured`` is where motion capture sees the robot, ``drift`` how far its
-    odometry is off since the window was opened; None where nobody tracks it.
+    has come yet). ``figures`` are those of the link. ``captured`` is where motion capture sees the
+    robot, ``drift`` how far its odometry is off since the window was opened; None where nobody
+    tracks it.
     """
 
     ages: Tuple[Tuple[str, Optional[float]], ...] = ()
+    figures: LinkFigures = LinkFigures()
     captured: Optional[Pose] = None
     drift: Optional[Drift] = None
 
@@ -101,6 +120,8 @@ class PanelView:
     ``sources`` are (name, label) of the drop-down in order. ``stop_all`` is true while everything
     is stopped. ``limits`` are the operator's speed limits in force [m/s, rad/s]. ``status`` is the
     one line at the bottom, never empty; ``status_level`` one of 'calm', 'attention', 'stopped'.
+    ``together`` is true while all selected robots are held to the pace of the slowest, ``pace``
+    says in words what that is, ``slowed`` is true while a slow link holds them back.
     ``camera_bits_per_s`` is what all pictures on show take of the network. ``heard`` is what the
     voice node heard last, None before that.
     """
@@ -111,6 +132,9 @@ class PanelView:
     stop_all: bool = False
     stop_note: str = ''
     limits: Tuple[float, float] = (0.5, 1.5)
+    together: bool = False
+    pace: str = ''
+    slowed: bool = False
     status: str = 'starting'
     status_level: str = 'calm'
     robots: Tuple[RobotView, ...] = ()

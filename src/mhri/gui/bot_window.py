@@ -22,7 +22,7 @@ from mhri.gui.view_switches import DEPTH, IMU, RECORD, RGB, SCAN, ViewSwitches
 NUMBERS_PERIOD_S = 0.25
 # With a picture and a graph a window is larger at first than with the motion dial alone.
 _PLAIN_SIZE = (760, 520)
-_VIEWS_SIZE = (940, 600)
+_VIEWS_SIZE = (930, 540)
 # Narrower than so many heights of a line, the header leaves the place out.
 _POSE_FROM_UNITS = 50
 # What a camera's picture is usually like; what a scan and a graph get of a window's width.
@@ -235,7 +235,7 @@ class BotWindow(QDialog):
         self._link = view.link
         self._show_drive_state(view, stop_all or view.proof is not None)
         self.link_sign.show_sign(theme.LINK_SIGNS[view.link])
-        self.type_label.show_text(view.type_label, theme.MUTED)
+        self.type_label.show_text(words.type_text(view), theme.MUTED)
         self._show_sentence(view)
         if numbers:
             self._show_numbers(view)

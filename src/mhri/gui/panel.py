@@ -60,6 +60,8 @@ class PanelWidget(QWidget):
     talk_requested = Signal(bool)
     #: m/s, rad/s
     limits_requested = Signal(float, float)
+    #: whether all selected robots are to keep to the slowest
+    together_requested = Signal(bool)
     stop_requested = Signal()
     release_requested = Signal()
 
@@ -117,6 +119,7 @@ class PanelWidget(QWidget):
         self.robot_list.activated.connect(self._on_highlight)
         self.mode_combo.mode_requested.connect(self.mode_requested)
         self.speed_limits.limits_requested.connect(self.limits_requested)
+        self.speed_limits.together_requested.connect(self.together_requested)
         self.stop_bar.stop_requested.connect(self._on_stop)
         self.stop_bar.release_requested.connect(self.release_requested)
         self.talk_button.pressed.connect(self._press_talk)
@@ -145,6 +148,7 @@ class PanelWidget(QWidget):
         self.robot_list.show_robots(view.robots, numbers)
         self.mode_combo.show_mode(view.sources, view.mode)
         self.speed_limits.show_limits(view.limits)
+        self.speed_limits.show_pace(view.together, view.pace, view.slowed)
         self.stop_bar.show_stop(view.stop_all, view.stop_note)
         self.status_line.show_status(view.status, view.status_level)
         self._show_buttons()

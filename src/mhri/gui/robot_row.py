@@ -127,7 +127,7 @@ class RobotRow(QWidget):
         grid.setHorizontalSpacing(unit // 3)
         grid.setVerticalSpacing(0)
         first, second = QHBoxLayout(), QHBoxLayout()
-        for widget, stretch in ((self.title, 5), (self.kind, 6), (self.recording, 0),
+        for widget, stretch in ((self.title, 4), (self.kind, 7), (self.recording, 0),
                                 (self.sign, 0), (self.link, 0), (self.age, 0)):
             first.addWidget(widget, stretch)
         for widget, stretch in ((self.trouble_sign, 0), (self.trouble, 1), (self.linear, 0),
@@ -165,7 +165,7 @@ class RobotRow(QWidget):
         self._link = view.link
         self.number.show_text(str(number))
         self.box.setChecked(checked)
-        self.kind.show_text(view.type_label, theme.MUTED)
+        self.kind.show_text(words.type_text(view), theme.MUTED)
         self.sign.show_sign(theme.LINK_SIGNS[view.link])
         self.link.show_text(words.LINK_WORDS[view.link])
         if numbers:
@@ -180,6 +180,7 @@ class RobotRow(QWidget):
         """Show what changes all the time."""
         aged = view.link in (views.LIVE, views.SILENT)
         self.age.show_text(words.age_text(view.age_s) if aged else '', theme.MUTED)
+        self.setToolTip(words.figures_text(view.figures))
         self.linear.show_text(words.linear_text(view.linear_mps))
         self.turn.show_text(words.turn_text(view.angular_rad_s))
         self.battery.show_text(words.battery_text(view.battery))
@@ -193,7 +194,7 @@ class RobotRow(QWidget):
             self._show_trouble(None, view.note or words.LINK_WORDS[view.link])
         else:
             self._show_trouble(None, '')
-            self.note.show_text(view.note, theme.MUTED)
+            self.note.show_text(view.note, theme.ATTENTION if view.slow else theme.MUTED)
         if view.driven:
             self.pill.say(DRIVING)
         else:

@@ -4,11 +4,12 @@
 from python_qt_binding.QtCore import QRectF, QSize, Qt, QTimer, Signal
 from python_qt_binding.QtGui import QPainter, QPalette, QPen
 from python_qt_binding.QtWidgets import (
-    QAbstractSlider, QGridLayout, QLabel, QSizePolicy, QStyle, QWidget)
+    QAbstractSlider, QGridLayout, QHBoxLayout, QLabel, QSizePolicy, QStyle, QWidget)
 
 from mhri.gui import theme
 from mhri.gui.labels import TextLine
 from mhri.gui.pending import Pending
+from mhri.gui.switches import SwitchBox
 
 _PER_UNIT = 100  # slider steps in one m/s or rad/s
 LINEAR_RANGE_MPS = (0.05, 1.0)
@@ -105,6 +106,8 @@ class SpeedLimits(QWidget):
 
     #: m/s and rad/s; at most 20 times a second while a slider moves, and at the end
     limits_requested = Signal(float, float)
+    #: whether all selected robots are to keep to the slowest
+    together_requested = Signal(bool)
 
     def __init__(self, parent=None):
         super().__init__(parent)
@@ -136,6 +139,18 @@ class SpeedLimits(QWidget):
             for column, widget in enumerate((QLabel(head, self), QLabel(word, self), slider,
                                              value)):
                 grid.addWidget(widget, row, column)
+        self.together_box = SwitchBox('stay together', self)
+        self.together_box.setObjectName('together_box')
+        self.together_box.setToolTip(
+            'All selected robots keep to what the slowest of them can do, on the same curve')
+        self.pace_label = TextLine(self)
+        self.pace_label.setObjectName('pace_label')
+        group = QHBoxLayout()
+        group.setSpacing(self.fontMetrics().height() // 2)
+        group.addWidget(self.together_box)
+        group.addWidget(self.pace_label, 1)
+        grid.addWidget(QLabel('Group', self), len(rows), 0)
+        grid.addLayout(group, len(rows), 1, 1, 3)
         grid.setColumnStretch(2, 1)
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
@@ -156,12 +171,18 @@ class SpeedLimits(QWidget):
             slider.valueChanged.connect(self._on_value)
             slider.sliderReleased.connect(self._send)
         self._timer.timeout.connect(self._send)
+        self.together_box.clicked.connect(self.together_requested)
 
     def show_limits(self, limits):
         """Show the limits in force [m/s, rad/s], unless the operator is just changing them."""
         if limits != self._limits or self._asked.value is not None:
             self._limits = limits
             self._show()
+
+    def show_pace(self, together, pace, slowed=False):
+        """Show how the robots keep to each other, in words; ``slowed`` by a link points at it."""
+        self.together_box.setChecked(together)
+        self.pace_label.show_text(pace, theme.ATTENTION if slowed else theme.MUTED)
 
     def _show(self):
         """Place the sliders; a limit outside their range is still told by its number."""

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The line below a bot window's header: motion capture, and how old what is shown is."""
+"""The line below a bot window's header: link, motion capture, and how old what is shown is."""
 from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
@@ -78,7 +78,8 @@ class StateLine(QWidget):
         if not due and old == self._old:
             return
         self._old = old
-        self.capture_label.show_text(capture_text(state.captured, state.drift), theme.MUTED)
+        texts = (words.figures_text(state.figures), capture_text(state.captured, state.drift))
+        self.capture_label.show_text('   '.join(filter(None, texts)), theme.MUTED)
         self.ages_label.show_text(ages_text(state.ages), theme.TEXT if old else theme.MUTED)
         self.ages_label.updateGeometry()
         self.ages_sign.show_sign((theme.TRIANGLE, theme.ATTENTION) if old else None)

@@ -103,6 +103,26 @@ def heard_text(heard):
     return 'heard "{}": {}'.format(heard.text, outcome)
 
 
+def type_text(view):
+    """Return a robot's type, and whether a guard stands on it, e.g. "TurtleBot2, guarded"."""
+    return view.type_label + (', guarded' if view.guarded else '')
+
+
+def figures_text(figures):
+    """Return what was measured of a link, e.g. "link 12 ms   clock +0.02 s   lost 0 %".
+
+    :param figures: :class:`mhri.core.views.LinkFigures`; what is not known is left out
+    """
+    words = []
+    if _is_number(figures.round_trip_s):
+        words.append('link {}'.format(age_text(figures.round_trip_s)))
+    if _is_number(figures.offset_s):
+        words.append('clock {:+.2f} s'.format(round(figures.offset_s, 2) + 0.0))
+    if _is_number(figures.loss):
+        words.append('lost {:.0f} %'.format(100.0 * figures.loss))
+    return '   '.join(words)
+
+
 def bandwidth_text(bits_per_s):
     """Return what pictures take of the network, e.g. "cameras 12.3 Mbit/s"; '' for nothing."""
     if not _is_number(bits_per_s) or bits_per_s <= 0.0:

@@ -2,11 +2,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Messages to values and back."""
 import math
+import struct
 
 from geometry_msgs.msg import Twist
+import rospy
 
 from mhri.core.limits import Velocity
 from mhri.core.link import Motion
+
+
+def header_of(message, message_class):
+    """Return (number, stamp [s]) of a message, or None where its type has no header.
+
+    :param message: of the class, or ``rospy.AnyMsg`` with its bytes
+    """
+    if not message_class._has_header:
+        return None
+    if isinstance(message, rospy.AnyMsg):
+        seq, seconds, nanoseconds = struct.unpack_from('<III', message._buff)
+        return seq, seconds + 1e-9 * nanoseconds
+    return message.header.seq, message.header.stamp.to_sec()
 
 
 def to_twist(linear_mps, angular_rad_s):

@@ -7,15 +7,17 @@ Everything here runs on ROS threads; the GUI thread only selects, stops and clos
 import threading
 import time
 
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import Twist, TwistStamped
 import rospy
 from std_msgs.msg import Bool
 
-from mhri.core.gate import GateRule
+from mhri.core.gate import GateRule, common_limits
 from mhri.core.limits import ZERO
 from mhri.msg import RobotSelect
 from mhri.ros.convert import from_twist, to_twist
 
+# Below a robot's namespace: where its guard (utils/remote/mhri_guard) listens.
+GUARD = 'mhri_guard/command'
 # A gate that takes over says a zero again that is not older than this.
 REPEAT_ZERO_S = 1.0
 
@@ -29,7 +31,8 @@ class Gate:
 
     One publisher for each velocity topic of the template (``geometry_msgs/Twist``, queue of 1:
     newest wins, and a thread of its own, so that a dead robot delays nobody); what is sent goes to
-    the first one that has a subscriber.
+    the first one that has a subscriber. Before them all comes the guard that may run on the robot
+    (``/<robot>/mhri_guard/command``, ``geometry_msgs/TwistStamped``, stamped by the clock here).
 
     There may be two of a robot, in two processes (:mod:`mhri.ros.keeper`). One of them leads; the
     other one follows: it decides the same and keeps its words to itself.
@@ -45,8 +48,10 @@ class Gate:
         self.name = name
         self.topics = list(topics)
         self.rule = GateRule(limits)
-        self._publishers = [rospy.Publisher(topic, Twist, queue_size=1, tcp_nodelay=True)
-                            for topic in self.topics]
+        self._guard = rospy.Publisher('/{}/{}'.format(name, GUARD), TwistStamped, queue_size=1,
+                                      tcp_nodelay=True)
+        self._publishers = [self._guard] + [
+            rospy.Publisher(topic, Twist, queue_size=1, tcp_nodelay=True) for topic in self.topics]
         self._used = None
         self._follows = False
         self._zero_at = None
@@ -63,18 +68,22 @@ class Gate:
             return
         chosen = next((publisher for publisher in self._publishers
                        if publisher.get_num_connections()), None)
-        message = to_twist(velocity.linear_mps, velocity.angular_rad_s)
         if self._used not in (None, chosen):
-            self._publish(self._used, Twist())
+            self._publish(self._used, ZERO)
         self._used = chosen
         self._zero_at = now if velocity.is_zero() else None
         if chosen is not None:
-            self._publish(chosen, message)
-            self._on_sent(self.name, chosen.name, message)
+            self._on_sent(self.name, chosen.name, self._publish(chosen, velocity))
 
-    def _publish(self, publisher, message):
+    def _publish(self, publisher, velocity):
+        """Publish, unless the other gate speaks; return the message."""
+        message = to_twist(velocity.linear_mps, velocity.angular_rad_s)
+        if publisher is self._guard:
+            message = TwistStamped(twist=message)
+            message.header.stamp = rospy.Time.from_sec(time.time())
         if not self._follows:
             publisher.publish(message)
+        return message
 
     def follow(self):
         """From now on the other gate of this robot speaks."""
@@ -94,6 +103,10 @@ class Gate:
     def reachable(self):
         """Tell whether any velocity topic has a subscriber."""
         return any(publisher.get_num_connections() for publisher in self._publishers)
+
+    def guarded(self):
+        """Tell whether the commands go through a guard on the robot."""
+        return self._guard.get_num_connections() > 0
 
     def unregister(self):
         """Give the topics back (blocking: it asks the master); others may look all the while."""
@@ -120,6 +133,8 @@ class GateBank:
         self._selected = frozenset()
         self._stopped = False
         self._pressed = False
+        self._together = False
+        self._share = 1.0
         self._closed = False
         self._subscribers = []
         self._tell = _nobody
@@ -159,6 +174,7 @@ class GateBank:
             if self._pressed:
                 gate.send(gate.rule.stop('panel', True, now), now)
             self._tell_of(gate)
+            self._keep_together()
 
     def remove(self, name):
         """Close the gate of a robot with a zero; return it, or None where there is none."""
@@ -168,6 +184,7 @@ class GateBank:
             if gate is not None:
                 now = self._clock()
                 gate.send(gate.rule.close(now), now)
+            self._keep_together()
             return gate
 
     def gates(self):
@@ -185,6 +202,7 @@ class GateBank:
             tell('select', sorted(self._selected))
             tell('stopped', self._stopped)
             tell('press' if self._pressed else 'withdraw')
+            tell('pace', self._together, self._share)
             for gate in self._gates.values():
                 self._tell_of(gate)
 
@@ -213,7 +231,28 @@ class GateBank:
             now = self._clock()
             for name, gate in self._gates.items():
                 gate.send(gate.rule.select(name in self._selected, now), now)
+            self._keep_together()
             self._changed.notify()
+
+    def set_pace(self, together, share):
+        """Set how the robots of the selection keep to each other, from the next command on.
+
+        :param together: all are held to what the slowest of them can do, each along the same curve;
+            otherwise each does its best
+        :param share: how much of every command is passed on, in (0, 1]
+        """
+        with self._changed:
+            if (together, share) != (self._together, self._share):
+                self._together, self._share = together, share
+                self._tell('pace', together, share)
+                self._keep_together()
+
+    def _keep_together(self):
+        """Give every gate the limits it has to keep to."""
+        group = [gate.rule.limits for name, gate in self._gates.items() if name in self._selected]
+        common = common_limits(group) if self._together and group else None
+        for gate in self._gates.values():
+            gate.rule.hold_to(common or gate.rule.limits, self._share)
 
     def deselect_others(self, names):
         """Close the gates of all but these robots; opening is the word of robot_select alone."""

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The gate keeper: a child process of the panel in which the gates do their work.
 
-A panel that draws four cameras and graphs shares one interpreter lock among all that, and a command
-waits its turn; and a panel that gets SIGKILL (or runs out of memory) cannot say zero any more, while
-not every robot has a watchdog (turtlebot3#1154). So the gates are there twice. Those of the keeper
-speak to the robots; those of the panel follow: they decide the same, show what is decided, and speak
-for any robot that the keeper does not reach yet, or when it has ended.
+A panel that draws four cameras and graphs shares one interpreter lock among all that, and a
+command waits its turn; and a panel that gets SIGKILL (or runs out of memory) cannot say zero any
+more, while not every robot has a watchdog (turtlebot3#1154). So the gates are there twice. Those of
+the keeper speak to the robots; those of the panel follow: they decide the same, show what is
+decided, and speak for any robot that the keeper does not reach yet, or when it has ended.
 
 - The panel ends, however it went: their pipe breaks, and the keeper sends the zeros.
 - The keeper ends: its pipe breaks, and the panel's gates take over, with a zero where one was just
@@ -14,8 +14,9 @@ for any robot that the keeper does not reach yet, or when it has ended.
 
 The pipes carry one JSON list per line. To the keeper: ``["open", name, [topic, ...], m/s, rad/s]``,
 ``["close", name]``, ``["select", [name, ...]]``, ``["hold", [name, ...]]`` (close all but these),
-``["stopped", bool]`` (by the mux), ``["press"]``, ``["withdraw"]``, ``["bye"]``. From it:
-``["alive"]`` ten times a second, ``["leads", name]``, ``["closed"]`` after bye.
+``["stopped", bool]`` (by the mux), ``["press"]``, ``["withdraw"]``, ``["pace", together, share]``,
+``["bye"]``. From it: ``["alive"]`` ten times a second, ``["leads", name]``, ``["closed"]`` after
+bye.
 """
 import json
 import os
@@ -176,7 +177,7 @@ class Keeper:
         else:
             {'select': self._bank.select, 'hold': self._bank.deselect_others,
              'stopped': self._bank.hear_stop, 'press': self._bank.press_stop,
-             'withdraw': self._bank.withdraw_press}[word](*rest)
+             'withdraw': self._bank.withdraw_press, 'pace': self._bank.set_pace}[word](*rest)
 
     def _open(self, name, topics, linear_mps, angular_rad_s):
         gate = Gate(name, topics, Limits(linear_mps, angular_rad_s))

@@ -15,6 +15,7 @@ import rospy
 
 from mhri.core.discovery import parse_ignore_list
 from mhri.core.names import name_problem
+from mhri.core.pace import pace_of
 from mhri.core.recording import CHOICES, RECORDING
 from mhri.core.selection import Selection
 from mhri.core.settings import NAMESPACE, PanelSettings, parse_settings
@@ -58,6 +59,7 @@ class Operator:
         self._feeder = Worker('feeds')
         self._fleet = Fleet(self._types, self._bank, self._feeder, self.recordings.put_command)
         self.settings = PanelSettings()
+        self._together = False
         self._setting_errors = ()
         self._told_robots = None
         self._mux = None
@@ -180,6 +182,10 @@ class Operator:
         if self._mux:
             self._mux.request_limits(linear_mps, angular_rad_s)
 
+    def keep_together(self, together):
+        """Hold all selected robots to what the slowest of them can do, or let each do its best."""
+        self._together = together
+
     def select(self, names):
         """Drive exactly these robots; those no longer among them are stopped before anything."""
         self.selection.check(names)
@@ -287,10 +293,14 @@ class Operator:
         if ros == ROS_CONNECTED and self._watch.state == LOST:
             ros = ROS_NO_MASTER
         mode, limits, waits_for = self._mux.state() if self._mux else (None, None, None)
+        robots = tuple(self.robot_view(name) for name in self.selection.robots)
+        share, pace = pace_of(robots, self._together, self.settings.slow_with_link)
+        self._bank.set_pace(self._together, share)
         view = PanelView(
             ros=ros, sources=self._sources, mode=mode, stop_all=self._bank.stopped,
             stop_note=self._stop_note, limits=limits or self._first_limits or (0.5, 1.5),
-            robots=tuple(self.robot_view(name) for name in self.selection.robots),
+            robots=robots, together=self._together, pace=pace,
+            slowed=share < 1.0,
             camera_bits_per_s=self._fleet.camera_bits_per_s(),
             heard=self._devices.heard() if self._devices else None)
         status, level = status_line(view, waits_for, self.master_uri)

@@ -10,9 +10,11 @@ import rospy
 from sensor_msgs.msg import BatteryState
 
 from mhri.core.link import link_note, link_state
+from mhri.core.link_quality import LinkQuality, link_warning
 from mhri.core.stop_proof import StopProof
-from mhri.core.views import RobotView
-from mhri.ros.convert import motion_from_odometry, motion_from_turtle_pose
+from mhri.core.views import LIVE, RobotView
+from mhri.ros.convert import header_of, motion_from_odometry, motion_from_turtle_pose
+from mhri.ros.link_probe import LinkProbe
 
 _READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
             'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
@@ -46,7 +48,8 @@ class Feed:
         self._class = message_class
         self._read = read
         self._on_message = on_message
-        self._subscriber = rospy.Subscriber(topic, message_class, self._hear, queue_size=1,
+        # Not a queue of one: what is left out here must not look like a loss of the link.
+        self._subscriber = rospy.Subscriber(topic, message_class, self._hear, queue_size=20,
                                             tcp_nodelay=True)
 
     def _hear(self, message):
@@ -57,6 +60,16 @@ class Feed:
         if isinstance(message, rospy.AnyMsg):
             message = self._class().deserialize(message._buff)
         return self._read(message)
+
+    def header(self, message):
+        """Return (number, stamp [s]) of a message, or None where it has no header."""
+        return header_of(message, self._class)
+
+    def publisher_uri(self):
+        """Return the XML-RPC address of a node that publishes this topic, or None."""
+        subscriber = self._subscriber
+        links = subscriber.impl.connections if subscriber else ()
+        return next((link.endpoint_id for link in links if link.endpoint_id), None)
 
     def connections(self):
         """Return the number of publishers connected; 0 once it has stopped listening."""
@@ -90,12 +103,22 @@ class RobotLink:
         self._heard_wall = ''
         self._pending = None
         self._motion = None
+        self._quality = LinkQuality()
         self._proof = None
         self._battery = None
         self._feeds = self._open_feeds()
         self._battery_feeds = [
             Feed('/{}/{}'.format(name, topic), BatteryState, battery_fraction, self._on_battery)
             for topic in robot_type.battery]
+        self._probe = LinkProbe(name, self._node_uri, self._on_round_trip)
+
+    def _node_uri(self):
+        """Return the address of the node that tells the odometry, or None."""
+        return next((uri for uri in (feed.publisher_uri() for feed in self._feeds) if uri), None)
+
+    def _on_round_trip(self, round_trip_s):
+        with self._lock:
+            self._quality.on_round_trip(round_trip_s)
 
     def _open_feeds(self):
         """Subscribe the odometry topics of the template."""
@@ -110,7 +133,11 @@ class RobotLink:
                 for topic in self.robot_type.odometry]
 
     def _on_message(self, feed, message, now):
+        came_at, header = time.time(), feed.header(message)
         with self._lock:
+            if header is not None:
+                number, stamp_s = header
+                self._quality.on_message(number, came_at - stamp_s if stamp_s else None, now)
             self._heard_at = now
             self._pending = (feed, message)
             if self._proof is not None:
@@ -150,19 +177,23 @@ class RobotLink:
             if age is not None and (age < 1.0 or not self._heard_wall):
                 self._heard_wall = time.strftime('%H:%M:%S')
             proof = self._proof.view(now) if self._proof else None
+            figures = self._quality.read(now)
+        warning = link_warning(figures) if state == LIVE else ''
         return RobotView(
             name=self.name, type_label=self.robot_type.label, window=self.robot_type.window,
             link=state, age_s=age,
-            note=link_note(state, age, self._heard_wall, now - self._added_at),
+            note=link_note(state, age, self._heard_wall, now - self._added_at) or warning,
+            figures=figures, slow=bool(warning),
             linear_mps=motion and motion.linear_mps, angular_rad_s=motion and motion.angular_rad_s,
             heading_rad=motion and motion.heading_rad, x_m=motion and motion.x_m,
             y_m=motion and motion.y_m, battery=self._battery, selected=self.gate.rule.selected,
-            driven=self.gate.rule.driving and self.gate.reachable(),
+            driven=self.gate.rule.driving and self.gate.reachable(), guarded=self.gate.guarded(),
             moving=motion is not None and age < 1.0 and not motion.is_standstill(), proof=proof,
             max_linear_mps=limits.linear_mps, max_angular_rad_s=limits.angular_rad_s)
 
     def close(self):
         """Stop listening and give the velocity topics back (blocking: it asks the master)."""
+        self._probe.close()
         self.feeds.close()
         for feed in self._feeds + self._battery_feeds:
             feed.unregister()
