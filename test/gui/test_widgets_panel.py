@@ -258,3 +258,30 @@ def test_what_was_heard_is_told_while_the_voice_drives(panel, four_robots, heard
     assert words in panel.drive_note.text()
     panel.show_view(replace(four_robots, mode='joy', heard=heard_view))
     assert words not in panel.drive_note.text()
+
+
+def test_staying_together_is_asked_for_and_shown(panel, operator, heard, four_robots):
+    asked = heard(panel.together_requested)
+    box, label = panel.speed_limits.together_box, panel.speed_limits.pace_label
+    panel.show_view(replace(four_robots, pace='each does its best'))
+    assert not box.isChecked() and label.text() == 'each does its best'
+    operator.click(box)
+    assert asked == [True]
+    panel.show_view(replace(four_robots, together=True, pace='all as bot2: at most 0.22 m/s'))
+    assert box.isChecked() and '0.22 m/s' in label.text()
+    operator.click(box)
+    assert asked == [True, False]
+    panel.show_view(replace(four_robots, pace='50 % of the speed', slowed=True))
+    assert label.text() == '50 % of the speed'
+
+
+def test_a_row_warns_of_its_link_and_tells_the_figures(panel, operator, four_robots):
+    figures = views.LinkFigures(0.38, -0.4, 0.07)
+    first, *others = four_robots.robots
+    warned = replace(first, link=views.LIVE, figures=figures, slow=True, guarded=True,
+                     note='slow link: 380 ms there and back')
+    panel.show_view(replace(four_robots, robots=(warned, *others)))
+    row = panel.robot_list.row(first.name)
+    assert row.note.text() == 'slow link: 380 ms there and back'
+    assert row.kind.text() == first.type_label + ', guarded'
+    assert row.toolTip() == 'link 380 ms   clock -0.40 s   lost 7 %'
