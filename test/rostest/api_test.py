@@ -16,7 +16,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 from mhri.ros.resources import read_text, robot_types  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
-INPUTS = ('mhri_joy', 'mhri_pedal')
+INPUTS = ('mhri_joy', 'mhri_pedal', 'mhri_voice')
 EVERYWHERE = ('/rosout', '/clock')
 ROW = re.compile(r'^\| (publishes|subscribes|serves) \| `([^`]+)` \| (?:`([^`]+)`|[^|]+) \|', re.M)
 

@@ -41,7 +41,7 @@ def test_file_says_its_licence_and_its_arguments(path):
 def test_host_by_default():
     config = load(MHRI)
     found = nodes(config)
-    assert sorted(found) == ['/mhri_joy', '/mhri_pedal', '/mux', '/panel']
+    assert sorted(found) == ['/mhri_joy', '/mhri_pedal', '/mhri_voice', '/mux', '/panel']
     assert found['/panel'].required and '--gui auto' in found['/panel'].args
     assert '--demo ' not in found['/panel'].args + ' '
     assert not found['/mux'].respawn, 'two hosts on one master would fight for its name'

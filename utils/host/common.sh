@@ -24,20 +24,20 @@ DEBIAN_RUN=(
   python3-std-msgs python3-geometry-msgs python3-sensor-msgs python3-nav-msgs python3-std-srvs
   python3-tf2-msgs python3-rosgraph-msgs python3-diagnostic-msgs python3-diagnostic-updater
   python3-cv-bridge python3-python-qt-binding python3-pyqt5 python3-pyqtgraph python3-pygame
-  python3-evdev
+  python3-evdev python3-pocketsphinx pocketsphinx-en-us python3-pyaudio
   python3-numpy python3-opencv python3-yaml python3-genpy fonts-dejavu-core
   xvfb xauth hostname util-linux
 )
 DEBIAN_TEST=(
   librostest-dev python3-rostest topic-tools python3-pytest python3-flake8
   python3-flake8-docstrings python3-mccabe python3-pip python3-psutil catkin-lint shellcheck
-  xdotool imagemagick x11-utils git procps
+  xdotool imagemagick x11-utils git procps espeak-ng sox
 )
 # On Ubuntu rosdep reads the ROS packages from package.xml; these have no key there.
 UBUNTU_RUN=(python3-rosdep build-essential cmake fonts-dejavu-core xvfb xauth hostname util-linux)
 UBUNTU_TEST=(
   python3-pytest python3-flake8 python3-mccabe python3-pip python3-psutil python3-catkin-lint
-  shellcheck xdotool imagemagick x11-utils git procps
+  shellcheck xdotool imagemagick x11-utils git procps espeak-ng sox
 )
 
 say() { printf 'mhri: %s\n' "$*"; }

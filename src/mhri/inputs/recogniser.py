@@ -1,0 +1,313 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Speech to words by pocketsphinx, offline, with its English model.
+
+Three searches work together. The spotter hears a stop while the word is being spoken. When an
+utterance has ended, the command search fits the grammar to it, whatever was said; and the filler, a
+loop of all sounds of the language, says how well anything would have fitted. Where the command fits
+much worse than the filler does in the same place, or something was spoken before its first word,
+the utterance was no command.
+"""
+import math
+import os
+import tempfile
+from dataclasses import dataclass
+
+import numpy as np
+
+from mhri.core.sound import MODEL
+
+try:
+    import pocketsphinx
+except ImportError as error:  # Said when the voice is used; the other ways to drive need none.
+    pocketsphinx = None
+    IMPORT_PROBLEM = str(error)
+
+_NOTHING = '(NULL)'
+_NO_WORDS = '<+[('
+# The ends of a short word are uncertain by so much [frames of 10 ms].
+_SHORT_FRAMES = 5
+_COMMAND, _FILLER = 'command', 'filler'
+_REMEDY = 'install python3-pocketsphinx and pocketsphinx-en-us'
+
+
+class RecogniserError(Exception):
+    """Speech cannot be recognised here; the text says what is missing and the remedy."""
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """What tells commands from talk; found by ``test/bench/bench_voice.py --tune``.
+
+    ``stop_threshold`` is the likelihood ratio at which a stop is spotted (smaller: sooner, and more
+    often in talk), ``wake_threshold`` the same for the wake words. The next three say how much
+    worse than the filler a command may fit [score per 10 ms]: its worst word, its first word where
+    that is the wake word, and all of it. ``latest_start`` is where the first word has to begin
+    [frames of 10 ms, 0.3 s of them from before the utterance]: what is spoken before makes it talk.
+    ``unspotted_wake`` takes the place of ``first_word`` where the spotter has not heard the wake
+    word. At the limit the confidence is 0.5; one ``slope`` below it 0.27.
+    """
+
+    stop_threshold: float = 1e-10
+    wake_threshold: float = 1e-20
+    worst_word: float = -36.0
+    first_word: float = -21.0
+    unspotted_wake: float = -15.0
+    all_words: float = -22.5
+    latest_start: float = 42.0
+    slope: float = 5.0
+
+
+@dataclass(frozen=True)
+class Fit:
+    """How a command fits against another search in the same place [score per frame of 10 ms].
+
+    Negative is worse than the other. ``start`` is the frame where the first word begins.
+    """
+
+    worst: float
+    first: float
+    mean: float
+    start: int
+
+    def margin(self, tuning, stop=False, woken=True, spotted=True):
+        """Return how far it is above the limits [score per frame], negative: below one.
+
+        :param stop: it is about a stop, which may be said anywhere in a sentence
+        :param woken: its first word is the wake word
+        :param spotted: the spotter has heard a wake word as well
+        """
+        worst = self.worst - tuning.worst_word
+        if stop:
+            return worst
+        lowest = tuning.first_word if spotted else tuning.unspotted_wake
+        first = self.first - lowest if woken else math.inf
+        return min(worst, first, self.mean - tuning.all_words, tuning.latest_start - self.start)
+
+
+def compare(fitted, anything):
+    """Return the :class:`Fit` of one search against another.
+
+    What the first search took for silence counts for the worst word: talk hides there.
+
+    :param fitted: [(word, first frame, last frame, score)] of the first; one at least is a word
+    :param anything: the same of the other
+    """
+    length = max(last for _, _, last, _ in anything + fitted) + 1
+    others = np.zeros(length)
+    for _, first, last, score in anything:
+        if last >= first >= 0:
+            others[first:last + 1] = score / (last + 1 - first)
+    total = np.concatenate([[0.0], np.cumsum(others)])
+    parts = [(word, first, last + 1 - first, score - (total[last + 1] - total[first]))
+             for word, first, last, score in fitted if word != _NOTHING and first >= 0]
+    spoken = [part for part in parts if part[0][0] not in _NO_WORDS]
+    return Fit(min(over / (frames + _SHORT_FRAMES) for _, _, frames, over in parts),
+               spoken[0][3] / (spoken[0][2] + _SHORT_FRAMES),
+               sum(part[3] for part in spoken) / sum(part[2] for part in spoken), spoken[0][1])
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """The words that fit an utterance best, and how sure that is.
+
+    ``confidence`` is in [0, 1], 0.5 and more meaning a command.
+    """
+
+    text: str
+    confidence: float
+
+
+class Dictionary:
+    """The sounds of the model's words; read when first asked."""
+
+    def __init__(self, path=os.path.join(MODEL, 'cmudict-en-us.dict')):
+        self._path = path
+        self._sounds = None
+
+    def _read(self):
+        if self._sounds is not None:
+            return
+        try:
+            with open(self._path, encoding='utf-8') as lines:
+                rows = [line.split(None, 1) for line in lines]
+        except OSError as error:
+            raise RecogniserError('cannot read {}: {}; {}'.format(
+                self._path, error.strerror or error, _REMEDY))
+        sounds = {}
+        for word, spoken in rows:
+            sounds.setdefault(word.partition('(')[0], []).append(spoken.strip())
+        self._sounds = sounds
+
+    def __contains__(self, word):
+        self._read()
+        return word in self._sounds
+
+    def sounds(self, word):
+        """Return the ways in which a word is spoken, as CMU phones; [] where it is not there."""
+        self._read()
+        return self._sounds.get(word, [])
+
+    def phones(self):
+        """Return every sound of the language, sorted."""
+        self._read()
+        return sorted({phone for ways in self._sounds.values() for way in ways
+                       for phone in way.split()})
+
+
+def _decoder(folder, rows, **settings):
+    """Return a decoder with a dictionary of some rows (word, sounds)."""
+    path = os.path.join(folder, 'words.dict')
+    with open(path, 'w', encoding='utf-8') as stream:
+        counts = {}
+        for word, sounds in rows:
+            counts[word] = counts.get(word, 0) + 1
+            number = '({})'.format(counts[word]) if counts[word] > 1 else ''
+            stream.write('{}{} {}\n'.format(word, number, sounds))
+    config = pocketsphinx.Decoder.default_config()
+    texts = {'-hmm': os.path.join(MODEL, 'en-us'), '-dict': path, '-logfn': os.devnull}
+    texts.update({'-' + key: value for key, value in settings.items() if isinstance(value, str)})
+    for key, value in texts.items():
+        config.set_string(key, value)
+    # The endpointer has cut the sound already.
+    config.set_boolean('-remove_silence', False)
+    for key, value in settings.items():
+        if isinstance(value, bool):
+            config.set_boolean('-' + key, value)
+        elif isinstance(value, int):
+            config.set_int('-' + key, value)
+        elif isinstance(value, float):
+            config.set_float('-' + key, value)
+    try:
+        return pocketsphinx.Decoder(config)
+    except RuntimeError as error:
+        raise RecogniserError('pocketsphinx does not take its model {}: {}; {}'.format(
+            MODEL, error, _REMEDY))
+
+
+class Recogniser:
+    """Hears the phrases of one grammar.
+
+    :param grammar: :class:`mhri.core.speech_grammar.Grammar`
+    :param dictionary: :class:`Dictionary`
+    :raises RecogniserError: pocketsphinx or its model is missing
+    """
+
+    def __init__(self, grammar, dictionary, tuning=Tuning()):
+        if pocketsphinx is None:
+            raise RecogniserError('pocketsphinx cannot be loaded ({}); {}'.format(
+                IMPORT_PROBLEM, _REMEDY))
+        self._dictionary = dictionary
+        self._tuning = tuning
+        self._spotting = self._wake_spotted = False
+        with tempfile.TemporaryDirectory(prefix='mhri_voice_') as folder:
+            self._spotter = self._new_spotter(folder, grammar)
+        self.set_grammar(grammar)
+
+    def _rows(self, words, language):
+        """Return (word, sounds) of words; those of the language come before the dictionary's.
+
+        :raises RecogniserError: a word has no sounds
+        """
+        rows = []
+        for word in words:
+            ways = list(language.pronunciations.get(word, ())) or self._dictionary.sounds(word)
+            if not ways:
+                raise RecogniserError('the word "{}" of the voice language {} is not in the '
+                                      'dictionary: give its sounds below pronunciations'.format(
+                                          word, language.name))
+            rows += [(word, sounds) for sounds in ways]
+        return rows
+
+    def _new_spotter(self, folder, grammar):
+        """Return the decoder that spots stops and wake words."""
+        language, tuning = grammar.language, self._tuning
+        path = os.path.join(folder, 'spotted.kws')
+        with open(path, 'w', encoding='utf-8') as stream:
+            for phrases, threshold in ((language.stop, tuning.stop_threshold),
+                                       (language.wake_words, tuning.wake_threshold)):
+                stream.writelines('{} /{:g}/\n'.format(phrase, threshold) for phrase in phrases)
+        words = sorted({word for phrase in language.stop + language.wake_words
+                        for word in phrase.split()})
+        return _decoder(folder, self._rows(words, language), kws=path, remove_noise=False,
+                        beam=1e-100, pbeam=1e-100)
+
+    def set_grammar(self, grammar):
+        """Listen for other robots from the next utterance on; takes about 0.2 s.
+
+        :raises RecogniserError: a word of the language has no sounds
+        """
+        phones = self._dictionary.phones()
+        rows = self._rows(grammar.words, grammar.language)
+        rows += [('sound_' + phone.lower(), phone) for phone in phones]
+        loop = ' | '.join('sound_' + phone.lower() for phone in phones)
+        with tempfile.TemporaryDirectory(prefix='mhri_voice_') as folder:
+            # compallsen: only so are the scores of two searches comparable. topn: more of the
+            # model's densities than usual, which helps in noise.
+            decoder = _decoder(folder, rows, compallsen=True, cmn='batch', topn=8)
+        decoder.set_jsgf_string(_COMMAND, grammar.jsgf())
+        decoder.set_jsgf_string(_FILLER, '#JSGF V1.0;\ngrammar filler;\npublic <any> = ({})+;\n'
+                                .format(loop))
+        self._decoder = decoder
+        self._language = grammar.language
+
+    # Stops and wake words, while they are spoken.
+
+    def begin(self, sound):
+        """Begin an utterance with the sound that led to it; return as :meth:`go_on` does."""
+        self.end()
+        self._spotter.start_utt()
+        self._spotting, self._wake_spotted = True, False
+        return self.go_on(sound)
+
+    def go_on(self, sound):
+        """Take in more sound of the utterance; return the stop or wake word heard in it, or ''."""
+        self._spotter.process_raw(sound, False, False)
+        found = self._spotter.hyp()
+        if found is None:
+            return ''
+        self._spotter.end_utt()
+        self._spotter.start_utt()
+        word = found.hypstr.strip()
+        self._wake_spotted = self._wake_spotted or word in self._language.wake_words
+        return word
+
+    def end(self):
+        """End the utterance for the spotter."""
+        if self._spotting:
+            self._spotting = False
+            self._spotter.end_utt()
+
+    # The command, when it has been spoken.
+
+    def _segments(self, search, sound):
+        """Return [(word, first frame, last frame, score)] of the best fit, [] without one."""
+        decoder = self._decoder
+        decoder.set_search(search)
+        decoder.start_utt()
+        decoder.process_raw(sound, False, True)
+        decoder.end_utt()
+        if decoder.hyp() is None or not decoder.hyp().hypstr:
+            return []
+        return [(part.word, part.start_frame, part.end_frame, part.ascore)
+                for part in decoder.seg()]
+
+    def recognise(self, sound):
+        """Return the :class:`Hypothesis` of a whole utterance, or None where nothing fits.
+
+        :param sound: 16 bit little endian, mono, 16 kHz
+        """
+        fitted = self._segments(_COMMAND, sound)
+        anything = self._segments(_FILLER, sound) if fitted else []
+        if not anything:
+            return None
+        words = [word.partition('(')[0] for word, _, _, _ in fitted if word[0] not in _NO_WORDS]
+        if not words:
+            return None
+        text, language = ' '.join(words), self._language
+        margin = compare(fitted, anything).margin(
+            self._tuning, any(word in language.stop for word in words),
+            text.startswith(language.wake_words), self._wake_spotted)
+        # Bounded, since exp() has a largest argument.
+        steps = max(-50.0, min(50.0, margin / self._tuning.slope))
+        return Hypothesis(text, 1.0 / (1.0 + math.exp(-steps)))

@@ -1,0 +1,82 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Listening to one source: its sound through the recogniser, as events for the node."""
+from mhri.core.speech import SURE_OF_STOP
+from mhri.core.speech_grammar import Grammar, STOP
+from mhri.inputs.listener import Began, Ended, Listener, Spotted
+from mhri.inputs.recogniser import Dictionary, Recogniser
+
+_WAIT_S = 0.2
+
+
+class Session:
+    """Listens to one source for the robots that are there.
+
+    :param language: :class:`mhri.core.speech_language.Language`
+    :param source: of :mod:`mhri.inputs.audio`, open
+    :param device: its name
+    :param robots: names in the panel's order
+    :param say: function that takes an event as a mapping, see :mod:`mhri.inputs.listening`
+    :raises RecogniserError: speech cannot be recognised here
+    """
+
+    def __init__(self, language, source, device, robots, say):
+        self._language = language
+        self._source = source
+        self._device = device
+        self._say = say
+        self._dictionary = Dictionary()
+        self._grammar = self._new_grammar(robots)
+        self._recogniser = Recogniser(self._grammar, self._dictionary)
+        self._listener = Listener(self._recogniser, self._is_stop)
+        self._robots = None
+        self._say_open()
+
+    def _new_grammar(self, robots):
+        return Grammar(self._language, robots, self._dictionary.__contains__)
+
+    def _say_open(self):
+        self._say({'kind': 'open', 'device': self._device, 'notes': self._grammar.notes,
+                   'robots': self._grammar.robots, 'words': self._grammar.words})
+
+    def _is_stop(self, hypothesis):
+        command = self._grammar.parse(hypothesis.text)
+        return (command is not None and command.kind == STOP
+                and hypothesis.confidence >= SURE_OF_STOP)
+
+    def set_robots(self, robots):
+        """Listen for other robots, as soon as nobody speaks."""
+        self._robots = robots
+
+    def step(self):
+        """Take in the next block of sound, if one comes.
+
+        :raises DeviceLost: there will be none any more
+        """
+        block = self._source.read(_WAIT_S)
+        for event in self._listener.feed(block) if block else ():
+            self._say(_as_mapping(event))
+        if self._robots is not None and not self._listener.speaking:
+            robots, self._robots = self._robots, None
+            self._grammar = self._new_grammar(robots)
+            self._recogniser.set_grammar(self._grammar)
+            self._say_open()
+
+    def finish(self):
+        """Say what is left, and close the source."""
+        for event in self._listener.finish():
+            self._say(_as_mapping(event))
+        self._source.close()
+
+
+def _as_mapping(event):
+    """Return what is said of an event of the listener."""
+    if isinstance(event, Began):
+        return {'kind': 'began'}
+    if isinstance(event, Spotted):
+        return {'kind': 'spotted', 'word': event.word}
+    assert isinstance(event, Ended)
+    found = event.hypothesis
+    return {'kind': 'ended', 'age_s': round(event.at_s - event.began_s, 3),
+            'text': found.text if found else '',
+            'confidence': round(found.confidence, 3) if found else 0.0}

@@ -1,0 +1,225 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The voice as an input device: a process that listens, and the rules for what was heard."""
+import json
+import os
+import select
+import subprocess
+import sys
+import threading
+import time
+
+from mhri.core.speech import Heard, VoiceRules
+from mhri.core.speech_grammar import Command, Grammar, STOP
+from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader, Reading
+
+# Loading the model takes a second, on a busy computer several.
+_OPEN_S = 30.0
+_END_S = 0.5
+
+
+class VoiceReader(Reader):
+    """Speech read into axes: axes[0] left, axes[1] forward, as fractions of the speed limit.
+
+    :param language: :class:`mhri.core.speech_language.Language`
+    :param path: the file it came from
+    :param on_heard: called with :class:`mhri.core.speech.Heard` for each utterance
+    :param on_act: called with each :class:`Command` that others carry out (PANEL, MODE, STOP)
+
+    The callbacks are called on the thread of :meth:`read`, and must return at once.
+    """
+
+    kind = 'microphone'
+
+    def __init__(self, language, path, on_heard, on_act, clock=time.monotonic):
+        self._path = path
+        self._source = self._opened_source = ''
+        self._on_heard = on_heard
+        self._on_act = on_act
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._language = language
+        self._rules = VoiceRules(language)
+        self._robots = ()
+        self._grammar = None
+        self._told = None
+        self._process = None
+        self._orders = None
+        self._held = b''
+        self._last = None
+        self._began = 0.0
+        self._woken = False
+        self._drives = True
+
+    # From other threads.
+
+    def want_source(self, source):
+        """Listen to this, see :func:`mhri.inputs.audio.open_source`; '' is the microphone."""
+        self._source = str(source)
+
+    def set_robots(self, robots):
+        """Listen for these robots, the names in the panel's order."""
+        with self._lock:
+            self._robots = tuple(robots)
+
+    def push_to_talk(self, held):
+        """Note that push-to-talk is held or let go."""
+        with self._lock:
+            self._rules.push_to_talk(held, self._clock())
+
+    def set_drives(self, drives):
+        """Note whether the voice is the source that drives."""
+        self._drives = drives
+
+    # Reader.
+
+    def open(self):
+        """Begin to listen; see :meth:`Reader.open`."""
+        self.close()
+        self._opened_source = source = self._source
+        orders, self._orders = os.pipe()
+        environment = dict(os.environ, PYTHONPATH=os.pathsep.join(filter(None, sys.path)))
+        try:
+            self._process = subprocess.Popen(
+                [sys.executable, '-m', 'mhri.inputs.listening', str(orders)],
+                stdin=None if source == '-' else subprocess.DEVNULL, stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL, pass_fds=(orders,), env=environment)
+        except OSError as error:
+            raise DeviceAbsent('the process that listens cannot be started: {}'.format(error))
+        finally:
+            os.close(orders)
+        with self._lock:
+            self._rules.reset()
+            self._told = self._robots
+        self._held, self._last, self._woken = b'', None, False
+        self._order({'source': source, 'language': self._path, 'robots': self._told})
+        return self._wait_open()
+
+    def _wait_open(self):
+        """Wait until the process listens; return what it listens to."""
+        deadline = self._clock() + _OPEN_S
+        while self._clock() < deadline:
+            for event in self._events(deadline - self._clock()):
+                if event['kind'] == 'open':
+                    self._opened(event)
+                    return event['device']
+                raise DeviceAbsent(event['reason'])
+        raise DeviceAbsent('the process that listens does not answer')
+
+    def _opened(self, event):
+        """Take note of what is listened to, and for whom."""
+        self.note = '; '.join(event['notes'])
+        # Which words the dictionary has, the other process has looked up.
+        self._grammar = Grammar(self._language, event['robots'], event['words'].__contains__)
+
+    def read(self, timeout_s):
+        """Wait for what is heard; see :meth:`Reader.read`."""
+        if self._source != self._opened_source:
+            raise DeviceLost('something else is to be listened to')
+        with self._lock:
+            robots = self._robots
+            wait_s = min(timeout_s, self._wait_s(self._clock()))
+        if robots != self._told:
+            self._told = robots
+            self._order({'robots': robots})
+        for event in self._events(wait_s):
+            self._take(event)
+        with self._lock:
+            now = self._clock()
+            due, stick = self._rules.take_due_stop(now), self._rules.stick(now)
+        if due:
+            self._on_act(Command(STOP))
+        reading = Reading(stick, (), '')
+        if reading == self._last:
+            return None
+        self._last = reading
+        return reading
+
+    def _wait_s(self, now):
+        """Return how long the reading stays what it was last; call it with the lock held."""
+        if self._last is None or self._rules.stick(now) != self._last.axes:
+            # It has changed between two calls.
+            return 0.0
+        return self._rules.next_change(now)
+
+    def _take(self, event):
+        """Take in one event of the process.
+
+        :raises DeviceLost: it listens no longer
+        """
+        kind, now = event['kind'], self._clock()
+        if kind == 'open':
+            self._opened(event)
+        elif kind == 'began':
+            self._began, self._woken = now, False
+        elif kind == 'spotted':
+            self._spotted(event['word'], now)
+        elif kind == 'ended':
+            self._ended(event, now)
+        else:
+            raise DeviceLost(event.get('reason', 'the process that listens failed'))
+
+    def _spotted(self, word, now):
+        """Obey a stop while it is spoken."""
+        if word in self._language.wake_words:
+            self._woken = True
+            return
+        with self._lock:
+            possible = self._drives and (self._woken or self._rules.talking(self._began))
+            at_once = self._rules.spotted_stop(now, possible)
+        if at_once:
+            self._on_act(Command(STOP))
+            self._on_heard(Heard(word, STOP, True, '', 1.0, None))
+
+    def _ended(self, event, now):
+        """Judge an utterance."""
+        text = event['text']
+        began = min(now, max(self._began, now - event['age_s'] - 1.0))
+        with self._lock:
+            heard = self._rules.hear(text, self._grammar.parse(text), event['confidence'], began,
+                                     now)
+        if heard.act is not None:
+            self._on_act(heard.act)
+        self._on_heard(heard)
+
+    def close(self):
+        """End the process; see :meth:`Reader.close`."""
+        with self._lock:
+            self._rules.rest()
+        process, self._process = self._process, None
+        orders, self._orders = self._orders, None
+        if orders is not None:
+            os.close(orders)
+        if process is None:
+            return
+        try:
+            process.wait(_END_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        process.stdout.close()
+
+    def _order(self, order):
+        """Tell the process something.
+
+        :raises DeviceLost: it is gone
+        """
+        try:
+            os.write(self._orders, (json.dumps(order) + '\n').encode())
+        except OSError as error:
+            raise DeviceLost('the process that listens is gone: {}'.format(error.strerror))
+
+    def _events(self, timeout_s):
+        """Return the events that have come within a time.
+
+        :raises DeviceLost: the process has ended
+        """
+        stream = self._process.stdout
+        if not select.select([stream], [], [], max(0.0, timeout_s))[0]:
+            return []
+        data = os.read(stream.fileno(), 65536)
+        if not data:
+            raise DeviceLost('the process that listens has ended, with {}'.format(
+                self._process.wait()))
+        *lines, self._held = (self._held + data).split(b'\n')
+        return [json.loads(line.decode()) for line in lines]

@@ -1,0 +1,45 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The executable ``mhri_voice``: spoken commands, through :class:`mhri.ros.input_node.InputNode`.
+
+Publishes ``/mux_in/voice`` (``sensor_msgs/Joy``: axes[0] left, axes[1] forward, fractions of the
+speed limit), serves ``/mhri_voice/set_suspended`` (``mhri/SetSuspended``); the other interfaces are
+those of :mod:`mhri.ros.voice`. Parameters:
+
+- ``~source``: what to listen to: '' (default) the default microphone, ``microphone:<part of its
+  name>``, ``<path>.wav``, the path of a FIFO with raw sound (16 kHz, mono, 16 bit little endian),
+  or ``-``, the same from the standard input; takes effect within two seconds
+- ``~language``: a file below ``resource/voice`` without its ending, or a path (default: english)
+"""
+import signal
+import sys
+
+import rospy
+
+from mhri.core.config import ConfigError
+from mhri.core.speech_language import parse_language
+from mhri.inputs.voice import VoiceReader
+from mhri.ros.input_node import InputNode
+from mhri.ros.live_parameter import LiveParameter
+from mhri.ros.resources import read_text, resource_path
+from mhri.ros.voice import VoiceLink
+
+
+def main():
+    """Run until shut down; exit with 1 where the language's file cannot be used."""
+    rospy.init_node('mhri_voice')
+    # A terminal that is closed must not end the node without a neutral Joy.
+    signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
+    name = rospy.get_param('~language', 'english')
+    path = name if '/' in name else resource_path('voice', name + '.yaml')
+    try:
+        language = parse_language(read_text(path), path)
+    except (ConfigError, OSError) as error:
+        sys.exit('mhri_voice cannot start: {}'.format(error))
+    link = VoiceLink()
+    reader = VoiceReader(language, path, link.on_heard, link.on_act)
+    node = InputNode(reader, '/mux_in/voice', '~set_suspended')
+    LiveParameter('~source', '', reader.want_source, node.resumed).start()
+    link.start(reader, node.resumed)
+    node.start()
+    rospy.spin()

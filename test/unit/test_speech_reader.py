@@ -1,0 +1,201 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The voice as an input device: events of the process that listens into readings and wishes."""
+import json
+import math
+import os
+from pathlib import Path
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+from mhri.core.speech import STOP_RECORDING_S
+from mhri.core.speech_grammar import STOP
+from mhri.core.speech_language import parse_language
+from mhri.inputs import listening
+from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reading
+from mhri.inputs.voice import VoiceReader
+
+PATH = Path(__file__).resolve().parents[2] / 'resource' / 'voice' / 'english.yaml'
+REST = Reading((0.0, 0.0))
+FORWARD = Reading((0.0, 0.5))
+
+
+class Desk:
+    """A reader whose process is this test, at a time of the test's own."""
+
+    def __init__(self):
+        self.now = 50.0
+        self.heard, self.acts = [], []
+        self.reader = VoiceReader(parse_language(PATH.read_text(), str(PATH)), str(PATH),
+                                  self.heard.append, self.acts.append, lambda: self.now)
+        events, self._events = os.pipe()
+        self._orders, orders = os.pipe()
+        self.reader._process = SimpleNamespace(
+            stdout=os.fdopen(events, 'rb'), wait=lambda timeout_s=None: 1, kill=lambda: None)
+        self.reader._orders = orders
+        self.reader._told = ()
+        self.say('open', device='x', notes=['a note'], robots=['bot1'], words=['bot'])
+
+    def say(self, kind, **event):
+        """Be the process; return the reading that follows."""
+        os.write(self._events, (json.dumps(dict(event, kind=kind)) + '\n').encode())
+        return self.reader.read(0.0)
+
+    def ended(self, text, confidence=0.9, age_s=1.0):
+        """End an utterance that began a second ago; return the reading that follows."""
+        self.say('began')
+        self.now += age_s
+        return self.say('ended', text=text, confidence=confidence, age_s=age_s)
+
+    def orders(self):
+        """Return what the process was told."""
+        return [json.loads(line) for line in os.read(self._orders, 9999).splitlines()]
+
+    def hang_up(self):
+        """End the process."""
+        os.close(self._events)
+
+
+@pytest.fixture
+def desk():
+    return Desk()
+
+
+def test_a_note_about_a_robot_is_passed_on(desk):
+    assert desk.reader.note == 'a note'
+
+
+def test_a_command_moves_for_its_time(desk):
+    assert desk.ended('robot drive forward') == FORWARD
+    assert desk.heard[-1].command == 'forward 0.50' and desk.acts == []
+    assert desk.reader.read(0.0) is None
+    desk.now += 2.0
+    assert desk.reader.read(0.0) == REST
+
+
+def test_read_returns_as_a_motion_ends_not_as_its_patience_does(desk):
+    """The zero must not wait for the next sound."""
+    desk.ended('robot drive forward')
+    desk.now += 1.999
+    assert desk.reader._rules.next_change(desk.now) == pytest.approx(0.001)
+    desk.reader.read(10.0)
+    desk.now += 0.001
+    assert desk.reader.read(10.0) == REST
+
+
+def test_a_spotted_stop_is_carried_out_at_once(desk):
+    desk.ended('robot drive forward')
+    desk.say('began')
+    assert desk.say('spotted', word='stop') == REST
+    assert [act.kind for act in desk.acts] == [STOP]
+    assert desk.heard[-1].command == 'stop' and desk.heard[-1].accepted
+
+
+def test_robot_stop_waits_for_recording_at_rest(desk):
+    """Where the voice drives; where another source does, it does not wait."""
+    desk.ended('robot drive forward')
+    desk.say('began')
+    desk.say('spotted', word='robot')
+    assert desk.say('spotted', word='stop') == REST
+    assert desk.acts == []
+    desk.now += STOP_RECORDING_S
+    desk.reader.read(0.0)
+    assert [act.kind for act in desk.acts] == [STOP]
+    desk.reader.set_drives(False)
+    desk.say('began')
+    desk.say('spotted', word='robot')
+    desk.say('spotted', word='stop')
+    assert len(desk.acts) == 2
+
+
+def test_a_wake_word_counts_for_its_own_utterance(desk):
+    desk.say('began')
+    desk.say('spotted', word='robot')
+    desk.say('began')
+    desk.say('spotted', word='stop')
+    assert [act.kind for act in desk.acts] == [STOP], 'at once'
+
+
+def test_push_to_talk(desk):
+    desk.reader.push_to_talk(True)
+    assert desk.ended('drive forward') == FORWARD
+
+
+def test_robots_are_told_once_and_known_when_they_are_listened_for(desk):
+    desk.reader.set_robots(['bot1', 'rover'])
+    desk.reader.read(0.0)
+    desk.reader.read(0.0)
+    assert desk.orders() == [{'robots': ['bot1', 'rover']}]
+    desk.ended('robot select rover')
+    assert desk.acts == []
+    desk.say('open', device='x', notes=[], robots=['bot1', 'rover'], words=['bot', 'rover'])
+    desk.ended('robot select rover')
+    assert desk.acts[-1].robots == ('rover',)
+
+
+@pytest.mark.parametrize('event, reason', (
+    ({'kind': 'lost', 'reason': 'pulled out'}, 'pulled out'), ({'kind': 'odd'}, 'failed')))
+def test_a_device_that_is_lost(desk, event, reason):
+    with pytest.raises(DeviceLost, match=reason):
+        desk.say(**event)
+
+
+def test_a_process_that_ends_is_a_lost_device(desk):
+    desk.hang_up()
+    with pytest.raises(DeviceLost, match='has ended, with 1'):
+        desk.reader.read(0.0)
+
+
+def test_another_source_is_a_lost_device(desk):
+    desk.reader.want_source('/tmp/other')
+    with pytest.raises(DeviceLost, match='something else'):
+        desk.reader.read(0.0)
+
+
+def test_close_forgets_the_motion(desk):
+    desk.ended('robot drive forward')
+    desk.reader.close()
+    desk.reader.close()
+    assert desk.reader._rules.stick(desk.now) == (0.0, 0.0)
+    assert desk.reader._rules.next_change(desk.now) == math.inf
+
+
+# The process that listens.
+
+def test_orders_come_in_lines():
+    there, here = os.pipe()
+    orders = listening.Orders(there)
+    assert orders.take() == []
+    os.write(here, b'{"robots": []}\n{"rob')
+    assert orders.take() == [{'robots': []}]
+    os.write(here, b'ots": ["a"]}\n')
+    assert orders.take() == [{'robots': ['a']}]
+    os.close(here)
+    with pytest.raises(EOFError):
+        orders.take()
+
+
+def test_without_pocketsphinx_or_its_model(monkeypatch, tmp_path):
+    """The message names the package."""
+    assert listening.missing() == ''
+    monkeypatch.setattr(listening, 'MODEL', str(tmp_path / 'none'))
+    assert 'install pocketsphinx-en-us' in listening.missing()
+    monkeypatch.setitem(sys.modules, 'pocketsphinx', None)
+    with pytest.raises(DeviceAbsent, match='install python3-pocketsphinx'):
+        listening.begin({'source': '/tmp/none'}, None)
+
+
+def test_without_a_source_nothing_is_loaded(tmp_path):
+    with pytest.raises(DeviceAbsent, match='No such file'):
+        listening.begin({'source': str(tmp_path / 'none')}, None)
+
+
+def test_a_language_that_cannot_be_used_is_said(tmp_path):
+    path = str(tmp_path / 'sound')
+    os.mkfifo(path)
+    writer = os.open(path, os.O_RDWR)
+    with pytest.raises(DeviceAbsent, match='none.yaml'):
+        listening.begin({'source': path, 'language': str(tmp_path / 'none.yaml')}, None)
+    os.close(writer)
