@@ -17,6 +17,8 @@ from python_qt_binding.QtWidgets import QApplication, QWidget
 from mhri.core.views import LIVE, PROOF_STOPPED
 
 POLL_MS = 50
+# How the panel's bottom line ends.
+CENTRE, READY = 'centre the stick to drive', 'ready'
 PATIENCE_S = 20.0
 
 
@@ -76,6 +78,42 @@ class Hands:
         where = QPointF(point)
         QApplication.sendEvent(widget, QMouseEvent(
             kind, where, QPointF(widget.mapToGlobal(point)), button, buttons, Qt.NoModifier))
+
+
+class Grip:
+    """A condition that holds something (stick or key) until another condition is true.
+
+    Where the mux asks for a centred stick meanwhile (a computer that stalled for half a second was
+    taken for a silent source), it does what an operator does: lets go, and takes it again.
+
+    :param take: function that takes it
+    :param let_go: function that lets it go
+    :param status: function that returns the panel's bottom line
+    :param condition: what to wait for
+    """
+
+    def __init__(self, take, let_go, status, condition):
+        self._take = take
+        self._let_go = let_go
+        self._status = status
+        self._condition = condition
+        self._held = None
+
+    def __call__(self):
+        """Look, and return whether the condition is true."""
+        if self._held is None:
+            self._held = True
+            self._take()
+        if self._condition():
+            return True
+        status = self._status()
+        if self._held and status.endswith(CENTRE):
+            self._held = False
+            self._let_go()
+        elif not self._held and status.endswith(READY):
+            self._held = True
+            self._take()
+        return False
 
 
 class Diary:
@@ -148,6 +186,15 @@ class Demo(QObject):
         """Return a condition: the line at the bottom of the panel ends with these words."""
         return lambda: self._operator.view().status.endswith(words)
 
+    @staticmethod
+    def _both(one, other):
+        return lambda: one() and other()
+
+    def _hold(self, forward, turn, condition):
+        """Return a condition that drives until another one is true."""
+        return Grip(lambda: self._hands.hold_stick(forward, turn), self._hands.let_go,
+                    lambda: self._operator.view().status, condition)
+
     def _found_three(self):
         """Return a condition: three robots are live; until then it looks again every second."""
         looked_at = [-math.inf]
@@ -181,23 +228,21 @@ class Demo(QObject):
         hands.click('camera_depth', host.windows[one])
         hands.click('camera_rgb', host.windows[two])
         self._say('selected {} and {}: driving both'.format(one, two))
-        hands.hold_stick(0.4, 0.0)
-        yield '{} and {} to move'.format(one, two), self._moves(one, two)
-        yield '{} to drive on'.format(one), self._travelled(one, 0.25)
-        hands.hold_stick(0.4, 0.35)
-        yield '{} to drive a bend'.format(two), self._travelled(two, 0.2)
+        yield 'the panel to be ready', self._reads(READY)
+        yield '{} and {} to move'.format(one, two), self._hold(
+            0.4, 0.0, self._both(self._travelled(one, 0.25), self._moves(one, two)))
+        yield '{} to drive a bend'.format(two), self._hold(0.4, 0.35, self._travelled(two, 0.2))
         self._take_pictures(depth=host.windows[one])
         self._say('deselecting {} and selecting {} while they move'.format(one, three))
         hands.click('check_' + one)
         hands.click('check_' + three)
-        yield 'the panel to ask for a centred stick', self._reads('centre the stick to drive')
+        yield 'the panel to ask for a centred stick', self._reads(CENTRE)
         yield '{} to stand still'.format(one), self._rests(one)
         self._say('{} does not leap: the stick has to be centred first'.format(three))
         hands.let_go()
-        yield 'the panel to be ready', self._reads('ready')
-        hands.hold_stick(0.4, -0.35)
-        yield '{} and {} to move'.format(two, three), self._moves(two, three)
-        yield '{} to drive on'.format(three), self._travelled(three, 0.3)
+        yield 'the panel to be ready', self._reads(READY)
+        yield '{} and {} to move'.format(two, three), self._hold(
+            0.4, -0.35, self._both(self._travelled(three, 0.3), self._moves(two, three)))
         self._take_screenshot()
         self._take_pictures(panel=host.panel, bot_window=host.windows[two])
         self._say('stop all')

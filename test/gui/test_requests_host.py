@@ -82,14 +82,16 @@ def test_record_selected_records_each_and_says_how_it_ended(session, ask):
 
 def test_commands_of_the_robot_itself_are_recorded_where_asked_for(session):
     """The robot's velocity topic cannot be subscribed; what the gate sent is written instead."""
+    from mhri.demo import Grip
     from rosbag import Bag
     name = 'bot1'
     session.host._select([name])
     session.operator.record(name, '', ['commands'])
     recordings = session.operator.recordings
     session.until(lambda: recordings.status(name).messages > 5)
-    session.hands.hold_stick(0.6, 0.0)
-    session.until(lambda: session.operator.robot_view(name).driven, what='motion')
+    session.until(Grip(lambda: session.hands.hold_stick(0.6, 0.0), session.hands.let_go,
+                       lambda: session.operator.view().status,
+                       lambda: session.operator.robot_view(name).driven), what='motion')
     session.hands.let_go()
     session.until(lambda: not session.operator.robot_view(name).driven, what='rest')
     recordings.stop(name)

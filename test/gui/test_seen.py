@@ -261,6 +261,7 @@ class YawChart:
 
 
 def test_the_graph_moves_when_the_robot_turns(session):
+    from mhri.demo import Grip
     from support.robots import Witness
     witness = Witness('bot2')
     window = session.open('bot2')
@@ -270,8 +271,9 @@ def test_the_graph_moves_when_the_robot_turns(session):
     session.until(lambda: session.operator.view().status.endswith('ready'), what='ready')
     resting = session.until(lambda: chart.read(2.0), what='the curve of the robot at rest')
     assert max(map(abs, resting)) <= 0.02 + 4 * chart.pixel()
-    session.hands.hold_stick(0.0, 0.6)
-    session.until(lambda: witness.moving() and witness.latest().angular_rad_s > 0.5,
+    session.until(Grip(lambda: session.hands.hold_stick(0.0, 0.6), session.hands.let_go,
+                       lambda: session.operator.view().status,
+                       lambda: witness.moving() and witness.latest().angular_rad_s > 0.5),
                   what='the robot to turn')
     # So far that it has turned steadily for all of the second that is read below.
     turned_to(session, 1.5)
