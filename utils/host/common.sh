@@ -143,19 +143,6 @@ needs_plain_path() {
     die "$1 cannot work in a path with a space in it: move the checkout ($REPO)"
 }
 
-# link_package FOLDER: makes a package there of links to what this checkout has, but for build: a link
-# to the checkout itself would be a loop for everything that follows links.
-link_package() {
-  local entry
-  [ ! -L "$1" ] || rm "$1"
-  mkdir -p "$1"
-  find "$1" -maxdepth 1 -xtype l -delete
-  for entry in "$REPO"/*; do
-    entry=${entry##*/}
-    [ "$entry" = build ] || [ "$1/$entry" -ef "$REPO/$entry" ] || ln -s "../../../../$entry" "$1/"
-  done
-}
-
 # build_workspace TESTING [MAKE_TARGET]: builds this checkout in its own workspace; TESTING is ON or
 # OFF. The workspace is in build, which rosrun leaves out where it searches a package, and hidden,
 # which roslaunch leaves out: either would find every file of the package twice.
@@ -165,7 +152,7 @@ build_workspace() {
     die "cannot write to $REPO: the workspace is built there, in build/.ws"
   exec {BUILD_LOCK}>"$WS/lock"
   flock "$BUILD_LOCK"
-  link_package "$WS/src/mhri"
+  ln -sfn ../../.. "$WS/src/mhri"
   if [ -z "$target" ] && [ "$testing" = OFF ] && nothing_changed "$stamp"; then
     exec {BUILD_LOCK}>&-
     return 0
