@@ -205,7 +205,7 @@ class GateTest(unittest.TestCase):
         self.assertEqual(self.drive_until(end, 0.2), (0.2, 0.0))
         first_end = VelocityEnd(gate.topics[0])
         wait_for(first_end.connected, what='the first topic')
-        wait_for(lambda: gate._publishers[0].get_num_connections(), what='the first topic')
+        wait_for(lambda: gate._publishers[1].get_num_connections(), what='the first topic')
         self.assertEqual(self.drive_until(first_end, 0.3), (0.3, 0.0))
         wait_for(lambda: end.values()[-1] == (0.0, 0.0), what='the zero on the topic left')
 

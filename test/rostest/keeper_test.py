@@ -181,6 +181,21 @@ class KeeperTest(unittest.TestCase):
         self.select.publish([name])
         told((0.2, 0.0))
 
+    def test_the_last_word_on_the_selection_holds_however_fast_they_come(self):
+        first, _, first_end = self.robot()
+        second, _, second_end = self.robot()
+        self.pilot.drive(0.2)
+        for number in range(40):
+            # As two clicks do: each closes what is not selected at once, and says so on the topic.
+            for names in ([first], [first, second], [second]):
+                self.bank.deselect_others(names)
+                self.select.publish(names)
+            when = time.monotonic()
+            wait_for(lambda: (0.2, 0.0) in [entry[1:] for entry in second_end.after(when)], 10.0,
+                     'the robot selected last to be driven, time {}'.format(number))
+            first, second = second, first
+            first_end, second_end = second_end, first_end
+
     def test_closing_is_one_zero_by_the_keeper(self):
         _, _, end = self.driven()
         keeper = self.child()

@@ -22,7 +22,7 @@ def main():
     rospy.init_node('mhri_gate_keeper', anonymous=True, disable_signals=True, disable_rostime=True)
     MasterWatch().start()
     bank = GateBank()
-    bank.start()
+    bank.start(hear_selection=False)
     for name in Keeper(sys.stdin, int(sys.argv[-1]), bank).run():
         rospy.logwarn('the panel was killed while driving: zero sent to %s', name)
     rospy.signal_shutdown('the panel has ended')

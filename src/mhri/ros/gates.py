@@ -140,13 +140,18 @@ class GateBank:
         self._tell = _nobody
         self._changed = threading.Condition(threading.RLock())
 
-    def start(self):
-        """Subscribe and begin to watch for stale commands."""
-        self._subscribers = [
+    def start(self, hear_selection=True):
+        """Subscribe and begin to watch for stale commands.
+
+        :param hear_selection: False where somebody else tells by :meth:`select`: in two ways at
+            once an old word could overtake a new one
+        """
+        if hear_selection:
+            self._subscribers.append(rospy.Subscriber(
+                '/robot_controller/robot_select', RobotSelect,
+                lambda message: self.select(message.robots), queue_size=1, tcp_nodelay=True))
+        self._subscribers += [
             rospy.Subscriber('/robot_controller/twist', Twist, self._on_twist, queue_size=1,
-                             tcp_nodelay=True),
-            rospy.Subscriber('/robot_controller/robot_select', RobotSelect,
-                             lambda message: self.select(message.robots), queue_size=1,
                              tcp_nodelay=True),
             rospy.Subscriber('/robot_controller/stop_all', Bool,
                              lambda message: self.hear_stop(message.data), queue_size=10,
@@ -200,7 +205,6 @@ class GateBank:
         with self._changed:
             self._tell = tell
             tell('select', sorted(self._selected))
-            tell('stopped', self._stopped)
             tell('press' if self._pressed else 'withdraw')
             tell('pace', self._together, self._share)
             for gate in self._gates.values():
@@ -228,6 +232,7 @@ class GateBank:
         """Let exactly these robots through; the others get a zero where they were selected."""
         with self._changed:
             self._selected = frozenset(names)
+            self._tell('select', sorted(self._selected))
             now = self._clock()
             for name, gate in self._gates.items():
                 gate.send(gate.rule.select(name in self._selected, now), now)
@@ -257,7 +262,6 @@ class GateBank:
     def deselect_others(self, names):
         """Close the gates of all but these robots; opening is the word of robot_select alone."""
         with self._changed:
-            self._tell('hold', sorted(names))
             self.select(self._selected & frozenset(names))
 
     def press_stop(self):

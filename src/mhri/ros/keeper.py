@@ -13,10 +13,10 @@ decided, and speak for any robot that the keeper does not reach yet, or when it 
   said. A keeper that is silent for :data:`SILENCE_S` is ended.
 
 The pipes carry one JSON list per line. To the keeper: ``["open", name, [topic, ...], m/s, rad/s]``,
-``["close", name]``, ``["select", [name, ...]]``, ``["hold", [name, ...]]`` (close all but these),
-``["stopped", bool]`` (by the mux), ``["press"]``, ``["withdraw"]``, ``["pace", together, share]``,
-``["bye"]``. From it: ``["alive"]`` ten times a second, ``["leads", name]``, ``["closed"]`` after
-bye.
+``["close", name]``, ``["select", [name, ...]]``, ``["press"]``, ``["withdraw"]``,
+``["pace", together, share]``, ``["bye"]``. From it: ``["alive"]`` ten times a second,
+``["leads", name]``, ``["closed"]`` after bye. The keeper hears commands and stop-all from the mux
+itself, and the selection from the panel alone.
 """
 import json
 import os
@@ -141,7 +141,7 @@ class Keeper:
 
     :param lines: iterable of text lines, ends when the panel is gone
     :param answer: file descriptor to answer by
-    :param bank: :class:`mhri.ros.gates.GateBank`, started
+    :param bank: :class:`mhri.ros.gates.GateBank`, started without an ear for the selection
     """
 
     def __init__(self, lines, answer, bank):
@@ -175,8 +175,7 @@ class Keeper:
         elif word == 'close':
             self._worker.do(self._close, rest[0], self._bank.remove(rest[0]))
         else:
-            {'select': self._bank.select, 'hold': self._bank.deselect_others,
-             'stopped': self._bank.hear_stop, 'press': self._bank.press_stop,
+            {'select': self._bank.select, 'press': self._bank.press_stop,
              'withdraw': self._bank.withdraw_press, 'pace': self._bank.set_pace}[word](*rest)
 
     def _open(self, name, topics, linear_mps, angular_rad_s):
