@@ -5,14 +5,19 @@
 One of the few modules that know both. Everything here runs on the GUI thread; the ROS side is asked
 by timers and never waited for.
 """
+import json
+
 from python_qt_binding.QtCore import QByteArray, QObject, Qt, QTimer
 from python_qt_binding.QtGui import QGuiApplication
 from python_qt_binding.QtWidgets import QApplication
+import rospy
 
 from mhri.core.names import tidy_name
 from mhri.core.views import GONE, SILENT
+from mhri.doctor_host import DoctorHost
 from mhri.gui.panel import PanelWidget
-from mhri.gui.windows import free_corner, window_class
+from mhri.gui.window_maker import WindowMaker
+from mhri.gui.windows import free_corner
 from mhri.requests_host import RequestsHost
 from mhri.ros.resources import resource_path
 from mhri.window_host import WindowHost
@@ -35,6 +40,8 @@ class PanelHost(QObject):
         self.operator = operator
         self.windows = {}
         self._hosts = {}
+        self._maker = WindowMaker()
+        self._window_keys = {}
         self._places = {}
         self._looks = {}
         self._window_due = set()
@@ -47,6 +54,7 @@ class PanelHost(QObject):
         self._build()
         self.requests = RequestsHost(operator, self.panel.show_look_result, self._select,
                                      self._recording_wish)
+        self.doctor = DoctorHost(operator, self.panel, self.windows)
         self._connect()
 
     def _build(self):
@@ -116,6 +124,8 @@ class PanelHost(QObject):
         for kind, value in self.operator.take_events():
             if kind == 'found':
                 self._show_found(value)
+            elif kind == 'examined':
+                self.doctor.show(*value)
             elif kind == 'request':
                 self.requests.carry_out(*value)
             else:
@@ -143,7 +153,7 @@ class PanelHost(QObject):
             highlighted = self.panel.robot_list.current
             self._hosts[robot.name].prominent = highlighted in (None, robot.name) \
                 or highlighted not in self._hosts
-            self._hosts[robot.name].draw(robot, self._stopped)
+            self._guarded(robot.name, self._hosts[robot.name].draw, robot, self._stopped)
 
     def _repeat_stick(self):
         """Say again where the stick is: a source that is not heard for 0.5 s counts as lost."""
@@ -156,7 +166,7 @@ class PanelHost(QObject):
     def _show_found(self, found):
         """Say what was found; the robots that answer come into the list a few with each drawing."""
         new = [item.name for item in found.live]
-        self._to_add += [(name, found.parameters[name]) for name in new]
+        self._to_add += [(name, found.facts[name]) for name in new]
         words = ['found {}'.format(', '.join(new)) if new else 'no new robot answers']
         if found.leftovers:
             words.append('{}: registered, but nothing answers (switched off?), not added'.format(
@@ -213,20 +223,45 @@ class PanelHost(QObject):
         self._window_due.discard(name)
         if name not in self.windows:
             view = self.operator.robot_view(name)
-            window = window_class(view.window)(self._ui_dir, name, view.type_label)
+            window, problem = self._maker.make(view.window, self._ui_dir, name, view.type_label)
+            if problem:
+                rospy.logwarn('%s: %s', name, problem)
+                self.panel.show_look_result('{}: {}'.format(name, problem))
             window.closed.connect(self._on_window_closed)
             window.stop_requested.connect(self.operator.stop_all)
             self.windows[name] = window
+            self._window_keys[name] = view.window
             self._hosts[name] = WindowHost(window, self.operator)
-            feeds = self.operator.feeds(name)
-            if feeds is not None:
-                window.offer(feeds.offers())
-            window.restore_settings(self._looks.get(name, {}))
-            self._place(name, window)
-            window.show_view(view)
-            window.setAttribute(Qt.WA_ShowWithoutActivating)
-            window.show()
+            self._guarded(name, self._furnish, name, window, view)
         self.windows[name].raise_()
+
+    def _furnish(self, name, window, view):
+        """Show a new window as it was left, where it was left."""
+        feeds = self.operator.feeds(name)
+        if feeds is not None:
+            window.offer(feeds.offers())
+        window.restore_settings(self._looks.get(name, {}))
+        self._place(name, window)
+        window.show_view(view)
+        window.setAttribute(Qt.WA_ShowWithoutActivating)
+        window.show()
+
+    def _guarded(self, name, job, *args):
+        """Do something with a robot's window; a lab's own one that fails gives way to mhri's."""
+        key = self._window_keys[name]
+        try:
+            job(*args)
+        except Exception as error:
+            if not self._maker.trusts(key):
+                raise
+            self._maker.distrust(key, '{} failed ({}: {}); mend it and start mhri again'.format(
+                key, type(error).__name__, error))
+            window = self.windows.pop(name)
+            window.closed.disconnect(self._on_window_closed)
+            window.hide()
+            window.deleteLater()
+            self._hosts.pop(name).close()
+            self._open(name)
 
     def _place(self, name, window):
         """Put a window where it was last time, else where it covers the panel and others least."""
@@ -265,7 +300,15 @@ class PanelHost(QObject):
     def _keep_look(self, name):
         window = self.windows[name]
         self._places[name] = bytes(window.saveGeometry().toHex()).decode('ascii')
-        self._looks[name] = window.save_settings()
+        try:
+            look = window.save_settings()
+            json.dumps(look)
+        except Exception as error:
+            if not self._maker.trusts(self._window_keys[name]):
+                raise
+            rospy.logwarn('the look of the window of %s is not kept: %s', name, error)
+            return
+        self._looks[name] = look
 
     def save_state(self):
         """Return what is kept between runs as a plain dict: never which robots are selected."""
@@ -300,5 +343,6 @@ class PanelHost(QObject):
         self._stick_timer.stop()
         self.operator.close(forget)
         QApplication.instance().removeEventFilter(self.panel.drive_keys)
+        self.doctor.close()
         for name in list(self.windows):
             self._close_window(name)

@@ -91,18 +91,30 @@ class DiscoveryTest(unittest.TestCase):
             if name.endswith('/robot_type'):
                 rospy.delete_param(name)
 
+    def forget_listeners(self, listeners):
+        batch = xmlrpc.client.MultiCall(self.master)
+        for node, topic, uri in listeners:
+            batch.unregisterSubscriber(node, topic, uri)
+        batch()
+
     def names(self, candidates):
         return [candidate.name for candidate in candidates]
 
     def test_100_robots_with_20_topics_each_within_half_a_second(self):
-        batch = xmlrpc.client.MultiCall(self.master)
+        batch, listeners = xmlrpc.client.MultiCall(self.master), []
+        self.addCleanup(self.forget_listeners, listeners)
         for robot in range(ROBOTS):
             name = 'r{:03}'.format(robot)
             for topic in range(TOPICS):
                 node, full = '/{}/base'.format(name), '/{}/topic{}'.format(name, topic)
                 batch.registerPublisher(node, full, 'std_msgs/Bool', self.node.uri)
                 self.registered.append((node, full, self.node.uri))
-            batch.setParam('/discovery_test', '/{}/robot_type'.format(name), 'turtlebot2')
+            command = '/{}/drive/velocity'.format(name)
+            batch.registerSubscriber(node, command, 'geometry_msgs/Twist', self.node.uri)
+            listeners.append((node, command, self.node.uri))
+            # Every other robot has to be recognised.
+            if robot % 2:
+                batch.setParam('/discovery_test', '/{}/robot_type'.format(name), 'turtlebot2')
         batch()
         times = []
         for _ in range(5):
@@ -111,6 +123,8 @@ class DiscoveryTest(unittest.TestCase):
             times.append(time.monotonic() - begun)
             self.assertEqual(len(found.live), ROBOTS)
             self.assertEqual(found.leftovers, ())
+            self.assertEqual([found.facts[item.name].seen.command for item in found.live],
+                             ['drive/velocity'] * ROBOTS)
         print('MEASURED discovery of {} robots with {} topics each: median {:.0f} ms, most {:.0f} '
               'ms'.format(ROBOTS, TOPICS, sorted(times)[2] * 1e3, max(times) * 1e3))
         self.assertLess(sorted(times)[2], 1.0, 'promised: 0.5 s; see the printed figure')
@@ -124,7 +138,7 @@ class DiscoveryTest(unittest.TestCase):
         found = look_for_robots('/discovery_test', self.ignore, api=api)
         self.assertEqual(len(found.live), 7)
         methods = [[call['methodName'] for call in params[0]] for _, params in counting.requests]
-        self.assertEqual(methods[0], ['getSystemState', 'getParam'])
+        self.assertEqual(methods[0], ['getSystemState', 'getTopicTypes', 'getParam'])
         self.assertLessEqual(len(methods), 2)
         self.assertNotIn('getSystemState', methods[1])
 
@@ -139,7 +153,7 @@ class DiscoveryTest(unittest.TestCase):
         self.assertEqual(self.names(found.live), ['typed', 'untyped'])
         self.assertEqual(found.live[0].robot_type, 'turtlebot3')
         self.assertIsNone(found.live[1].robot_type)
-        self.assertEqual(found.parameters['typed'], {'robot_type': 'turtlebot3'})
+        self.assertEqual(found.facts['typed'].parameters, {'robot_type': 'turtlebot3'})
         ignoring = IgnoreList(namespaces=('unt*',))
         self.assertNotIn('untyped', self.names(
             look_for_robots('/discovery_test', ignoring, known=('known',)).live))

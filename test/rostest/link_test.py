@@ -8,6 +8,7 @@ import sys
 import time
 import unittest
 
+from geometry_msgs.msg import Twist
 import rosgraph
 import rospy
 import rostest
@@ -17,7 +18,8 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 from mhri.core.limits import Velocity  # noqa: E402
 from mhri.core.robot_types import Limits  # noqa: E402
 from mhri.ros.bot_feeds import BotFeeds  # noqa: E402
-from mhri.ros.gates import Gate  # noqa: E402
+from mhri.ros.fleet import Fleet  # noqa: E402
+from mhri.ros.gates import Gate, GateBank  # noqa: E402
 from mhri.ros.resources import robot_types  # noqa: E402
 from mhri.ros.robot_link import RobotLink  # noqa: E402
 from mhri.ros.worker import Worker  # noqa: E402
@@ -41,18 +43,28 @@ def put_in_front(slow, node, uri, topic, kind):
 class LinkTest(unittest.TestCase):
     """Figures and guard through a relay."""
 
-    def setUp(self):
-        self.delay = Delay()
+    delay = Delay()
+    far = False
 
-    def far_robot(self):
-        """Return the link of bot1, through the network."""
+    def setUp(self):
+        self.delay.one_way_s = 0.0
+        self.delay.go_on()
+
+    @classmethod
+    def move_away(cls):
+        """Put bot1 behind the network, for all tests that follow."""
+        if cls.far:
+            return
+        cls.far = True
         master = rosgraph.Master(rospy.get_name())
         wait_for(lambda: '/bot1/odom' in dict(master.getSystemState()[0]), START_S, 'the robot')
         node = dict(master.getSystemState()[0])['/bot1/odom'][0]
         uri = master.lookupNode(node)
-        slow = SlowNode(uri, self.delay)
-        self.addCleanup(slow.close)
-        put_in_front(slow, node, uri, '/bot1/odom', 'nav_msgs/Odometry')
+        put_in_front(SlowNode(uri, cls.delay), node, uri, '/bot1/odom', 'nav_msgs/Odometry')
+
+    def far_robot(self):
+        """Return the link of bot1, through the network."""
+        self.move_away()
         kind = robot_types()[0]['turtlebot3']
         link = RobotLink('bot1', kind, Gate.of_type('bot1', kind),
                          BotFeeds('bot1', kind, Worker('feeds').start()))
@@ -81,6 +93,51 @@ class LinkTest(unittest.TestCase):
             self.assertEqual(view.slow, one_way_s >= 0.1 or bool(view.note))
             self.assertLess(figures.loss, 0.05)
         self.assertIn('slow link', link.view().note)
+
+    def test_a_robot_out_of_reach_gets_a_zero_and_no_backlog(self):
+        self.move_away()
+        bank = GateBank()
+        bank.start(hear_selection=False)
+        self.addCleanup(bank.close)
+        fleet = Fleet(robot_types()[0], bank, Worker('feeds').start(), lambda *_: None)
+        self.addCleanup(fleet.close)
+        end = VelocityEnd('/bot1/cmd_vel')
+        fleet.want('bot1')
+        fleet.connect('bot1')
+        bank.select(['bot1'])
+        twist = rospy.Publisher('/robot_controller/twist', Twist, queue_size=1)
+
+        def command(speed):
+            message = Twist()
+            message.linear.x = speed
+            twist.publish(message)
+            fleet.hold_silent()
+            time.sleep(0.05)
+
+        def drive_until(speed, condition, what):
+            begun = time.monotonic()
+            while not condition():
+                command(speed)
+                self.assertLess(time.monotonic() - begun, START_S, what)
+        drive_until(0.1, lambda: (0.1, 0.0) in end.values()
+                    and fleet.view('bot1', True).link == 'live', 'it to be driven')
+        self.delay.stall()
+        stalled = time.monotonic()
+        drive_until(0.1, lambda: end.values()[-1] == ZERO, 'the zero')
+        print('MEASURED not heard any more: one zero after {:.2f} s, by its gate'.format(
+            end.received[-1][0] - stalled))
+        self.assertLess(end.received[-1][0] - stalled, 3.0, 'promised: 1 s')
+        sent = len(end.received)
+        for _ in range(20):
+            command(0.1)
+        self.delay.go_on()
+        drive_until(0.1, lambda: fleet.view('bot1', True).link == 'live'
+                    and 'centre the stick' in fleet.view('bot1', True).note, 'it to be heard')
+        for _ in range(10):
+            command(0.1)
+        self.assertEqual(len(end.received), sent, 'it was driven on without a centred stick')
+        command(0.0)
+        drive_until(0.1, lambda: end.values()[-1] == (0.1, 0.0), 'it to be driven again')
 
     def guarded(self, name):
         """Start a guard on a robot; return its process."""

@@ -1,12 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Which namespaces are robots."""
+import glob
 import os
 
 import pytest
 
 from mhri.core.config import ConfigError
-from mhri.core.discovery import Candidate, find_candidates, IgnoreList, nodes_of, parse_ignore_list
+from mhri.core.discovery import (
+    Candidate, find_candidates, IgnoreList, nodes_of, parameters_of, parse_ignore_list, TWIST)
+from mhri.core.robot_types import load_robot_types, Seen
 
 IGNORE = IgnoreList(('/rosout', '/*/rosout', '/bot*/helper'), ('mux', 'rqt_*'))
 RESOURCE = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'discovery.yaml')
@@ -26,7 +29,10 @@ CASES = {
     'by_nodes': (('/bot1/base',), {}, (), [Candidate('bot1', None, ('/bot1/base',))]),
     'by_both': (('/bot1/base', '/bot1/cam'), {'bot1': {'robot_type': 'x'}}, (),
                 [Candidate('bot1', 'x', ('/bot1/base', '/bot1/cam'))]),
-    'no_namespace': (('/base', '/rosout'), {'robot_type': 'x', 'rosdistro': 'noetic'}, (), []),
+    'no_namespace': (('/base', '/rosout'), {'rosdistro': 'noetic'}, (), []),
+    'type_without_a_namespace': (
+        ('/base', '/rosout'), {'robot_type': 'x'}, (),
+        [Candidate('robot', 'x', seen=Seen(at_root=True))]),
     'parameters_of_another_kind': ((), {'bot1': {'rate': 3}, 'bot2': 7}, (), []),
     'ignored_node': (('/bot1/rosout', '/bot1/helper'), {}, (), []),
     'ignored_node_does_not_hide_others': (
@@ -81,3 +87,146 @@ def test_a_thousand_robots_take_no_time():
     """Every name is looked at once; the limit of the contract is for the whole of discovery."""
     nodes = ['/bot{}/node{}'.format(robot, node) for robot in range(100) for node in range(20)]
     assert len(find_candidates(state(*nodes), {}, IGNORE)) == 100
+
+
+def graph(*lines):
+    """Return (system state, topic types) of lines such as ``/base reads /cmd_vel``.
+
+    A topic is a Twist unless a type follows it.
+    """
+    publishers, subscribers, kinds = {}, {}, {}
+    for line in lines:
+        node, does, topic, *kind = line.split()
+        group = {'reads': subscribers, 'writes': publishers}[does]
+        group.setdefault(topic, []).append(node)
+        kinds[topic] = kind[0] if kind else TWIST
+    groups = [[[topic, nodes] for topic, nodes in group.items()]
+              for group in (publishers, subscribers, {})]
+    return groups, [list(item) for item in kinds.items()]
+
+
+def shipped(folder, load):
+    """Return what a function makes of the shipped files of a folder."""
+    files = []
+    for path in sorted(glob.glob(os.path.join(os.path.dirname(RESOURCE), folder))):
+        with open(path, encoding='utf-8') as stream:
+            files.append((path, stream.read()))
+    return load(files)
+
+
+TYPES = shipped('robots/*.yaml', load_robot_types)[0]
+SHIPPED_IGNORE = shipped('discovery.yaml', lambda files: parse_ignore_list(files[0][1], 'file'))
+TB3 = ('/turtlebot3_core reads /cmd_vel', '/turtlebot3_core writes /odom nav_msgs/Odometry',
+       '/turtlebot3_core writes /sensor_state turtlebot3_msgs/SensorState',
+       '/turtlebot3_lds writes /scan sensor_msgs/LaserScan')
+TURTLE = ('/turtlesim reads /turtle1/cmd_vel', '/turtlesim writes /turtle1/pose turtlesim/Pose')
+TB2 = ('/cmd_vel_mux reads /cmd_vel_mux/input/teleop', '/cmd_vel_mux reads /cmd_vel_mux/input/navi',
+       '/velocity_smoother reads /teleop/input',
+       '/cmd_vel_mux writes /mobile_base/commands/velocity',
+       '/mobile_base reads /mobile_base/commands/velocity',
+       '/mobile_base writes /mobile_base/sensors/core kobuki_msgs/SensorState',
+       '/mobile_base writes /odom nav_msgs/Odometry',
+       '/camera/driver writes /camera/rgb/image_raw sensor_msgs/Image')
+
+# Name, robot_type and Seen of what is offered; None for Seen: it has a problem.
+GRAPHS = {
+    'turtlebot3_at_the_root': (TB3, {}, [('robot', None, Seen(True, 'turtlebot3', 'cmd_vel'))]),
+    'with_a_type': (TB3, {'robot_type': 'generic'}, [
+        ('robot', 'generic', Seen(True, 'turtlebot3', 'cmd_vel'))]),
+    'with_a_name': (TB3, {'robot_name': 'burger'}, [
+        ('burger', None, Seen(True, 'turtlebot3', 'cmd_vel'))]),
+    'with_a_name_that_cannot_be': (TB3, {'robot_name': 'my burger'}, [('my burger', None, None)]),
+    'beside_a_robot_of_its_name': (TB3 + ('/robot/base reads /robot/cmd_vel',), {}, [
+        ('/', None, None), ('robot', None, Seen(False, None, 'cmd_vel'))]),
+    'beside_robots_with_namespaces': (
+        TB3 + ('/bot1/base reads /bot1/cmd_vel', '/bot1/base writes /bot1/odom nav_msgs/Odometry'),
+        {'bot2': {'robot_type': 'turtlebot2'}}, [
+            ('bot1', None, Seen(False, None, 'cmd_vel')), ('bot2', 'turtlebot2', Seen()),
+            ('robot', None, Seen(True, 'turtlebot3', 'cmd_vel'))]),
+    'its_camera_is_no_robot': (TB2, {}, [
+        ('robot', None, Seen(True, 'turtlebot2', 'teleop/input'))]),
+    'turtlesim_at_the_root': (TURTLE, {}, [
+        ('robot', None, Seen(True, 'turtlesim', 'turtle1/cmd_vel'))]),
+    'turtlesim_in_a_namespace': (
+        ('/sim/turtlesim reads /sim/turtle1/cmd_vel',
+         '/sim/turtlesim writes /sim/turtle1/pose turtlesim/Pose'), {},
+        [('sim', None, Seen(False, 'turtlesim', 'turtle1/cmd_vel'))]),
+    'two_turtles': (TURTLE + ('/turtlesim reads /turtle2/cmd_vel',), {}, [
+        ('robot', None, Seen(True, 'turtlesim', 'turtle1/cmd_vel'))]),
+    'another_topic': (('/crawler/base reads /crawler/drive/velocity',), {}, [
+        ('crawler', None, Seen(False, None, 'drive/velocity'))]),
+    'an_absolute_topic': (('/crawler/base reads /cmd_vel',), {}, [
+        ('crawler', None, Seen(False, None, '/cmd_vel'))]),
+    'an_absolute_topic_of_two': (('/a/base reads /cmd_vel', '/b/base reads /cmd_vel'), {}, [
+        ('a', None, Seen()), ('b', None, Seen())]),
+    'behind_its_own_multiplexer': (
+        ('/b/mux reads /b/input', '/b/mux writes /b/cmd_vel', '/b/base reads /b/cmd_vel'), {},
+        [('b', None, Seen(False, None, 'input'))]),
+    'none_is_the_likeliest': (('/b/x reads /b/left', '/b/y reads /b/right'), {}, [
+        ('b', None, Seen())]),
+    'one_is_the_likeliest': (('/b/x reads /b/aux', '/b/y reads /b/base_cmd_vel'), {}, [
+        ('b', None, Seen(False, None, 'base_cmd_vel'))]),
+    'robots_of_a_simulator': (
+        ('/gazebo reads /tb3_0/cmd_vel', '/gazebo reads /tb3_1/cmd_vel'), {},
+        [('tb3_0', None, Seen(False, None, 'cmd_vel')),
+         ('tb3_1', None, Seen(False, None, 'cmd_vel'))]),
+    'no_twist': (('/base reads /cmd_vel std_msgs/String',), {}, []),
+    'only_written': (('/teleop_twist_keyboard writes /cmd_vel',), {}, []),
+    'tools_that_read_along': (
+        ('/rostopic_123_4 reads /cmd_vel', '/record_99 reads /cmd_vel', '/mux reads /cmd_vel',
+         '/mhri_panel reads /robot_controller/twist', '/rqt_gui_py_node_7 reads /cmd_vel',
+         '/watcher reads /robot_controller/twist', '/rosbridge_websocket reads /cmd_vel'), {}, []),
+    'with_its_guard': (
+        TB3 + ('/robot/mhri_guard reads /robot/mhri_guard/command geometry_msgs/TwistStamped',
+               '/robot/mhri_guard writes /cmd_vel'), {},
+        [('robot', None, Seen(True, 'turtlebot3', 'cmd_vel'))]),
+    'guarded_in_a_namespace': (
+        ('/b/mhri_guard writes /b/go', '/b/base reads /b/go', '/b/arm reads /b/arm/speed'), {},
+        [('b', None, Seen(False, None, 'go'))]),
+    'a_guard_alone': (
+        ('/b/mhri_guard reads /b/mhri_guard/command geometry_msgs/TwistStamped',
+         '/b/mhri_guard writes /b/cmd_vel'), {}, []),
+    'two_namespaces_deep': (
+        ('/lab/bot1/base reads /lab/bot1/cmd_vel', '/lab/bot2/base reads /lab/bot2/cmd_vel'),
+        {'lab': {'bot1': {'robot_type': 'turtlebot3'}, 'bot2': {'robot_type': 'turtlebot3'}}},
+        [('lab/bot1', None, None), ('lab/bot2', None, None)]),
+    'a_node_with_a_parameter_of_that_name': (
+        ('/bot1/base reads /bot1/cmd_vel',), {'bot1': {'base': {'robot_type': 'x'}}},
+        [('bot1', None, Seen(False, None, 'cmd_vel'))]),
+    'type_is_not_text': (TB3, {'robot_type': 3}, [
+        ('robot', None, Seen(True, 'turtlebot3', 'cmd_vel'))]),
+}
+
+
+@pytest.mark.parametrize('case', sorted(GRAPHS))
+def test_what_the_graph_tells(case):
+    """Robots without a namespace, without a type, and with a velocity topic of their own name."""
+    lines, parameters, expected = GRAPHS[case]
+    groups, kinds = graph(*lines)
+    found = find_candidates(groups, parameters, SHIPPED_IGNORE, (), kinds, TYPES)
+    assert [(item.name, item.robot_type, None if item.problem else item.seen)
+            for item in found] == expected
+
+
+def test_the_nodes_of_a_robot_at_the_root_are_those_that_drive_and_tell():
+    """At these doors it is knocked, to know whether the robot is alive."""
+    groups, kinds = graph(*TB3, '/teleop writes /cmd_vel', '/rviz_1 reads /odom nav_msgs/Odometry')
+    found, = find_candidates(groups, {'robot_type': 'turtlebot3'}, SHIPPED_IGNORE, (), kinds, TYPES)
+    assert '/turtlebot3_core' in found.nodes and '/rviz_1' not in found.nodes
+
+
+def test_a_known_robot_at_the_root_is_left_out():
+    """As every other one that is in the list."""
+    groups, kinds = graph(*TB3)
+    assert find_candidates(groups, {}, SHIPPED_IGNORE, ('robot',), kinds, TYPES) == []
+
+
+@pytest.mark.parametrize('at_root, expected', [
+    (True, {'robot_type': 'turtlebot3', 'robot_model': 'burger', 'mhri': {'label': 'Lab'}}),
+    (False, {'mhri': {'label': 'Lab'}})])
+def test_parameters_of_a_robot(at_root, expected):
+    """Without a namespace they are at the root, but for those that override its template."""
+    parameters = {'robot_type': 'turtlebot3', 'robot_model': 'burger', 'rosdistro': 'noetic',
+                  'mhri': {'robots': ['robot']}, 'robot': {'mhri': {'label': 'Lab'}}}
+    assert parameters_of('robot', parameters, at_root) == expected
+    assert parameters_of('other', {'other': 3}) == {}

@@ -201,3 +201,36 @@ def test_a_group_keeps_to_its_slowest_along_the_same_curve():
     gate.hold_to(Limits(9.0, 9.0), 1.0)
     velocity = gate.on_command(Velocity(0.5, 1.0), 1.2)
     assert velocity.linear_mps == pytest.approx(0.22), 'its own limits hold'
+
+
+def test_a_robot_that_is_not_heard_gets_one_zero_and_then_nothing():
+    gate = GateRule(LIMITS)
+    gate.select(True, 0.0)
+    gate.on_command(GO, 1.0)
+    assert gate.hold(True, 1.1) == ZERO and not gate.driving
+    assert gate.hold(True, 1.2) is None, 'once'
+    assert gate.on_command(GO, 1.3) is None
+    assert gate.hold(False, 1.35) is None and gate.waits
+    assert gate.on_command(GO, 1.4) is None and gate.next_tick() is None, 'not in the middle of it'
+    assert gate.tick(9.0) is None
+    assert gate.on_command(ZERO, 9.1) == ZERO and not gate.waits
+    assert gate.on_command(GO, 9.2) == GO
+
+
+def test_a_robot_heard_again_while_nothing_drives_is_driven_at_once():
+    gate = GateRule(LIMITS)
+    gate.select(True, 0.0)
+    assert gate.hold(True, 0.5) is None, 'it was not driven: no zero'
+    assert gate.hold(False, 2.0) is None and not gate.waits
+    assert gate.on_command(GO, 2.1) == GO
+    gate.hold(True, 2.2)
+    assert gate.on_command(GO, 2.3) is None
+    assert gate.hold(False, 2.3 + STALE_S) is None and not gate.waits, 'the commands went stale'
+
+
+def test_held_changes_nothing_about_stops():
+    gate = GateRule(LIMITS)
+    gate.select(True, 0.0)
+    gate.hold(True, 0.1)
+    assert gate.stop('mux', True, 0.2) == ZERO and gate.select(False, 0.3) is None
+    assert gate.close(0.4) == ZERO

@@ -3,7 +3,7 @@
 """Names of robots."""
 import pytest
 
-from mhri.core.names import name_problem, tidy_name
+from mhri.core.names import name_problem, tidy_name, topic_of
 
 
 @pytest.mark.parametrize('name', ['bot1', 'a', 'B_2', 'robot_', 'x' * 64])
@@ -29,3 +29,11 @@ def test_bad_names_and_their_reason(name, reason):
 def test_tidy_name(text, name):
     """What the user most likely meant."""
     assert tidy_name(text) == name
+
+
+@pytest.mark.parametrize('topic, full', [
+    ('cmd_vel', '/bot1/cmd_vel'), ('camera/rgb/image_raw', '/bot1/camera/rgb/image_raw'),
+    ('/cmd_vel', '/cmd_vel'), ('/camera/scan', '/camera/scan')])
+def test_topic_of(topic, full):
+    """Relative to the namespace, as names in ROS are, unless it begins with a slash."""
+    assert topic_of('bot1', topic) == full

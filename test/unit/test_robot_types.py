@@ -8,7 +8,7 @@ import pytest
 
 from mhri.core.config import ConfigError
 from mhri.core.robot_types import (
-    Limits, load_robot_types, parse_robot_type, resolve_robot_type)
+    Export, Limits, load_robot_types, parse_robot_type, resolve_robot_type, Seen)
 
 RESOURCE = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'robots')
 GOOD = 'name: crawler\nlimits: {linear_mps: 0.3, angular_rad_s: 1.0}\ncommand: cmd_vel\n'
@@ -124,6 +124,7 @@ BAD = {
     'wheels': GOOD + 'wheels: 4\n',
     'models.big.linear_mps': GOOD + 'models: {big: {angular_rad_s: 1}}\n',
     'name': GOOD.replace('crawler', '3'),
+    'known_by': GOOD + 'known_by: {feet: 3}\n',
 }
 
 
@@ -141,3 +142,66 @@ def test_one_bad_file_never_hides_the_good_ones():
         ('bad.yaml', '['), ('a.yaml', GOOD), ('b.yaml', GOOD.replace('0.3', '0.9'))])
     assert types['crawler'].limits.linear_mps == 0.3
     assert [error.origin for error in errors] == ['bad.yaml', 'b.yaml']
+
+
+def test_a_robot_without_a_namespace_has_absolute_topics():
+    """Its template is the same, and so are its limits."""
+    kind, errors = resolve_robot_type(shipped(), 'robot', {
+        'robot_type': 'turtlebot3', 'robot_model': 'burger', 'mhri': {'scan': 'front/scan'}},
+        Seen(at_root=True))
+    assert errors == [] and kind.limits == Limits(0.22, 2.84)
+    assert (kind.command, kind.imu, kind.odometry) == (('/cmd_vel',), ('/imu',), ('/odom',))
+    assert kind.rgb == ('/camera/rgb/image_raw', '/raspicam_node/image')
+    assert kind.scan == ('/front/scan',) and kind.depth == ()
+
+
+SEEN = {
+    'recognised': ({}, Seen(kind='turtlesim', command='turtle1/cmd_vel'),
+                   'turtlesim', ('turtle1/cmd_vel',)),
+    'its_parameter_counts': ({'robot_type': 'turtlebot3'}, Seen(kind='turtlesim', command='go'),
+                             'turtlebot3', ('cmd_vel',)),
+    'another_topic': ({}, Seen(command='go'), 'generic', ('go', 'cmd_vel')),
+    'generic_by_its_parameter': ({'robot_type': 'generic'}, Seen(command='go'),
+                                 'generic', ('go', 'cmd_vel')),
+    'the_usual_topic': ({}, Seen(command='cmd_vel'), 'generic', ('cmd_vel',)),
+    'overridden': ({'mhri': {'command': 'run'}}, Seen(command='go'), 'generic', ('run',)),
+    'unknown_type': ({'robot_type': 'turtlebot9'}, Seen(command='go'),
+                     'generic', ('go', 'cmd_vel')),
+    'at_the_root': ({}, Seen(at_root=True, command='go'), 'generic', ('/go', '/cmd_vel')),
+}
+
+
+@pytest.mark.parametrize('case', sorted(SEEN))
+def test_what_is_seen_of_a_robot_decides_where_its_parameters_do_not(case):
+    """A robot without a type is driven by the topic it really has."""
+    params, seen, name, command = SEEN[case]
+    kind, errors = resolve_robot_type(shipped(), 'bot1', params, seen)
+    assert (kind.name, kind.command) == (name, command)
+    assert len(errors) == (case == 'unknown_type')
+
+
+def test_exported_types_join_the_shipped_ones():
+    """The window that the package names counts, else that of the template."""
+    types, errors = load_robot_types([('generic.yaml', GOOD.replace('crawler', 'generic'))], [
+        Export('a_robot', '/a/crawler.yaml', GOOD, 'a_robot.window.Crawler'),
+        Export('b_robot', '/b/b.yaml', GOOD.replace('crawler', 'b') + 'window: plain\n')])
+    assert errors == [] and sorted(types) == ['b', 'crawler', 'generic']
+    assert (types['crawler'].window, types['b'].window) == ('a_robot.window.Crawler', 'plain')
+
+
+BAD_EXPORTS = {
+    'wheels': GOOD + 'wheels: 4\n', 'name': GOOD.replace('crawler', 'generic'), 'limits': 'name: x',
+    '': '['}
+
+
+@pytest.mark.parametrize('key', sorted(BAD_EXPORTS))
+def test_broken_export_is_left_out_and_named(key):
+    """Package, file and remedy; the others stay, and nobody replaces what is there."""
+    shipped_file = ('generic.yaml', GOOD.replace('crawler', 'generic'))
+    types, errors = load_robot_types([shipped_file], [
+        Export('bad_robot', '/bad/x.yaml', BAD_EXPORTS[key]), Export('good', '/good.yaml', GOOD)])
+    assert sorted(types) == ['crawler', 'generic']
+    assert types['generic'].limits.linear_mps == 0.3
+    assert [str(error).startswith('package bad_robot: /bad/x.yaml: {}'.format(key))
+            for error in errors] == [True]
+    assert 'mend it there' in str(errors[0])

@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The gate of one robot: what of the one velocity command reaches it. No ROS, no clock."""
+import math
+
 from mhri.core.limits import Velocity, ZERO, clamp_keeping_curvature
 from mhri.core.robot_types import Limits
 
@@ -39,6 +41,7 @@ class GateRule:
         self._heard = ZERO
         self._heard_at = None
         self._joins_at = None
+        self._held = False
 
     @property
     def selected(self):
@@ -72,7 +75,8 @@ class GateRule:
 
     def _forward(self, velocity, now):
         """Return what the robot gets of a command: nothing while anything is in the way."""
-        if self._closed or self._stops or not self._selected or self._joins_at is not None:
+        if self._closed or self._stops or self._held or not self._selected \
+                or self._joins_at is not None:
             return None
         share = self._share
         wanted = Velocity(share * velocity.linear_mps, share * velocity.angular_rad_s)
@@ -92,6 +96,30 @@ class GateRule:
             under_way = not self._heard.is_zero() and now - self._heard_at < STALE_S
             self._joins_at = now + JOIN_S if under_way else None
         if was and not selected and not self._closed and not self._stops:
+            return self._say(ZERO, now)
+        return None
+
+    @property
+    def waits(self):
+        """Whether the robot is left out until the stick has been centred: its link was lost."""
+        return self._joins_at == math.inf
+
+    @property
+    def held(self):
+        """Whether nothing is sent because the robot is not heard."""
+        return self._held
+
+    def hold(self, held, now):
+        """Send nothing to a robot that is not heard any more, after one zero where it was driven.
+
+        What is sent into a link that stalls would come out, all of it, when it is back. Heard
+        again in the middle of a drive, the robot waits for a zero like one that joins.
+        """
+        was, self._held = self._held, held
+        if was and not held and not self._heard.is_zero() and self._heard_at is not None \
+                and now - self._heard_at < STALE_S:
+            self._joins_at = math.inf
+        if held and not was and self.driving and not self._closed:
             return self._say(ZERO, now)
         return None
 
@@ -131,7 +159,7 @@ class GateRule:
         if self._closed:
             return None
         if self._joins_at is not None:
-            return self._joins_at
+            return None if self.waits else self._joins_at
         return self._last_at + STALE_S if self.driving else None
 
     def _say(self, velocity, now):

@@ -44,3 +44,13 @@ def is_base_name(name):
 def tidy_name(text):
     """Return what the user most likely meant: no space around it, no slash in front or behind."""
     return text.strip().strip('/')
+
+
+def topic_of(robot, topic):
+    """Return the absolute name of a topic of a robot's template.
+
+    A topic is relative to the robot's namespace, as names in ROS are; one that begins with a slash
+    is taken as it is (http://wiki.ros.org/Names). That is how robots without a namespace of their
+    own are addressed.
+    """
+    return topic if topic.startswith('/') else '/{}/{}'.format(robot, topic)

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import re
 from typing import Tuple
 
+from mhri.core.names import topic_of
+
 # States of a recording; each is reached from the one before, the last two end it.
 OFF = 'off'              # not started
 RECORDING = 'recording'  # a file is open (also while the last messages are being written)
@@ -103,7 +105,7 @@ def topics_of(robot, robot_type, choices=()):
     for key, suffix in (('rgb', '/compressed'), ('depth', '/compressedDepth')):
         for topic in getattr(robot_type, key) if key in choices else ():
             names += [topic + suffix, topic.rpartition('/')[0] + '/camera_info']
-    topics = ['/{}/{}'.format(robot, name) for name in names]
+    topics = [topic_of(robot, name) for name in names]
     if 'commands' in choices:
         topics += _COMMAND_TOPICS
     return tuple(dict.fromkeys(topics))

@@ -19,11 +19,54 @@ class Limits:
 
 
 @dataclass(frozen=True)
+class Export:
+    """A template that another package exports in its package.xml.
+
+    :param package: its name
+    :param origin: the file of the template
+    :param text: what is in it
+    :param window: the class of its window as ``package.module.Class``, '' where it names none
+    """
+
+    package: str
+    origin: str
+    text: str
+    window: str = ''
+
+    def error(self, key, problem):
+        """Return (not raise) a :class:`ConfigError` that names package, file and remedy."""
+        return ConfigError('package {}: {}'.format(self.package, self.origin), key,
+                           problem + '; mend it there and start mhri again')
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What the graph tells of a robot, beside its parameters.
+
+    :param at_root: it has no namespace of its own: its topics begin at ``/``
+    :param kind: the type that it was recognised as by its topics, None where it was not
+    :param command: its velocity topic, as in a template; None where there is none, or where of
+        several none is the likeliest
+    """
+
+    at_root: bool = False
+    kind: Optional[str] = None
+    command: Optional[str] = None
+
+    def anything(self):
+        """Tell whether there is more to it than a name."""
+        return bool(self.at_root or self.kind or self.command)
+
+
+@dataclass(frozen=True)
 class RobotType:
     """A template: what a robot of this type offers below its namespace.
 
-    Every topic list is relative to the robot's namespace and ordered: the first that exists (for
-    ``command``: the first that has a subscriber) is used. An empty list means the robot has none.
+    Every topic list is relative to the robot's namespace (:func:`mhri.core.names.topic_of`) and
+    ordered: the first that exists (for ``command``: the first that has a subscriber) is used. An
+    empty list means the robot has none. ``window`` is a key of ``mhri.gui.windows`` or, in a lab's
+    own package, a class as ``package.module.Class``. ``known_by`` is {topic: ROS type} of what only
+    robots of this type publish: by it one is recognised that has no ``robot_type``.
     """
 
     name: str
@@ -40,6 +83,13 @@ class RobotType:
     depth: Tuple[str, ...] = ()
     scan: Tuple[str, ...] = ()
     battery: Tuple[str, ...] = ()
+    known_by: Dict[str, str] = field(default_factory=dict)
+
+    def at_root(self):
+        """Return this type with absolute topics: for a robot without a namespace."""
+        return replace(self, **{
+            key: tuple('/' + topic.lstrip('/') for topic in getattr(self, key))
+            for key in _TOPIC_KEYS})
 
     def with_model(self, model):
         """Return this type with the limits of one of its models, e.g. ``waffle``.
@@ -78,7 +128,7 @@ def parse_robot_type(text, origin):
         name=name, label=section.text('label', name), window=section.text('window', 'turtlebot'),
         limits=_limits(section.section('limits')),
         models={key: _limits(item) for key, item in section.named_sections('models').items()},
-        odometry_type=odometry_type,
+        odometry_type=odometry_type, known_by=_known_by(section),
         **{key: _topics(section, key) for key in _TOPIC_KEYS})
     section.close()
     return robot_type
@@ -101,10 +151,20 @@ def _topics(section, key):
     return topics
 
 
-def load_robot_types(files):
+def _known_by(section):
+    """Read {topic: ROS type} of what only robots of this type publish."""
+    signs = section.take('known_by', {})
+    if not isinstance(signs, dict) or not all(
+            isinstance(word, str) for item in signs.items() for word in item):
+        raise section.error('known_by', 'expected {{topic: type}}, got {!r}'.format(signs))
+    return dict(signs)
+
+
+def load_robot_types(files, exports=()):
     """Parse many templates; one bad file never hides the good ones.
 
     :param files: pairs (origin, text)
+    :param exports: :class:`Export` of other packages; they replace none that exists already
     :returns: ({name: RobotType}, [ConfigError]); of two files with one name the first stays
     """
     types, errors = {}, []
@@ -117,22 +177,33 @@ def load_robot_types(files):
             types[robot_type.name] = robot_type
         except ConfigError as error:
             errors.append(error)
+    for export in exports:
+        try:
+            robot_type = parse_robot_type(export.text, export.origin)
+            if robot_type.name in types:
+                raise ConfigError(export.origin, 'name', 'there is a type {!r} already, choose '
+                                  'another name'.format(robot_type.name))
+            types[robot_type.name] = replace(robot_type,
+                                             window=export.window or robot_type.window)
+        except ConfigError as error:
+            errors.append(export.error(error.key, error.problem))
     return types, errors
 
 
-def resolve_robot_type(types, robot, params):
+def resolve_robot_type(types, robot, params, seen=Seen()):
     """Choose and adjust the template of one robot.
 
     :param types: {name: RobotType} with at least ``generic``
     :param robot: the robot's name
     :param params: the parameters below its namespace as a nested dict: ``robot_type``,
         ``robot_model`` and, under ``mhri``, any key of a template file to override
+    :param seen: :class:`Seen`; a robot driven as generic gets the velocity topic it really has
     :returns: (RobotType, [ConfigError]); a parameter that cannot be used is reported and left out,
         an unknown type becomes ``generic``
     """
     errors = []
     origin = '/' + robot
-    wanted = params.get('robot_type', 'generic')
+    wanted = params.get('robot_type', seen.kind or 'generic')
     chosen = types.get(wanted) if isinstance(wanted, str) else None
     if chosen is None:
         chosen = types['generic']
@@ -142,13 +213,15 @@ def resolve_robot_type(types, robot, params):
         chosen = chosen.with_model(params.get('robot_model'))
     except ConfigError as error:
         errors.append(ConfigError(origin, 'robot_model', error.problem + '; driven at the slowest'))
+    if chosen.name == 'generic' and seen.command and seen.command not in chosen.command:
+        chosen = replace(chosen, command=(seen.command,) + chosen.command)
     overrides = params.get('mhri')
     if overrides:
         try:
             chosen = _overridden(chosen, overrides, origin)
         except ConfigError as error:
             errors.append(error)
-    return chosen, errors
+    return chosen.at_root() if seen.at_root else chosen, errors
 
 
 def _overridden(robot_type, overrides, origin):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which window a robot gets: the ``window`` key of its type, looked up in one table."""
+"""Which window of mhri a robot gets: the ``window`` key of its type, looked up in one table."""
 from python_qt_binding.QtCore import QPoint, QRect
 
 from mhri.gui.bot_window import BotWindow
@@ -23,12 +23,16 @@ class TurtleBotWindow(BotWindow):
         self.dial.show_view(view)
 
 
+STANDARD = 'turtlebot'
 # A further type of window is a further row.
-_WINDOWS = {'turtlebot': TurtleBotWindow}
+_WINDOWS = {STANDARD: TurtleBotWindow}
 
 
 def window_class(key):
-    """Return the class of a type's ``window`` key; an unknown key gets the window all have."""
+    """Return the class of a type's ``window`` key; an unknown key gets the window all have.
+
+    Classes of a lab's own packages (``package.module.Class``): see ``window_maker``.
+    """
     return _WINDOWS.get(key, BotWindow)
 
 

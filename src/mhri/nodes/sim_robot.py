@@ -117,6 +117,6 @@ def main():
     except (ConfigError, WorldFull, OSError, ValueError) as error:
         rospy.logfatal('%s cannot be simulated: %s', name, error)
         sys.exit(1)
-    MasterWatch(parameters={'/{}/{}'.format(name, key): value
+    MasterWatch(parameters={rospy.resolve_name(key): value
                             for key, value in parameters.items()}).start()
     robot.run()

@@ -11,6 +11,7 @@ import time
 import rospy
 
 from mhri.core.frames import StreamStatus
+from mhri.core.names import topic_of
 from mhri.core.transports import AUTO, choose_offer, find_offers, may_carry
 from mhri.ros.camera_decoder import Decoder
 from mhri.ros.master_api import MasterApi, MasterError
@@ -39,7 +40,7 @@ class CameraFeed:
                  depth_range_m=None):
         self.robot = robot
         self.kind = kind
-        self._topics = ['/{}/{}'.format(robot, topic) for topic in topics]
+        self._topics = [topic_of(robot, topic) for topic in topics]
         self._transport = transport
         self._clock = clock
         self._depth_range = depth_range_m

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import rospy
 
-from mhri.core.robot_types import resolve_robot_type
-from mhri.core.views import GONE, RobotView, WAITING
+from mhri.core.robot_types import resolve_robot_type, Seen
+from mhri.core.views import GONE, RobotView, SILENT, WAITING
 from mhri.ros.bot_feeds import BotFeeds
 from mhri.ros.gates import Gate
-from mhri.ros.graph import robot_parameters
+from mhri.ros.graph import robot_facts
 from mhri.ros.master_api import MasterError
 from mhri.ros.robot_link import RobotLink
 
@@ -35,6 +35,7 @@ class Fleet:
         self._links = {}
         self._wanted = set()
         self._problems = {}
+        self._seen = {}
 
     def want(self, name):
         """Take note that a robot is in the list; :meth:`connect` makes its link."""
@@ -46,27 +47,33 @@ class Fleet:
         with self._lock:
             self._wanted.discard(name)
             link = self._links.pop(name, None)
+            self._seen.pop(name, None)
         self._bank.remove(name)
         return link
 
-    def connect(self, name, parameters=None):
+    def connect(self, name, facts=None):
         """Make the link of a robot, or a new one where its type has changed (blocking).
 
-        :param parameters: its parameters where they are known already
+        :param facts: its :class:`mhri.ros.graph.Facts` where they are known already
         """
         try:
-            if parameters is None:
-                parameters = robot_parameters(rospy.get_name(), [name])[name]
-        except MasterError as error:
+            if facts is None:
+                facts = robot_facts(rospy.get_name(), [name], self._types)[name]
+        except (MasterError, ValueError, OSError) as error:
             rospy.logwarn('%s: %s', name, error)
             return
-        robot_type, errors = resolve_robot_type(self._types, name, parameters)
+        news = facts.seen is not None and facts.seen.anything()
+        with self._lock:
+            seen = facts.seen if news else self._seen.get(name, Seen())
+        robot_type, errors = resolve_robot_type(self._types, name, facts.parameters, seen)
         with self._lock:
             old = self._links.get(name)
             self._report(name, errors)
             if name not in self._wanted or old and (
-                    old.robot_type == robot_type or not parameters.get('robot_type')):
+                    old.robot_type == robot_type
+                    or not (facts.parameters.get('robot_type') or news)):
                 return
+            self._seen[name] = seen
             self._links.pop(name, None)
         if old is not None:
             self._bank.remove(name)
@@ -88,18 +95,37 @@ class Fleet:
         self._problems[name] = words
 
     def supervise(self):
-        """Look again at the type of each robot that is not heard: it may have come up meanwhile."""
+        """Look again at the type of each robot that is not heard: it may have come up meanwhile.
+
+        What was seen of one that can be reached stays: a type never changes under way for a topic
+        that comes or goes.
+        """
         with self._lock:
             names = [name for name in self._wanted if name not in self._links
                      or self._links[name].view().link in (WAITING, GONE)
                      or self._links[name].robot_type.name == 'generic']
+            seen = {name: self._seen.get(name, Seen()) for name in names
+                    if name in self._links and self._links[name].gate.reachable()}
         try:
-            parameters = robot_parameters(rospy.get_name(), names)
-        except MasterError as error:
+            facts = robot_facts(rospy.get_name(), names, self._types, seen)
+        except (MasterError, ValueError, OSError) as error:
             rospy.logdebug('the robots cannot be looked at now: %s', error)
             return
         for name in names:
-            self.connect(name, parameters[name])
+            self.connect(name, facts[name])
+
+    def hold_silent(self):
+        """Hold the robots that were heard and are not any more; let go those that are heard again.
+
+        Called several times a second, on a thread.
+        """
+        with self._lock:
+            links = list(self._links.values())
+        for link in links:
+            held = link.view().link in (SILENT, GONE)
+            if held != link.held:
+                link.held = held
+                self._bank.hold(link.name, held)
 
     def on_stop(self, stopped, now):
         """Begin or end the proof of a stop for every robot."""

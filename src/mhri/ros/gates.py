@@ -13,6 +13,7 @@ from std_msgs.msg import Bool
 
 from mhri.core.gate import GateRule, common_limits
 from mhri.core.limits import ZERO
+from mhri.core.names import topic_of
 from mhri.msg import RobotSelect
 from mhri.ros.convert import from_twist, to_twist
 
@@ -59,7 +60,7 @@ class Gate:
     @classmethod
     def of_type(cls, name, robot_type, on_sent=lambda robot, topic, message: None):
         """Return the gate of a robot of a type (:class:`mhri.core.robot_types.RobotType`)."""
-        topics = ['/{}/{}'.format(name, topic) for topic in robot_type.command]
+        topics = [topic_of(name, topic) for topic in robot_type.command]
         return cls(name, topics, robot_type.limits, on_sent)
 
     def send(self, velocity, now):
@@ -213,6 +214,7 @@ class GateBank:
     def _tell_of(self, gate):
         limits = gate.rule.limits
         self._tell('open', gate.name, gate.topics, limits.linear_mps, limits.angular_rad_s)
+        self._tell('held', gate.name, gate.rule.held)
 
     def follow(self, name):
         """Let the gate of a robot, where there is one, follow that of another process."""
@@ -258,6 +260,16 @@ class GateBank:
         common = common_limits(group) if self._together and group else None
         for gate in self._gates.values():
             gate.rule.hold_to(common or gate.rule.limits, self._share)
+
+    def hold(self, name, held):
+        """Send nothing to a robot while it is not heard; the others go on."""
+        with self._changed:
+            gate = self._gates.get(name)
+            if gate is not None:
+                self._tell('held', name, held)
+                now = self._clock()
+                gate.send(gate.rule.hold(held, now), now)
+                self._changed.notify()
 
     def deselect_others(self, names):
         """Close the gates of all but these robots; opening is the word of robot_select alone."""

@@ -4,15 +4,31 @@
 import socket
 import threading
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Tuple
 from urllib.parse import urlsplit
 
-from mhri.core.discovery import find_candidates
+from mhri.core.discovery import (
+    find_candidates, NAME_PARAMETER, parameters_of, parse_ignore_list, ROOT_PARAMETERS)
+from mhri.core.robot_types import Seen
 from mhri.ros.master_api import MasterApi
+from mhri.ros.resources import read_resource, resource_path, robot_types
 
 KNOCK_S = 0.3
 NODES_EACH = 3
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What is known of one robot before it is in the list.
+
+    :param parameters: those of the robot as a nested dict, {} where it has none
+    :param seen: :class:`mhri.core.robot_types.Seen`, None where the graph was not looked at, or
+        has nothing of the robot
+    """
+
+    parameters: dict = field(default_factory=dict)
+    seen: Seen = None
 
 
 @dataclass(frozen=True)
@@ -21,13 +37,13 @@ class Found:
 
     ``live`` are candidates of which a node answers; ``leftovers`` are registered, but nothing
     answers (crashed, switched off, out of reach) or only parameters are left; ``refused`` have
-    names that no robot can have. ``parameters`` is {namespace: nested dict} of all of them.
+    names that no robot can have. ``facts`` is {name: :class:`Facts`} of all of them.
     """
 
     live: Tuple = ()
     leftovers: Tuple = ()
     refused: Tuple = ()
-    parameters: dict = None
+    facts: dict = None
     took_s: float = 0.0
 
 
@@ -60,22 +76,26 @@ def knock(uris, timeout_s=KNOCK_S):
         return set(answered)
 
 
-def look_for_robots(caller_id, ignore, known=(), api=None):
+def look_for_robots(caller_id, ignore, known=(), api=None, types=None):
     """Look for robots (blocking; never on the GUI thread).
 
-    The master is asked once for its whole state and all parameters, in one request, and once more
-    for the addresses of the robots found, again in one request.
+    The master is asked once for its whole state, the types of all topics and all parameters, in one
+    request, and once more for the addresses of the robots found, again in one request.
 
     :param ignore: :class:`mhri.core.discovery.IgnoreList`
     :param known: robots that are in the list already
     :param api: the :class:`MasterApi` to ask, default that of ``ROS_MASTER_URI``
+    :param types: {name: RobotType}, default all that are installed
     :returns: :class:`Found`
     :raises MasterError: the master cannot be reached
     """
     begun = time.monotonic()
     api = api or MasterApi(caller_id, timeout_s=5.0)
-    state, parameters = api.call_many([('getSystemState',), ('getParam', '/')])
-    candidates = find_candidates(state or [], parameters or {}, ignore, known)
+    state, topic_types, parameters = api.call_many(
+        [('getSystemState',), ('getTopicTypes',), ('getParam', '/')])
+    parameters = parameters or {}
+    candidates = find_candidates(state or [], parameters, ignore, known, topic_types or (),
+                                 robot_types()[0] if types is None else types)
     asked = [(candidate, node) for candidate in candidates
              for node in candidate.nodes[:NODES_EACH] if candidate.problem is None]
     uris = api.call_many([('lookupNode', node) for _, node in asked]) if asked else []
@@ -86,18 +106,43 @@ def look_for_robots(caller_id, ignore, known=(), api=None):
         leftovers=tuple(item for item in candidates
                         if item.problem is None and item.name not in alive),
         refused=tuple(item for item in candidates if item.problem),
-        parameters={item.name: (parameters or {}).get(item.name, {}) for item in candidates},
+        facts={item.name: Facts(parameters_of(item.name, parameters, item.seen.at_root), item.seen)
+               for item in candidates},
         took_s=time.monotonic() - begun)
 
 
-def robot_parameters(caller_id, names):
-    """Return {name: parameters below its namespace as a nested dict}, asked in one request.
+def shipped_ignore_list():
+    """Return the :class:`IgnoreList` of ``resource/discovery.yaml``.
 
-    A robot that has none has {}.
+    :raises ConfigError: it has a mistake
+    :raises OSError: it cannot be read
+    """
+    return parse_ignore_list(read_resource('discovery.yaml'), resource_path('discovery.yaml'))
 
+
+def robot_facts(caller_id, names, types, seen=None):
+    """Return {name: :class:`Facts`}: the parameters of robots, asked in one request.
+
+    Only where a robot has no ``robot_type`` and nothing is known of it, the graph is looked at, in
+    one more request.
+
+    :param types: {name: RobotType}
+    :param seen: {name: :class:`Seen`} of what is known already
     :raises MasterError: the master cannot be reached
     """
-    names = list(names)
-    values = MasterApi(caller_id, timeout_s=2.0).call_many(
-        [('getParam', '/' + name) for name in names]) if names else []
-    return {name: value if isinstance(value, dict) else {} for name, value in zip(names, values)}
+    names, seen = list(names), dict(seen or {})
+    if not names:
+        return {}
+    api = MasterApi(caller_id, timeout_s=2.0)
+    keys = list(dict.fromkeys(names + [NAME_PARAMETER, *ROOT_PARAMETERS]))
+    values = api.call_many([('getParam', '/' + key) for key in keys])
+    parameters = {key: value for key, value in zip(keys, values) if value is not None}
+    unseen = [name for name in names if name not in seen
+              and 'robot_type' not in parameters_of(name, parameters)]
+    if unseen:
+        state, topic_types = api.call_many([('getSystemState',), ('getTopicTypes',)])
+        seen.update((item.name, item.seen) for item in find_candidates(
+            state or [], parameters, shipped_ignore_list(), (), topic_types or (), types)
+            if item.name in unseen and item.problem is None)
+    return {name: Facts(parameters_of(name, parameters, name in seen and seen[name].at_root),
+                        seen.get(name)) for name in names}

@@ -9,6 +9,7 @@ import time
 import numpy as np
 import rospy
 
+from mhri.core.names import topic_of
 from mhri.core.series import BinRing, IMU_KEYS, ODOMETRY_KEYS, roll_pitch_yaw, Series
 from mhri.ros.unsubscribe import unsubscribe
 
@@ -132,7 +133,7 @@ class ImuFeed:
         for keys, topics, message_type, prepare in (
                 (IMU_KEYS, imu_topics, 'sensor_msgs/Imu', _with_angles),
                 (ODOMETRY_KEYS, odometry_topics, odometry_type, np.asarray)):
-            names = ['/{}/{}'.format(robot, topic) for topic in topics]
+            names = [topic_of(robot, topic) for topic in topics]
             try:
                 self._intakes[keys] = _Intake(names, message_type, keys, prepare, clock)
             except ImportError:

@@ -13,10 +13,10 @@ decided, and speak for any robot that the keeper does not reach yet, or when it 
   said. A keeper that is silent for :data:`SILENCE_S` is ended.
 
 The pipes carry one JSON list per line. To the keeper: ``["open", name, [topic, ...], m/s, rad/s]``,
-``["close", name]``, ``["select", [name, ...]]``, ``["press"]``, ``["withdraw"]``,
-``["pace", together, share]``, ``["bye"]``. From it: ``["alive"]`` ten times a second,
-``["leads", name]``, ``["closed"]`` after bye. The keeper hears commands and stop-all from the mux
-itself, and the selection from the panel alone.
+``["close", name]``, ``["held", name, bool]``, ``["select", [name, ...]]``, ``["press"]``,
+``["withdraw"]``, ``["pace", together, share]``, ``["bye"]``. From it: ``["alive"]`` ten times a
+second, ``["leads", name]``, ``["closed"]`` after bye. The keeper hears commands and stop-all from
+the mux itself, and the selection from the panel alone.
 """
 import json
 import os
@@ -149,6 +149,7 @@ class Keeper:
         self._answer_to = answer
         self._bank = bank
         self._leads = {}
+        self._held = frozenset()
         self._closed = threading.Event()
         # Whatever asks the master: it may be out of reach, and a stop must not wait for it.
         self._worker = Worker('gate_keeper')
@@ -176,12 +177,20 @@ class Keeper:
             self._worker.do(self._close, rest[0], self._bank.remove(rest[0]))
         else:
             {'select': self._bank.select, 'press': self._bank.press_stop,
-             'withdraw': self._bank.withdraw_press, 'pace': self._bank.set_pace}[word](*rest)
+             'withdraw': self._bank.withdraw_press, 'pace': self._bank.set_pace,
+             'held': self._hold}[word](*rest)
+
+    def _hold(self, name, held):
+        """Hold a robot, or let it go; one that is still to be opened is held from then on."""
+        self._held = self._held | {name} if held else self._held - {name}
+        self._bank.hold(name, held)
 
     def _open(self, name, topics, linear_mps, angular_rad_s):
         gate = Gate(name, topics, Limits(linear_mps, angular_rad_s))
         gate.follow()
         self._bank.add(gate)
+        if name in self._held:
+            self._bank.hold(name, True)
 
     def _close(self, name, gate):
         """Give the topics back; the gate is None where it was not open yet when it was closed."""

@@ -23,6 +23,7 @@ from mhri.core.status import status_line
 from mhri.core.views import (
     PanelView, ROS_CONNECTED, ROS_NO_MASTER, ROS_STARTING, RobotView)
 from mhri.ros.device_client import DeviceClient
+from mhri.ros.doctor import examine
 from mhri.ros.fleet import Fleet
 from mhri.ros.gates import GateBank
 from mhri.ros.graph import look_for_robots
@@ -40,6 +41,7 @@ NODE_NAME = 'mhri_panel'
 # The robots in the panel's list, in its order.
 ROBOTS_PARAMETER = '/mhri/robots'
 FLUSH_S = 0.1
+HOLD_S = 0.2
 
 
 class Operator:
@@ -58,6 +60,7 @@ class Operator:
         self._keeper = KeeperLink(self._bank)
         self._feeder = Worker('feeds')
         self._fleet = Fleet(self._types, self._bank, self._feeder, self.recordings.put_command)
+        self._holder = Worker('link_watch', self._fleet.hold_silent, HOLD_S)
         self.settings = PanelSettings()
         self._together = False
         self._setting_errors = ()
@@ -107,6 +110,7 @@ class Operator:
         self._devices = DeviceClient()
         PanelDiagnostics(self).start()
         self._feeder.start()
+        self._holder.start()
         self._worker.start()
         self._worker.do(self._supervise)
         self._ros = ROS_CONNECTED
@@ -223,11 +227,25 @@ class Operator:
             return
         self._worker.do(self._look, self.selection.robots)
 
+    def examine(self):
+        """Examine network, master and robots; the result comes as ``('examined', (list, s))``."""
+        threading.Thread(target=self._examine, name='doctor', daemon=True).start()
+
+    def _examine(self):
+        begun = time.monotonic()
+        try:
+            found = examine()
+        except Exception as error:  # the guard of this thread: the operator is told what failed
+            rospy.logerr('the examination failed: %r', error)
+            found = 'the examination failed: {}'.format(error)
+        self._events.put(('examined', (found, time.monotonic() - begun)))
+
     def _look(self, known):
         try:
             ignore = parse_ignore_list(read_resource('discovery.yaml'),
                                        resource_path('discovery.yaml'))
-            self._events.put(('found', look_for_robots(rospy.get_name(), ignore, known)))
+            self._events.put(('found', look_for_robots(
+                rospy.get_name(), ignore, known, types=self._types)))
         except (MasterError, ValueError, OSError) as error:
             self._events.put(('look_failed', str(error)))
 
@@ -319,6 +337,7 @@ class Operator:
         self._keeper.end()
         self._bank.close()
         self._worker.stop()
+        self._holder.stop()
         self._feeder.stop()
         if self._watch:
             self._watch.stop()

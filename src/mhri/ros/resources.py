@@ -1,13 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Where the shipped data files are, in the devel space and in the install space alike."""
+from dataclasses import replace
 import glob
 import os
 
+from catkin_pkg.package import InvalidPackage, parse_package
 import rospkg
 
 from mhri.core.config import ConfigError
-from mhri.core.robot_types import load_robot_types
+from mhri.core.robot_types import Export, load_robot_types
+
+# The element of a package.xml with which a package exports a robot type, and its attributes.
+EXPORT_TAG = 'mhri'
+TYPE_ATTRIBUTE, WINDOW_ATTRIBUTE = 'robot_type', 'window'
 
 
 def resource_path(*parts):
@@ -40,12 +46,87 @@ def read_resource(*parts):
 
 
 def robot_types():
-    """Load every template of ``resource/robots``.
+    """Load every template of ``resource/robots``, and those that other packages export.
+
+    A package exports one in its package.xml, as rqt plugins are exported (``window``, the class of
+    its window, may be left out)::
+
+        <export>
+          <mhri robot_type="${prefix}/resource/crawler.yaml" window="crawler_robot.window.Crawler"/>
+        </export>
 
     :returns: ({name: RobotType}, [ConfigError])
     """
-    files = sorted(glob.glob(resource_path('robots', '*.yaml')))
-    return load_robot_types([(path, read_text(path)) for path in files])
+    files, unread = [], []
+    for path in sorted(glob.glob(resource_path('robots', '*.yaml'))):
+        try:
+            files.append((path, read_text(path)))
+        except OSError as error:
+            unread.append(ConfigError(path, '', 'cannot be read: {}'.format(error.strerror)))
+        except ConfigError as error:
+            unread.append(error)
+    exports, broken = exported_types()
+    types, errors = load_robot_types(files, exports)
+    return types, unread + errors + broken
+
+
+def exported_types(rospack=None):
+    """Read the robot types that packages export.
+
+    :param rospack: where to look for packages, default ``rospkg.RosPack()``
+    :returns: ([:class:`Export`], [ConfigError]), in the order of the packages' names
+    """
+    rospack = rospack or rospkg.RosPack()
+    exports, errors = [], []
+    for package in sorted(rospack.list()):
+        manifest = os.path.join(rospack.get_path(package), 'package.xml')
+        for attributes in _exports_of(package, manifest, errors):
+            try:
+                exports.append(_read_export(package, manifest, attributes))
+            except ConfigError as error:
+                errors.append(error)
+    return exports, errors
+
+
+def _exports_of(package, manifest, errors):
+    """Return the attributes of each export of one package; most have none and are not parsed."""
+    try:
+        with open(manifest, 'rb') as stream:
+            if b'<' + EXPORT_TAG.encode('ascii') not in stream.read():
+                return []
+        return [export.attributes for export in parse_package(manifest, warnings=[]).exports
+                if export.tagname == EXPORT_TAG]
+    except OSError:
+        # A rosbuild package without a package.xml, or one that went while it was looked at.
+        return []
+    except InvalidPackage as error:
+        errors.append(Export(package, manifest, '').error('', 'cannot be understood: {}'.format(
+            ' '.join(str(error).split()))))
+        return []
+
+
+def _read_export(package, manifest, attributes):
+    """Return the :class:`Export` of one element of a package.xml.
+
+    :raises ConfigError: an attribute is missing or unknown, or the template cannot be read
+    """
+    element = Export(package, manifest, '')
+    odd = sorted(set(attributes) - {TYPE_ATTRIBUTE, WINDOW_ATTRIBUTE})
+    if odd or not attributes.get(TYPE_ATTRIBUTE):
+        raise element.error('<{}>'.format(EXPORT_TAG), '{}; write <{} {}="${{prefix}}/...yaml"/>, '
+                            'and {}="package.module.Class" if it has one'.format(
+                                'unknown attribute ' + odd[0] if odd else 'names no template',
+                                EXPORT_TAG, TYPE_ATTRIBUTE, WINDOW_ATTRIBUTE))
+    folder = os.path.dirname(manifest)
+    path = os.path.join(folder, attributes[TYPE_ATTRIBUTE].replace('${prefix}', folder))
+    export = Export(package, path, '', attributes.get(WINDOW_ATTRIBUTE, ''))
+    try:
+        return replace(export, text=read_text(path))
+    except OSError as error:
+        raise export.error('', 'cannot be read ({}), though {} exports it; an installed package '
+                           'has to install it, too'.format(error.strerror, manifest))
+    except ConfigError as error:
+        raise export.error('', error.problem)
 
 
 def profile_reader(beside):

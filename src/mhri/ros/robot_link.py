@@ -11,6 +11,7 @@ from sensor_msgs.msg import BatteryState
 
 from mhri.core.link import link_note, link_state
 from mhri.core.link_quality import LinkQuality, link_warning
+from mhri.core.names import topic_of
 from mhri.core.stop_proof import StopProof
 from mhri.core.views import LIVE, RobotView
 from mhri.ros.convert import header_of, motion_from_odometry, motion_from_turtle_pose
@@ -99,6 +100,7 @@ class RobotLink:
         self._clock = clock
         self._lock = threading.Lock()
         self._added_at = clock()
+        self.held = False
         self._heard_at = None
         self._heard_wall = ''
         self._pending = None
@@ -108,7 +110,7 @@ class RobotLink:
         self._battery = None
         self._feeds = self._open_feeds()
         self._battery_feeds = [
-            Feed('/{}/{}'.format(name, topic), BatteryState, battery_fraction, self._on_battery)
+            Feed(topic_of(name, topic), BatteryState, battery_fraction, self._on_battery)
             for topic in robot_type.battery]
         self._probe = LinkProbe(name, self._node_uri, self._on_round_trip)
 
@@ -129,7 +131,7 @@ class RobotLink:
             rospy.logwarn('%s: cannot read its odometry, %s is not installed here', self.name,
                           self.robot_type.odometry_type)
             return []
-        return [Feed('/{}/{}'.format(self.name, topic), message_class, read, self._on_message)
+        return [Feed(topic_of(self.name, topic), message_class, read, self._on_message)
                 for topic in self.robot_type.odometry]
 
     def _on_message(self, feed, message, now):
@@ -179,6 +181,8 @@ class RobotLink:
             proof = self._proof.view(now) if self._proof else None
             figures = self._quality.read(now)
         warning = link_warning(figures) if state == LIVE else ''
+        if self.gate.rule.waits and state == LIVE:
+            warning = 'was out of reach: centre the stick to drive it again'
         return RobotView(
             name=self.name, type_label=self.robot_type.label, window=self.robot_type.window,
             link=state, age_s=age,

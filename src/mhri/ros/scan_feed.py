@@ -8,6 +8,7 @@ import numpy as np
 import rospy
 from sensor_msgs.msg import LaserScan
 
+from mhri.core.names import topic_of
 from mhri.ros.unsubscribe import unsubscribe
 
 
@@ -19,7 +20,7 @@ class ScanFeed:
     """
 
     def __init__(self, robot, topics, clock=time.monotonic):
-        self._topics = ['/{}/{}'.format(robot, topic) for topic in topics]
+        self._topics = [topic_of(robot, topic) for topic in topics]
         self._clock = clock
         self._lock = threading.Lock()
         self._subscribers = []

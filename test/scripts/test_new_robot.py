@@ -1,0 +1,234 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""``doc/new_robot.md`` word by word: its files written, its commands typed, its robot driven.
+
+Nothing is put in between: the panel is the one that the guide starts, and it is used through the X
+server, by mouse and keyboard.
+"""
+import math
+import os
+from pathlib import Path
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.ros_system import System, wait_for  # noqa: E402
+
+REPO = Path(__file__).resolve().parents[2]
+GUIDE = REPO / 'doc' / 'new_robot.md'
+EXAMPLE = REPO / 'test' / 'example_robot_package'
+PATIENCE_S = 60.0
+POLL_S = 0.1
+# Where "Look for Connected Bots" is in the panel's window [px]: on top, at the left.
+LOOK = (150, 35)
+
+
+def blocks(text):
+    """Return (what it is, its text) of each block of the guide: 'sh', 'sh terminal' or a file."""
+    found = []
+    for match in re.finditer(r'^```(\S[^\n]*)\n(.*?)^```$', text, re.M | re.S):
+        kind = match.group(1)
+        if not kind.startswith('sh'):
+            paragraph = text[:match.start()].rstrip().rpartition('\n\n')[2]
+            kind = re.match(r'`([^`]+)`', paragraph).group(1)
+        found.append((kind, match.group(2)))
+    return found
+
+
+def test_the_guide_shows_the_example_package():
+    """So that who copies the one has the other."""
+    files = {name: text for name, text in blocks(GUIDE.read_text()) if not name.startswith('sh')}
+    files['src/crawler_robot/__init__.py'] = files['CATKIN_IGNORE'] = ''
+    assert files == {path.relative_to(EXAMPLE).as_posix(): path.read_text()
+                     for path in EXAMPLE.rglob('*')
+                     if path.is_file() and '__pycache__' not in path.parts}
+
+
+def test_the_example_package_is_no_second_package_of_this_workspace():
+    """Neither for catkin nor for roslaunch and rosrun."""
+    from catkin_pkg.packages import find_package_paths
+    import rospkg
+    assert find_package_paths(str(EXAMPLE)) == []
+    assert find_package_paths(str(REPO), exclude_subspaces=True) == ['.']
+    assert rospkg.RosPack([str(REPO)]).list() == ['mhri']
+    assert rospkg.RosPack([str(EXAMPLE)]).list() == []
+
+
+def types_with(folder, **files):
+    """Return (exit status, output, errors) of mhri_types with a copy of the example in a folder.
+
+    :param files: name of a file of the package, ``/`` written as ``__``, and its new text
+    """
+    package = folder / 'crawler_robot'
+    shutil.copytree(str(EXAMPLE), str(package))
+    (package / 'CATKIN_IGNORE').unlink()
+    for name, (old, new) in files.items():
+        path = package / name.replace('__', '/').replace('_xml', '.xml').replace('_yaml', '.yaml')
+        assert old in path.read_text()
+        path.write_text(path.read_text().replace(old, new))
+    done = subprocess.run(
+        [sys.executable, '-c', 'from mhri.nodes.mhri_types import main; main()'],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, env=dict(
+            os.environ, ROS_PACKAGE_PATH='{}:{}'.format(folder, os.environ['ROS_PACKAGE_PATH'])))
+    return done.returncode, done.stdout, done.stderr
+
+
+def test_mhri_types_lists_a_type_of_another_package(tmp_path):
+    status, output, errors = types_with(tmp_path)
+    assert (status, errors) == (0, '')
+    assert [line.split()[0] for line in output.splitlines()] == [
+        'crawler', 'generic', 'turtlebot2', 'turtlebot3', 'turtlesim']
+
+
+@pytest.mark.parametrize('files, said', [
+    ({'resource__crawler_yaml': ('linear_mps: 0.2', 'linear_mps: fast')},
+     "resource/crawler.yaml: limits.linear_mps: expected a number from 0.001 to 50, got 'fast'; "),
+    ({'resource__crawler_yaml': ('name: crawler', 'name: turtlebot3')},
+     "resource/crawler.yaml: name: there is a type 'turtlebot3' already, choose another name; "),
+    ({'package_xml': ('crawler.yaml', 'lost.yaml')},
+     'resource/lost.yaml: cannot be read (No such file or directory), though '),
+    ({'package_xml': ('robot_type=', 'robot_kind=')}, 'unknown attribute robot_kind; write <mhri '),
+    ({'package_xml': ('<license>BSD-3-Clause</license>', '')}, 'cannot be understood: '),
+])
+def test_mhri_types_names_an_export_that_is_left_out(tmp_path, files, said):
+    status, output, errors = types_with(tmp_path, **files)
+    assert status == 1 and errors.count('\n') == 1
+    assert errors.startswith('left out: package crawler_robot: {}/'.format(
+        tmp_path / 'crawler_robot'))
+    assert said in errors and errors.endswith('mend it there and start mhri again\n')
+    assert [line.split()[0] for line in output.splitlines()] == [
+        'generic', 'turtlebot2', 'turtlebot3', 'turtlesim']
+
+
+class Newcomer:
+    """Somebody with the guide, an empty workspace and a screen."""
+
+    def __init__(self, home):
+        self.home = home
+        self.system = System()
+        self.package = None
+        self.workspace = home / 'catkin_ws'
+        self.system.env.update(HOME=str(home), PATH='/usr/bin:/bin:' + os.environ['PATH'],
+                               QT_QPA_PLATFORM='xcb')
+        self.system.screen('1600x1000x24')
+
+    def run(self, commands):
+        """Type commands; return what they said."""
+        done = subprocess.run(['bash', '-e', '-c', commands + '\npwd'], env=self.system.env,
+                              cwd=str(self.home), stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              universal_newlines=True)
+        assert done.returncode == 0, done.stdout
+        return done.stdout
+
+    def follow(self, kind, text):
+        """Do what one block asks for."""
+        if kind == 'sh terminal':
+            return self.system.start('bash', '-c', 'source ~/catkin_ws/devel/setup.bash; exec '
+                                     + text)
+        if kind == 'sh':
+            said = self.run(text)
+            self.package = self.package or Path(said.splitlines()[-1])
+            return said
+        (self.package / kind).write_text(text)
+        return None
+
+    def xdotool(self, *words):
+        """Use mouse, keyboard or eyes; return what there is to see, '' where it is nothing."""
+        return subprocess.run(('xdotool',) + words, env=self.system.env, timeout=PATIENCE_S,
+                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                              universal_newlines=True).stdout.strip()
+
+    def window(self, title):
+        """Return the X window of a title (regular expression), '' where there is none."""
+        return self.xdotool('search', '--onlyvisible', '--name', title).partition('\n')[0]
+
+
+@pytest.fixture
+def newcomer(tmp_path):
+    made = Newcomer(tmp_path)
+    yield made
+    made.system.close()
+
+
+def last_words(process):
+    with open(process.log, errors='replace') as log:
+        return log.read()
+
+
+def test_the_guide_word_by_word(newcomer):
+    terminals = []
+    for kind, text in blocks(GUIDE.read_text()):
+        if kind != 'sh terminal':
+            said = newcomer.follow(kind, text)
+        else:
+            terminals.append(text)
+    assert re.search('^crawler .*0.20 m/s .*drive/velocity .*crawler_robot.window.CrawlerWindow$',
+                     said, re.M), said
+    assert 'left out' not in said
+    check_the_window(newcomer)
+    panel_terminal = newcomer.follow('sh terminal', terminals[0])
+    try:
+        drive(newcomer, panel_terminal, terminals[1])
+    except BaseException:
+        print(last_words(panel_terminal)[-4000:])
+        raise
+
+
+def check_the_window(newcomer):
+    """The window of the package is what a robot of the type gets."""
+    newcomer.run('''source ~/catkin_ws/devel/setup.bash
+python3 - <<'END'
+from python_qt_binding.QtWidgets import QApplication
+from mhri.core.views import RobotView
+from mhri.gui.window_maker import WindowMaker
+from mhri.ros.resources import resource_path, robot_types
+app = QApplication(['check'])
+kind = robot_types()[0]['crawler']
+window, problem = WindowMaker().make(kind.window, resource_path(), 'crawler1', kind.label)
+assert (type(window).__name__, problem) == ('CrawlerWindow', ''), problem
+window.show_view(RobotView('crawler1', x_m=3.0, y_m=4.0))
+assert window.distance.text() == '5.00 m from home'
+END''')
+
+
+def drive(newcomer, panel_terminal, launch_robot):
+    """Look, check, drive and let go, with mouse and keyboard."""
+    import rospy
+    from nav_msgs.msg import Odometry
+    from rosgraph_msgs.msg import Log
+    panel = wait_for(lambda: newcomer.window('^mhri$'), PATIENCE_S, 'the panel', POLL_S)
+    newcomer.follow('sh terminal', launch_robot)
+    rospy.init_node('newcomer', disable_signals=True)
+    heard, log = [], []
+    rospy.Subscriber('/crawler1/odom', Odometry, lambda message: heard.append((
+        message.pose.pose.position.x, message.pose.pose.position.y, message.twist.twist.linear.x)))
+    rospy.Subscriber('/rosout_agg', Log, lambda message: log.append(message.msg))
+    wait_for(lambda: heard, PATIENCE_S, 'the robot to tell its odometry')
+    newcomer.xdotool('windowfocus', '--sync', panel)
+
+    def found():
+        """Press the button until the panel has come so far as to find the robot."""
+        newcomer.xdotool('mousemove', '--window', panel, *map(str, LOOK), 'click', '1')
+        return rospy.get_param('/mhri/robots', []) == ['crawler1']
+    wait_for(found, PATIENCE_S, 'the robot to be found', poll_s=2.0)
+    newcomer.xdotool('key', '1')
+    wait_for(lambda: newcomer.window('^crawler1 - selected'), PATIENCE_S, 'its window', POLL_S)
+    newcomer.xdotool('windowfocus', '--sync', panel)
+    start = heard[-1]
+    newcomer.xdotool('keydown', 'Up')
+    wait_for(lambda: newcomer.window('^crawler1 - DRIVING'), PATIENCE_S, 'its title', POLL_S)
+    wait_for(lambda: math.dist(start[:2], heard[-1][:2]) > 0.1, PATIENCE_S, 'the robot to move')
+    newcomer.xdotool('keyup', 'Up')
+    wait_for(lambda: abs(heard[-1][2]) < 0.005, PATIENCE_S, 'the robot to stand still')
+    assert max(speed for _, _, speed in heard) <= 0.2 * 1.05, 'its own limit'
+    assert max(speed for _, _, speed in heard) > 0.1
+    assert rospy.get_param('/crawler1/robot_type') == 'crawler'
+    said = last_words(panel_terminal) + '\n'.join(log)
+    assert 'standard window' not in said and 'Traceback' not in said, said
+    rospy.signal_shutdown('done')

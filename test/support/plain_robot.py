@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A robot of which mhri was told nothing: a node with the topics that it is given.
+
+``plain_robot.py COMMAND ODOMETRY [--turtle] [--sign TOPIC TYPE]``: reads velocity commands and
+tells how it moves, 20 times a second (``nav_msgs/Odometry``, or ``turtlesim/Pose`` with
+``--turtle``). It obeys at once, and stops 0.5 s after the last command. ``--sign`` is one more
+topic that it publishes.
+"""
+import argparse
+import math
+import os
+import sys
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), 'messages'))
+
+from genpy.dynamic import generate_dynamic  # noqa: E402
+from geometry_msgs.msg import Twist  # noqa: E402
+from nav_msgs.msg import Odometry  # noqa: E402
+import rospy  # noqa: E402
+from turtlesim.msg import Pose  # noqa: E402
+
+PERIOD_S = 0.05
+WATCHDOG_S = 0.5
+
+
+class PlainRobot:
+
+    def __init__(self, options):
+        self._turtle = options.turtle
+        self._command = (-WATCHDOG_S, 0.0, 0.0)
+        self._x = self._y = self._yaw = 0.0
+        self._publisher = rospy.Publisher(options.odometry, Pose if self._turtle else Odometry,
+                                          queue_size=1)
+        self._signs = [rospy.Publisher(topic, generate_dynamic(kind, 'uint8 state\n')[kind],
+                                       queue_size=1) for topic, kind in options.sign]
+        rospy.Subscriber(options.command, Twist, self._obey, queue_size=1, tcp_nodelay=True)
+
+    def _obey(self, message):
+        self._command = (time.monotonic(), message.linear.x, message.angular.z)
+
+    def step(self):
+        at, linear, angular = self._command
+        if time.monotonic() - at > WATCHDOG_S:
+            linear = angular = 0.0
+        self._yaw += angular * PERIOD_S
+        self._x += linear * math.cos(self._yaw) * PERIOD_S
+        self._y += linear * math.sin(self._yaw) * PERIOD_S
+        self._publisher.publish(self._pose(linear, angular))
+
+    def _pose(self, linear, angular):
+        if self._turtle:
+            return Pose(self._x, self._y, self._yaw, linear, angular)
+        message = Odometry()
+        message.pose.pose.position.x, message.pose.pose.position.y = self._x, self._y
+        message.pose.pose.orientation.z = math.sin(self._yaw / 2)
+        message.pose.pose.orientation.w = math.cos(self._yaw / 2)
+        message.twist.twist.linear.x, message.twist.twist.angular.z = linear, angular
+        return message
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument('command')
+    parser.add_argument('odometry')
+    parser.add_argument('--turtle', action='store_true')
+    parser.add_argument('--sign', nargs=2, action='append', default=[])
+    options = parser.parse_args(rospy.myargv()[1:])
+    rospy.init_node('base')
+    robot = PlainRobot(options)
+    rate = rospy.Rate(1.0 / PERIOD_S)
+    while not rospy.is_shutdown():
+        robot.step()
+        try:
+            rate.sleep()
+        except rospy.ROSInterruptException:
+            break
+
+
+if __name__ == '__main__':
+    main()
