@@ -13,6 +13,7 @@ from python_qt_binding.QtWidgets import QApplication, QWidget
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
+from mhri.demo import Grip  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
 ROBOTS = ('bot1', 'bot2', 'bot3')
@@ -62,6 +63,11 @@ class Session:
 
     def robot(self, name):
         return self.operator.robot_view(name)
+
+    def drive(self, forward, turn, condition, what='the robots to drive'):
+        """Hold the stick until a condition comes true."""
+        until(Grip(lambda: self.take_stick(forward, turn), self.let_go,
+                   lambda: self.operator.view().status, condition), 30, what)
 
     def take_stick(self, forward, turn):
         """Press the stick in its middle and drag it."""
@@ -114,8 +120,7 @@ def tidy(session):
 def test_two_of_three_drive_alike_and_stand_still_when_the_stick_is_let_go(session):
     session.select('bot1', 'bot3')
     before = {name: session.witnesses[name].path_m for name in ROBOTS}
-    session.take_stick(0.4, 0.0)
-    until(lambda: session.witnesses['bot1'].path_m - before['bot1'] > 0.3, what='bot1 to drive')
+    session.drive(0.4, 0.0, lambda: session.witnesses['bot1'].path_m - before['bot1'] > 0.3)
     since = time.monotonic()
     session.let_go()
     until(lambda: session.witnesses['bot1'].stood_still_at(since)
@@ -129,10 +134,28 @@ def test_two_of_three_drive_alike_and_stand_still_when_the_stick_is_let_go(sessi
     assert driven['bot3'] == pytest.approx(driven['bot1'], rel=0.15)
 
 
+def test_staying_together_slows_the_quick_one(session):
+    session.select('bot1', 'bot2')
+    assert 'its best' in session.operator.view().pace
+    session.click('together_box')
+    try:
+        # Back to where the last test came from.
+        session.drive(-1.0, 0.0, lambda: all(
+            abs(session.witnesses[name].latest().linear_mps + 0.22) < 0.04
+            for name in ('bot1', 'bot2')), 'both at the pace of the Burger')
+        assert 'bot2' in session.host.panel.speed_limits.pace_label.text()
+        session.click('together_box')
+        until(lambda: session.witnesses['bot1'].latest().linear_mps < -0.3, 10,
+              'the TurtleBot2 to do its best')
+    finally:
+        session.let_go()
+    session.rest()
+
+
 def test_a_robot_unchecked_while_driving_stops_and_the_other_goes_on(session):
     session.select('bot1', 'bot2')
-    session.take_stick(0.0, 0.5)
-    until(lambda: session.witnesses['bot1'].moving() and session.witnesses['bot2'].moving())
+    session.drive(0.0, 0.5, lambda: all(
+        session.witnesses[name].moving() for name in ('bot1', 'bot2')))
     session.click('check_bot1')
     until(session.witnesses['bot1'].at_rest, 2, 'bot1 to stand still')
     assert session.witnesses['bot2'].moving()
@@ -141,8 +164,7 @@ def test_a_robot_unchecked_while_driving_stops_and_the_other_goes_on(session):
 
 def test_closing_the_window_of_a_driven_robot_stops_it(session):
     session.select('bot2')
-    session.take_stick(0.0, 0.5)
-    until(session.witnesses['bot2'].moving)
+    session.drive(0.0, 0.5, session.witnesses['bot2'].moving)
     session.host.windows['bot2'].close()
     until(session.witnesses['bot2'].at_rest, 2, 'bot2 to stand still')
     assert 'bot2' not in session.operator.selection.selected
@@ -152,8 +174,11 @@ def test_closing_the_window_of_a_driven_robot_stops_it(session):
 def test_keys_drive_and_release_stops(session):
     session.select('bot1')
     session.host.panel.activateWindow()
-    QTest.keyPress(session.host.panel, Qt.Key_Left)
-    until(session.witnesses['bot1'].moving, what='the key to drive')
+    panel = session.host.panel
+    until(Grip(lambda: QTest.keyPress(panel, Qt.Key_Left),
+               lambda: QTest.keyRelease(panel, Qt.Key_Left),
+               lambda: session.operator.view().status, session.witnesses['bot1'].moving), 30,
+          'the key to drive')
     assert session.witnesses['bot1'].latest().angular_rad_s > 0
     QTest.keyRelease(session.host.panel, Qt.Key_Left)
     until(session.witnesses['bot1'].at_rest, 2, 'bot1 to stand still')
@@ -161,8 +186,8 @@ def test_keys_drive_and_release_stops(session):
 
 def test_stop_all_with_proof_and_release_in_two_steps(session):
     session.select('bot1', 'bot2')
-    session.take_stick(0.0, 0.5)
-    until(lambda: session.witnesses['bot1'].moving() and session.witnesses['bot2'].moving())
+    session.drive(0.0, 0.5, lambda: all(
+        session.witnesses[name].moving() for name in ('bot1', 'bot2')))
     QTest.keyClick(session.host.panel, Qt.Key_Space, Qt.ShiftModifier)
     until(lambda: all(robot.proof and robot.proof.state == 'stopped'
                       for robot in session.operator.view().robots), what='the proofs')
@@ -213,6 +238,16 @@ def test_a_name_with_special_characters_is_refused_in_place(session):
     field.clear()
 
 
+def test_the_doctor_examines_beside_the_driving(session):
+    session.click('doctor_button')
+    window = session.host.doctor.window
+    assert window.isVisible() and not window.isModal()
+    until(lambda: window.again_button.isEnabled(), 30, 'the examination')
+    text = window.text.toPlainText()
+    assert 'ROS master' in text and 'bot1' in text, text
+    window.close()
+
+
 def test_a_restarted_master_is_said_and_driving_goes_on_without_a_restart(session):
     from mhri.ros.master_watch import MasterWatch
     watch = MasterWatch().start()
@@ -223,8 +258,7 @@ def test_a_restarted_master_is_said_and_driving_goes_on_without_a_restart(sessio
         lambda: 'no ROS master' in session.widget('status_label').text(), 2)
     session.system.start_master()
     until(lambda: session.operator.view().status.endswith('ready'), 10, 'ready again')
-    session.take_stick(0.0, 0.5)
-    until(session.witnesses['bot1'].moving, what='bot1 to drive')
+    session.drive(0.0, 0.5, session.witnesses['bot1'].moving)
     session.let_go()
     until(session.witnesses['bot1'].at_rest, 2, 'bot1 to stand still')
     watch.stop()

@@ -142,12 +142,12 @@ def test_tab_order_is_the_reading_order(panel, operator, application, four_robot
     panel.robot_list.activate('bot1')
     panel.look_button.setFocus(Qt.TabFocusReason)
     seen = ['look_button']
-    for _ in range(16):
+    for _ in range(17):
         operator.hit(application.focusWidget(), Qt.Key_Tab)
         seen.append(application.focusWidget().objectName())
-    assert seen == ['look_button', 'name_edit', 'add_button', 'robot_list', 'check_bot1',
-                    'check_bot2', 'check_bot3', 'check_bot4', 'all_button', 'none_button',
-                    'record_button', 'remove_button', 'mode_combo', 'linear_slider',
+    assert seen == ['look_button', 'doctor_button', 'name_edit', 'add_button', 'robot_list',
+                    'check_bot1', 'check_bot2', 'check_bot3', 'check_bot4', 'all_button',
+                    'none_button', 'record_button', 'remove_button', 'mode_combo', 'linear_slider',
                     'angular_slider', 'together_box', 'stop_button']
 
 

@@ -19,8 +19,8 @@ CLOCKS_AND_IO = {'threading', 'time', 'asyncio', 'concurrent', 'multiprocessing'
                  'http', 'urllib', 'xmlrpc', 'select', 'signal', 'random', 'sys', 'logging'}
 MESSAGES = {'mhri.msg', 'mhri.srv', 'cv_bridge', 'genpy', 'rosbag'}
 # The files that join ROS and Qt; every other file keeps to its room.
-JOINING = {'mhri_plugin.py', 'standalone.py', 'panel_host.py', 'requests_host.py',
-           'window_host.py'}
+JOINING = {'doctor_host.py', 'mhri_plugin.py', 'standalone.py', 'panel_host.py',
+           'requests_host.py', 'window_host.py'}
 # What Python says of itself from 3.10 on; before that, what core/ may want.
 STDLIB = getattr(sys, 'stdlib_module_names', frozenset(
     CLOCKS_AND_IO | {'array', 'bisect', 'collections', 'copy', 'dataclasses', 'datetime', 'enum',

@@ -39,6 +39,8 @@ class PanelWidget(QWidget):
 
     #: "Look for Connected Bots"
     look_requested = Signal()
+    #: "Doctor": examine network, master and robots
+    doctor_requested = Signal()
     #: text of the name field
     add_requested = Signal(str)
     #: the robots to record, or to stop recording: names in list order
@@ -84,9 +86,9 @@ class PanelWidget(QWidget):
         # A click beside a text field ends the typing, so that the keys drive again.
         self.setFocusPolicy(Qt.ClickFocus)
         touch = theme.touch_size(self)
-        for button in (self.look_button, self.add_button, self.all_button, self.none_button,
-                       self.record_button, self.remove_button, self.name_edit, self.mode_combo,
-                       self.talk_button):
+        for button in (self.look_button, self.doctor_button, self.add_button, self.all_button,
+                       self.none_button, self.record_button, self.remove_button, self.name_edit,
+                       self.mode_combo, self.talk_button):
             button.setMinimumHeight(touch)
             if isinstance(button, QPushButton):
                 button.setFocusPolicy(Qt.TabFocus)
@@ -107,6 +109,7 @@ class PanelWidget(QWidget):
     def _connect(self):
         """Wire widgets to signals."""
         self.look_button.clicked.connect(self._look)
+        self.doctor_button.clicked.connect(self.doctor_requested)
         self.add_button.clicked.connect(self._add)
         self.name_edit.returnPressed.connect(self._add)
         self.name_edit.textEdited.connect(self._on_name_edited)

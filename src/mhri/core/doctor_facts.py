@@ -1,0 +1,252 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the doctor sees and what it says: plain values between the looking and the judging."""
+from dataclasses import dataclass, field, replace
+from typing import Dict, Optional, Tuple
+
+FAULT, WARNING, FINE = 'fault', 'warning', 'fine'
+SEVERITIES = (FAULT, WARNING, FINE)
+
+# How an address answered. REFUSED: the computer is there, the program is not. SILENT: nothing came
+# back in time. UNRESOLVED: its name is unknown here. STRANGER: something else answers there.
+ANSWERS, REFUSED, SILENT, UNRESOLVED, STRANGER = (
+    'answers', 'refused', 'silent', 'unresolved', 'stranger')
+
+HOST = 'this computer'
+MASTER = 'ROS master'
+SYSTEM = 'system'
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that was looked at.
+
+    ``check`` is its stable name for scripts; ``about`` the robot, node, computer or part that has
+    it; ``problem`` what is wrong (or, for FINE, what is right); ``shows`` how the operator notices;
+    ``remedy`` the command that mends it; ``sure`` how far this can be relied on, '' for "fully".
+    """
+
+    severity: str
+    check: str
+    about: str
+    problem: str
+    shows: str = ''
+    remedy: str = ''
+    sure: str = ''
+
+
+@dataclass(frozen=True)
+class Folder:
+    """A folder that is written to.
+
+    ``what`` it is for ('recordings', 'logs'), ``problem`` why it cannot be written to, '' where it
+    can; ``device`` is the same for two on one disk.
+    """
+
+    what: str
+    path: str
+    free_bytes: int = 0
+    problem: str = ''
+    device: str = ''
+
+
+@dataclass(frozen=True)
+class Computer:
+    """The computer the doctor runs on.
+
+    ``variables`` are those of its environment that begin with ``ROS_``; ``resolved`` are names and
+    their IPv4 addresses, None where a name is unknown; ``route_ip`` is the own address that
+    packets to the master leave from, None where there is no way or the master is on this computer;
+    ``packages`` maps what mhri depends on to the reason why it cannot be used, '' where it can.
+    """
+
+    name: str = 'host'
+    variables: Dict[str, str] = field(default_factory=dict)
+    addresses: Tuple[str, ...] = ('127.0.0.1',)
+    resolved: Dict[str, Optional[Tuple[str, ...]]] = field(default_factory=dict)
+    route_ip: Optional[str] = None
+    folders: Tuple[Folder, ...] = ()
+    package_path: Optional[str] = None
+    python_paths: Tuple[str, ...] = ()
+    packages: Dict[str, str] = field(default_factory=dict)
+
+    def addresses_of(self, host):
+        """Return the IPv4 addresses of a host name or address, () where it is unknown."""
+        if is_ipv4(host):
+            return (host,)
+        return self.resolved.get(host) or ()
+
+    def is_own(self, host):
+        """Tell whether a host name or address means this computer."""
+        return any(is_loopback(address) or address in self.addresses
+                   for address in self.addresses_of(host))
+
+    def good_ip(self):
+        """Return the address that robots should be told, None where there is only loopback."""
+        outward = [address for address in self.addresses if not is_loopback(address)]
+        return self.route_ip or (outward[0] if outward else None)
+
+    def own_host(self):
+        """Return (host that programs started here advertise, the variable that says so or '')."""
+        for key in ('ROS_HOSTNAME', 'ROS_IP'):
+            if self.variables.get(key):
+                return self.variables[key], key
+        return self.name, ''
+
+
+@dataclass(frozen=True)
+class Master:
+    """The master: its URI as configured, how it answered, in words where not, in how long [s].
+
+    ``elsewhere`` is the URI of a master that answers on the default port, where this one does not.
+    """
+
+    uri: str = 'http://localhost:11311'
+    host: str = 'localhost'
+    port: int = 11311
+    state: str = ANSWERS
+    detail: str = ''
+    took_s: float = 0.0
+    elsewhere: str = ''
+    uri_problem: str = ''
+
+
+@dataclass(frozen=True)
+class Graph:
+    """What the master knows: {topic: nodes}, {topic: type}, all parameters as a nested dict."""
+
+    publishers: Dict[str, Tuple[str, ...]] = field(default_factory=dict)
+    subscribers: Dict[str, Tuple[str, ...]] = field(default_factory=dict)
+    services: Dict[str, Tuple[str, ...]] = field(default_factory=dict)
+    types: Dict[str, str] = field(default_factory=dict)
+    parameters: Dict = field(default_factory=dict)
+
+    def nodes(self):
+        """Return the names of all nodes, sorted."""
+        return sorted({node for group in (self.publishers, self.subscribers, self.services)
+                       for nodes in group.values() for node in nodes})
+
+    def state(self):
+        """Return it as ``getSystemState`` does."""
+        return [[[name, list(nodes)] for name, nodes in group.items()]
+                for group in (self.publishers, self.subscribers, self.services)]
+
+    def topics_of(self, node):
+        """Return (topics it publishes, topics it subscribes), as registered."""
+        return (tuple(sorted(name for name, nodes in self.publishers.items() if node in nodes)),
+                tuple(sorted(name for name, nodes in self.subscribers.items() if node in nodes)))
+
+
+@dataclass(frozen=True)
+class Connection:
+    """A connection as a node tells of it: ``out`` or not, its topic, who is at the other end.
+
+    ``peer`` is the other node's name of an outgoing, its URI of an incoming one.
+    """
+
+    out: bool
+    topic: str
+    peer: str
+
+
+@dataclass(frozen=True)
+class Node:
+    """A registered node and how it answered.
+
+    ``publications`` and ``subscriptions`` are {topic: type} in its own words, ``connections`` its
+    :class:`Connection` list; each is None where it did not say. ``uri_later`` is where it was
+    registered at the end of the examination.
+    """
+
+    name: str
+    uri: str = ''
+    host: str = ''
+    state: str = ANSWERS
+    detail: str = ''
+    took_s: float = 0.0
+    publications: Optional[Dict[str, str]] = None
+    subscriptions: Optional[Dict[str, str]] = None
+    connections: Optional[Tuple[Connection, ...]] = None
+    uri_later: str = ''
+
+
+@dataclass(frozen=True)
+class Stream:
+    """What a publisher said of a topic when it was asked for it, and the stamps that came.
+
+    ``problem`` says why it was not connected; ``listened_s`` is for how long messages were waited
+    for [s], 0 where they were not; ``samples`` are (received, stamp) pairs by the clock here and
+    the sender's [s].
+    """
+
+    topic: str
+    node: str
+    type: str = ''
+    md5sum: str = ''
+    callerid: str = ''
+    problem: str = ''
+    listened_s: float = 0.0
+    messages: int = 0
+    samples: Tuple[Tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class Facts:
+    """Everything that was seen.
+
+    ``later`` is the graph, ``later_nodes`` the nodes asked once more at the end, where something
+    looked odd: only what is odd both times is told. ``known`` maps message types to the md5 sum
+    that this computer has, None where it has none. ``wanted`` are the robots asked for, () for all.
+    """
+
+    computer: Computer = Computer()
+    master: Master = Master()
+    graph: Graph = Graph()
+    nodes: Dict[str, Node] = field(default_factory=dict)
+    streams: Tuple[Stream, ...] = ()
+    known: Dict[str, Optional[str]] = field(default_factory=dict)
+    later: Optional[Graph] = None
+    later_nodes: Dict[str, Node] = field(default_factory=dict)
+    wanted: Tuple[str, ...] = ()
+    template_errors: Tuple[str, ...] = ()
+    caller_id: str = '/mhri_doctor'
+
+    def with_later(self, graph, nodes):
+        """Return these facts with the second look."""
+        return replace(self, later=graph, later_nodes=nodes)
+
+    def answering(self, name):
+        """Return a node that answers, or None."""
+        node = self.nodes.get(name)
+        return node if node is not None and node.state == ANSWERS else None
+
+    def is_remote(self, node):
+        """Tell whether a node is on another computer, as far as its address says."""
+        return bool(node.host) and not self.computer.is_own(node.host)
+
+    def several_computers(self):
+        """Tell whether more than this computer takes part."""
+        if self.master.state != STRANGER and not self.computer.is_own(self.master.host) \
+                and self.computer.addresses_of(self.master.host):
+            return True
+        return any(self.is_remote(node) for node in self.nodes.values())
+
+
+def is_ipv4(text):
+    """Tell whether a text is an IPv4 address in four decimal parts."""
+    parts = text.split('.')
+    return len(parts) == 4 and all(part.isdigit() and len(part) < 4 and int(part) < 256
+                                   for part in parts)
+
+
+def is_loopback(address):
+    """Tell whether an address or name reaches only the computer that uses it."""
+    return address in ('localhost', '::1') or (is_ipv4(address) and address.startswith('127.'))
+
+
+def listed(names, most=4):
+    """Return names as a person lists them: 'a, b and 3 more'."""
+    names = list(names)
+    if len(names) <= most:
+        return ', '.join(names)
+    return '{} and {} more'.format(', '.join(names[:most]), len(names) - most)

@@ -1,0 +1,202 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Examines the ROS system from this computer: :func:`examine` is all that others need.
+
+It disturbs nothing: it registers no node, sets no parameter, and hangs up where it listened.
+"""
+import os
+import time
+from dataclasses import replace
+from urllib.parse import urlsplit
+import xmlrpc.client
+
+import genpy.message
+import rosgraph
+import rospkg
+
+from mhri.core.config import ConfigError
+from mhri.core.discovery import IgnoreList
+from mhri.core.doctor import diagnose, odd_ones
+from mhri.core.doctor_facts import (
+    Facts, Graph, Master, REFUSED, SILENT, STRANGER, UNRESOLVED)
+from mhri.core.doctor_host import find_on_host
+from mhri.core.doctor_robots import robots_of
+from mhri.ros.doctor_host import look_at_computer
+from mhri.ros.doctor_probe import Probe
+from mhri.ros.graph import shipped_ignore_list
+from mhri.ros.master_api import MasterApi, MasterError
+from mhri.ros.resources import robot_types
+
+LIMIT_S = 1.9
+SECOND_LOOK_S = 0.5
+_MASTER_S = 1.0
+_DEFAULT_PORT = 11311
+
+
+def examine(robots=(), environ=None):
+    """Examine the system (blocking, 3 s at most; never on the GUI thread).
+
+    :param robots: names of the robots to judge, () for all
+    :param environ: the environment to judge, default that of this program
+    :returns: list of :class:`mhri.core.doctor_facts.Finding`: faults, warnings, what is fine
+    """
+    environ = os.environ if environ is None else environ
+    caller_id = '/mhri_doctor_{}'.format(os.getpid())
+    try:
+        types, errors = robot_types()
+        ignore, faults = _ignore_list()
+    except rospkg.ResourceNotFound:
+        # Without the workspace there are no templates to judge robots by: that comes first.
+        master = _parse_uri(environ.get('ROS_MASTER_URI') or rosgraph.rosenv.DEFAULT_MASTER_URI)
+        return find_on_host(Facts(computer=look_at_computer(environ, master.host), master=master))
+    facts = replace(look(environ, types, ignore, robots, caller_id),
+                    template_errors=tuple(str(error) for error in errors + faults))
+    return diagnose(facts, types, ignore)
+
+
+def _ignore_list():
+    """Return (:class:`IgnoreList`, [what is wrong with its file])."""
+    try:
+        return shipped_ignore_list(), []
+    except (ConfigError, OSError) as error:
+        return IgnoreList(), [error]
+
+
+def look(environ, types, ignore, robots=(), caller_id='/mhri_doctor'):
+    """Return the :class:`Facts` of this moment (blocking, 3 s at most)."""
+    begun = time.monotonic()
+    master = _parse_uri(environ.get('ROS_MASTER_URI') or rosgraph.rosenv.DEFAULT_MASTER_URI)
+    computer = look_at_computer(environ, master.host)
+    facts = Facts(computer=computer, wanted=tuple(robots), caller_id=caller_id)
+    if master.uri_problem:
+        return replace(facts, master=replace(master, elsewhere=_elsewhere(master, caller_id)))
+    if not computer.addresses_of(master.host):
+        return replace(facts, master=replace(master, state=UNRESOLVED,
+                                             elsewhere=_elsewhere(master, caller_id)))
+    api = MasterApi(caller_id, _MASTER_S, master.uri)
+    try:
+        master, graph, uris = _ask_master(api, master)
+    except MasterError as error:
+        return replace(facts, master=_why_not(master, error, caller_id))
+    facts = replace(facts, master=master, graph=graph)
+    known = robots_of(graph, types, ignore)
+    facts = _ask_nodes(facts, known, uris, begun + LIMIT_S)
+    return _look_again(facts, known, api)
+
+
+def _parse_uri(uri):
+    """Return the :class:`Master` of a URI, with what is wrong with it."""
+    try:
+        parts = urlsplit(uri.strip())
+        host, port = parts.hostname or '', parts.port
+    except ValueError as error:
+        return Master(uri, '', 0, SILENT, uri_problem=str(error))
+    if parts.scheme != 'http' or not host or uri != uri.strip():
+        return Master(uri, host, port or 0, SILENT, uri_problem='it has the form '
+                      'http://<address>:{}'.format(_DEFAULT_PORT))
+    if port is None:
+        return Master(uri, host, 0, SILENT, uri_problem='it names no port; the usual one is '
+                      '{}'.format(_DEFAULT_PORT))
+    return Master(uri, host, port)
+
+
+def _ask_master(api, master):
+    """Return (master, graph, {node: URI}); three requests.
+
+    :raises MasterError: no answer, or not that of a master
+    """
+    begun = time.monotonic()
+    graph = _graph(api)
+    took_s = time.monotonic() - begun
+    return replace(master, took_s=took_s), graph, _uris(api, graph)
+
+
+def _graph(api):
+    """Return the :class:`Graph`; one request."""
+    state, types, parameters = api.call_many(
+        [('getSystemState',), ('getTopicTypes',), ('getParam', '/')])
+    if state is None or types is None:
+        raise MasterError('it does not know getSystemState')
+    groups = [{name: tuple(nodes) for name, nodes in group} for group in state]
+    return Graph(*groups, types=dict(types),
+                 parameters=parameters if isinstance(parameters, dict) else {})
+
+
+def _uris(api, graph):
+    """Return {node: URI} of those the master has one of; one request."""
+    names = graph.nodes()
+    answers = api.call_many([('lookupNode', name) for name in names]) if names else []
+    return {name: uri for name, uri in zip(names, answers) if uri}
+
+
+def _why_not(master, error, caller_id):
+    """Return the master with the reason why it cannot be asked."""
+    cause = error.__context__
+    if isinstance(cause, ConnectionRefusedError):
+        state = REFUSED
+    elif isinstance(cause, xmlrpc.client.Error) or not isinstance(cause, OSError) \
+            or isinstance(cause, ConnectionError):
+        state = STRANGER
+    else:
+        state = SILENT
+    detail = str(getattr(cause, 'strerror', None) or cause or error)
+    return replace(master, state=state, detail=detail, elsewhere=_elsewhere(master, caller_id))
+
+
+def _elsewhere(master, caller_id):
+    """Return the URI of a master that answers at the default port, '' where there is none."""
+    for host in dict.fromkeys((master.host, 'localhost')):
+        uri = 'http://{}:{}'.format(host, _DEFAULT_PORT)
+        if not host or uri == master.uri.rstrip('/'):
+            continue
+        try:
+            MasterApi(caller_id, 0.3, uri).call('getUri')
+            return uri
+        except MasterError:
+            continue
+    return ''
+
+
+def _ask_nodes(facts, robots, uris, deadline):
+    """Ask every node at once; listen to odometry and IMU of every robot."""
+    probe = Probe(facts.caller_id, deadline)
+    listened = {topic for robot in robots
+                if not facts.wanted or robot.candidate.name in facts.wanted
+                for topic in robot.topics('odometry', 'imu')}
+    for name, uri in sorted(uris.items()):
+        published = facts.graph.topics_of(name)[0]
+        # What is listened to comes last: it takes its time.
+        probe.ask(name, uri, sorted(((topic, facts.graph.types.get(topic, ''), topic in listened)
+                                     for topic in published), key=lambda item: item[2]))
+    nodes, streams, resolved = probe.result()
+    computer = replace(facts.computer, resolved=dict(facts.computer.resolved, **resolved))
+    kinds = {stream.type for stream in streams if stream.type not in ('', '*')}
+    return replace(facts, computer=computer, nodes=nodes, streams=tuple(streams),
+                   known={kind: _own_md5(kind) for kind in kinds})
+
+
+def _own_md5(kind):
+    """Return the md5 sum of a message type on this computer, None where it is not here."""
+    try:
+        found = genpy.message.get_message_class(kind)
+    except (ImportError, ValueError):
+        return None
+    return found._md5sum if found is not None else None
+
+
+def _look_again(facts, robots, api):
+    """Ask the master once more, and the nodes that looked odd."""
+    try:
+        odd = odd_ones(facts, robots)
+        if odd:
+            time.sleep(0.25)  # time to connect, for what has only just begun
+        graph = _graph(api)
+        uris = _uris(api, graph)
+    except MasterError:
+        return facts
+    probe = Probe(facts.caller_id, time.monotonic() + SECOND_LOOK_S)
+    for name in sorted(odd & set(uris)):
+        probe.ask(name, uris[name])
+    nodes = {name: replace(node, uri_later=uris.get(name, ''))
+             for name, node in facts.nodes.items()}
+    return replace(facts, nodes=nodes).with_later(graph, probe.result()[0])

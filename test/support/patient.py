@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A real node with an ailment, for the tests of the doctor: a process of its own."""
+import argparse
+import sys
+import time
+
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+import roslib.message
+import rospy
+
+from mhri.msg import RobotSelect
+
+TICK_S = 0.05
+
+
+class Changed(Odometry):
+    """An Odometry of another release: the same name, another definition."""
+
+    _md5sum = '0123456789abcdef0123456789abcdef'
+
+
+class Mover:
+    """A body that turns as it was last told: for ever, unless it has a watchdog.
+
+    :param watchdog_s: stops by itself when nothing came for so long [s]; 0 is never
+    """
+
+    def __init__(self, topic, watchdog_s):
+        self._watchdog_s = watchdog_s
+        self._turn, self._at = 0.0, 0.0
+        rospy.Subscriber(topic, Twist, self._on_twist, queue_size=1)
+
+    def _on_twist(self, message):
+        self._turn, self._at = message.angular.z, time.monotonic()
+        print('told', self._turn, flush=True)
+
+    def turn(self):
+        if self._watchdog_s and time.monotonic() - self._at > self._watchdog_s:
+            return 0.0
+        return self._turn
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser()
+    parser.add_argument('--publish', nargs=2, action='append', default=[], help='topic type')
+    parser.add_argument('--subscribe', nargs=2, action='append', default=[], help='topic type')
+    parser.add_argument('--odometry', help='topic, sent at 20 Hz')
+    parser.add_argument('--offset', type=float, default=0.0, help='of its clock [s]')
+    parser.add_argument('--changed', action='store_true', help='odometry of another definition')
+    parser.add_argument('--obey', help='topic of the velocity that its odometry follows')
+    parser.add_argument('--select', help='select this robot, as a panel does')
+    parser.add_argument('--watchdog', type=float, default=0.0)
+    return parser.parse_args(arguments)
+
+
+def main():
+    options = parse(rospy.myargv()[1:])
+    rospy.init_node('patient')
+    for topic, kind in options.publish:
+        rospy.Publisher(topic, roslib.message.get_message_class(kind), queue_size=1)
+    for topic, kind in options.subscribe:
+        rospy.Subscriber(topic, roslib.message.get_message_class(kind), lambda message: None)
+    mover = Mover(options.obey, options.watchdog) if options.obey else None
+    if options.select:
+        panel = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1,
+                                latch=True)
+        panel.publish(RobotSelect([options.select]))
+    kind = Changed if options.changed else Odometry
+    publisher = options.odometry and rospy.Publisher(options.odometry, kind, queue_size=1)
+    print('ready', flush=True)
+    if not publisher:
+        rospy.spin()
+        sys.exit()
+    while not rospy.is_shutdown():
+        message = kind()
+        message.header.stamp = rospy.Time.from_sec(time.time() + options.offset)
+        message.twist.twist.angular.z = mover.turn() if mover else 0.0
+        publisher.publish(message)
+        time.sleep(TICK_S)
+
+
+if __name__ == '__main__':
+    main()
