@@ -25,19 +25,23 @@ DEBIAN_RUN=(
   python3-tf2-msgs python3-rosgraph-msgs python3-diagnostic-msgs python3-diagnostic-updater
   python3-cv-bridge python3-python-qt-binding python3-pyqt5 python3-pyqtgraph python3-pygame
   python3-evdev python3-pocketsphinx pocketsphinx-en-us python3-pyaudio
-  python3-numpy python3-opencv python3-yaml python3-genpy fonts-dejavu-core
+  python3-numpy python3-opencv python3-yaml python3-genpy python3-netifaces fonts-dejavu-core
+  openssh-client
   xvfb xauth hostname util-linux
 )
 DEBIAN_TEST=(
   librostest-dev python3-rostest topic-tools python3-pytest python3-flake8
   python3-flake8-docstrings python3-mccabe python3-pip python3-psutil catkin-lint shellcheck
-  xdotool imagemagick x11-utils git procps espeak-ng sox
+  xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server openssl iproute2
 )
 # On Ubuntu rosdep reads the ROS packages from package.xml; these have no key there.
-UBUNTU_RUN=(python3-rosdep build-essential cmake fonts-dejavu-core xvfb xauth hostname util-linux)
+UBUNTU_RUN=(
+  python3-rosdep build-essential cmake fonts-dejavu-core xvfb xauth hostname util-linux
+  openssh-client
+)
 UBUNTU_TEST=(
   python3-pytest python3-flake8 python3-mccabe python3-pip python3-psutil python3-catkin-lint
-  shellcheck xdotool imagemagick x11-utils git procps espeak-ng sox
+  shellcheck xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server openssl iproute2
 )
 
 say() { printf 'mhri: %s\n' "$*"; }

@@ -1,0 +1,271 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""turtle_check.py: which address is taken, and what is said of each thing that can be wrong."""
+import importlib.util
+import socket
+import subprocess
+import sys
+import threading
+from xmlrpc.client import ServerProxy
+from xmlrpc.server import SimpleXMLRPCServer
+
+from conftest import REPO
+import pytest
+
+PATH = REPO / 'utils' / 'remote' / 'turtle_check.py'
+SPEC = importlib.util.spec_from_file_location('turtle_check', str(PATH))
+turtle_check = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(turtle_check)
+HOST = '127.0.0.1'
+
+
+@pytest.mark.parametrize('target, own, lengths, out, chosen', [
+    ('192.168.0.103', ['192.168.0.7'], {}, None, '192.168.0.7'),
+    ('192.168.0.103', ['10.0.0.5', '192.168.0.7'], {}, None, '192.168.0.7'),
+    ('192.168.0.103', ['192.168.0.7', '10.0.0.5'], {}, '10.0.0.5', '192.168.0.7'),
+    ('10.1.2.3', ['10.200.0.5', '172.17.0.1'], {'10.200.0.5': 8}, None, '10.200.0.5'),
+    ('192.168.0.103', ['192.168.0.7', '192.168.0.8'], {}, '192.168.0.8', '192.168.0.8'),
+    ('192.168.0.103', ['192.168.0.7', '192.168.0.200'],
+     {'192.168.0.7': 26, '192.168.0.200': 26}, None, None),
+    ('192.168.0.70', ['192.168.0.7', '192.168.0.80'],
+     {'192.168.0.7': 26, '192.168.0.80': 26}, None, '192.168.0.80'),
+    ('203.0.113.1', ['192.168.0.7', '10.0.0.5'], {}, '10.0.0.5', '10.0.0.5'),
+    ('203.0.113.1', ['192.168.0.7'], {}, None, '192.168.0.7'),
+    ('203.0.113.1', ['192.168.0.7', '10.0.0.5'], {}, '172.17.0.1', None),
+    ('192.168.0.7', ['10.0.0.5', '192.168.0.7'], {}, None, '192.168.0.7'),
+    ('192.168.0.103', ['192.168.0.7'], {'192.168.0.7': 32}, None, '192.168.0.7'),
+    ('192.168.0.103', [], {}, None, None),
+])
+def test_address_on_the_network_of_the_other(target, own, lengths, out, chosen):
+    if chosen is None:
+        with pytest.raises(turtle_check.Problem, match='--ip ADDR'):
+            turtle_check.choose_address(target, own, lengths, out)
+    else:
+        assert turtle_check.choose_address(target, own, lengths, out) == chosen
+
+
+class FakeMaster:
+    """A master as far as a robot asks it; each test makes one thing of it wrong."""
+
+    def __init__(self):
+        self.params, self.nodes, self.subscribers, self.calls_back = {'/run_id': 'x'}, {}, {}, True
+        self.server = SimpleXMLRPCServer((HOST, 0), logRequests=False, allow_none=True)
+        self.port = self.server.server_address[1]
+        for name in ('getPid', 'getParam', 'setParam', 'deleteParam', 'subscribeParam',
+                     'unsubscribeParam', 'lookupNode', 'getSystemState'):
+            self.server.register_function(getattr(self, name))
+        self.thread = threading.Thread(target=self.server.serve_forever, daemon=True)
+        self.thread.start()
+
+    def close(self):
+        self.server.shutdown()
+        self.server.server_close()
+        self.thread.join()
+
+    def getPid(self, _):  # noqa: N802 (names of the master's)
+        return 1, '', 77
+
+    def getParam(self, _, key):  # noqa: N802
+        return (1, '', self.params[key]) if key in self.params else (-1, 'not set', 0)
+
+    def setParam(self, _, key, value):  # noqa: N802
+        self.params[key] = value
+        if key in self.subscribers and self.calls_back:
+            ServerProxy(self.subscribers[key]).paramUpdate('/master', key, value)
+        return 1, '', 0
+
+    def deleteParam(self, _, key):  # noqa: N802
+        self.params.pop(key, None)
+        return 1, '', 0
+
+    def subscribeParam(self, _, api, key):  # noqa: N802
+        self.subscribers[key] = api
+        return 1, '', {}
+
+    def unsubscribeParam(self, _, api, key):  # noqa: N802
+        assert self.subscribers.pop(key) == api
+        return 1, '', 1
+
+    def lookupNode(self, _, node):  # noqa: N802
+        return (1, '', self.nodes[node]) if node in self.nodes else (-1, 'unknown', '')
+
+    def getSystemState(self, _):  # noqa: N802
+        return 1, '', [[['/some/topic', sorted(self.nodes)]], [], []]
+
+
+@pytest.fixture
+def master(monkeypatch):
+    monkeypatch.setattr(turtle_check, 'TIMEOUT_S', 1.0)
+    before = socket.getdefaulttimeout()
+    fake = FakeMaster()
+    yield fake
+    fake.close()
+    socket.setdefaulttimeout(before)
+
+
+@pytest.fixture
+def listener():
+    """Return the port of something that accepts connections, as a node that lives does."""
+    with socket.socket() as sock:
+        sock.bind((HOST, 0))
+        sock.listen(5)
+        yield sock.getsockname()[1]
+
+
+def check(master, name='bot1', own=HOST):
+    turtle_check.check_host(HOST, master.port, own, name)
+
+
+def problem(master, **keywords):
+    """Return what is said of a host."""
+    with pytest.raises(turtle_check.Problem) as raised:
+        check(master, **keywords)
+    return str(raised.value)
+
+
+def test_host_that_is_right(master):
+    check(master)
+    assert master.params == {'/run_id': 'x'} and master.subscribers == {}, 'nothing is left behind'
+
+
+def test_bare_rosmaster_gets_a_run_id(master, monkeypatch):
+    monkeypatch.setattr(turtle_check, 'RUN_ID_TIMEOUT_S', 0.0)
+    master.params = {}
+    check(master)
+    assert list(master.params) == ['/run_id']
+
+
+def test_no_master_on_the_host(master):
+    with socket.socket() as sock:
+        sock.bind((HOST, 0))
+        port = sock.getsockname()[1]
+    with pytest.raises(turtle_check.Problem) as raised:
+        turtle_check.check_host(HOST, port, HOST, 'bot1')
+    assert 'no ROS master runs on its port {}'.format(port) in str(raised.value)
+    assert 'mhri_run.sh --ip ' + HOST in str(raised.value)
+
+
+def test_something_else_has_the_port(master):
+    server = socket.create_server((HOST, 0))
+
+    def answer():
+        try:
+            with server.accept()[0]:
+                pass
+            with server.accept()[0] as second:
+                second.sendall(b'SSH-2.0-none\r\n')
+        except OSError:
+            return
+    threading.Thread(target=answer, daemon=True).start()
+    with pytest.raises(turtle_check.Problem, match='is not a ROS master.*--port'):
+        turtle_check.check_host(HOST, server.getsockname()[1], HOST, 'bot1')
+    server.close()
+
+
+def test_host_that_does_not_reach_back(master):
+    master.calls_back = False
+    said = problem(master)
+    assert 'does not reach this robot at 127.0.0.1' in said and '--ip ADDR' in said
+    assert master.params == {'/run_id': 'x'} and master.subscribers == {}
+
+
+def test_address_that_is_not_the_robots(master):
+    # 192.0.2.0/24 is for documentation.
+    assert '192.0.2.201 is not an address of this robot' in problem(master, own='192.0.2.201')
+
+
+def test_host_whose_nodes_are_for_itself_alone(master):
+    master.nodes['/mux'] = 'http://127.0.0.1:4711/'
+    with pytest.raises(turtle_check.Problem, match='for itself alone.*mhri_run.sh --ip 10.0.0.1'):
+        turtle_check.check_names_of_host(
+            ServerProxy('http://{}:{}'.format(HOST, master.port)), '10.0.0.1', '10.0.0.7')
+    check(master)
+
+
+def test_host_whose_name_is_not_known(master):
+    master.nodes['/rosout'] = 'http://no-such-host.invalid:4711/'
+    said = problem(master)
+    assert 'the host calls itself no-such-host.invalid (/rosout)' in said
+    assert 'mhri_run.sh --ip ' + HOST in said
+
+
+def test_name_that_is_taken(master, listener):
+    master.nodes['/bot1/mobile_base'] = 'http://{}:{}/'.format(HOST, listener)
+    assert 'bot1 runs already, from this robot (/bot1/mobile_base)' in problem(master)
+    master.nodes['/bot1/mobile_base'] = 'http://localhost:{}/'.format(listener)
+    assert 'the name bot1 is taken: /bot1/mobile_base runs at localhost' in problem(master)
+    check(master, name='bot'), check(master, name='bot11')
+
+
+def test_leftovers_of_a_robot_that_is_gone_do_not_hold_its_name(master):
+    with socket.socket() as sock:
+        sock.bind((HOST, 0))
+        master.nodes['/bot1/mobile_base'] = 'http://{}:{}/'.format(HOST, sock.getsockname()[1])
+    check(master)
+
+
+def test_a_new_master_is_noticed(master, monkeypatch):
+    monkeypatch.setattr(turtle_check, 'WATCH_EVERY_S', 0.01)
+    claim = turtle_check.Claim(HOST, master.port, 'bot1', 'me')
+    claim.make()
+    assert claim.state() is True
+    watcher = threading.Thread(target=claim.watch, daemon=True)
+    watcher.start()
+    watcher.join(0.3)
+    assert watcher.is_alive(), 'as long as the master knows the robot'
+    del master.params['/bot1/mhri_remote']
+    watcher.join(20)
+    assert not watcher.is_alive()
+
+
+def test_a_silent_master_is_not_a_new_one(master, monkeypatch, capsys):
+    monkeypatch.setattr(turtle_check, 'WATCH_EVERY_S', 0.01)
+    states = iter([True, None, None, None, False, True, None, True, False, False])
+    claim = turtle_check.Claim(HOST, master.port, 'bot1', 'me')
+    monkeypatch.setattr(claim, 'state', lambda: next(states))
+    claim.watch()
+    assert list(states) == []
+    said = capsys.readouterr().err
+    assert said.count('does not answer any more') == said.count('answers again') == 1
+
+
+def test_release_leaves_another_runs_note(master):
+    master.params.update({'/bot1/mhri_remote': 'other', '/bot1/robot_type': 'turtlebot2'})
+    claim = turtle_check.Claim(HOST, master.port, 'bot1', 'me')
+    claim.give_up()
+    assert '/bot1/robot_type' in master.params
+    claim.make()
+    claim.give_up()
+    assert set(master.params) == {'/run_id'}
+
+
+def test_wrong_things_are_one_line_and_status_1(master):
+    master.nodes['/rosout'] = 'http://no-such-host.invalid:4711/'
+    done = subprocess.run([sys.executable, str(PATH), 'host', HOST, str(master.port), HOST, 'bot1'],
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          universal_newlines=True, timeout=60)
+    assert done.returncode == 1
+    assert done.stdout.startswith('mhri: the host calls itself') and done.stdout.count('\n') == 1
+
+
+def test_held_command_ends_with_its_parent(tmp_path):
+    """The shell in between is killed; what it held has to go as well."""
+    ready = tmp_path / 'pid'
+    shell = subprocess.Popen(
+        ['bash', '-c', '"$0" "$1" hold bash -c \'echo $$ >"$0"; exec sleep 600\' "$2" & wait',
+         sys.executable, str(PATH), str(ready)])
+    deadline = threading.Event()
+    while not (ready.exists() and ready.read_text().strip()):
+        assert not deadline.wait(0.05) and shell.poll() is None
+    pid = int(ready.read_text())
+    shell.kill()
+    shell.wait()
+    for _ in range(400):
+        try:
+            with open('/proc/{}/stat'.format(pid)) as file:
+                if file.read().rpartition(')')[2].split()[0] == 'Z':
+                    return
+        except OSError:
+            return
+        deadline.wait(0.05)
+    pytest.fail('the held command lives on')

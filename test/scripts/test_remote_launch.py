@@ -1,0 +1,169 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The robot's launch files, as roslaunch reads them, over stand-ins for a robot's own packages."""
+import os
+from pathlib import Path
+import xml.etree.ElementTree as ElementTree
+
+from conftest import REPO
+import pytest
+import roslaunch.config
+import roslaunch.xmlloader
+
+REMOTE = REPO / 'utils' / 'remote'
+PACKAGES = REPO / 'test' / 'support' / 'robot_packages'
+TURTLEBOT = {'TURTLEBOT_BASE': 'kobuki', 'TURTLEBOT_3D_SENSOR': 'kinect',
+             'TURTLEBOT_SIMULATION': 'false'}
+
+
+@pytest.fixture(autouse=True)
+def robot(monkeypatch):
+    """Have the packages and variables of a robot, and a ROS_NAMESPACE that must not matter."""
+    monkeypatch.setenv('ROS_PACKAGE_PATH', '{}:{}'.format(
+        PACKAGES, os.environ.get('ROS_PACKAGE_PATH', '')))
+    for name, value in dict(TURTLEBOT, LDS_MODEL='LDS-01', ROS_NAMESPACE='TurtleBot7').items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.delenv('TURTLEBOT3_MODEL', raising=False)
+
+
+def load(name, *arguments):
+    """Return roslaunch's configuration of one of the robot's launch files."""
+    config = roslaunch.config.ROSLaunchConfig()
+    roslaunch.xmlloader.XmlLoader(resolve_anon=False).load(
+        str(REMOTE / name), config, argv=list(arguments), verbose=False)
+    assert config.config_errors == []
+    return config
+
+
+def nodes(config):
+    return {node.namespace + node.name: node for node in config.nodes}
+
+
+def values(config, prefix):
+    """Return {rest of the name: value} of the parameters below a name."""
+    return {name[len(prefix):]: param.value for name, param in config.params.items()
+            if name.startswith(prefix)}
+
+
+@pytest.mark.parametrize('path', sorted(REMOTE.glob('*.launch')), ids=lambda path: path.name)
+def test_file_says_its_licence_and_its_arguments(path):
+    text = path.read_text()
+    assert '<!-- SPDX-FileCopyrightText: ' in text
+    assert '<!-- SPDX-License-Identifier: BSD-3-Clause -->' in text
+    assert [arg.get('name') for arg in ElementTree.fromstring(text).findall('arg')
+            if not arg.get('doc')] == []
+
+
+@pytest.mark.parametrize('path', sorted(REMOTE.glob('*')), ids=lambda path: path.name)
+def test_nothing_of_the_robots_part_needs_mhri(path):
+    if path.is_file():
+        assert 'find mhri)' not in path.read_text() and 'pkg="mhri"' not in path.read_text()
+
+
+def test_turtlebot2_is_in_its_group():
+    config = load('mhri_turtlebot2.launch', 'name:=bot1')
+    found = nodes(config)
+    assert sorted(found) == ['/bot1/cmd_vel_mux', '/bot1/mobile_base',
+                             '/bot1/mobile_base_nodelet_manager', '/bot1/teleop_velocity_smoother']
+    assert config.params['/bot1/robot_type'].value == 'turtlebot2'
+    # What minimal.launch says of the robot is where it says it, in the group.
+    assert config.params['/bot1/robot/type'].value == 'turtlebot'
+
+
+def test_turtlebot2_is_smoothed():
+    config = load('mhri_turtlebot2.launch', 'name:=bot1')
+    smoother = nodes(config)['/bot1/teleop_velocity_smoother']
+    assert smoother.args == ('load yocs_velocity_smoother/VelocitySmootherNodelet '
+                             'mobile_base_nodelet_manager')
+    assert dict(smoother.remap_args) == {
+        'teleop_velocity_smoother/raw_cmd_vel': 'teleop/input',
+        'teleop_velocity_smoother/smooth_cmd_vel': 'cmd_vel_mux/input/teleop',
+        'teleop_velocity_smoother/odometry': 'odom',
+        'teleop_velocity_smoother/robot_cmd_vel': 'mobile_base/commands/velocity'}
+    assert values(config, '/bot1/teleop_velocity_smoother/')['accel_lim_v'] == 1.0
+    assert '/bot1/teleop_velocity_smoother' not in nodes(
+        load('mhri_turtlebot2.launch', 'name:=bot1', 'smoother:=false'))
+
+
+def test_frames_of_two_turtlebot2_do_not_mix():
+    frames = []
+    for name in ('bot1', 'bot2'):
+        base = load('mhri_turtlebot2.launch', 'name:=' + name).params
+        camera = load('mhri_sensor.launch', 'name:=' + name).params
+        assert base['/{}/tf_prefix'.format(name)].value == name
+        frames.append({param.value for config in (base, camera) for key, param in config.items()
+                       if key.endswith(('_frame', '_frame_id'))})
+    assert frames[0] == {'bot1/odom', 'bot1/base_footprint', 'bot1/camera_rgb_optical_frame',
+                         'bot1/camera_depth_optical_frame', 'bot1/camera_depth_frame'}
+    assert not frames[0] & frames[1]
+
+
+def test_turtlebot2_camera_is_in_its_group():
+    assert sorted(nodes(load('mhri_sensor.launch', 'name:=bot1'))) == ['/bot1/camera/driver']
+
+
+@pytest.mark.parametrize('model', ['burger', 'waffle', 'waffle_pi'])
+def test_turtlebot3(model, monkeypatch):
+    # The robot's own file wants it, whatever it is given; turtle_remote.sh sets it.
+    monkeypatch.setenv('TURTLEBOT3_MODEL', 'burger')
+    config = load('mhri_turtlebot3.launch', 'name:=bot3', 'model:=' + model)
+    assert sorted(nodes(config)) == ['/bot3/turtlebot3_core']
+    found = values(config, '/bot3/')
+    assert found['robot_type'] == 'turtlebot3' and found['robot_model'] == model
+    assert found['tf_prefix'] == found['turtlebot3_core/tf_prefix'] == 'bot3'
+    assert found['turtlebot3_lds/frame_id'] == 'bot3/base_scan'
+    assert found.get('cv_camera/frame_id') == ('bot3/camera' if model == 'waffle_pi' else None)
+    remaps = dict(nodes(config)['/bot3/turtlebot3_core'].remap_args)
+    assert remaps['cv_camera/image_raw'] == 'camera/rgb/image_raw'
+
+
+def test_turtlebot3_model_of_the_environment(monkeypatch):
+    with pytest.raises(Exception, match='TURTLEBOT3_MODEL'):
+        load('mhri_turtlebot3.launch', 'name:=bot3')
+    monkeypatch.setenv('TURTLEBOT3_MODEL', 'waffle')
+    assert load('mhri_turtlebot3.launch',
+                'name:=bot3').params['/bot3/robot_model'].value == 'waffle'
+
+
+def test_turtlebot3_waffle_has_a_camera_in_its_group():
+    config = load('mhri_turtlebot3_sensor.launch', 'name:=bot3')
+    assert sorted(nodes(config)) == ['/bot3/camera/driver']
+    remaps = dict(nodes(config)['/bot3/camera/driver'].remap_args)
+    assert remaps['camera/color/image_raw'] == 'camera/rgb/image_raw'
+    frames = values(config, '/bot3/camera/driver/')
+    assert frames['color_optical_frame_id'] == 'bot3/camera_rgb_optical_frame'
+    assert all(frame.startswith('bot3/') for frame in frames.values())
+
+
+GENERIC = '''<launch>
+  {}
+  <param name="told" value="$(arg {})"/>
+  <node pkg="mhri" type="sim_robot" name="base"/>
+</launch>
+'''
+
+
+@pytest.mark.parametrize('argument', ['name', 'robot_name', 'multi_robot_name', 'tf_prefix'])
+def test_generic_robot_is_told_its_name(tmp_path, argument):
+    file = tmp_path / 'own.launch'
+    file.write_text(GENERIC.format('<arg name="{}" default="x"/>'.format(argument), argument))
+    config = load('mhri_generic.launch', 'name:=husky1', 'robot_launch:={}'.format(file))
+    found = values(config, '/husky1/')
+    assert sorted(nodes(config)) == ['/husky1/base']
+    assert found == {'robot_type': 'generic', 'tf_prefix': 'husky1', 'told': 'husky1'}
+
+
+def test_generic_robot_of_a_labs_type(tmp_path):
+    file = tmp_path / 'own.launch'
+    file.write_text(GENERIC.format('<arg name="speed" default="1"/>', 'speed'))
+    config = load('mhri_generic.launch', 'name:=r1', 'robot_launch:={}'.format(file),
+                  'robot_type:=crawler')
+    assert values(config, '/r1/') == {'robot_type': 'crawler', 'tf_prefix': 'r1', 'told': 1}
+
+
+def test_stand_ins_say_what_they_are():
+    for path in PACKAGES.rglob('*'):
+        if path.is_file() and '__pycache__' not in path.parts:
+            text = path.read_text()
+            assert 'SPDX-License-Identifier: BSD-3-Clause' in text, path
+    assert Path(PACKAGES, 'turtlebot_bringup', 'package.xml').is_file()

@@ -1,0 +1,255 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""turtle_remote.sh in real runs on one machine: stand-in packages, simulated robots, a master."""
+import os
+import signal
+import socket
+import subprocess
+import sys
+import xmlrpc.client
+
+from conftest import children_with, REPO
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.ros_system import System, wait_for  # noqa: E402
+
+SCRIPT = REPO / 'utils' / 'remote' / 'turtle_remote.sh'
+PACKAGES = REPO / 'test' / 'support' / 'robot_packages'
+HOST = '127.0.0.1'
+START_S = LONG_S = 120.0
+
+
+class Remote:
+    """Runs of the script on a robot whose packages are stand-ins."""
+
+    def __init__(self, system, folder):
+        self.system = system
+        self.folder = folder
+        self.mark = 'MHRI_TEST_REMOTE={}'.format(folder)
+        name, value = self.mark.split('=')
+        self.env = dict(
+            system.env, HOME=str(folder), TURTLEBOT_BASE='kobuki', TURTLEBOT_3D_SENSOR='kinect',
+            TURTLEBOT_SIMULATION='false', LDS_MODEL='LDS-01', ROS_NAMESPACE='TurtleBot7',
+            ROS_PACKAGE_PATH='{}:{}'.format(PACKAGES, system.env.get('ROS_PACKAGE_PATH', '')),
+            ROS_MASTER_URI='http://elsewhere:1', ROS_IP='203.0.113.9', **{name: value})
+        for name in ('TURTLEBOT3_MODEL', 'ROS_HOSTNAME'):
+            self.env.pop(name, None)
+        self.processes = []
+
+    def start(self, *arguments, **environment):
+        log = self.folder / 'log{}'.format(len(self.processes))
+        with log.open('w') as file:
+            process = subprocess.Popen(
+                [str(SCRIPT), HOST, '--port', str(self.system.port)] + list(arguments),
+                env=dict(self.env, **environment), cwd=str(self.folder), stdin=subprocess.DEVNULL,
+                stdout=file, stderr=subprocess.STDOUT,
+                preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+        process.output = log.read_text
+        self.processes.append(process)
+        return process
+
+    def run(self, *arguments, **environment):
+        """Return (exit status, output) of a run that ends by itself."""
+        process = self.start(*arguments, **environment)
+        status = process.wait(timeout=LONG_S)
+        return status, process.output()
+
+    def close(self):
+        for process in self.processes:
+            if process.poll() is None:
+                process.send_signal(signal.SIGTERM)
+                process.wait(timeout=LONG_S)
+        for pid in children_with(self.mark):
+            os.kill(pid, signal.SIGKILL)
+
+    def running(self):
+        """Return the ids of what still runs of all that was started."""
+        return children_with(self.mark)
+
+
+@pytest.fixture
+def remote(tmp_path):
+    with System(adopt=False) as system:
+        system.start_master()
+        built = Remote(system, tmp_path)
+        yield built
+        built.close()
+
+
+@pytest.fixture
+def master(remote):
+    return xmlrpc.client.ServerProxy(remote.system.env['ROS_MASTER_URI'])
+
+
+def publishers(master, topic):
+    return dict(master.getSystemState('/test')[2][0]).get(topic, [])
+
+
+def subscribers(master, topic):
+    return dict(master.getSystemState('/test')[2][1]).get(topic, [])
+
+
+def parameter(master, name):
+    code, _, value = master.getParam('/test', name)
+    return value if code == 1 else None
+
+
+def await_topics(process, master, *topics):
+    """Wait until these are published; say what the script said where it ended instead."""
+    def there():
+        assert process.poll() is None, process.output()
+        return all(publishers(master, topic) for topic in topics)
+    wait_for(there, START_S, ', '.join(topics), poll_s=0.1)
+
+
+def test_turtlebot2_with_all_that_belongs_to_it(remote, master):
+    process = remote.start('bot1', '--type', 'turtlebot2', '--guard')
+    await_topics(process, master, '/bot1/odom', '/bot1/camera/rgb/image_raw',
+                 '/bot1/cmd_vel_mux/input/teleop', '/bot1/mobile_base/commands/velocity')
+    wait_for(lambda: publishers(master, '/bot1/teleop/input') == ['/bot1/mhri_guard'], START_S,
+             'the guard before the smoother', poll_s=0.1)
+    assert subscribers(master, '/bot1/teleop/input') == ['/bot1/teleop_velocity_smoother']
+    assert subscribers(master, '/bot1/cmd_vel_mux/input/teleop') == ['/bot1/cmd_vel_mux']
+    assert subscribers(master, '/bot1/mobile_base/commands/velocity') == ['/bot1/mobile_base']
+    assert parameter(master, '/bot1/robot_type') == 'turtlebot2'
+    assert parameter(master, '/bot1/mobile_base/odom_frame') == 'bot1/odom'
+    assert parameter(master, '/bot1/camera/driver/rgb_frame_id') == 'bot1/camera_rgb_optical_frame'
+    assert 'ROS_MASTER_URI=http://127.0.0.1:{}'.format(remote.system.port) in process.output()
+    assert 'TurtleBot7' not in str(master.getSystemState('/test')), 'ROS_NAMESPACE is taken away'
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=LONG_S) == 130, process.output()
+    assert remote.running() == []
+    assert 'left running' not in process.output()
+    assert parameter(master, '/bot1/robot_type') is None, 'the host does not take it for a robot'
+
+
+def test_turtlebot3(remote, master):
+    (remote.folder / '.bashrc').write_text('export TURTLEBOT3_MODEL=waffle_pi  # as guides say\n')
+    process = remote.start('bot3', '--type', 'turtlebot3')
+    await_topics(process, master, '/bot3/odom')
+    assert parameter(master, '/bot3/robot_model') == 'waffle_pi'
+    assert parameter(master, '/bot3/turtlebot3_core/tf_prefix') == 'bot3'
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(timeout=LONG_S) == 143, process.output()
+    assert remote.running() == []
+
+
+def test_robot_with_a_launch_file_of_its_own(remote, master):
+    (remote.folder / 'own.launch').write_text(
+        '<launch><node pkg="mhri" type="sim_robot" name="own_base"/></launch>')
+    process = remote.start('r1', '--type', 'turtlesim', '--launch', './own.launch')
+    # turtlesim has no simulated body: this robot's launch file starts nothing that lives.
+    assert process.wait(timeout=LONG_S) == 1
+    assert "the robot's launch has ended" in process.output()
+    (remote.folder / 'own.launch').write_text(
+        '<launch><param name="robot_type" value="turtlebot2"/>'
+        '<node pkg="mhri" type="sim_robot" name="own_base"/></launch>')
+    process = remote.start('r1', '--launch', './own.launch')
+    await_topics(process, master, '/r1/odom')
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=LONG_S) == 130
+
+
+@pytest.mark.parametrize('number, status', [(signal.SIGHUP, 129), (signal.SIGKILL, -9)])
+def test_end_of_the_terminal_takes_everything_down(remote, master, number, status):
+    process = remote.start('bot1', '--type', 'turtlebot2', '--guard')
+    await_topics(process, master, '/bot1/odom', '/bot1/camera/rgb/image_raw',
+                 '/bot1/teleop/input')
+    process.send_signal(number)
+    assert process.wait(timeout=LONG_S) == status
+    wait_for(lambda: remote.running() == [], LONG_S, 'the nodes to end', poll_s=0.2)
+
+
+def test_robot_joins_again_when_mhri_is_started_anew(remote, master):
+    process = remote.start('bot1', '--type', 'turtlebot2', '--no-camera')
+    await_topics(process, master, '/bot1/odom')
+    wait_for(lambda: parameter(master, '/bot1/mhri_remote'), 30, 'the note', poll_s=0.1)
+    remote.system.kill(remote.system.master)
+    wait_for(lambda: 'does not answer any more' in process.output(), LONG_S, 'word of the silence',
+             poll_s=0.1)
+    remote.system.start_master()
+    await_topics(process, master, '/bot1/odom', '/bot1/cmd_vel_mux/input/teleop')
+    wait_for(lambda: parameter(master, '/bot1/robot_type') == 'turtlebot2', START_S, 'its type',
+             poll_s=0.1)
+    assert 'mhri was started anew' in process.output()
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=LONG_S) == 130
+    assert remote.running() == []
+
+
+def test_a_name_that_is_taken_is_refused_and_a_leftover_is_not(remote, master):
+    first = remote.start('bot1', '--type', 'turtlebot2', '--no-camera')
+    await_topics(first, master, '/bot1/odom')
+    status, output = remote.run('bot1', '--type', 'turtlebot2')
+    assert status == 1 and 'bot1 runs already' in output
+    assert first.poll() is None and publishers(master, '/bot1/odom')
+    for pid in remote.running():
+        os.kill(pid, signal.SIGKILL)
+    first.wait(timeout=20)
+    assert publishers(master, '/bot1/odom'), 'the leftover that this test is about'
+    again = remote.start('bot1', '--type', 'turtlebot2', '--no-camera')
+    wait_for(lambda: 'the name bot1 is free' in again.output(), START_S, 'the check', poll_s=0.1)
+
+
+def test_robot_can_be_driven_without_its_camera(remote, master):
+    process = remote.start('bot1', '--type', 'turtlebot2')
+    await_topics(process, master, '/bot1/odom', '/bot1/camera/rgb/image_raw')
+    node = xmlrpc.client.ServerProxy(master.lookupNode('/test', '/bot1/camera/driver')[2])
+    os.kill(node.getPid('/test')[2], signal.SIGTERM)
+    wait_for(lambda: "the camera's launch has ended" in process.output(), START_S, 'word of it',
+             poll_s=0.1)
+    assert process.poll() is None
+    node = xmlrpc.client.ServerProxy(master.lookupNode('/test', '/bot1/mobile_base')[2])
+    assert node.getPid('/test')[0] == 1
+
+
+def free_port():
+    with socket.socket() as sock:
+        sock.bind((HOST, 0))
+        return sock.getsockname()[1]
+
+
+@pytest.mark.parametrize('arguments, environment, said', [
+    (['--type', 'turtlebot3'], {}, "TURTLEBOT3_MODEL is ''"),
+    (['--type', 'turtlebot3'], {'TURTLEBOT3_MODEL': 'tank'}, "TURTLEBOT3_MODEL is 'tank'"),
+    (['--type', 'turtlebot3_burger'], {'LDS_MODEL': ''}, 'LDS_MODEL is not set'),
+    (['--type', 'turtlebot2'], {'ROS_PACKAGE_PATH': '/nowhere'},
+     'there is no package turtlebot_bringup here'),
+    ([], {'ROS_PACKAGE_PATH': '/nowhere'},
+     'there is no package turtlebot_bringup or turtlebot3_bringup here'),
+    ([], {}, 'both turtlebot_bringup and turtlebot3_bringup are here'),
+    (['--launch', 'no_such_package/x.launch'], {}, 'there is no package no_such_package here'),
+    (['--launch', './none.launch'], {}, 'there is no file ./none.launch'),
+    (['--launch', 'turtlebot_bringup/none.launch'], {}, 'none.launch'),
+    (['--type', 'turtlebot2', '--ip', '203.0.113.9'], {},
+     '203.0.113.9 is none of the addresses of this robot'),
+])
+def test_what_is_missing_on_the_robot_is_said(remote, arguments, environment, said):
+    status, output = remote.run('bot1', *arguments, **environment)
+    assert status == 1 and said in output
+    assert 'process[' not in output and remote.running() == []
+
+
+def test_no_master_is_said(remote):
+    process = subprocess.run(
+        [str(SCRIPT), HOST, 'bot1', '--type', 'turtlebot2', '--port', str(free_port())],
+        env=remote.env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT, universal_newlines=True, timeout=LONG_S)
+    assert process.returncode == 1
+    assert 'no ROS master runs on its port' in process.stdout and 'mhri_run.sh' in process.stdout
+
+
+def test_setup_file_is_named_or_found(remote, master):
+    setup = 'export ROS_PACKAGE_PATH="{}"\n'.format(remote.env['ROS_PACKAGE_PATH'])
+    bare = {'ROS_PACKAGE_PATH': remote.system.env.get('ROS_PACKAGE_PATH', '')}
+    (remote.folder / 'my.bash').write_text(setup)
+    status, output = remote.run('bot1', '--setup', 'my.bash', **bare)
+    assert status == 1 and 'both turtlebot_bringup and turtlebot3_bringup are here' in output
+    found = remote.folder / 'catkin_ws' / 'devel' / 'setup.bash'
+    found.parent.mkdir(parents=True)
+    found.write_text(setup)
+    status, output = remote.run('bot1', **bare)
+    assert status == 1 and 'using {}'.format(found) in output
+    assert 'both turtlebot_bringup' in output

@@ -1,0 +1,131 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+# Starts a robot from the host, over ssh; --help is the manual.
+set -euo pipefail
+# shellcheck source-path=SCRIPTDIR source=common.sh
+. "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
+# shellcheck source-path=SCRIPTDIR source=robot_login.sh
+. "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/robot_login.sh"
+
+help_text() {
+  cat <<'HELP'
+Usage: connect_turtlebot.sh USER IP NAME [OPTION]...
+
+Logs in to a robot over ssh and starts it there under the name NAME, joined to mhri on this
+computer. mhri has to run here (mhri_run.sh), and the robot needs its files once
+(turtlebot_deploy.sh). What the robot says is shown; Ctrl-C, or closing the terminal, ends the
+robot's nodes. Asks for the robot's password unless ssh has a key for it.
+
+  USER                 the user name on the robot
+  IP                   the robot's address, e.g. 192.168.0.7
+  NAME                 the robot's name: a letter, then letters, digits and _ (at most 32)
+
+  --host-ip ADDR       this computer's address, as the robot reaches it. Default: of those of
+                       'hostname -I' the one on the robot's network
+  --ssh-port PORT      the port of the robot's ssh server (default: as ssh is set up, else 22)
+  --to FOLDER          where turtlebot_deploy.sh put the files, in the home of USER (default mhri)
+  -h, --help           this text
+
+  These are passed on; 'turtle_remote.sh --help' says what they mean:
+  --type TYPE, --model MODEL, --launch FILE, --setup FILE, --ip ADDR, --port PORT, --no-camera,
+  --no-smoother, --guard
+
+Exit status: 2 wrong option, 255 ssh could not connect or lost the robot, else that of
+turtle_remote.sh: 1 could not start or the robot's launch ended, 129, 130 or 143 ended from here.
+
+Examples
+  connect_turtlebot.sh turtlebot 192.168.0.7 bot1
+  connect_turtlebot.sh pi 192.168.0.8 bot2 --type turtlebot3_burger --guard
+HELP
+}
+
+ROBOT_USER=
+ROBOT_IP=
+NAME=
+HOST_IP=
+SSH_PORT=
+FOLDER=mhri
+OWN_IP=
+PASSED_ON=()
+
+# What runs on the robot, as sh. $0 is USER@IP, $1 the folder in the home.
+# shellcheck disable=SC2016 # the dollars are the robot's
+START='if [ ! -f "$1/turtle_remote.sh" ]; then
+echo "mhri: this robot has no ~/$1/turtle_remote.sh: run turtlebot_deploy.sh $0 on the host" >&2
+exit 1
+fi
+folder=$1
+shift
+exec bash "$folder/turtle_remote.sh" "$@"'
+
+parse_arguments() {
+  local words=() text
+  while [ $# -gt 0 ]; do
+    case "$1" in
+      -h | --help) help_text; exit 0 ;;
+      --host-ip) HOST_IP=$(value "$@"); shift ;;
+      --ssh-port) SSH_PORT=$(value "$@"); shift ;;
+      --to) FOLDER=$(value "$@"); shift ;;
+      --type | --model | --launch | --setup | --ip | --port)
+        text=$(value "$@")
+        [ "$1" != --ip ] || OWN_IP=$text
+        PASSED_ON+=("$1" "$text")
+        shift ;;
+      --no-camera | --no-smoother | --guard) PASSED_ON+=("$1") ;;
+      -*) usage_error "there is no option $1" ;;
+      *) words+=("$1") ;;
+    esac
+    shift
+  done
+  [ "${#words[@]}" = 3 ] || usage_error "give the user name on the robot, the robot's address and" \
+    "the robot's name: connect_turtlebot.sh USER IP NAME"
+  ROBOT_USER=${words[0]}
+  ROBOT_IP=${words[1]}
+  NAME=${words[2]}
+}
+
+check_arguments() {
+  local text
+  check_login "$ROBOT_USER" "$ROBOT_IP"
+  [[ $NAME =~ ^[A-Za-z][A-Za-z0-9_]{0,31}$ ]] ||
+    usage_error "NAME: '$NAME' is not a robot's name: a letter, then letters, digits and _"
+  [ -z "$HOST_IP" ] || valid_ip "$HOST_IP" ||
+    usage_error "--host-ip: '$HOST_IP' is not an IPv4 address such as 192.168.0.103"
+  check_ssh_port "$SSH_PORT"
+  check_folder "$FOLDER"
+  # The robot checks them again; nothing that a shell could read as more than a word gets there.
+  for text in "${PASSED_ON[@]}"; do
+    [[ $text =~ ^[A-Za-z0-9_./~+-]+$ ]] || usage_error "'$text' cannot be passed on to the robot"
+  done
+  [ -z "$OWN_IP" ] || valid_ip "$OWN_IP" ||
+    usage_error "--ip: '$OWN_IP' is not an IPv4 address such as 192.168.0.7"
+}
+
+# choose_address: HOST_IP, by the rule that the robot has for its own.
+choose_address() {
+  local all=() address v4=()
+  [ -z "$HOST_IP" ] || return 0
+  read -r -a all < <(hostname -I) || true
+  for address in "${all[@]}"; do
+    if valid_ip "$address"; then v4+=("$address"); fi
+  done
+  HOST_IP=$(/usr/bin/python3 "$REPO/utils/remote/turtle_check.py" address "$ROBOT_IP" \
+    "${v4[@]}" 2>&1) || die "${HOST_IP#mhri: }"
+}
+
+main() {
+  local command
+  parse_arguments "$@"
+  check_arguments
+  choose_address
+  # Plain words and one text in single quotes: every login shell reads that alike.
+  command="exec sh -c '$START' $ROBOT_USER@$ROBOT_IP $FOLDER $HOST_IP $NAME ${PASSED_ON[*]}"
+  say "starting $NAME on $ROBOT_IP; this computer is $HOST_IP. Ctrl-C ends it"
+  # -tt: the robot sees the end of this terminal. Two minutes without an answer: an outage shorter
+  # than that ends nothing.
+  exec ssh -tt -o ConnectTimeout=10 -o ServerAliveInterval=15 -o ServerAliveCountMax=8 \
+    ${SSH_PORT:+-p "$SSH_PORT"} -l "$ROBOT_USER" -- "$ROBOT_IP" "$command"
+}
+
+main "$@"

@@ -1,0 +1,158 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+# Copies the robot's part of mhri to a robot; --help is the manual.
+set -euo pipefail
+# shellcheck source-path=SCRIPTDIR source=common.sh
+. "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
+# shellcheck source-path=SCRIPTDIR source=robot_login.sh
+. "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/robot_login.sh"
+
+help_text() {
+  cat <<'HELP'
+Usage: turtlebot_deploy.sh USER@IP [OPTION]...
+
+Copies the files of utils/remote to a robot, over one ssh connection: the password is asked for
+once, or not at all where ssh has a key. Only files that differ are sent; what was written is read
+again and compared. A file that is in use is replaced whole, never written into.
+
+  USER@IP              the user name on the robot and its address, e.g. turtlebot@192.168.0.7
+  --to FOLDER          where to put them, in the home of USER (default mhri)
+  --ssh-port PORT      the port of the robot's ssh server (default: as ssh is set up, else 22)
+  -h, --help           this text
+
+Exit status: 0 the robot has the files of this computer, 1 it does not, 2 wrong option,
+130 or 143 ended by Ctrl-C or a signal.
+
+Example
+  turtlebot_deploy.sh turtlebot@192.168.0.7
+HELP
+}
+
+SOURCE="$REPO/utils/remote"
+ROBOT_USER=
+ROBOT_IP=
+SSH_PORT=
+FOLDER=mhri
+SOCKET=
+
+# What runs on the robot, as sh: any robot has that. $1 is the folder in the home.
+# shellcheck disable=SC2016 # the dollars are the robot's
+LIST='cd 2>/dev/null || exit 1
+[ -d "$1" ] || exit 0
+cd "$1" || exit 1
+for file in *; do
+[ -f "$file" ] || continue
+if [ -x "$file" ]; then kind=x; else kind=-; fi
+sum=$(sha256sum <"$file") || exit 1
+printf "%s %s %s\n" "${sum%% *}" "$kind" "$file"
+done'
+# Unpacks beside the folder and moves file by file, which replaces each in one step. On the robot the
+# TurtleBot2 has its launch file by the name of the 2016 guide, too; here launch/mhri.launch has it.
+# shellcheck disable=SC2016 # the dollars are the robot's
+RECEIVE='cd || exit 1
+mkdir -p "$1" || exit 1
+cd "$1" || exit 1
+new=.incoming.$$
+trap "rm -rf $new" 0
+trap "exit 1" 1 2 15
+mkdir "$new" || exit 1
+tar -x -o -C "$new" || exit 1
+for file in "$new"/*; do mv -f "$file" . || exit 1; done
+ln -sf mhri_turtlebot2.launch mhri.launch'
+
+parse_arguments() {
+  local words=()
+  while [ $# -gt 0 ]; do
+    case "$1" in
+      -h | --help) help_text; exit 0 ;;
+      --ssh-port) SSH_PORT=$(value "$@"); shift ;;
+      --to) FOLDER=$(value "$@"); shift ;;
+      -*) usage_error "there is no option $1" ;;
+      *) words+=("$1") ;;
+    esac
+    shift
+  done
+  if [ "${#words[@]}" != 1 ] || [[ ${words[0]} != *@* ]]; then
+    usage_error "give the user name on the robot and its address: turtlebot_deploy.sh USER@IP"
+  fi
+  ROBOT_USER=${words[0]%@*}
+  ROBOT_IP=${words[0]##*@}
+}
+
+# on_robot PROGRAM [ARG]: runs one of the programs above, over the connection that is open.
+on_robot() {
+  ssh -S "$SOCKET" -o ControlMaster=no -l "$ROBOT_USER" ${SSH_PORT:+-p "$SSH_PORT"} \
+    -- "$ROBOT_IP" "exec sh -c '$1' sh $FOLDER"
+}
+
+# listing: checksum, x or -, and name of each file here, one a line.
+listing() {
+  local file sum kind
+  for file in "$SOURCE"/*; do
+    [ -f "$file" ] || continue
+    sum=$(sha256sum <"$file")
+    kind=-
+    if [ -x "$file" ]; then kind=x; fi
+    printf '%s %s %s\n' "${sum%% *}" "$kind" "${file##*/}"
+  done
+}
+
+# differing THERE: the names of the files here that the robot's listing does not have as they are.
+differing() {
+  local line
+  while IFS= read -r line; do
+    grep -qxF -- "$line" <<<"$1" || printf '%s\n' "${line:67}"
+  done < <(listing)
+}
+
+connect() {
+  SOCKET="$SCRATCH/ssh"
+  # The connection that the next ones go through; with ssh's own questions: a password, or whether
+  # the key of a new robot is right. Should this script be killed, it ends by itself.
+  ssh -M -S "$SOCKET" -o ControlPersist=20 -o ConnectTimeout=10 \
+    -l "$ROBOT_USER" ${SSH_PORT:+-p "$SSH_PORT"} -- "$ROBOT_IP" true ||
+    die "ssh could not log in to $ROBOT_USER@$ROBOT_IP: see its message above. A robot that is" \
+      "new here, or was set up anew: log in once with 'ssh $ROBOT_USER@$ROBOT_IP' and compare its key"
+}
+
+disconnect() {
+  if [ -S "$SOCKET" ]; then
+    ssh -S "$SOCKET" -O exit -- "$ROBOT_IP" 2>/dev/null || true
+  fi
+  [ -z "$SCRATCH" ] || rm -rf "$SCRATCH"
+}
+
+deploy() {
+  local there files=()
+  there=$(on_robot "$LIST") ||
+    die "cannot read ~/$FOLDER on $ROBOT_IP: see the message above"
+  mapfile -t files < <(differing "$there")
+  if [ "${#files[@]}" = 0 ]; then
+    say "$ROBOT_IP has all $(listing | wc -l) files as they are here: nothing to send"
+    return
+  fi
+  say "sending to $ROBOT_IP:$FOLDER: ${files[*]}"
+  tar -c -C "$SOURCE" --owner=0 --group=0 --mode=go-w -- "${files[@]}" | on_robot "$RECEIVE" ||
+    die "could not write to ~/$FOLDER on $ROBOT_IP: see the message above (is its disk full?)"
+  there=$(on_robot "$LIST") || die "cannot read ~/$FOLDER on $ROBOT_IP again"
+  mapfile -t files < <(differing "$there")
+  [ "${#files[@]}" = 0 ] ||
+    die "what is on $ROBOT_IP is not what was sent (${files[*]}): check its disk and try again"
+  say "checked: $ROBOT_IP has all $(listing | wc -l) files as they are here"
+}
+
+main() {
+  parse_arguments "$@"
+  check_login "$ROBOT_USER" "$ROBOT_IP"
+  check_ssh_port "$SSH_PORT"
+  check_folder "$FOLDER"
+  make_scratch
+  trap disconnect EXIT
+  trap 'exit 130' INT
+  trap 'exit 143' TERM HUP
+  connect
+  deploy
+}
+
+main "$@"

@@ -1,0 +1,172 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+# shellcheck shell=bash
+# For turtle_remote.sh: which ROS is on this robot, what kind of robot it is, and which launch files
+# start it. Sourced, never run.
+# shellcheck disable=SC2034 # what is set here is used there
+
+PYTHON=
+BASE_LAUNCH=()
+CAMERA_LAUNCH=()
+GUARD_TOPIC=cmd_vel
+
+# What operators put into ~/.bashrc, which a shell that is not interactive does not read. Only these
+# variables are taken over, and only where they are not set.
+read_bashrc() {
+  local names=() name line
+  for name in TURTLEBOT3_MODEL LDS_MODEL TURTLEBOT_BASE TURTLEBOT_BATTERY TURTLEBOT_STACKS \
+    TURTLEBOT_3D_SENSOR TURTLEBOT_SIMULATION TURTLEBOT_SERIAL_PORT; do
+    [ -n "${!name}" ] || names+=("$name")
+  done
+  [ "${#names[@]}" -gt 0 ] && [ -f "$HOME/.bashrc" ] || return 0
+  while IFS= read -r line; do
+    [[ $line =~ ^mhri:([A-Z0-9_]+)=([A-Za-z0-9_./-]+)$ ]] || continue
+    export "${BASH_REMATCH[1]}=${BASH_REMATCH[2]}"
+  done < <(
+    # shellcheck disable=SC2016 # the dollars are those of the inner shell
+    timeout 10 setsid bash -ic 'for n; do printf "\nmhri:%s=%s\n" "$n" "${!n}"; done' \
+      bash "${names[@]}" </dev/null 2>/dev/null
+  )
+}
+
+# package NAME: prints its folder; false where ROS or the package is not there.
+package() {
+  "$PYTHON" -c 'import sys, rospkg
+try:
+    print(rospkg.RosPack().get_path(sys.argv[1]))
+except rospkg.ResourceNotFound:
+    sys.exit(1)' "$1" 2>/dev/null
+}
+
+# find_python: one that finds ROS packages; false where ROS is not there, or only partly.
+find_python() {
+  local python
+  command -v roslaunch >/dev/null || return 1
+  [ -z "$PYTHON" ] || return 0
+  # Nodes ask the path for python3.
+  [ "$(command -v python3)" = /usr/bin/python3 ] || export PATH="/usr/bin:$PATH"
+  for python in python3 python; do
+    if "$python" -c 'import rospkg' >/dev/null 2>&1; then PYTHON=$python; return; fi
+  done
+  return 1
+}
+
+# has_robot: whether what the robot needs can be found now.
+has_robot() {
+  find_python || return 1
+  case "$TYPE" in
+    turtlebot2) package turtlebot_bringup >/dev/null ;;
+    turtlebot3) package turtlebot3_bringup >/dev/null ;;
+    '') package turtlebot_bringup >/dev/null || package turtlebot3_bringup >/dev/null ;;
+    *) [[ $LAUNCH == /* || $LAUNCH == ./* || $LAUNCH == ../* ]] ||
+      package "${LAUNCH%%/*}" >/dev/null ;;
+  esac
+}
+
+prepare_ros() {
+  local setup setups=("$SETUP")
+  if [ -z "$SETUP" ]; then
+    if has_robot; then return; fi
+    setups=("$HOME/catkin_ws/devel/setup.bash" "$HOME/catkin_ws/install/setup.bash"
+      /opt/ros/*/setup.bash)
+  fi
+  for setup in "${setups[@]}"; do
+    [ -f "$setup" ] || continue
+    # shellcheck disable=SC1090 # known at run time only
+    . "$setup"
+    if has_robot; then say "using $setup"; return; fi
+  done
+  find_python || die "there is no ROS here: source the robot's setup.bash first, or name it with" \
+    "--setup FILE"
+  case "$TYPE" in
+    turtlebot2) missing_package turtlebot_bringup ;;
+    turtlebot3) missing_package turtlebot3_bringup ;;
+    '') missing_package "turtlebot_bringup or turtlebot3_bringup" ;;
+    *) missing_package "${LAUNCH%%/*}" ;;
+  esac
+}
+
+missing_package() {
+  die "there is no package $1 here: install it, or name the setup.bash of the workspace with it" \
+    "with --setup FILE"
+}
+
+# choose_type: by what is installed, where --type did not say.
+choose_type() {
+  local two=false three=false
+  [ -z "$TYPE" ] || return 0
+  if package turtlebot_bringup >/dev/null; then two=true; fi
+  if package turtlebot3_bringup >/dev/null; then three=true; fi
+  if "$two" && "$three"; then
+    die "both turtlebot_bringup and turtlebot3_bringup are here: say which robot this is with" \
+      "--type turtlebot2 or --type turtlebot3"
+  fi
+  if "$two"; then TYPE=turtlebot2; else TYPE=turtlebot3; fi
+  say "this is a $TYPE, by what is installed"
+}
+
+# prepare_launch: BASE_LAUNCH and CAMERA_LAUNCH, with their arguments.
+prepare_launch() {
+  case "$TYPE" in
+    turtlebot2) prepare_turtlebot2 ;;
+    turtlebot3) prepare_turtlebot3 ;;
+    *) prepare_generic ;;
+  esac
+  [ -f "${BASE_LAUNCH[0]}" ] ||
+    die "there is no ${BASE_LAUNCH[0]}: send the files again, with turtlebot_deploy.sh on the host"
+  if ! "$GUARD"; then return; fi
+  [ -f "$HERE/mhri_guard" ] ||
+    die "there is no $HERE/mhri_guard: send the files again, with turtlebot_deploy.sh on the host"
+  python3 -c 'import rospy' >/dev/null 2>&1 ||
+    die "--guard needs rospy for Python 3, which this robot's ROS does not have: leave --guard out"
+}
+
+prepare_turtlebot2() {
+  local folder
+  folder=$(package turtlebot_bringup) || missing_package turtlebot_bringup
+  GUARD_TOPIC=teleop/input
+  if "$SMOOTHER" && ! package yocs_velocity_smoother >/dev/null; then
+    warn "there is no package yocs_velocity_smoother: the robot will jerk more than it needs to"
+    SMOOTHER=false
+  fi
+  "$SMOOTHER" || GUARD_TOPIC=cmd_vel_mux/input/teleop
+  BASE_LAUNCH=("$HERE/mhri_turtlebot2.launch" "name:=$NAME" "smoother:=$SMOOTHER")
+  if [ -f "$folder/launch/3dsensor.launch" ]; then
+    CAMERA_LAUNCH=("$HERE/mhri_sensor.launch" "name:=$NAME")
+  else
+    warn "turtlebot_bringup has no 3dsensor.launch: going on without a camera"
+  fi
+}
+
+prepare_turtlebot3() {
+  local folder
+  folder=$(package turtlebot3_bringup) || missing_package turtlebot3_bringup
+  MODEL=${MODEL:-$TURTLEBOT3_MODEL}
+  [[ $MODEL =~ ^(burger|waffle|waffle_pi)$ ]] ||
+    die "which TurtleBot3 is this? TURTLEBOT3_MODEL is '$MODEL': give --model burger, waffle or" \
+      "waffle_pi"
+  export TURTLEBOT3_MODEL=$MODEL
+  if [ -z "$LDS_MODEL" ] &&
+    grep -qsF 'env LDS_MODEL' "$folder/launch/turtlebot3_lidar.launch"; then
+    die "LDS_MODEL is not set: put 'export LDS_MODEL=LDS-01' (or LDS-02, see the label on the" \
+      "lidar) into ~/.bashrc on this robot"
+  fi
+  BASE_LAUNCH=("$HERE/mhri_turtlebot3.launch" "name:=$NAME" "model:=$MODEL")
+  # The Burger has no camera, and that of the Waffle Pi comes with its base.
+  if [ "$MODEL" = waffle ] && [ -f "$folder/launch/turtlebot3_realsense.launch" ] &&
+    package realsense_camera >/dev/null; then
+    CAMERA_LAUNCH=("$HERE/mhri_turtlebot3_sensor.launch" "name:=$NAME")
+  fi
+}
+
+prepare_generic() {
+  local folder path=$LAUNCH
+  if [[ $LAUNCH != /* && $LAUNCH != ./* && $LAUNCH != ../* ]]; then
+    folder=$(package "${LAUNCH%%/*}") || missing_package "${LAUNCH%%/*}"
+    path=$folder/launch/${LAUNCH#*/}
+    [ -f "$path" ] || path=$folder/${LAUNCH#*/}
+  fi
+  [ -f "$path" ] || die "--launch: there is no file $path"
+  BASE_LAUNCH=("$HERE/mhri_generic.launch" "name:=$NAME" "robot_type:=$TYPE"
+    "robot_launch:=$(readlink -f "$path")")
+}

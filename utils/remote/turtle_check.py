@@ -1,0 +1,394 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What turtle_remote.sh and connect_turtlebot.sh ask of the network; no operator calls it.
+
+turtle_check.py address TARGET ADDRESS...   prints that of ADDRESS... which TARGET reaches us at
+turtle_check.py host HOST PORT OWN NAME     checks the master, both ways, and that NAME is free
+turtle_check.py watch HOST PORT NAME TOKEN  notes there that NAME runs from here; ends when the
+                                            host has a new master, which does not know it
+turtle_check.py release HOST PORT NAME TOKEN  takes the note back
+turtle_check.py hold COMMAND...             becomes COMMAND; the kernel ends it with its parent
+
+Exit status 1, and one line that says what is wrong and what mends it, where something is. Needs the
+standard library alone; runs under the Python 2.7 of older robots, too.
+"""
+import contextlib
+import ctypes
+import errno
+import os
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import threading
+import time
+import uuid
+
+try:
+    from http.client import HTTPException
+    from urllib.parse import urlsplit
+    from xmlrpc.client import Error as XmlRpcError, ServerProxy
+    from xmlrpc.server import SimpleXMLRPCServer
+except ImportError:
+    from httplib import HTTPException
+    from SimpleXMLRPCServer import SimpleXMLRPCServer
+    from urlparse import urlsplit
+    from xmlrpclib import Error as XmlRpcError, ServerProxy
+
+TIMEOUT_S = 3.0
+# From Linux's prctl.h.
+PR_SET_PDEATHSIG = 1
+CALLER = '/mhri_remote'
+# The host's own nodes, by which it is seen what address it gives them.
+HOST_NODES = ('/rosout', '/mux', '/panel')
+WATCH_EVERY_S = 2.0
+RUN_ID_TIMEOUT_S = 3.0
+RUN_ID_TRIES = 15
+# Ways in which a call to a master fails.
+FAILURES = (XmlRpcError, HTTPException, OSError, socket.error)
+
+
+class Problem(Exception):
+    """Something is wrong; the text says what, and what mends it."""
+
+
+def say(text):
+    """Tell the operator a line; a terminal that is gone is no reason to fail."""
+    try:
+        sys.stderr.write('mhri: {0}\n'.format(text))
+        sys.stderr.flush()
+    except (OSError, IOError):
+        return
+
+
+def print_line(text):
+    """Print a result."""
+    sys.stdout.write('{0}\n'.format(text))
+
+
+def number(address):
+    """Return an IPv4 address as a number."""
+    return struct.unpack('!I', socket.inet_aton(address))[0]
+
+
+def prefix_lengths():
+    """Return {own address: length of its network's prefix in bits}, as far as ``ip`` says."""
+    try:
+        text = subprocess.check_output(['ip', '-o', '-4', 'addr', 'show']).decode()
+    except (OSError, subprocess.CalledProcessError):
+        return {}
+    found = {}
+    for word in text.split():
+        address, slash, length = word.partition('/')
+        if slash and address.count('.') == 3 and length.isdigit():
+            found[address] = int(length)
+    return found
+
+
+def way_out(target):
+    """Return the address from which this computer would speak to a target, or None."""
+    with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as probe:
+        try:
+            probe.connect((target, 9))
+            return probe.getsockname()[0]
+        except OSError:
+            return None
+
+
+def choose_address(target, own, lengths, out):
+    """Return the one of our addresses at which a target reaches us.
+
+    :param own: our IPv4 addresses, as ``hostname -I`` has them
+    :param lengths: {address: prefix length}; an address that is not in it counts as of a /24
+    :param out: the address the system would use towards the target, or None
+    :raises Problem: there is none, or several would do
+    """
+    if not own:
+        raise Problem('this computer has no IPv4 address: connect it to the network of {0}, or '
+                      'name one with --ip ADDR'.format(target))
+    if target in own:
+        return target
+    near = []
+    for address in own:
+        shift = 32 - lengths.get(address, 24)
+        if number(address) >> shift == number(target) >> shift:
+            near.append(address)
+    if len(near) == 1:
+        return near[0]
+    if out in (near or own):
+        return out
+    if len(own) == 1:
+        return own[0]
+    raise Problem('which of the addresses of this computer ({0}) does {1} reach? Name it with '
+                  '--ip ADDR'.format(' '.join(own), target))
+
+
+def connect(host, port):
+    """Return nothing where a connection is accepted.
+
+    :raises Problem: it is not, with the reason
+    """
+    try:
+        socket.create_connection((host, port), TIMEOUT_S).close()
+    except socket.timeout:
+        raise Problem('no answer from {0} within {1:.0f} s: is it on, on the same network as this '
+                      'robot, and does its firewall let port {2} in? Try: ping {0}'.format(
+                          host, TIMEOUT_S, port))
+    except (OSError, socket.error) as error:
+        if error.errno == errno.ECONNREFUSED:
+            raise Problem('{0} answers, but no ROS master runs on its port {1}: start mhri on the '
+                          'host first (mhri_run.sh --ip {0})'.format(host, port))
+        raise Problem('there is no way from here to {0} ({1}): is this robot on the same network? '
+                      'Try: ping {0}'.format(host, error.strerror))
+
+
+def master_at(host, port):
+    """Return a proxy of the master there.
+
+    :raises Problem: there is none
+    """
+    connect(host, port)
+    proxy = ServerProxy('http://{0}:{1}'.format(host, port))
+    try:
+        is_master = proxy.getPid(CALLER)[0] == 1
+    except Exception:  # whatever it answers, it is not a master's answer
+        is_master = False
+    if not is_master:
+        raise Problem('what has port {0} of {1} is not a ROS master: end it there, or give the '
+                      "master's port with --port".format(port, host))
+    return proxy
+
+
+def answer(call, *arguments):
+    """Return the value of a master's call, or None where it says no or nothing."""
+    try:
+        code, _, value = call(CALLER, *arguments)
+    except FAILURES:
+        return None
+    return value if code == 1 else None
+
+
+def check_way_back(master, host, own, name):
+    """Have the master call us back, at the address that our nodes will have.
+
+    :raises Problem: it does not get through, or the address is not ours
+    """
+    called = threading.Event()
+    try:
+        server = SimpleXMLRPCServer((own, 0), logRequests=False)
+    except (OSError, socket.error) as error:
+        raise Problem('{0} is not an address of this robot ({1}): see hostname -I'.format(
+            own, error.strerror))
+    server.register_function(lambda *_: called.set() or [1, '', 0], 'paramUpdate')
+    thread = threading.Thread(target=server.serve_forever)
+    thread.daemon = True
+    thread.start()
+    port = server.server_address[1]
+    api, caller = 'http://{0}:{1}/'.format(own, port), '{0}_{1}_{2}'.format(CALLER, name, port)
+    key = '{0}/{1}_{2}'.format(CALLER, name, port)
+    try:
+        master.subscribeParam(caller, api, key)
+        master.setParam(CALLER, key, 1)
+        if not called.wait(TIMEOUT_S):
+            raise Problem('{0} does not reach this robot at {1}: does a firewall here stop it '
+                          '(sudo ufw status), or is another address meant (--ip ADDR)?'.format(
+                              host, own))
+    finally:
+        answer(lambda _: master.unsubscribeParam(caller, api, key))
+        answer(master.deleteParam, key)
+        server.shutdown()
+        server.server_close()
+
+
+def place(master, node):
+    """Return (host name, port) that a node is registered with, or None."""
+    uri = answer(master.lookupNode, node)
+    parts = urlsplit(uri) if uri else None
+    return (parts.hostname, parts.port) if parts and parts.hostname and parts.port else None
+
+
+def check_names_of_host(master, host, own):
+    """Check that this robot can reach the host's nodes by the name they are registered with.
+
+    :raises Problem: it cannot
+    """
+    for node in HOST_NODES:
+        where = place(master, node)
+        if where is None:
+            continue
+        if (where[0] == 'localhost' or where[0].startswith('127.')) and host != own:
+            raise Problem('the nodes on the host are for itself alone ({0} is at {1}): end mhri '
+                          'there and start it with mhri_run.sh --ip {2}'.format(
+                              node, where[0], host))
+        try:
+            socket.getaddrinfo(where[0], where[1])
+        except (OSError, socket.error):
+            raise Problem('the host calls itself {0!s} ({1}), and this robot does not know that '
+                          'name: start mhri there with mhri_run.sh --ip {2}'.format(
+                              where[0], node, host))
+
+
+def check_name(master, own, name):
+    """Check that no other robot is called as this one: ROS would end the nodes of one of them.
+
+    :raises Problem: one is
+    """
+    state = answer(master.getSystemState) or []
+    nodes = set(node for kind in state for _, users in kind for node in users
+                if node.startswith('/{0}/'.format(name)))
+    places = {}
+    for node in sorted(nodes):
+        places.setdefault(place(master, node), node)
+    alive = []
+
+    def knock(where):
+        try:
+            socket.create_connection(where, TIMEOUT_S).close()
+            alive.append(where)
+        except (OSError, socket.error):
+            pass  # a leftover of a robot that is gone: its name is free
+
+    threads = [threading.Thread(target=knock, args=(where,)) for where in places if where]
+    for thread in threads:
+        thread.daemon = True
+        thread.start()
+    for thread in threads:
+        thread.join(2 * TIMEOUT_S)
+    for where in sorted(alive):
+        if where[0] == own:
+            raise Problem('{0} runs already, from this robot ({1}): end that first'.format(
+                name, places[where]))
+        raise Problem('the name {0} is taken: {1} runs at {2}; end that, or give this robot '
+                      'another name'.format(name, places[where], where[0]))
+
+
+def settle_run_id(master):
+    """Give a bare rosmaster the number of its run, as roscore does.
+
+    Of two roslaunch that start at once and find none, one fails. A roscore that has just begun gets
+    the time to set its own.
+    """
+    for _ in range(RUN_ID_TRIES):
+        if answer(master.getParam, '/run_id') is not None:
+            return
+        time.sleep(RUN_ID_TIMEOUT_S / RUN_ID_TRIES)
+    answer(master.setParam, '/run_id', str(uuid.uuid1()))
+
+
+def check_host(host, port, own, name):
+    """Check all that the robot needs of the host.
+
+    :raises Problem: something is wrong
+    """
+    master = master_at(host, port)
+    check_way_back(master, host, own, name)
+    check_names_of_host(master, host, own)
+    check_name(master, own, name)
+    settle_run_id(master)
+
+
+class Claim(object):
+    """The note at the master that a robot runs from here; a new master does not have it.
+
+    :param token: says which run of turtle_remote.sh it is
+    """
+
+    def __init__(self, host, port, name, token):
+        self._host = host
+        self._master = ServerProxy('http://{0}:{1}'.format(host, port))
+        self._name = name
+        self._token = token
+
+    def _key(self, last):
+        return '/{0}/{1}'.format(self._name, last)
+
+    def make(self):
+        """Note it.
+
+        :raises Problem: the master does not answer
+        """
+        if answer(self._master.setParam, self._key('mhri_remote'), self._token) is None:
+            raise Problem('the master at {0} stopped answering'.format(self._host))
+
+    def state(self):
+        """Return whether the master has our note; None where it does not answer."""
+        try:
+            code, _, value = self._master.getParam(CALLER, self._key('mhri_remote'))
+        except FAILURES:
+            return None
+        return code == 1 and value == self._token
+
+    def give_up(self):
+        """Take the note back, and what makes the name a robot for the host."""
+        if self.state():
+            for last in ('mhri_remote', 'robot_type'):
+                answer(self._master.deleteParam, self._key(last))
+
+    def watch(self):
+        """Return when the host has a new master; say when it falls silent, and when it is back."""
+        silent = lost = 0
+        while lost < 2:
+            time.sleep(WATCH_EVERY_S)
+            state = self.state()
+            lost = lost + 1 if state is False else 0
+            if state is None:
+                silent += 1
+                if silent == 2:
+                    say('{0} does not answer any more; this robot waits for it'.format(self._host))
+            elif silent:
+                if silent > 1:
+                    say('{0} answers again'.format(self._host))
+                silent = 0
+
+
+def end_with_parent():
+    """Have the kernel end this process (SIGTERM) when its parent ends."""
+    parent = os.getppid()
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, int(signal.SIGTERM), 0, 0, 0)
+    if os.getppid() != parent:
+        sys.exit(1)
+
+
+def hold(command):
+    """Become a command in a session of its own, which ends with our parent."""
+    os.setsid()
+    end_with_parent()
+    # A shell starts what runs in the background with this ignored, and it would stay so.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    os.execvp(command[0], command)
+
+
+def watch(host, port, name, token):
+    """Note that the robot runs from here, and watch that the host knows it."""
+    os.setsid()
+    end_with_parent()
+    claim = Claim(host, int(port), name, token)
+    claim.make()
+    claim.watch()
+
+
+COMMANDS = {
+    'address': lambda target, *own: print_line(
+        choose_address(target, own, prefix_lengths(), way_out(target))),
+    'host': lambda host, port, own, name: check_host(host, int(port), own, name),
+    'watch': watch,
+    'release': lambda host, port, name, token: Claim(host, port, name, token).give_up(),
+    'hold': lambda *command: hold(command),
+}
+
+
+def main(arguments):
+    """Do what the command line says; return the exit status."""
+    socket.setdefaulttimeout(TIMEOUT_S)
+    try:
+        COMMANDS[arguments[0]](*arguments[1:])
+    except Problem as problem:
+        say(problem)
+        return 1
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,293 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+# Starts a robot and joins it to the host; runs on the robot; --help is the manual.
+# Works with the bash of Ubuntu 16.04: there an empty array counts as not set.
+set -eo pipefail
+
+HERE=$(cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
+# shellcheck source-path=SCRIPTDIR source=turtle_bringup.sh
+. "$HERE/turtle_bringup.sh"
+
+help_text() {
+  cat <<'HELP'
+Usage: turtle_remote.sh HOST_IP NAME [OPTION]...
+
+Starts this robot under the name NAME and joins it to mhri on the host. Runs on the robot, in a
+terminal or through connect_turtlebot.sh. First it sets the ROS variables and checks that the
+host's master answers, that the host reaches this robot, and that the name is free; each thing that
+is wrong is said with what mends it. Then it starts the robot's own bringup and its camera. Ctrl-C,
+or closing the terminal, ends all of it. When mhri is started anew on the host, the robot joins
+again by itself.
+
+  HOST_IP              the host's address, e.g. 192.168.0.103
+  NAME                 the robot's name: a letter, then letters, digits and _ (at most 32)
+
+Robot
+  --type TYPE          turtlebot2, turtlebot3, turtlebot3_burger, turtlebot3_waffle,
+                       turtlebot3_waffle_pi, generic, or a type of your lab's (with --launch).
+                       Default: whichever of turtlebot_bringup and turtlebot3_bringup is here
+  --model MODEL        TurtleBot3: burger, waffle or waffle_pi. Default: TURTLEBOT3_MODEL, of this
+                       shell or of ~/.bashrc
+  --launch FILE        any other robot: its own launch file, a path or PACKAGE/FILE.launch
+  --no-camera          do not start the camera
+  --no-smoother        TurtleBot2: leave the velocity smoother out
+  --guard              also start mhri_guard, which drops commands that come late
+
+Network
+  --ip ADDR            this robot's address. Default: of those of 'hostname -I' the one on the
+                       host's network
+  --port PORT          the master's port on the host (default 11311)
+
+Other
+  --setup FILE         the setup.bash of the robot's workspace. Default: what this shell has
+                       already, else ~/catkin_ws/devel/setup.bash, else that of /opt/ros
+  -h, --help           this text
+
+  ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME are set from these, ROS_NAMESPACE is taken away.
+
+Exit status: 0 only for --help, 1 could not start or the robot's launch ended, 2 wrong option,
+129, 130 or 143 ended by the end of the terminal, Ctrl-C or a signal.
+
+Examples
+  turtle_remote.sh 192.168.0.103 bot1
+  turtle_remote.sh 192.168.0.103 bot2 --type turtlebot3_burger --guard
+  turtle_remote.sh 192.168.0.103 husky1 --type generic --launch husky_base/base.launch
+HELP
+}
+
+HOST_IP=
+NAME=
+TYPE=
+MODEL=
+LAUNCH=
+CAMERA=true
+SMOOTHER=true
+GUARD=false
+IP=
+PORT=11311
+SETUP=
+TOKEN="$$-$RANDOM$RANDOM"
+STOPPED_WITH=
+BASE_PID=
+CAMERA_PID=
+GUARD_PID=
+WATCH_PID=
+
+# A terminal that is gone must not keep the robot from being ended.
+say() { printf 'mhri: %s\n' "$*" 2>/dev/null || true; }
+warn() { printf 'mhri: %s\n' "$*" >&2 || true; }
+die() { warn "$*"; exit 1; }
+usage_error() { warn "$* (--help lists every option)"; exit 2; }
+
+valid_ip() {
+  local part octets
+  [[ $1 =~ ^[0-9]{1,3}(\.[0-9]{1,3}){3}$ ]] || return 1
+  IFS=. read -r -a octets <<<"$1"
+  for part in "${octets[@]}"; do [ "$((10#$part))" -le 255 ] || return 1; done
+}
+
+# value OPTION [VALUE]: the value of an option, or the error that there is none.
+value() {
+  case "${2:-}" in
+    '' | -*) usage_error "$1 needs a value" ;;
+  esac
+  printf '%s' "$2"
+}
+
+parse_arguments() {
+  local words=()
+  while [ $# -gt 0 ]; do
+    case "$1" in
+      -h | --help) help_text; exit 0 ;;
+      --type) TYPE=$(value "$@"); shift ;;
+      --model) MODEL=$(value "$@"); shift ;;
+      --launch) LAUNCH=$(value "$@"); shift ;;
+      --no-camera) CAMERA=false ;;
+      --no-smoother) SMOOTHER=false ;;
+      --guard) GUARD=true ;;
+      --ip) IP=$(value "$@"); shift ;;
+      --port) PORT=$(value "$@"); shift ;;
+      --setup) SETUP=$(value "$@"); shift ;;
+      -*) usage_error "there is no option $1" ;;
+      *) words+=("$1") ;;
+    esac
+    shift
+  done
+  [ "${#words[@]}" = 2 ] ||
+    usage_error "give the host's address and the robot's name: turtle_remote.sh HOST_IP NAME"
+  HOST_IP=${words[0]}
+  NAME=${words[1]}
+}
+
+check_arguments() {
+  valid_ip "$HOST_IP" ||
+    usage_error "HOST_IP: '$HOST_IP' is not an IPv4 address such as 192.168.0.103"
+  [[ $NAME =~ ^[A-Za-z][A-Za-z0-9_]{0,31}$ ]] ||
+    usage_error "NAME: '$NAME' is not a robot's name: a letter, then letters, digits and _"
+  [[ -z $TYPE || $TYPE =~ ^[a-z][a-z0-9_]{0,31}$ ]] ||
+    usage_error "--type: '$TYPE' is not a robot type such as turtlebot2"
+  [[ -z $MODEL || $MODEL =~ ^(burger|waffle|waffle_pi)$ ]] ||
+    usage_error "--model: '$MODEL' is none of burger, waffle, waffle_pi"
+  [[ -z $LAUNCH || $LAUNCH =~ ^[A-Za-z0-9_./~+-]+$ ]] ||
+    usage_error "--launch: '$LAUNCH' is neither a path nor PACKAGE/FILE.launch"
+  [ -z "$IP" ] || valid_ip "$IP" ||
+    usage_error "--ip: '$IP' is not an IPv4 address such as 192.168.0.7"
+  if ! [[ $PORT =~ ^[0-9]{1,5}$ ]] || [ "$((10#$PORT))" -gt 65535 ] || [ "$((10#$PORT))" = 0 ]; then
+    usage_error "--port: there is no port '$PORT'"
+  fi
+  PORT=$((10#$PORT))
+  [ -z "$SETUP" ] || [ -f "$SETUP" ] || usage_error "--setup: there is no file '$SETUP'"
+  check_type
+}
+
+# check_type: TYPE and MODEL fit together, and with --launch.
+check_type() {
+  local model
+  case "$TYPE" in
+    turtlebot3_burger | turtlebot3_waffle | turtlebot3_waffle_pi)
+      model=${TYPE#turtlebot3_}
+      [ -z "$MODEL" ] || [ "$MODEL" = "$model" ] ||
+        usage_error "--model $MODEL does not go with --type $TYPE"
+      MODEL=$model
+      TYPE=turtlebot3 ;;
+  esac
+  case "$TYPE" in
+    turtlebot2 | turtlebot3)
+      [ -z "$LAUNCH" ] || usage_error "--launch is for other robots than --type $TYPE" ;;
+    '') [ -z "$LAUNCH" ] || TYPE=generic ;;
+    *) [ -n "$LAUNCH" ] ||
+      usage_error "--type $TYPE: name the robot's own launch file with --launch" ;;
+  esac
+  [ -z "$MODEL" ] || [ -z "$TYPE" ] || [ "$TYPE" = turtlebot3 ] ||
+    usage_error "--model goes with --type turtlebot3"
+}
+
+# choose_network: this robot's address, and what ROS goes by.
+choose_network() {
+  local all=() address v4=()
+  read -r -a all < <(hostname -I) || true
+  for address in "${all[@]}"; do
+    if valid_ip "$address"; then v4+=("$address"); fi
+  done
+  if [ -z "$IP" ]; then
+    IP=$("$PYTHON" "$HERE/turtle_check.py" address "$HOST_IP" "${v4[@]}") || exit 1
+  elif [[ " ${v4[*]} 127.0.0.1 " != *" $IP "* ]]; then
+    die "--ip: $IP is none of the addresses of this robot (${v4[*]:-it has none})"
+  fi
+  export ROS_MASTER_URI="http://$HOST_IP:$PORT" ROS_IP=$IP ROS_HOSTNAME=$IP
+  unset ROS_NAMESPACE
+  say "ROS_MASTER_URI=$ROS_MASTER_URI ROS_IP=$ROS_IP ROS_HOSTNAME=$ROS_HOSTNAME"
+}
+
+# held COMMAND...: runs it in a session of its own, so that Ctrl-C reaches this script alone, which
+# passes it on once; should this script be killed, the kernel does.
+held() { exec env "MHRI_REMOTE_ID=$TOKEN" "$PYTHON" "$HERE/turtle_check.py" hold "$@"; }
+
+start_all() {
+  held roslaunch "${BASE_LAUNCH[@]}" </dev/null &
+  BASE_PID=$!
+  if "$CAMERA" && [ "${#CAMERA_LAUNCH[@]}" -gt 0 ]; then
+    held roslaunch "${CAMERA_LAUNCH[@]}" </dev/null &
+    CAMERA_PID=$!
+  fi
+  if "$GUARD"; then
+    ROS_NAMESPACE="/$NAME" held python3 "$HERE/mhri_guard" "_command:=$GUARD_TOPIC" </dev/null &
+    GUARD_PID=$!
+  fi
+  "$PYTHON" "$HERE/turtle_check.py" watch "$HOST_IP" "$PORT" "$NAME" "$TOKEN" </dev/null &
+  WATCH_PID=$!
+}
+
+running() { [ -n "$1" ] && kill -0 "$1" 2>/dev/null; }
+
+# nap: a second that a signal cuts short.
+nap() {
+  sleep 1 &
+  wait $! || true
+}
+
+# end_all: asks what was started to end, waits, and ends by force what did not.
+end_all() {
+  local pid deadline=$((SECONDS + 25)) pids=("$GUARD_PID" "$BASE_PID" "$CAMERA_PID" "$WATCH_PID")
+  for pid in "${pids[@]}"; do
+    if running "$pid"; then kill -TERM "$pid" 2>/dev/null || true; fi
+  done
+  for pid in "${pids[@]}"; do
+    while running "$pid" && [ "$SECONDS" -lt "$deadline" ]; do sleep 0.1; done
+  done
+  end_leftovers
+  BASE_PID='' CAMERA_PID='' GUARD_PID='' WATCH_PID=''
+}
+
+# end_leftovers: what this run started and did not end itself, known by its mark.
+end_leftovers() {
+  local entry pid
+  for entry in /proc/[0-9]*/environ; do
+    pid=${entry#/proc/}
+    pid=${pid%/environ}
+    if [ "$pid" != "$$" ] && grep -qzsxF "MHRI_REMOTE_ID=$TOKEN" "$entry"; then
+      warn "ending what was left running: $pid $(tr '\0' ' ' 2>/dev/null <"/proc/$pid/cmdline")"
+      kill -KILL "$pid" 2>/dev/null || true
+    fi
+  done
+}
+
+# Notes the first signal; the main loop, or the exit trap, then ends everything.
+stop() {
+  if [ -n "$STOPPED_WITH" ]; then return; fi
+  STOPPED_WITH=$1
+  say "ending"
+}
+
+clean_up() {
+  trap '' INT TERM HUP
+  end_all
+  "$PYTHON" "$HERE/turtle_check.py" release "$HOST_IP" "$PORT" "$NAME" "$TOKEN" || true
+}
+
+# check_parts: whether the robot still runs; the camera and the guard are told of, once.
+check_parts() {
+  local status=0
+  if ! running "$BASE_PID"; then
+    wait "$BASE_PID" || status=$?
+    die "the robot's launch has ended (exit status $status): see its messages above"
+  fi
+  if [ -n "$CAMERA_PID" ] && ! running "$CAMERA_PID"; then
+    warn "the camera's launch has ended: see its messages above; the robot can be driven without it"
+    CAMERA_PID=
+  fi
+  if [ -n "$GUARD_PID" ] && ! running "$GUARD_PID"; then
+    die "mhri_guard has ended: without it this robot is not to be driven as a guarded one"
+  fi
+  if ! running "$WATCH_PID"; then
+    say "mhri was started anew on $HOST_IP: starting $NAME anew"
+    end_all
+    "$PYTHON" "$HERE/turtle_check.py" host "$HOST_IP" "$PORT" "$IP" "$NAME" || exit 1
+    start_all
+  fi
+}
+
+main() {
+  parse_arguments "$@"
+  check_arguments
+  read_bashrc
+  prepare_ros
+  choose_type
+  prepare_launch
+  choose_network
+  "$PYTHON" "$HERE/turtle_check.py" host "$HOST_IP" "$PORT" "$IP" "$NAME" || exit 1
+  say "$HOST_IP and this robot reach each other, and the name $NAME is free"
+  trap clean_up EXIT
+  trap 'stop 130' INT
+  trap 'stop 143' TERM
+  trap 'stop 129' HUP
+  start_all
+  while [ -z "$STOPPED_WITH" ]; do
+    check_parts
+    nap
+  done
+  return "$STOPPED_WITH"
+}
+
+main "$@"
