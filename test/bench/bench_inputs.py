@@ -25,8 +25,12 @@ def switches(pid):
     """Return how often all threads of a process have gone to sleep by themselves."""
     total = 0
     for thread in os.listdir('/proc/{}/task'.format(pid)):
-        with open('/proc/{}/task/{}/status'.format(pid, thread), encoding='utf-8') as status:
-            total += int(status.read().split('\nvoluntary_ctxt_switches:')[1].split()[0])
+        try:
+            with open('/proc/{}/task/{}/status'.format(pid, thread), encoding='utf-8') as status:
+                text = status.read()
+        except (FileNotFoundError, ProcessLookupError):
+            continue  # it has ended since it was listed
+        total += int(text.split('\nvoluntary_ctxt_switches:')[1].split()[0])
     return total
 
 

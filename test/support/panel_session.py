@@ -46,9 +46,13 @@ class PanelSession:
         self.host.panel.show()
         self.hands = Hands(self.host.panel)
         self.host.start(robots)
-        self.until(lambda: all(self.operator.robot_view(name).link == 'live' for name in robots),
-                   START_S, 'live robots')
+        self.until(lambda: all(self._is_known(name) for name in robots), START_S, 'live robots')
         self.until(lambda: self.operator.view().mode, START_S, 'the mux')
+
+    def _is_known(self, name):
+        """Tell whether a robot is live, as what it is: it may have been seen before its type was."""
+        view = self.operator.robot_view(name)
+        return view.link == 'live' and view.type_label.startswith('TurtleBot')
 
     def until(self, condition, timeout_s=START_S, what='the condition'):
         """Let Qt work until a condition comes true; return what is true."""
