@@ -50,7 +50,7 @@ class PanelSession:
         self.until(lambda: self.operator.view().mode, START_S, 'the mux')
 
     def _is_known(self, name):
-        """Tell whether a robot is live, as what it is: it may have been seen before its type was."""
+        """Tell whether a robot is live, as what it is: it may be seen before its type is known."""
         view = self.operator.robot_view(name)
         return view.link == 'live' and view.type_label.startswith('TurtleBot')
 
