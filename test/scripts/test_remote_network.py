@@ -158,10 +158,17 @@ def test_both_robots_are_started_found_and_driven(lab, operator):
 
 
 def test_camera_is_seen_on_the_host(lab, operator):
+    import rosgraph
     import rospy
     from sensor_msgs.msg import Image
     picture = rospy.wait_for_message('/bot1/camera/rgb/image_raw', Image, timeout=START_S)
     assert picture.header.frame_id == 'bot1/camera_rgb_optical_frame'
+    # The window of a robot that is selected shows its camera: the panel takes the pictures, too.
+    master, end = rosgraph.Master('/lab'), time.monotonic() + START_S
+    while '/mhri_panel' not in dict(master.getSystemState()[1]).get(
+            '/bot1/camera/rgb/image_raw', ()):
+        assert time.monotonic() < end, 'the panel does not show the camera'
+        time.sleep(0.1)
 
 
 def first_standstill(rows, since):
