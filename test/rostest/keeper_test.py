@@ -258,6 +258,17 @@ class KeeperTest(unittest.TestCase):
         self.assertNotIn((0.2, 0.0), [entry[1:] for entry in end.after(when)])
         other._subscriber.unregister()
 
+    def test_a_keeper_that_waits_for_a_master_ends_with_its_panel(self):
+        environment = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:9')
+        keeper = subprocess.Popen(
+            [sys.executable, '-c', 'from mhri.nodes.gate_keeper import main; main()', '1'],
+            stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+            env=environment)
+        self.addCleanup(keeper.kill)
+        keeper.stdin.write(b'["select", []]\n')
+        keeper.stdin.close()
+        self.assertEqual(keeper.wait(START_S), 0)
+
     def test_a_killed_panel_leaves_a_keeper_that_sends_the_zeros(self):
         KeeperTest.number += 1
         name = 'kept{}'.format(KeeperTest.number)

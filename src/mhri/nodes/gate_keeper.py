@@ -1,13 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The executable ``gate_keeper``, started by the panel: see :mod:`mhri.ros.keeper`."""
+import os
 import signal
 import sys
 
 import rospy
 
 from mhri.ros.gates import GateBank
-from mhri.ros.keeper import Keeper
+from mhri.ros.keeper import Keeper, Words
 from mhri.ros.master_watch import MasterWatch
 
 
@@ -19,10 +20,11 @@ def main():
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if not sys.argv[1:] or not sys.argv[-1].isdigit():
         sys.exit('gate_keeper: the panel starts this; it is of no use by itself')
+    words = Words(sys.stdin, lambda: os._exit(0))
     rospy.init_node('mhri_gate_keeper', anonymous=True, disable_signals=True, disable_rostime=True)
     MasterWatch().start()
     bank = GateBank()
     bank.start(hear_selection=False)
-    for name in Keeper(sys.stdin, int(sys.argv[-1]), bank).run():
+    for name in Keeper(words, int(sys.argv[-1]), bank).run():
         rospy.logwarn('the panel was killed while driving: zero sent to %s', name)
     rospy.signal_shutdown('the panel has ended')

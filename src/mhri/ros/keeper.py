@@ -20,6 +20,7 @@ the mux itself, and the selection from the panel alone.
 """
 import json
 import os
+import queue
 import select
 import subprocess
 import sys
@@ -134,6 +135,35 @@ class KeeperLink:
             self._bank.follow(*rest)
         elif word == 'closed':
             self._closed.set()
+
+
+class Words:
+    """The panel's lines, read from the very start on a thread; iterate over them.
+
+    A node that waits for a master would never learn that its panel has ended meanwhile.
+
+    :param stream: text lines, ends when the panel is gone
+    :param on_early_end: called on the thread where the end comes before anybody has iterated: then
+        there is nothing to stop yet
+    """
+
+    def __init__(self, stream, on_early_end):
+        self._stream = stream
+        self._on_early_end = on_early_end
+        self._lines = queue.Queue()
+        self._begun = threading.Event()
+        threading.Thread(target=self._read, name='words', daemon=True).start()
+
+    def _read(self):
+        for line in self._stream:
+            self._lines.put(line)
+        if not self._begun.is_set():
+            self._on_early_end()
+        self._lines.put(None)
+
+    def __iter__(self):
+        self._begun.set()
+        return iter(self._lines.get, None)
 
 
 class Keeper:
