@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Colour pictures, compressed and raw: the right colours at the right size, and what is refused."""
+import concurrent.futures
 import os
 import struct
 import sys
@@ -9,6 +10,7 @@ import cv2
 import numpy as np
 import pytest
 
+from mhri.core import jpeg
 from mhri.core.frames import FrameError, check_size, fit
 from mhri.core.image_codec import decode_compressed, read_size
 from mhri.core.raw_image import decode_raw
@@ -80,6 +82,55 @@ def test_size_shown(ending, view, shape):
 JPEG, PNG = encode(PICTURE), encode(PICTURE, '.png')
 
 
+@pytest.fixture(params=['libturbojpeg', 'cv2'])
+def decoder(request, monkeypatch):
+    if request.param == 'cv2':
+        monkeypatch.setattr(jpeg, '_LIBRARY', None)
+    assert jpeg.available() == (request.param != 'cv2'), 'apt install libturbojpeg0'
+    return request.param
+
+
+@pytest.mark.parametrize('size', [(320, 240), (321, 243), (7, 5), (1, 1)])
+@pytest.mark.parametrize('subsampling', [0x411111, 0x221111, 0x111111])
+def test_both_decoders_make_the_same_pixels(size, subsampling, monkeypatch):
+    options = [cv2.IMWRITE_JPEG_QUALITY, 80]
+    if hasattr(cv2, 'IMWRITE_JPEG_SAMPLING_FACTOR'):
+        options += [cv2.IMWRITE_JPEG_SAMPLING_FACTOR, subsampling]
+    data = cv2.imencode('.jpg', colour_picture(*size), options)[1].tobytes()
+    ours = decode_compressed('jpeg', data)[0]
+    assert np.array_equal(ours, cv2.imdecode(np.frombuffer(data, np.uint8), 1)[..., ::-1])
+    third = tuple(max(1, side // 3) for side in size)
+    small = decode_compressed('jpeg', data, third)[0]
+    monkeypatch.setattr(jpeg, '_LIBRARY', None)
+    assert np.array_equal(ours, decode_compressed('jpeg', data)[0])
+    other = decode_compressed('jpeg', data, third)[0]
+    assert small.shape == other.shape and np.abs(small.astype(int) - other).mean() < 3.0
+
+
+def test_a_jpeg_the_library_refuses_goes_to_the_other_decoder(monkeypatch):
+    monkeypatch.setattr(jpeg, '_FATAL', -1)
+    assert jpeg.decode_jpeg(JPEG, (320, 240)) is not None
+    assert jpeg.decode_jpeg(JPEG, (10, 10)).shape == (10, 10, 3), 'no such size: an error'
+    monkeypatch.undo()
+    assert jpeg.decode_jpeg(JPEG, (10, 10)) is None
+    assert jpeg.decode_jpeg(b'\xff\xd8\xff\xd9', (10, 10)) is None
+
+
+def test_a_smear_is_a_picture(decoder):
+    damaged = bytearray(JPEG)
+    damaged[len(JPEG) // 2:len(JPEG) // 2 + 40] = b'\x55' * 40
+    rgb = decode_compressed('jpeg', bytes(damaged))[0]
+    assert rgb.shape == (240, 320, 3) and np.abs(rgb[:60].astype(int) - PICTURE[:60]).mean() < 12.0
+
+
+def test_decoding_in_many_threads_at_once():
+    data = [encode(np.roll(PICTURE, 20 * number, 1)) for number in range(8)]
+    expected = [decode_compressed('jpeg', one)[0] for one in data]
+    with concurrent.futures.ThreadPoolExecutor(8) as pool:
+        found = list(pool.map(lambda one: decode_compressed('jpeg', one)[0], data * 20))
+    assert all(np.array_equal(one, expected[at % 8]) for at, one in enumerate(found))
+
+
 def with_size(jpeg, width, height):
     place = jpeg.index(b'\xff\xc0')
     return jpeg[:place + 5] + struct.pack('>HH', height, width) + jpeg[place + 9:]
@@ -97,7 +148,7 @@ def with_size(jpeg, width, height):
     ('an absurd png', PNG[:16] + struct.pack('>II', 1 << 30, 4) + PNG[24:], 'pixels'),
     ('a damaged png', PNG[:3000] + b'\0' * 64 + PNG[3064:], 'corrupted'),
 ])
-def test_wrong_pictures_are_refused(what, data, words):
+def test_wrong_pictures_are_refused(what, data, words, decoder):
     with pytest.raises(FrameError, match=words):
         decode_compressed('jpeg', data)
 

@@ -26,7 +26,7 @@ DEBIAN_RUN=(
   python3-cv-bridge python3-python-qt-binding python3-pyqt5 python3-pyqtgraph python3-pygame
   python3-evdev python3-pocketsphinx pocketsphinx-en-us python3-pyaudio
   python3-numpy python3-opencv python3-yaml python3-genpy python3-netifaces fonts-dejavu-core
-  openssh-client
+  libturbojpeg0 openssh-client
   xvfb xauth hostname util-linux
 )
 DEBIAN_TEST=(

@@ -12,11 +12,12 @@ import cv2
 import numpy as np
 
 from mhri.core.frames import FrameError, check_size, fit
+from mhri.core.jpeg import decode_jpeg
 
 _PNG = b'\x89PNG\r\n\x1a\n'
 _JPEG = b'\xff\xd8\xff'
-_REDUCED = ((8, cv2.IMREAD_REDUCED_COLOR_8), (4, cv2.IMREAD_REDUCED_COLOR_4),
-            (2, cv2.IMREAD_REDUCED_COLOR_2))
+_REDUCED = {1: cv2.IMREAD_COLOR, 2: cv2.IMREAD_REDUCED_COLOR_2, 4: cv2.IMREAD_REDUCED_COLOR_4,
+            8: cv2.IMREAD_REDUCED_COLOR_8}
 # Markers without a length, and those of a frame header: SOF0..15 without DHT, JPG and DAC.
 _BARE = frozenset([0x01, *range(0xd0, 0xd8)])
 _FRAME = frozenset(range(0xc0, 0xd0)) - {0xc4, 0xc8, 0xcc}
@@ -36,10 +37,16 @@ def decode_compressed(fmt, data, view=None):
     """
     kind, full = read_size(data, fmt)
     target = fit(full, view)
-    rgb = _decode(kind, data, full, target)
-    if kind == 'jpeg' or not _is_rgb_order(fmt):
-        # In place: a fresh array of this size costs ten times as much, in page faults.
-        cv2.cvtColor(rgb, cv2.COLOR_BGR2RGB, rgb)
+    factor = _factor(full, target) if kind == 'jpeg' else 1
+    rgb = decode_jpeg(data, full, factor) if kind == 'jpeg' else None
+    if rgb is None:
+        # The data say how the picture lies (EXIF); a robot's camera is shown as it is mounted.
+        rgb = decode_with_opencv(kind, data, _REDUCED[factor] | cv2.IMREAD_IGNORE_ORIENTATION)
+        if kind == 'jpeg' or not _is_rgb_order(fmt):
+            # In place: a fresh array of this size costs ten times as much, in page faults.
+            cv2.cvtColor(rgb, cv2.COLOR_BGR2RGB, rgb)
+    if (rgb.shape[1], rgb.shape[0]) != target:
+        rgb = cv2.resize(rgb, target, interpolation=interpolation(rgb, target))
     return rgb, full, kind
 
 
@@ -53,18 +60,10 @@ def _is_rgb_order(fmt):
     return encoding.startswith('rgb') and 'compressed' in rest and 'bgr' not in rest
 
 
-def _decode(kind, data, full, target):
-    """Return the picture in the coder's order of colours, at the target size."""
-    flag = cv2.IMREAD_COLOR
-    for factor, reduced in _REDUCED:
-        if target[0] * factor <= full[0] and target[1] * factor <= full[1] and kind == 'jpeg':
-            flag = reduced
-            break
-    # The data say how the picture lies (EXIF); a robot's camera is shown as it is mounted.
-    picture = decode_with_opencv(kind, data, flag | cv2.IMREAD_IGNORE_ORIENTATION)
-    if (picture.shape[1], picture.shape[0]) != target:
-        picture = cv2.resize(picture, target, interpolation=interpolation(picture, target))
-    return picture
+def _factor(full, target):
+    """Return how many times smaller a jpeg may be decoded: 1, 2, 4 or 8."""
+    return next(factor for factor in sorted(_REDUCED, reverse=True)
+                if factor == 1 or (target[0] * factor <= full[0] and target[1] * factor <= full[1]))
 
 
 def interpolation(picture, target):
