@@ -11,7 +11,7 @@ from mhri.core import views
 from mhri.core.views import ProofView, RobotView
 from mhri.gui import theme
 from mhri.gui.robot_list import RobotList
-from mhri.gui.robot_row import DRIVING, MOVING
+from mhri.gui.robot_row import DRIVING, MOVING, RobotRow
 
 LIVE = RobotView('bot1', 'TurtleBot2', link=views.LIVE, age_s=0.012, linear_mps=0.31,
                  angular_rad_s=-0.2, battery=0.82)
@@ -171,3 +171,83 @@ def test_twelve_robots_scroll_and_fingers_hit(robots, operator):
     row = robots.row('bot12')
     assert not row.visibleRegion().isEmpty()
     assert min(row.box.width(), row.box.height(), row.height()) >= 36
+
+
+@pytest.fixture
+def hundred(operator):
+    """Return a list on the screen with a hundred robots, and those."""
+    many = tuple(replace(LIVE, name='bot{}'.format(number + 1)) for number in range(100))
+    widget = RobotList()
+    widget.resize(560, 330)
+    widget.show_robots(many)
+    return operator.show(widget), many
+
+
+def made(robots):
+    """Return how many rows there are."""
+    return len(robots.findChildren(RobotRow))
+
+
+def in_sight(robots, name):
+    """Tell whether the whole row of a robot can be seen."""
+    row = robots.row(name)
+    top = row.mapTo(robots.viewport(), row.rect().topLeft()).y()
+    return 0 <= top and top + row.height() <= robots.viewport().height()
+
+
+def test_a_hundred_robots_cost_the_rows_that_are_seen(hundred, operator):
+    robots, many = hundred
+    operator.settle()
+    assert made(robots) < 24
+    robots.show_robots([replace(robot, linear_mps=0.62) for robot in many])
+    robots.verticalScrollBar().setValue(robots.verticalScrollBar().maximum())
+    operator.settle()
+    assert in_sight(robots, 'bot100') and robots.row('bot100').number.text() == '100'
+    assert robots.row('bot100').linear.text() == '0.62 m/s' and made(robots) < 48
+    robots.show_robots([replace(robot, linear_mps=0.4) for robot in many])
+    robots.verticalScrollBar().setValue(0)
+    assert robots.row('bot2').linear.text() == '0.40 m/s', 'a row that comes back is up to date'
+    robots.show_robots(many[:3])
+    operator.settle()
+    assert made_now(robots) == 3 and robots.verticalScrollBar().maximum() == 0
+
+
+def made_now(robots):
+    """Return how many rows can be reached; one that was dropped waits for its end hidden."""
+    return sum(not row.isHidden() for row in robots.findChildren(RobotRow))
+
+
+def test_robots_out_of_sight_are_chosen_like_others(hundred, operator, heard):
+    robots, many = hundred
+    asked = heard(robots.selection_requested)
+    robots.toggle(90)
+    robots.select_all()
+    assert asked == [['bot90'], [robot.name for robot in many]]
+    assert len(robots.checked()) == 100 and robots.row('bot77').box.isChecked()
+    operator.click(robots.row('bot1').box)
+    assert asked[-1] == [robot.name for robot in many[1:]]
+
+
+def test_the_highlight_scrolls_to_where_it_is(hundred, operator):
+    robots, _ = hundred
+    robots.activate('bot60')
+    operator.settle()
+    assert in_sight(robots, 'bot60')
+    robots.setFocus()
+    for _ in range(20):
+        QTest.keyClick(robots, Qt.Key_Down)
+    operator.settle()
+    assert robots.current == 'bot80' and in_sight(robots, 'bot80')
+
+
+def test_tab_goes_through_all_of_a_hundred(hundred, operator):
+    robots, _ = hundred
+    robots.activateWindow()
+    robots.setFocus()
+    reached = []
+    for _ in range(60):
+        QTest.keyClick(robots.window().focusWidget(), Qt.Key_Tab)
+        operator.settle()
+        reached.append(robots.window().focusWidget().accessibleName())
+    assert reached == ['drive bot{}'.format(number + 1) for number in range(60)]
+    assert in_sight(robots, 'bot60')

@@ -72,6 +72,7 @@ class RobotRow(QWidget):
         self._driven = False
         self._current = False
         self._link = None
+        self._trouble_shown = None
         self._build()
         self._connect()
 
@@ -209,12 +210,14 @@ class RobotRow(QWidget):
             font.setBold(loud)
             self.trouble.setFont(font)
         self.trouble.show_text(text)
+        if (speaking, sign is None) == self._trouble_shown:
+            return
+        self._trouble_shown = (speaking, sign is None)
         for widget, visible in ((self.trouble_sign, sign is not None), (self.trouble, speaking),
                                 (self.linear, not speaking), (self.turn, not speaking),
                                 (self.note, not speaking), (self.pill, not speaking),
                                 (self.battery, not speaking)):
-            if widget.isHidden() == visible:
-                widget.setVisible(visible)
+            widget.setVisible(visible)
 
     def show_current(self, current):
         """Show whether this is the highlighted row."""

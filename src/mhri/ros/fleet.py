@@ -152,16 +152,17 @@ class Fleet:
             link = self._links.get(name)
         return link.feeds if link else None
 
-    def view(self, name, selected):
+    def view(self, name, selected, recording=False):
         """Return the :class:`RobotView` of one robot."""
         with self._lock:
             link = self._links.get(name)
             problems = self._problems.get(name)
         if link is None:
-            return RobotView(name=name, selected=selected, note='looking for it')
+            return RobotView(name=name, selected=selected, recording=recording,
+                             note='looking for it')
         view = link.view()
-        note = view.note or (problems[0] if problems else '')
-        return replace(view, selected=selected, note=note)
+        return replace(view, selected=selected, recording=recording,
+                       note=view.note or (problems[0] if problems else ''))
 
     def close(self):
         """Give the topics of all robots back (blocking)."""

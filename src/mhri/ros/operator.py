@@ -299,11 +299,13 @@ class Operator:
 
     def robot_view(self, name):
         """Return the :class:`RobotView` of one robot."""
-        selected = name in self.selection.selected
+        return self._robot_view(name, name in self.selection.selected)
+
+    def _robot_view(self, name, selected):
         if self._ros == ROS_STARTING or self._mux is None:
             return RobotView(name=name, selected=selected)
-        return replace(self._fleet.view(name, selected),
-                       recording=self.recordings.status(name).state == RECORDING)
+        return self._fleet.view(name, selected,
+                                self.recordings.status(name).state == RECORDING)
 
     def view(self):
         """Return the :class:`PanelView` of this moment."""
@@ -311,7 +313,9 @@ class Operator:
         if ros == ROS_CONNECTED and self._watch.state == LOST:
             ros = ROS_NO_MASTER
         mode, limits, waits_for = self._mux.state() if self._mux else (None, None, None)
-        robots = tuple(self.robot_view(name) for name in self.selection.robots)
+        selected = frozenset(self.selection.selected)
+        robots = tuple(self._robot_view(name, name in selected)
+                       for name in self.selection.robots)
         share, pace = pace_of(robots, self._together, self.settings.slow_with_link)
         self._bank.set_pace(self._together, share)
         view = PanelView(
