@@ -16,6 +16,7 @@ from mhri.core.limits import ZERO
 from mhri.core.names import topic_of
 from mhri.msg import RobotSelect
 from mhri.ros.convert import from_twist, to_twist
+from mhri.ros.prompt import PromptPublisher
 
 # Below a robot's namespace: where its guard (utils/remote/mhri_guard) listens.
 GUARD = 'mhri_guard/command'
@@ -31,7 +32,7 @@ class Gate:
     """A :class:`GateRule` with the publishers of its robot.
 
     One publisher for each velocity topic of the template (``geometry_msgs/Twist``, queue of 1:
-    newest wins, and a thread of its own, so that a dead robot delays nobody); what is sent goes to
+    newest wins, and nothing is waited for, so that a dead robot delays nobody); what is sent goes to
     the first one that has a subscriber. Before them all comes the guard that may run on the robot
     (``/<robot>/mhri_guard/command``, ``geometry_msgs/TwistStamped``, stamped by the clock here).
 
@@ -49,10 +50,9 @@ class Gate:
         self.name = name
         self.topics = list(topics)
         self.rule = GateRule(limits)
-        self._guard = rospy.Publisher('/{}/{}'.format(name, GUARD), TwistStamped, queue_size=1,
-                                      tcp_nodelay=True)
+        self._guard = PromptPublisher('/{}/{}'.format(name, GUARD), TwistStamped)
         self._publishers = [self._guard] + [
-            rospy.Publisher(topic, Twist, queue_size=1, tcp_nodelay=True) for topic in self.topics]
+            PromptPublisher(topic, Twist) for topic in self.topics]
         self._used = None
         self._follows = False
         self._zero_at = None
@@ -83,7 +83,8 @@ class Gate:
             message = TwistStamped(twist=message)
             message.header.stamp = rospy.Time.from_sec(time.time())
         if not self._follows:
-            publisher.publish(message)
+            publish = publisher.publish_urgent if velocity.is_zero() else publisher.publish
+            publish(message)
         return message
 
     def follow(self):

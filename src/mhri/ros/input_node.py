@@ -20,6 +20,7 @@ from mhri.core.pacing import Pacer
 from mhri.inputs.reader import DeviceAbsent, DeviceLost
 from mhri.ros.diagnostics import publish_diagnostics
 from mhri.ros.master_watch import MasterWatch
+from mhri.ros.prompt import PromptPublisher
 from mhri.srv import SetSuspended, SetSuspendedResponse
 
 SUSPENDED = 'suspended'
@@ -71,7 +72,7 @@ class InputNode:
         self._diagnostics = None
         self._thread = threading.Thread(target=self._run, name='device', daemon=True)
         self.resumed = threading.Event()
-        self._joy = rospy.Publisher(topic, Joy, queue_size=1, tcp_nodelay=True)
+        self._joy = PromptPublisher(topic, Joy)
         self._watch = MasterWatch(period_s=MASTER_PERIOD_S)
 
     def start(self):

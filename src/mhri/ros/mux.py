@@ -38,6 +38,7 @@ from mhri.ros.master_api import MasterError
 from mhri.ros.master_watch import MasterWatch
 from mhri.ros.mux_diagnostics import MuxDiagnostics
 from mhri.ros.mux_takeover import is_superseded
+from mhri.ros.prompt import PromptPublisher
 from mhri.ros.suspender import Suspender
 from mhri.ros.worker import Worker
 
@@ -62,8 +63,7 @@ class Mux:
         self._said_waiting = None
         self._closing = False
         self._service = None
-        self._twist = rospy.Publisher('/robot_controller/twist', Twist, queue_size=1,
-                                      tcp_nodelay=True)
+        self._twist = PromptPublisher('/robot_controller/twist', Twist)
         self._mode = rospy.Publisher('/mux/mode', ControlMode, queue_size=10, latch=True)
         self._stop = rospy.Publisher('/robot_controller/stop_all', Bool, queue_size=10, latch=True)
         self._limit = rospy.Publisher('/mux/speed_limit', Twist, queue_size=10, latch=True)
@@ -137,7 +137,8 @@ class Mux:
         if self._closing:
             return
         if velocity is not None:
-            self._twist.publish(to_twist(velocity.linear_mps, velocity.angular_rad_s))
+            publish = self._twist.publish_urgent if velocity.is_zero() else self._twist.publish
+            publish(to_twist(velocity.linear_mps, velocity.angular_rad_s))
         waiting = self._arbiter.waits_for(self._clock())
         if waiting != self._said_waiting:
             self._said_waiting = waiting

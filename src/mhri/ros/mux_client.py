@@ -17,6 +17,7 @@ from std_srvs.srv import SetBool
 
 from mhri.msg import ControlMode, RobotSelect
 from mhri.ros.convert import to_twist
+from mhri.ros.prompt import PromptPublisher
 from mhri.ros.worker import Worker
 
 STOP_SERVICE = '/mux/set_stop_all'
@@ -40,7 +41,7 @@ class MuxClient:
         self._limits = None
         self._waits_for = None
         self._proxy = None
-        self._joy = rospy.Publisher('/mux_in/joy', Joy, queue_size=1, tcp_nodelay=True)
+        self._joy = PromptPublisher('/mux_in/joy', Joy)
         self._select_mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
         self._speed = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=1, latch=True)
         self._select = rospy.Publisher('/robot_controller/robot_select', RobotSelect,

@@ -1,0 +1,191 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A publisher that writes on the caller's thread, and never into a link that has stalled.
+
+rospy's own, with a queue, hands every message to a thread of each connection: two changes of
+threads, several hundred microseconds where others are busy. Without a queue it writes at once, and
+waits for a robot whose link has stalled. Here nothing is ever waited for: what the socket does not
+take now goes to the connection's thread, and there the newest message wins as always.
+
+And TCP keeps what it was given: a link that comes back after a second brings a second of old
+commands. So nothing is given to a connection whose peer has confirmed nothing for a while; the
+newest message follows as soon as it confirms something again.
+"""
+import socket
+import struct
+import threading
+import time
+
+import rospy
+from rospy.impl.tcpros_pubsub import QueuedConnection
+
+# A peer may take 40 ms before it confirms (RFC 1122, 4.2.3.2: at most 500, Linux: 40).
+LEAST_STALL_S = 0.1
+_CONFIRMS_WITHIN_S = 0.05
+_LOOK_AGAIN_S = 0.01
+# struct tcp_info of linux/tcp.h: unacked, last_ack_recv [ms], rtt [us].
+_INFO = struct.Struct('=24xI28xI8xI')
+
+
+class Flow:
+    """Tells whether a connection's peer still confirms what it is sent.
+
+    :param end: its socket
+    :param clock: function that returns seconds, monotonic
+    """
+
+    def __init__(self, end, clock=time.monotonic):
+        self._end = end
+        self._clock = clock
+        self._clear_at = clock()
+        self._option = getattr(socket, 'TCP_INFO', None) if end.family in (
+            socket.AF_INET, socket.AF_INET6) else None
+
+    def stalled(self):
+        """Tell whether nothing has been confirmed for longer than two round trips take.
+
+        Never less than :data:`LEAST_STALL_S`; False where the system does not tell.
+        """
+        if self._option is None:
+            return False
+        try:
+            unacked, ack_ms, rtt_us = _INFO.unpack(
+                self._end.getsockopt(socket.IPPROTO_TCP, self._option, _INFO.size))
+        except (OSError, struct.error):
+            return False
+        now = self._clock()
+        if not unacked:
+            self._clear_at = now
+            return False
+        quiet_s = min(now - self._clear_at, ack_ms * 1e-3)
+        return quiet_s > max(LEAST_STALL_S, 2e-6 * rtt_us + _CONFIRMS_WITHIN_S)
+
+
+class _Call(threading.local):
+    """What the caller says of the message that it publishes now."""
+
+    urgent = False
+
+
+class PromptConnection(QueuedConnection):
+    """A connection to one subscriber.
+
+    Bytes leave in order whatever happens: while the thread has anything to do, all goes through it,
+    and a message that was taken in part is finished before any other.
+
+    :param connection: rospy's ``TCPROSTransport``
+    :param queue_size: the most messages that wait, the oldest are left out
+    :param call: ``call.urgent``: the message is sent into a stalled link as well
+    """
+
+    def __init__(self, connection, queue_size, call):
+        self._flow = Flow(connection.socket)
+        self._call = call
+        self._busy = self._urgent = False
+        self._rest = b''
+        super().__init__(connection, queue_size)
+
+    def write_data(self, data):
+        """Send a message, or leave it to the thread; never waits.
+
+        :raises Exception: what went wrong with the message before (rospy drops the connection)
+        """
+        with self._lock:
+            if self._error:
+                error, self._error = self._error, None
+                raise error
+            self._urgent = self._call.urgent
+            if self._urgent and not self._busy:
+                # What waited for the link is older.
+                self._queue = []
+            sent = 0
+            if not self._busy and not self._queue and (self._urgent or not self._flow.stalled()):
+                sent = self._send(data)
+            if sent == len(data):
+                return True
+            if sent:
+                self._rest, self._busy = data[sent:], True
+            else:
+                if 0 < self._queue_size <= len(self._queue):
+                    del self._queue[0]
+                self._queue.append(data)
+            self._cond_data_available.notify()
+        return True
+
+    def _send(self, data):
+        """Return how many bytes the socket has taken."""
+        connection = self._connection
+        try:
+            sent = connection.socket.send(data, socket.MSG_DONTWAIT)
+        except (OSError, AttributeError):
+            # A full buffer, or a connection that has ended: the thread finds that out in rospy's
+            # own way.
+            return 0
+        if sent == len(data):
+            connection.stat_bytes += sent
+            connection.stat_num_msg += 1
+        return sent
+
+    def _next(self):
+        """Wait for something to send; return the list of it, [] at the end (the thread)."""
+        with self._lock:
+            while not self._connection.done:
+                if self._rest:
+                    rest, self._rest = self._rest, b''
+                    return [rest]
+                if self._queue and (self._urgent or not self._flow.stalled()):
+                    waiting, self._queue = self._queue, []
+                    self._busy = True
+                    return waiting
+                self._cond_data_available.wait(_LOOK_AGAIN_S if self._queue else None)
+            return []
+
+    def _run(self):
+        """Send what did not go at once (the connection's thread)."""
+        while True:
+            waiting = self._next()
+            if not waiting:
+                return
+            error = None
+            try:
+                for data in waiting:
+                    self._connection.write_data(data)
+            except Exception as reason:  # handed to whoever publishes next, as rospy does
+                error = reason
+            with self._lock:
+                self._busy = False
+                self._error = error or self._error
+
+
+class PromptPublisher(rospy.Publisher):
+    """A ``rospy.Publisher`` with a queue, ``tcp_nodelay`` and :class:`PromptConnection`.
+
+    :param name: the topic
+    :param message_class: its type
+    :param queue_size: see :class:`PromptConnection`
+    """
+
+    def __init__(self, name, message_class, queue_size=1):
+        super().__init__(name, message_class, tcp_nodelay=True, queue_size=queue_size)
+        self._call = call = _Call()
+        impl = self.impl
+        plain = type(impl).add_connection
+
+        def add_connection(connection):
+            return plain(impl, PromptConnection(connection, queue_size, call))
+
+        # It wraps each connection in rospy's own where the topic has a size.
+        impl.set_queue_size(None)
+        impl.add_connection = add_connection
+
+    def publish_urgent(self, message):
+        """Publish what may be late but must not be left out: the word to stop.
+
+        It is given to a stalled link, too, behind the little that is in it: whatever comes to this
+        program meanwhile, the robot hears it before anything newer.
+        """
+        self._call.urgent = True
+        try:
+            self.publish(message)
+        finally:
+            self._call.urgent = False
