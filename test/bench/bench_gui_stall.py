@@ -163,8 +163,8 @@ def main():
         import rosgraph
         if not options.simulated:
             master = rosgraph.Master('/bench')
-            wait_for(lambda: all(any(topic.startswith('/{}/camera'.format(name)) for topic, _ in
-                                     master.getPublishedTopics('')) for name in NAMES), 40, 'robots')
+            wait_for(lambda: all(master.getPublishedTopics('/{}/camera'.format(name))
+                                 for name in NAMES), 40, 'robots')
             play_cameras(system, NAMES)
         measurement = Measurement(system, seconds)
         print('Qt event loop blocked [ms]                     turns     p50     p99     max')

@@ -186,7 +186,7 @@ def path_m(rows, since):
     return sum(math.hypot(b[3] - a[3], b[4] - a[4]) for a, b in zip(rows, rows[1:]))
 
 
-def latencies_ms(operator, rows, turns=80):
+def latencies_ms(operator, rows, turns=300):
     """Return how long each of so many changes of the stick took to a robot's command topic [ms].
 
     A change that is not there when the next one is due counts as of the time until then.
@@ -195,7 +195,7 @@ def latencies_ms(operator, rows, turns=80):
     for turn in range(turns + 1):
         sent.append(time.monotonic())
         operator.stick.hold(0.2, 0.5 + 0.3 * (turn % 2))
-        time.sleep(0.06)
+        time.sleep(0.04)
     operator.stick.hold(0.2, 0.6)
     wait_for(lambda: rows(3)[-1][0] > sent[-1] + 0.1, 20, 'the last change', poll_s=0.05)
     times = []
@@ -241,8 +241,7 @@ def test_robot_stops_without_its_link_and_is_usable_with_it(lab, operator, name,
               name, 'guarded' if name in GUARDED else 'no guard', mended - cut, stopped * 1e3,
               back, strayed))
     assert stopped < STOP_S
-    # Without a guard on the robot, what the network had kept is obeyed: measured, not promised.
-    assert name not in GUARDED or strayed < 0.02, 'a stale command moved it'
+    assert strayed < 0.01, 'a stale command moved it'
     assert during[len(during) // 2] < 50.0, other + ' goes by the stick as before'
     assert all(terminal.process.poll() is None for terminal in lab.terminals[-2:])
     operator.stick.hold(0.0, 0.0)

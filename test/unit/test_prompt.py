@@ -214,6 +214,26 @@ def test_the_flow_of_a_real_connection_is_read():
             assert 0 < rtt_us < 1e6, 'not where the round trip is in struct tcp_info'
 
 
+@pytest.mark.parametrize('stalled', [False, True])
+def test_what_a_stalled_link_has_is_taken_back(stalled):
+    with socket.socket() as server:
+        server.bind(('127.0.0.1', 0))
+        server.listen(1)
+        ours, theirs = socket.create_connection(server.getsockname()), server.accept()[0]
+        connection = PromptConnection(Transport(ours), 1, Call())
+        connection._flow.stalled = lambda: stalled
+        assert connection.drop_if_stalled() == stalled
+        ours.close()
+        connection._connection.close()
+        theirs.settimeout(5.0)
+        if stalled:
+            with pytest.raises(ConnectionResetError):
+                theirs.recv(10)
+        else:
+            assert theirs.recv(10) == b'', 'an ordinary end'
+        theirs.close()
+
+
 def test_nothing_but_the_word_to_stop_is_given_to_a_stalled_link(link):
     connection, transport, theirs = link
     stalled = [True]

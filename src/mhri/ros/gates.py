@@ -32,8 +32,8 @@ class Gate:
     """A :class:`GateRule` with the publishers of its robot.
 
     One publisher for each velocity topic of the template (``geometry_msgs/Twist``, queue of 1:
-    newest wins, and nothing is waited for, so that a dead robot delays nobody); what is sent goes to
-    the first one that has a subscriber. Before them all comes the guard that may run on the robot
+    newest wins, and nothing is waited for: a dead robot delays nobody); what is sent goes to the
+    first one that has a subscriber. Before them all comes the guard that may run on the robot
     (``/<robot>/mhri_guard/command``, ``geometry_msgs/TwistStamped``, stamped by the clock here).
 
     There may be two of a robot, in two processes (:mod:`mhri.ros.keeper`). One of them leads; the
@@ -94,6 +94,18 @@ class Gate:
     def lead(self):
         """Speak from now on."""
         self._follows = False
+
+    def drop_backlog(self):
+        """Take back what a stalled link has not delivered; tell whether there was such a link.
+
+        This gate does not reach the robot any more then, and leaves it to the other one. A guard
+        is left what it has: it knows what is late.
+        """
+        dropped = sum(publisher.drop_stalled() for publisher in self._publishers
+                      if publisher is not self._guard)
+        if dropped:
+            self.follow()
+        return dropped > 0
 
     def take_over(self, now):
         """Speak again: the other gate has ended, and may have taken its last zero with it."""
@@ -223,6 +235,14 @@ class GateBank:
             if name in self._gates:
                 self._gates[name].follow()
 
+    def speak_for(self, name):
+        """Let the gate of one robot speak, and say zero first: the other one cannot reach it."""
+        with self._changed:
+            gate = self._gates.get(name)
+            if gate is not None:
+                gate.lead()
+                gate.send(ZERO, self._clock())
+
     def take_over(self):
         """Let all gates speak for themselves: the other process has ended."""
         with self._changed:
@@ -271,6 +291,12 @@ class GateBank:
                 now = self._clock()
                 gate.send(gate.rule.hold(held, now), now)
                 self._changed.notify()
+
+    def drop_backlog(self, name):
+        """See :meth:`Gate.drop_backlog`; False where there is no such robot."""
+        with self._changed:
+            gate = self._gates.get(name)
+            return gate is not None and gate.drop_backlog()
 
     def deselect_others(self, names):
         """Close the gates of all but these robots; opening is the word of robot_select alone."""

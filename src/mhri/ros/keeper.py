@@ -11,11 +11,15 @@ decided, and speak for any robot that the keeper does not reach yet, or when it 
 - The panel ends, however it went: their pipe breaks, and the keeper sends the zeros.
 - The keeper ends: its pipe breaks, and the panel's gates take over, with a zero where one was just
   said. A keeper that is silent for :data:`SILENCE_S` is ended.
+- A robot's link is lost: the network keeps the last commands of the keeper and would bring them,
+  late, when it is back. So the keeper drops its connection, and the panel's gate, which has never
+  said anything on its own, says zero there: the first word that comes through. The robot takes
+  another connection only from another node: once it is heard again, the keeper is replaced.
 
 The pipes carry one JSON list per line. To the keeper: ``["open", name, [topic, ...], m/s, rad/s]``,
 ``["close", name]``, ``["held", name, bool]``, ``["select", [name, ...]]``, ``["press"]``,
 ``["withdraw"]``, ``["pace", together, share]``, ``["bye"]``. From it: ``["alive"]`` ten times a
-second, ``["leads", name]``, ``["closed"]`` after bye. The keeper hears commands and stop-all from
+second, ``["leads", name]``, ``["dropped", name]``, ``["closed"]`` after bye. The keeper hears commands and stop-all from
 the mux itself, and the selection from the panel alone.
 """
 import json
@@ -53,6 +57,7 @@ class KeeperLink:
     def __init__(self, bank):
         self._bank = bank
         self._process = None
+        self._dropped = frozenset()
         self._ending = threading.Event()
         self._closed = threading.Event()
 
@@ -83,7 +88,8 @@ class KeeperLink:
                 self._bank.take_over()
             self._process.stdin.close()
             status = self._process.wait()
-            if not self._ending.wait(RESTART_S):
+            replaced, self._dropped = self._dropped, frozenset()
+            if not self._ending.wait(RESTART_S) and not replaced:
                 rospy.logwarn('the gate keeper has ended (%s): the panel drives the robots itself '
                               'until there is another one', status)
 
@@ -107,7 +113,13 @@ class KeeperLink:
         return answers
 
     def _say(self, *words):
-        """Write one line, never waiting; a child that does not read its pipe is ended."""
+        """Write one line, never waiting; a child that does not read its pipe is ended.
+
+        One that cannot reach a robot that is heard again is replaced.
+        """
+        if words[0] == 'held' and words[1] in self._dropped and not words[2]:
+            self._process.kill()
+            return
         try:
             os.write(self._process.stdin.fileno(), (json.dumps(words) + '\n').encode('ascii'))
         except BlockingIOError:
@@ -133,6 +145,9 @@ class KeeperLink:
     def _take(self, word, *rest):
         if word == 'leads':
             self._bank.follow(*rest)
+        elif word == 'dropped':
+            self._dropped |= {rest[0]}
+            self._bank.speak_for(*rest)
         elif word == 'closed':
             self._closed.set()
 
@@ -214,6 +229,8 @@ class Keeper:
         """Hold a robot, or let it go; one that is still to be opened is held from then on."""
         self._held = self._held | {name} if held else self._held - {name}
         self._bank.hold(name, held)
+        if held and self._bank.drop_backlog(name):
+            self._answer('dropped', name)
 
     def _open(self, name, topics, linear_mps, angular_rad_s):
         gate = Gate(name, topics, Limits(linear_mps, angular_rad_s))

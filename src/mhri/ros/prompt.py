@@ -126,6 +126,23 @@ class PromptConnection(QueuedConnection):
             connection.stat_num_msg += 1
         return sent
 
+    def drop_if_stalled(self):
+        """Close a connection whose peer confirms nothing, with all that is on its way; tell if so.
+
+        The peer does not learn of it: it would take a new connection from another node at once,
+        from this one only when its own keepalive has found out (rospy: after a minute).
+        """
+        if not self._flow.stalled():
+            return False
+        try:
+            # Without lingering TCP forgets what was not confirmed.
+            self._connection.socket.setsockopt(
+                socket.SOL_SOCKET, socket.SO_LINGER, struct.pack('=ii', 1, 0))
+        except (OSError, AttributeError):
+            return False
+        self._connection.close()
+        return True
+
     def _next(self):
         """Wait for something to send; return the list of it, [] at the end (the thread)."""
         with self._lock:
@@ -177,6 +194,11 @@ class PromptPublisher(rospy.Publisher):
         # It wraps each connection in rospy's own where the topic has a size.
         impl.set_queue_size(None)
         impl.add_connection = add_connection
+
+    def drop_stalled(self):
+        """Close the connections that have stalled; return how many."""
+        return sum(connection.drop_if_stalled() for connection in list(self.impl.connections)
+                   if isinstance(connection, PromptConnection))
 
     def publish_urgent(self, message):
         """Publish what may be late but must not be left out: the word to stop.
