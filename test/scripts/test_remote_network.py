@@ -13,6 +13,7 @@ import sys
 import time
 
 from conftest import REPO
+import numpy as np
 import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
@@ -163,12 +164,28 @@ def test_camera_is_seen_on_the_host(lab, operator):
     from sensor_msgs.msg import Image
     picture = rospy.wait_for_message('/bot1/camera/rgb/image_raw', Image, timeout=START_S)
     assert picture.header.frame_id == 'bot1/camera_rgb_optical_frame'
-    # The window of a robot that is selected shows its camera: the panel takes the pictures, too.
-    master, end = rosgraph.Master('/lab'), time.monotonic() + START_S
-    while '/mhri_panel' not in dict(master.getSystemState()[1]).get(
-            '/bot1/camera/rgb/image_raw', ()):
-        assert time.monotonic() < end, 'the panel does not show the camera'
-        time.sleep(0.1)
+    # The window of a robot that is selected shows its camera: on the screen, and it is alive.
+    sides = set()
+    deadline = time.monotonic() + START_S
+    while sides != {'left', 'right'}:
+        assert time.monotonic() < deadline, 'magenta is seen {}'.format(sides or 'nowhere')
+        sides |= magenta_sides(lab.screen())
+    master = rosgraph.Master('/lab')
+    listeners = dict(master.getSystemState()[1])
+    assert '/mhri_panel' in listeners['/bot1/camera/rgb/image_raw/compressed']
+
+
+def magenta_sides(screen):
+    """Return {'left'}, {'right'} or neither: where in a camera's picture magenta is beside green.
+
+    :param screen: red, green, blue, (h, w, 3)
+    """
+    magenta, green = (np.abs(screen.astype(int) - colour).max(2) < 24
+                      for colour in ((200, 20, 160), (20, 140, 60)))
+    if magenta.sum() < 5000 or green.sum() < 5000:
+        return set()
+    middles = [np.nonzero(found)[1].mean() for found in (magenta, green)]
+    return {'left' if middles[0] < middles[1] else 'right'}
 
 
 def first_standstill(rows, since):
@@ -284,7 +301,7 @@ def test_second_robot_of_a_name_is_refused(lab, operator):
 def left(robot):
     """Return what of turtle_remote.sh's runs on a robot."""
     return [line for text in ('turtle_remote', 'roslaunch', 'sim_robot', 'nodelet', 'mhri_guard',
-                              'grey_camera') for line in robot.processes(text)]
+                              'colour_camera') for line in robot.processes(text)]
 
 
 def await_quiet(robot):

@@ -12,6 +12,8 @@ import termios
 import threading
 import time
 
+import cv2
+
 from support import machines
 from support.ros_system import wait_for
 
@@ -163,6 +165,13 @@ class Lab:
             return [tuple(map(float, words)) for words in lines if len(words) == width]
         wait_for(rows, START_S, 'the odometry of ' + name, poll_s=0.1)
         return rows
+
+    def screen(self):
+        """Return what is on the operator's screen: red, green, blue, (h, w, 3)."""
+        path = str(self.folder / 'screen.png')
+        subprocess.run(['import', '-window', 'root', path], env=self.system.env, check=True,
+                       timeout=30)
+        return cv2.imread(path)[..., ::-1]
 
     def tell(self):
         """Print the end of what everybody said: to explain a failure far away."""
