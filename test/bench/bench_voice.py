@@ -36,7 +36,9 @@ from mhri.inputs.recogniser import Dictionary, Recogniser, Tuning  # noqa: E402
 
 LANGUAGE = os.path.join(HERE, '..', '..', 'resource', 'voice', 'english.yaml')
 TUNE_VOICES = [Voice('en-us', 150, 50), Voice('en-us+f2', 150, 50), Voice('en-us+m3', 150, 50),
-               Voice('en-us+klatt4', 150, 50)]
+               Voice('en-us+klatt4', 150, 50), Voice('en-us+m2', 155, 50),
+               Voice('en-us+m5', 140, 45), Voice('en-us+f3', 150, 50), Voice('en-us+f4', 160, 55),
+               Voice('en-us+klatt3', 150, 50), Voice('en-us+m6', 135, 45)]
 TEST_VOICES = [Voice('en-us', 135, 45), Voice('en-us+m1', 160, 50), Voice('en-us+m7', 145, 55),
                Voice('en-us+f2', 140, 45), Voice('en-us+klatt2', 150, 50),
                Voice('en-us+m4', 155, 40)]

@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Where an utterance begins and ends, and what is made of it while it goes on."""
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -179,6 +181,14 @@ FITS = {
                                (-20.0, 0.0, 0.0, 45)),
     'what has no place': ([('(NULL)', 0, 49, -9999), ('left', 0, 94, -1400)],
                           (0.0, 0.0, 0.0, 0))}
+GAPS = {
+    'no gap': ([('robot', 0, 49, -500), ('left', 50, 94, -900)], (0.0, 0)),
+    'talk between the words': ([('robot', 0, 29, -300), ('<sil>', 30, 59, -900),
+                                ('left', 60, 94, -700)], (0.0, 30)),
+    'silence around them': ([('<sil>', 0, 9, -100), ('left', 10, 84, -1200),
+                             ('[NOISE]', 85, 94, -200)], (-1.25, 0)),
+    'a second bad word': ([('robot', 0, 29, -650), ('turn', 30, 49, -450), ('left', 50, 94, -1900)],
+                          (-10.0, 0))}
 
 
 @pytest.mark.parametrize('name', sorted(FITS))
@@ -188,11 +198,18 @@ def test_how_a_command_fits(name):
     assert (fit.worst, fit.first, fit.mean, fit.start) == pytest.approx(wanted, abs=0.01)
 
 
+@pytest.mark.parametrize('name', sorted(GAPS))
+def test_its_second_worst_word_and_its_gaps(name):
+    fitted, wanted = GAPS[name]
+    fit = compare(fitted, ANYTHING)
+    assert (fit.second, fit.gaps) == pytest.approx(wanted, abs=0.01)
+
+
 TUNING = Tuning(worst_word=-30.0, first_word=-20.0, unspotted_wake=-12.0, all_words=-25.0,
                 latest_start=40.0)
-MARGINS = [(Fit(-10.0, -10.0, -10.0, 30), 10.0), (Fit(-35.0, -10.0, -10.0, 30), -5.0),
-           (Fit(-10.0, -21.0, -10.0, 30), -1.0), (Fit(-10.0, -10.0, -29.0, 30), -4.0),
-           (Fit(-10.0, -10.0, -10.0, 46), -6.0)]
+GOOD = Fit(worst=-10.0, second=-8.0, first=-10.0, mean=-10.0, start=30, gaps=0)
+MARGINS = [(GOOD, 10.0), (replace(GOOD, worst=-35.0), -5.0), (replace(GOOD, first=-21.0), -1.0),
+           (replace(GOOD, mean=-29.0), -4.0), (replace(GOOD, start=46), -6.0)]
 
 
 @pytest.mark.parametrize('fit, margin', MARGINS)
@@ -204,10 +221,27 @@ def test_every_limit_counts(fit, margin):
 
 def test_the_limit_of_the_first_word_is_that_of_the_wake_word():
     """With push-to-talk any word may come first."""
-    assert Fit(-10.0, -80.0, -10.0, 30).margin(TUNING, woken=False) == 10.0
+    assert replace(GOOD, first=-80.0).margin(TUNING, woken=False) == 10.0
 
 
 def test_a_wake_word_that_was_not_spotted_has_to_fit_better():
-    fit = Fit(-10.0, -15.0, -10.0, 30)
+    fit = replace(GOOD, first=-15.0)
     assert fit.margin(TUNING) == 5.0
     assert fit.margin(TUNING, spotted=False) == -3.0
+
+
+@pytest.mark.parametrize('change', [
+    {'worst': -11.0}, {'second': -9.0}, {'first': -11.0}, {'mean': -11.0}, {'start': 34},
+    {'gaps': 1}])
+def test_every_sign_counts_together_with_the_others(change):
+    assert replace(GOOD, **change).logit(TUNING) < GOOD.logit(TUNING)
+    assert GOOD.logit(Tuning()) > 0.0
+    poor = Fit(worst=-33.0, second=-28.0, first=-15.0, mean=-20.0, start=35, gaps=20)
+    assert poor.margin(Tuning()) > 0.0 > poor.logit(Tuning()), 'within each limit, yet no command'
+
+
+def test_no_sign_alone_is_worth_more_than_was_met():
+    assert replace(GOOD, worst=-500.0).logit(TUNING) == replace(GOOD, worst=-60.0).logit(TUNING)
+    assert replace(GOOD, first=-500.0).logit(TUNING, woken=False) > GOOD.logit(TUNING)
+    better = replace(GOOD, worst=20.0, second=20.0, mean=20.0, first=20.0, start=0)
+    assert better.logit(TUNING) == TUNING.at_rest

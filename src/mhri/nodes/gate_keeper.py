@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The executable ``gate_keeper``, started by the panel: see :mod:`mhri.ros.keeper`."""
+import gc
 import os
 import signal
 import sys
@@ -25,6 +26,8 @@ def main():
     MasterWatch().start()
     bank = GateBank()
     bank.start(hear_selection=False)
+    # What has been loaded by now stays: looking through it would hold up a command.
+    gc.freeze()
     for name in Keeper(words, int(sys.argv[-1]), bank).run():
         rospy.logwarn('the panel was killed while driving: zero sent to %s', name)
     rospy.signal_shutdown('the panel has ended')

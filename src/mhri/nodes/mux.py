@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The executable ``mux``: reads its parameters and runs :class:`mhri.ros.mux.Mux`."""
 from dataclasses import replace
+import gc
 import signal
 import sys
 
@@ -66,4 +67,6 @@ def main():
         sys.exit('the mux cannot start: {}'.format(error))
     end_other_muxes()
     Mux(config).start(stopped)
+    # What has been loaded by now stays: looking through it would hold up a command.
+    gc.freeze()
     rospy.spin()

@@ -19,8 +19,8 @@ decided, and speak for any robot that the keeper does not reach yet, or when it 
 The pipes carry one JSON list per line. To the keeper: ``["open", name, [topic, ...], m/s, rad/s]``,
 ``["close", name]``, ``["held", name, bool]``, ``["select", [name, ...]]``, ``["press"]``,
 ``["withdraw"]``, ``["pace", together, share]``, ``["bye"]``. From it: ``["alive"]`` ten times a
-second, ``["leads", name]``, ``["dropped", name]``, ``["closed"]`` after bye. The keeper hears commands and stop-all from
-the mux itself, and the selection from the panel alone.
+second, ``["leads", name]``, ``["dropped", name]``, ``["closed"]`` after bye. The keeper hears
+commands and stop-all from the mux itself, and the selection from the panel alone.
 """
 import json
 import os
