@@ -133,6 +133,11 @@ def tidy(session):
 
 def test_two_of_three_drive_alike_and_stand_still_when_the_stick_is_let_go(session):
     session.select('bot1', 'bot3')
+    # A robot that has just been found may take a moment longer than the other to be connected.
+    session.drive(0.4, 0.0, lambda: session.witnesses['bot1'].moving()
+                  and session.witnesses['bot3'].moving())
+    session.let_go()
+    session.rest()
     before = {name: session.witnesses[name].path_m for name in ROBOTS}
     session.drive(0.4, 0.0, lambda: session.witnesses['bot1'].path_m - before['bot1'] > 0.3)
     since = time.monotonic()

@@ -209,6 +209,31 @@ class LinkTest(unittest.TestCase):
         print('MEASURED guard ended: first zero after {:.0f} ms'.format(
             1e3 * ([entry for entry in end.after(when) if entry[1:] == ZERO][0][0] - when)))
 
+    def test_a_guard_that_is_killed_leaves_no_gap_in_the_commands(self):
+        """Its robot is driven as one without a guard then: the gate has the plain topic, too."""
+        gate = Gate('far4', ['/far4/cmd_vel'], Limits(0.5, 1.0))
+        process, end = self.guarded('far4'), VelocityEnd('/far4/cmd_vel')
+        wait_for(gate.guarded, START_S, 'the guard')
+        wait_for(lambda: all(publisher.get_num_connections() for publisher in gate._publishers),
+                 START_S, 'the plain topic')
+        begun = time.monotonic()
+        while end.values()[-1:] != [(0.3, 0.0)]:
+            gate.send(Velocity(0.3, 0.0), time.monotonic())
+            time.sleep(0.05)
+            self.assertLess(time.monotonic() - begun, START_S, 'it to be driven')
+        when = time.monotonic()
+        process.kill()
+        while gate.guarded() or end.values()[-1] != (0.2, 0.0):
+            gate.send(Velocity(0.2, 0.0), time.monotonic())
+            time.sleep(0.05)
+            self.assertLess(time.monotonic() - when, START_S, 'it to be driven without the guard')
+        found = [entry[0] for entry in end.after(when) if entry[1:] == (0.2, 0.0)]
+        print('MEASURED guard killed: the next command reaches the robot after {:.0f} ms'.format(
+            1e3 * (found[0] - when)))
+        self.assertLess(found[0] - when, 0.5, 'longer than the watchdog of a robot waits')
+        gate.send(Velocity(0.0, 0.0), time.monotonic())
+        wait_for(lambda: end.values()[-1] == ZERO, 5.0, 'the zero')
+
     def test_a_parameter_that_cannot_be_is_refused(self):
         done = subprocess.run([sys.executable, GUARD, '_lease_s:=-1', '__name:=wrong'],
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=START_S,
