@@ -127,7 +127,7 @@ def host(operator, monkeypatch):
     """The panel with robots whose type is a lab's; nothing is connected to anything."""
     made = PanelHost(Operator())
     made.keys = {}
-    monkeypatch.setattr(made.operator, 'robot_view', lambda name: RobotView(
+    monkeypatch.setattr(made.operator, '_robot_view', lambda name, selected: RobotView(
         name, 'Lab', window=made.keys[name], link=views.LIVE, x_m=made.x_m))
     made.x_m = None
     made.panel.show()
