@@ -127,7 +127,7 @@ STREAM = encode_rvl(SCENE)
     ('zeros for ever', b'\0' * 4000, 10, 'truncated'),
     ('a number without end', b'\xff' * 400000, 10, 'digits'),
     ('a number too long', struct.pack('<III', 0xffffffff, 0xfff00000, 0), 10, 'digits'),
-])
+], ids=lambda value: value if isinstance(value, str) else '')
 def test_wrong_streams_are_refused(what, stream, count, words):
     with pytest.raises(FrameError, match=words):
         decode_rvl(stream, count)

@@ -13,7 +13,19 @@ import numpy as np
 from mhri.core.frames import FrameError
 
 _LONGEST = 10  # nibbles of a number below 2^30
-_PART = 32_768  # nibbles read at once: what is worked on stays in the cache
+_PART = 65_536  # nibbles read at once: what is worked on stays in the cache
+
+
+def _pairs():
+    """Return what the last nibble of a number makes with the one before it: [16 * last + before].
+
+    One below 8 before it ends another number.
+    """
+    last, before = np.divmod(np.arange(256, dtype=np.int32), 16)
+    return np.where(before >= 8, (last << 3) | (before & 7), last).astype(np.int32)
+
+
+_PAIRS = _pairs()
 
 
 def decode_rvl(payload, pixels):
@@ -25,26 +37,26 @@ def decode_rvl(payload, pixels):
     """
     numbers = _read_numbers(payload)
     heads, end = _heads(memoryview(numbers), pixels)
-    counts = np.empty((len(heads), 2), np.intp)
-    counts[:, 0] = numbers[heads]
-    counts[:, 1] = numbers[heads + 1]
-    if counts.min() < 0 or counts.sum() != pixels or end > len(numbers):
+    zeros, others = numbers[heads].astype(np.intp), numbers[heads + 1].astype(np.intp)
+    if min(zeros.min(), others.min()) < 0 or zeros.sum() + others.sum() != pixels \
+            or end > len(numbers):
         raise FrameError('rvl: truncated or corrupted, its runs do not make {} pixels'.format(
             pixels))
-    is_delta = np.ones(end, bool)
-    is_delta[heads] = False
-    is_delta[heads + 1] = False
     # In place where it can be: fresh arrays of this size cost more than the sums.
-    values = numbers[:end][is_delta]
+    values = numbers[:end]
+    values[heads] = values[heads + 1] = 0
     signs = values & 1
     np.negative(signs, out=signs)
     values >>= 1
     values ^= signs
     np.cumsum(values, out=values)
-    valid = np.repeat(np.tile((False, True), len(heads)), counts.ravel())
-    image = np.zeros(pixels, np.uint16)
-    image[valid] = values
-    return image
+    # Where each number goes; the counts go behind the last pixel.
+    places = np.repeat(np.cumsum(zeros + others) - others - heads - 2, others + 2)
+    places += np.arange(end)
+    places[heads] = places[heads + 1] = pixels
+    image = np.zeros(pixels + 1, np.uint16)
+    image[places] = values
+    return image[:pixels]
 
 
 def _read_numbers(payload):
@@ -54,39 +66,38 @@ def _read_numbers(payload):
     """
     words = np.frombuffer(payload, '<u4', len(payload) // 4)
     packed = words.astype('>u4').view(np.uint8)
-    nibbles = np.empty((len(packed), 2), np.uint8)
-    np.right_shift(packed, 4, out=nibbles[:, 0])
-    np.bitwise_and(packed, 15, out=nibbles[:, 1])
-    nibbles = nibbles.ravel()
-    parts, begin = [], 0
-    while begin < len(nibbles):
-        part = nibbles[begin:begin + _PART]
-        numbers, used = _read_part(part)
-        parts.append(numbers)
-        begin += used
-        if used == 0:
-            break
+    # What is before the first one ends no number.
+    nibbles = np.zeros(_LONGEST + 2 * len(packed), np.uint8)
+    np.right_shift(packed, 4, out=nibbles[_LONGEST::2])
+    np.bitwise_and(packed, 15, out=nibbles[_LONGEST + 1::2])
+    if nibbles[-_LONGEST - 1:].min() >= 8:
+        raise _too_long()
+    parts = [_read_part(nibbles, begin, min(begin + _PART, len(nibbles)))
+             for begin in range(_LONGEST, len(nibbles), _PART)]
     return np.concatenate(parts) if parts else np.empty(0, np.int32)
 
 
-def _read_part(nibbles):
-    """Return the numbers that end in a part of the nibbles, and how many nibbles they took."""
-    lasts = np.flatnonzero(nibbles < 8)
-    numbers = nibbles[lasts].astype(np.int32)
-    lengths = np.diff(lasts, prepend=-1)
-    longest = lengths.max() if len(lasts) else len(nibbles)
-    if longest > _LONGEST:
-        raise FrameError('rvl: corrupted, a number of {} digits'.format(longest))
-    # The nibbles before the last of a number, from the second last on: ever fewer have one more.
-    which = np.flatnonzero(lengths > 1)
-    places, left = lasts[which], lengths[which] - 1
+def _too_long():
+    return FrameError('rvl: corrupted, a number of more than {} digits'.format(_LONGEST))
+
+
+def _read_part(nibbles, begin, end):
+    """Return the numbers whose last nibble is in a part of the nibbles."""
+    last, before, earlier = (nibbles[begin - back:end - back] for back in range(3))
+    ends = np.flatnonzero(last < 8)
+    numbers = _PAIRS[((last << 4) | before)[ends]]
+    # Most have no more than two; ever fewer have one more.
+    which = np.flatnonzero(((before >= 8) & (earlier >= 8))[ends])
+    places, digits = ends[which] + begin - 1, 2
     while len(which):
+        digits += 1
+        if digits > _LONGEST:
+            raise _too_long()
         places -= 1
         numbers[which] = (numbers[which] << 3) | (nibbles[places] & 7)
-        left -= 1
-        more = left > 0
-        which, places, left = which[more], places[more], left[more]
-    return numbers, int(lasts[-1]) + 1 if len(lasts) else 0
+        more = nibbles[places - 1] >= 8
+        which, places = which[more], places[more]
+    return numbers
 
 
 def _heads(numbers, pixels):
