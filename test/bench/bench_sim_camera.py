@@ -61,7 +61,7 @@ def place(share):
 
 def steps(frames):
     """Return {step: CPU of each frame [ms]}."""
-    from mhri.sim.camera_node import encode_jpeg
+    from mhri.sim.camera_node import compress
     camera, bodies = Camera(lab()), others()
     camera.rgb(camera.look(*place(0.0), bodies))
     spent = {}
@@ -74,7 +74,7 @@ def steps(frames):
     for frame in range(frames):
         view = timed('rays', camera.look, *place(frame / frames), bodies)
         rgb = timed('draw RGB', camera.rgb, view)
-        timed('jpeg', encode_jpeg, rgb)
+        timed('jpeg', compress, rgb)
         depth = timed('draw depth', camera.depth, view)
         timed('depth png', encode_depth, depth, 'png')
         timed('depth rvl', encode_depth, depth, 'rvl')

@@ -27,7 +27,7 @@ def write_bag(path, names, seconds):
     from sensor_msgs.msg import CompressedImage
     from mhri.ros.resources import read_text, resource_path
     from mhri.sim.camera import Camera
-    from mhri.sim.camera_node import encode_jpeg
+    from mhri.sim.camera_node import compress
     from mhri.sim.plan import parse_plan
     plan_path = resource_path('sim', 'plan.yaml')
     camera = Camera(parse_plan(read_text(plan_path), plan_path))
@@ -38,7 +38,7 @@ def write_bag(path, names, seconds):
         for number in range(count):
             for index, name in enumerate(names):
                 pose = _place((number / count + index / len(names)) % 1.0)
-                fmt, data = encode_jpeg(camera.rgb(camera.look(*pose, nobody)))
+                fmt, data = compress(camera.rgb(camera.look(*pose, nobody)))
                 # Cameras are not in step with each other.
                 stamp = rospy.Time.from_sec(1.0 + (number + index / len(names)) / RATE_HZ)
                 message = CompressedImage(format=fmt, data=data)

@@ -116,6 +116,19 @@ def test_a_jpeg_the_library_refuses_goes_to_the_other_decoder(monkeypatch):
     assert jpeg.decode_jpeg(b'\xff\xd8\xff\xd9', (10, 10)) is None
 
 
+@pytest.mark.parametrize('size', [(320, 240), (33, 17), (1, 1)])
+def test_what_is_written_can_be_read(decoder, size):
+    picture = colour_picture(*size)
+    data = jpeg.encode_jpeg(picture)
+    rgb, full, kind = decode_compressed('rgb8; jpeg compressed bgr8', data)
+    assert (full, kind) == (size, 'jpeg')
+    assert np.abs(cv2.blur(rgb, (5, 5)).astype(int) - cv2.blur(picture, (5, 5))).mean() < 6.0
+    assert len(jpeg.encode_jpeg(picture, 20)) <= len(data)
+    beside = cv2.imencode('.jpg', picture[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 80])[1]
+    assert abs(len(data) - len(beside)) <= 0.02 * len(beside) + 20
+    assert jpeg.encode_jpeg(picture[::-1, ::-1]), 'in whatever order it lies'
+
+
 def test_a_smear_is_a_picture(decoder):
     damaged = bytearray(JPEG)
     damaged[len(JPEG) // 2:len(JPEG) // 2 + 40] = b'\x55' * 40

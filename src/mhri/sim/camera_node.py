@@ -20,6 +20,7 @@ import rospy
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
 from mhri.core.depth_codec import encode_depth
+from mhri.core.jpeg import encode_jpeg
 from mhri.sim.camera import Camera, CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, WIDTH
 
 RGB_HZ = 30
@@ -66,11 +67,9 @@ class _Stream:
         return message
 
 
-def encode_jpeg(rgb):
+def compress(rgb):
     """Return (format, data) of a picture (h, w, 3) uint8, red, green, blue."""
-    options = [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]
-    data = cv2.imencode('.jpg', cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR), options)[1]
-    return 'rgb8; jpeg compressed bgr8', data.tobytes()
+    return 'rgb8; jpeg compressed bgr8', encode_jpeg(rgb, JPEG_QUALITY)
 
 
 def camera_info():
@@ -104,7 +103,7 @@ class SimCamera:
         self._done = threading.Event()
         prefix, frame_id = '/' + name + '/', name + '/camera_rgb_optical_frame'
         self._rgb = _Stream(prefix + template.rgb[0], 'compressed', 'rgb8', frame_id,
-                            encode_jpeg) if template.rgb else None
+                            compress) if template.rgb else None
         self._depth = _Stream(
             prefix + template.depth[0], 'compressedDepth', '16UC1', frame_id,
             lambda depth: encode_depth(depth, depth_format)) if template.depth else None
