@@ -279,9 +279,13 @@ def test_a_row_warns_of_its_link_and_tells_the_figures(panel, operator, four_rob
     figures = views.LinkFigures(0.38, -0.4, 0.07)
     first, *others = four_robots.robots
     warned = replace(first, link=views.LIVE, figures=figures, slow=True, guarded=True,
-                     note='slow link: 380 ms there and back')
+                     note='slow link: 380 ms round trip')
     panel.show_view(replace(four_robots, robots=(warned, *others)))
     row = panel.robot_list.row(first.name)
-    assert row.note.text() == 'slow link: 380 ms there and back'
-    assert row.kind.text() == first.type_label + ', guarded'
+    assert row.trouble.text() == 'slow link: 380 ms round trip'
+    assert row.trouble.isVisible() and row.trouble_sign.sign[0] == theme.TRIANGLE
+    shown = row.trouble.fontMetrics().horizontalAdvance(row.trouble.text())
+    assert shown <= row.trouble.width(), 'it can be read in full'
+    assert row.pill.isVisible() and row.battery.isVisible()
+    assert row.kind.text() == 'guarded ' + first.type_label
     assert row.toolTip() == 'link 380 ms   clock -0.40 s   lost 7 %'

@@ -85,7 +85,7 @@ def link_warning(figures):
     """Say what is wrong with a link that is live; '' where all is well."""
     words = []
     if figures.round_trip_s is not None and figures.round_trip_s > WARN_ROUND_TRIP_S:
-        words.append('slow link: {:.0f} ms there and back'.format(1e3 * figures.round_trip_s))
+        words.append('slow link: {:.0f} ms round trip'.format(1e3 * figures.round_trip_s))
     if figures.loss is not None and figures.loss > WARN_LOSS:
         words.append('{:.0f} % of its messages lost'.format(100.0 * figures.loss))
     if figures.offset_s is not None and abs(figures.offset_s) > WARN_OFFSET_S:

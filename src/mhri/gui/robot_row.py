@@ -106,7 +106,7 @@ class RobotRow(QWidget):
         self.turn = self._fixed_line(numbers, 'right 0.00 rad/s')
         self.trouble_sign = Sign(self)
         self.trouble = TextLine(self)
-        self.note = TextLine(self)
+        self.filler = TextLine(self)
         self.pill = Pill(self)
         self.pill.set_words((DRIVING, MOVING))
         self.battery = self._fixed_line(numbers, '100 %', Qt.AlignRight)
@@ -128,11 +128,11 @@ class RobotRow(QWidget):
         grid.setHorizontalSpacing(unit // 3)
         grid.setVerticalSpacing(0)
         first, second = QHBoxLayout(), QHBoxLayout()
-        for widget, stretch in ((self.title, 4), (self.kind, 7), (self.recording, 0),
+        for widget, stretch in ((self.title, 3), (self.kind, 8), (self.recording, 0),
                                 (self.sign, 0), (self.link, 0), (self.age, 0)):
             first.addWidget(widget, stretch)
         for widget, stretch in ((self.trouble_sign, 0), (self.trouble, 1), (self.linear, 0),
-                                (self.turn, 0), (self.note, 1), (self.pill, 0),
+                                (self.turn, 0), (self.filler, 1), (self.pill, 0),
                                 (self.battery, 0)):
             second.addWidget(widget, stretch)
         for line in (first, second):
@@ -194,29 +194,33 @@ class RobotRow(QWidget):
         elif view.link != views.LIVE:
             self._show_trouble(None, view.note or words.LINK_WORDS[view.link])
         else:
-            self._show_trouble(None, '')
-            self.note.show_text(view.note, theme.ATTENTION if view.slow else theme.MUTED)
+            sign = (theme.TRIANGLE, theme.ATTENTION) if view.slow else None
+            self._show_trouble(sign, view.note, with_state=True)
         if view.driven:
             self.pill.say(DRIVING)
         else:
             self.pill.say(MOVING if view.moving else '', theme.ATTENTION, filled=False)
 
-    def _show_trouble(self, sign, text, loud=False):
-        """Show a sentence in place of the motion; '' brings the motion back."""
+    def _show_trouble(self, sign, text, loud=False, with_state=False):
+        """Show a sentence in place of the motion; '' brings the motion back.
+
+        :param with_state: leave the robot's state and battery beside the sentence
+        """
         speaking = bool(text)
+        state = with_state or not speaking
         self.trouble_sign.show_sign(sign)
         font = self.trouble.font()
         if font.bold() != loud:
             font.setBold(loud)
             self.trouble.setFont(font)
         self.trouble.show_text(text)
-        if (speaking, sign is None) == self._trouble_shown:
+        if (speaking, state, sign is None) == self._trouble_shown:
             return
-        self._trouble_shown = (speaking, sign is None)
+        self._trouble_shown = (speaking, state, sign is None)
         for widget, visible in ((self.trouble_sign, sign is not None), (self.trouble, speaking),
                                 (self.linear, not speaking), (self.turn, not speaking),
-                                (self.note, not speaking), (self.pill, not speaking),
-                                (self.battery, not speaking)):
+                                (self.filler, not speaking), (self.pill, state),
+                                (self.battery, state)):
             widget.setVisible(visible)
 
     def show_current(self, current):

@@ -104,8 +104,11 @@ def heard_text(heard):
 
 
 def type_text(view):
-    """Return a robot's type, and whether a guard stands on it, e.g. "TurtleBot2, guarded"."""
-    return view.type_label + (', guarded' if view.guarded else '')
+    """Return a robot's type, and whether a guard stands on it, e.g. "guarded TurtleBot2".
+
+    In this order, since what does not fit is cut off at the end.
+    """
+    return ('guarded ' if view.guarded else '') + view.type_label
 
 
 def figures_text(figures):

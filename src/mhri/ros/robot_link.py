@@ -182,7 +182,7 @@ class RobotLink:
             figures = self._quality.read(now)
         warning = link_warning(figures) if state == LIVE else ''
         if self.gate.rule.waits and state == LIVE:
-            warning = 'was out of reach: centre the stick to drive it again'
+            warning = 'centre the stick: it was out of reach'
         return RobotView(
             name=self.name, type_label=self.robot_type.label, window=self.robot_type.window,
             link=state, age_s=age,
