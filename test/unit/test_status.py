@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The one line at the bottom: never empty, and the one thing that matters most."""
+from dataclasses import replace
 from itertools import product
 
 import pytest
@@ -37,6 +38,10 @@ CASES = {
                         CALM),
     'neutral': (panel([READY, IDLE]), 'neutral',
                 '1 of 2 robots  \u2013  Virtual joystick  \u2013  centre the stick', CALM),
+    'back_again': (panel([READY, replace(READY, name='bot7', waits=True)]), '',
+                   'joystick  \u2013  bot7: centre the stick to drive', ATTENTION),
+    'back_but_not_selected': (panel([READY, replace(READY, name='bot7', waits=True,
+                                                    selected=False)]), '', 'ready', CALM),
     'source': (panel([READY], mode='ps3joy'), 'source', 'PS3 Controller  \u2013  nothing is heard',
                ATTENTION),
     'dead_man': (panel([READY]), 'dead_man', 'hold the dead-man button', CALM),

@@ -73,5 +73,9 @@ def _driving(view, waits_for):
     if words:
         return '{}  \u2013  {}  \u2013  {}'.format(who, label, words), \
             ATTENTION if waits_for == 'source' else CALM
+    waiting = [robot.name for robot in view.robots if robot.selected and robot.waits]
+    if waiting:
+        return '{}  \u2013  {}  \u2013  {}: centre the stick to drive'.format(
+            who, label, ', '.join(waiting)), ATTENTION
     driven = any(robot.driven for robot in view.robots)
     return '{}  \u2013  {}  \u2013  {}'.format(who, label, 'driving' if driven else 'ready'), CALM

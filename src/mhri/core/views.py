@@ -59,7 +59,8 @@ class RobotView:
     commands other than zero are being forwarded to it, ``recording`` while a bag of it is open,
     ``guarded`` while its commands go through a guard on the robot. ``note`` is what is worth saying
     in words about the link, e.g. "nothing for 3.2 s"; '' while all is well. ``figures`` are what
-    was measured of the link, ``slow`` is true where they are past what driving needs.
+    was measured of the link, ``slow`` is true where they are past what driving needs, ``waits``
+    while it is left out until the stick has been centred, since its link was lost.
     """
 
     name: str
@@ -84,6 +85,7 @@ class RobotView:
     guarded: bool = False
     figures: LinkFigures = LinkFigures()
     slow: bool = False
+    waits: bool = False
 
 
 @dataclass(frozen=True)

@@ -181,13 +181,14 @@ class RobotLink:
             proof = self._proof.view(now) if self._proof else None
             figures = self._quality.read(now)
         warning = link_warning(figures) if state == LIVE else ''
-        if self.gate.rule.waits and state == LIVE:
+        waits = self.gate.rule.waits and state == LIVE
+        if waits:
             warning = 'centre the stick: it was out of reach'
         return RobotView(
             name=self.name, type_label=self.robot_type.label, window=self.robot_type.window,
             link=state, age_s=age,
             note=link_note(state, age, self._heard_wall, now - self._added_at) or warning,
-            figures=figures, slow=bool(warning),
+            figures=figures, slow=bool(warning), waits=waits,
             linear_mps=motion and motion.linear_mps, angular_rad_s=motion and motion.angular_rad_s,
             heading_rad=motion and motion.heading_rad, x_m=motion and motion.x_m,
             y_m=motion and motion.y_m, battery=self._battery, selected=self.gate.rule.selected,
