@@ -96,6 +96,9 @@ HOST = {
                         python_paths=('/opt/x/lib/python3/dist-packages/mhri',)), []),
     'package missing': (facts(packages={'rospy': '', 'cv_bridge': 'no ROS package'}),
                         [(FAULT, 'package_missing')]),
+    'package missing that is not needed': (
+        facts(packages={'rospy': '', 'libturbojpeg': 'the library cannot be loaded'}),
+        [(WARNING, 'package_missing')]),
     'template bad': (replace(facts(), template_errors=('a.yaml: name: is missing',)),
                      [(FAULT, 'template_bad')]),
 }

@@ -178,18 +178,27 @@ def _packages(computer):
     """Judge what mhri depends on."""
     missing = {name: problem for name, problem in computer.packages.items() if problem}
     return _fine_if_none([
-        Finding(FAULT, 'package_missing', HOST, '{} is missing: {}'.format(name, problem),
-                'parts of mhri do not start, or robots cannot be read',
+        Finding(WARNING if name in SLOWER_WITHOUT else FAULT, 'package_missing', HOST,
+                '{} is missing: {}'.format(name, problem),
+                SLOWER_WITHOUT.get(name, 'parts of mhri do not start, or robots cannot be read'),
                 'sudo apt install {}   # or: rosdep install mhri'.format(
                     package_of(name, computer)))
         for name, problem in sorted(missing.items())],
         'packages', HOST, 'all {} packages that mhri needs are here'.format(len(computer.packages)))
 
 
+# What mhri goes on without, and how that shows.
+SLOWER_WITHOUT = {'libturbojpeg': 'a jpeg picture takes three times as long'}
+# Keys of rosdep that are neither a ROS package nor the name of the system's package.
+_SYSTEM = {'libturbojpeg': 'libturbojpeg0-dev'}
+
+
 def package_of(name, computer):
     """Return the package of the system that brings a ROS package."""
     if name.startswith('python3-'):
         return name
+    if name in _SYSTEM:
+        return _SYSTEM[name]
     distro = computer.variables.get('ROS_DISTRO', 'noetic')
     return '{}-{}'.format('python3' if distro == 'Debian' else 'ros-' + distro,
                           name.replace('_', '-'))

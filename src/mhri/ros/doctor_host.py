@@ -12,12 +12,14 @@ import netifaces
 import rospkg
 
 import mhri
+from mhri.core import jpeg
 from mhri.core.doctor_facts import Computer, Folder, is_ipv4
 from mhri.core.recording import ros_home
 
 # Debian packages of package.xml and the Python module that each one brings.
 _MODULES = {'python3-evdev': 'evdev', 'python3-numpy': 'numpy', 'python3-opencv': 'cv2',
             'python3-pygame': 'pygame', 'python3-pyqtgraph': 'pyqtgraph', 'python3-yaml': 'yaml'}
+_LIBRARIES = {'libturbojpeg': jpeg.available}
 # The panel has a window of its own where there is no rqt.
 _OPTIONAL = ('rqt_gui', 'rqt_gui_py')
 
@@ -139,7 +141,9 @@ def _packages(package_path):
     for name in sorted({(entry.text or '').strip() for entry in root
                         if entry.tag in ('exec_depend', 'depend')}):
         module = _MODULES.get(name)
-        if module is not None:
+        if name in _LIBRARIES:
+            found[name] = '' if _LIBRARIES[name]() else 'the library cannot be loaded'
+        elif module is not None:
             found[name] = '' if importlib.util.find_spec(module) else \
                 'no Python module "{}"'.format(module)
         elif not name.startswith('python3-') and name not in _OPTIONAL:
