@@ -18,9 +18,10 @@ decided, and speak for any robot that the keeper does not reach yet, or when it 
 
 The pipes carry one JSON list per line. To the keeper: ``["open", name, [topic, ...], m/s, rad/s]``,
 ``["close", name]``, ``["held", name, bool]``, ``["select", [name, ...]]``, ``["press"]``,
-``["withdraw"]``, ``["pace", together, share]``, ``["bye"]``. From it: ``["alive"]`` ten times a
-second, ``["leads", name]``, ``["dropped", name]``, ``["closed"]`` after bye. The keeper hears
-commands and stop-all from the mux itself, and the selection from the panel alone.
+``["withdraw"]``, ``["pace", together, share]``, ``["leave"]``, ``["bye"]``. From it: ``["alive"]``
+ten times a second, ``["leads", name]``, ``["dropped", name]``, ``["leaves"]``, ``["closed"]`` after
+bye. The keeper hears commands and stop-all from the mux itself, and the selection from the panel
+alone.
 """
 import json
 import os
@@ -46,6 +47,7 @@ RESTART_S = 1.0
 # The zeros of a panel that ends are due within 50 ms: past this it says them itself.
 CLOSE_S = 0.03
 FLUSH_S = 0.1
+LEAVE_S = 5.0
 
 
 class KeeperLink:
@@ -118,8 +120,7 @@ class KeeperLink:
         One that cannot reach a robot that is heard again is replaced.
         """
         if words[0] == 'held' and words[1] in self._dropped and not words[2]:
-            self._process.kill()
-            return
+            words = ('leave',)
         try:
             os.write(self._process.stdin.fileno(), (json.dumps(words) + '\n').encode('ascii'))
         except BlockingIOError:
@@ -138,13 +139,17 @@ class KeeperLink:
             if not data:
                 return
             *lines, rest = (rest + data).split(b'\n')
-            patience_s = SILENCE_S
-            for line in lines:
-                self._take(*json.loads(line))
+            words = [json.loads(line) for line in lines]
+            # It says nothing more while it signs off at the master.
+            patience_s = LEAVE_S if ['leaves'] in words else SILENCE_S
+            for word in words:
+                self._take(*word)
 
     def _take(self, word, *rest):
         if word == 'leads':
             self._bank.follow(*rest)
+        elif word == 'leaves':
+            self._bank.take_over()
         elif word == 'dropped':
             self._dropped |= {rest[0]}
             self._bank.speak_for(*rest)
@@ -196,6 +201,7 @@ class Keeper:
         self._leads = {}
         self._held = frozenset()
         self._closed = threading.Event()
+        self._speaking = threading.Lock()
         # Whatever asks the master: it may be out of reach, and a stop must not wait for it.
         self._worker = Worker('gate_keeper')
 
@@ -205,6 +211,9 @@ class Keeper:
         threading.Thread(target=self._live, name='alive', daemon=True).start()
         for line in self._lines:
             word, *rest = json.loads(line)
+            if word == 'leave':
+                self._leave()
+                return []
             if word == 'bye':
                 self._closed.set()
                 self._bank.close()
@@ -213,6 +222,14 @@ class Keeper:
                 return []
             self._obey(word, *rest)
         return self._last_words()
+
+    def _leave(self):
+        """Say nothing to the robots any more: the panel does, until there is another keeper."""
+        with self._speaking:
+            self._closed.set()
+            for gate in self._bank.gates():
+                gate.follow()
+            self._answer('leaves')
 
     def _obey(self, word, *rest):
         """Follow one line of the panel."""
@@ -247,17 +264,23 @@ class Keeper:
 
     def _live(self):
         """Say that all is well, and lead each robot once it is connected."""
-        while not self._closed.is_set():
-            gates = {gate.name: gate for gate in self._bank.gates()}
-            self._leads = {name: gate for name, gate in self._leads.items()
-                           if gates.get(name) is gate}
-            for name, gate in gates.items():
-                if name not in self._leads and gate.reachable():
-                    self._leads[name] = gate
-                    gate.lead()
-                    self._answer('leads', name)
-            self._answer('alive')
+        while True:
+            with self._speaking:
+                if self._closed.is_set():
+                    return
+                self._lead_connected()
+                self._answer('alive')
             self._closed.wait(ALIVE_S)
+
+    def _lead_connected(self):
+        gates = {gate.name: gate for gate in self._bank.gates()}
+        self._leads = {name: gate for name, gate in self._leads.items()
+                       if gates.get(name) is gate}
+        for name, gate in gates.items():
+            if name not in self._leads and gate.reachable():
+                self._leads[name] = gate
+                gate.lead()
+                self._answer('leads', name)
 
     def _answer(self, *words):
         try:
