@@ -12,6 +12,7 @@ import unittest
 
 from geometry_msgs.msg import Twist
 import psutil
+import rosgraph
 import rospy
 import rostest
 from std_msgs.msg import Bool
@@ -237,6 +238,32 @@ class KeeperTest(unittest.TestCase):
         when = time.monotonic()
         self.bank.press_stop()
         self.zero_after(end, when, 'stop-all through the new keeper')
+
+    def test_a_keeper_that_is_replaced_leaves_no_gap_and_no_trace(self):
+        """After a robot of which it had to drop the connection is back."""
+        name, gate, end = self.driven()
+        keeper, when = self.child(), time.monotonic()
+        before = self.keepers_of(gate)
+        self.link._take('dropped', name)
+        self.assertFalse(gate._follows, 'the panel speaks for it')
+        wait_for(lambda: ZERO in [entry[1:] for entry in end.after(when)], 5.0, 'its zero')
+        when = time.monotonic()
+        self.bank.hold(name, False)
+        wait_for(lambda: not keeper.is_running() or keeper.status() == psutil.STATUS_ZOMBIE, 5.0,
+                 'the keeper to leave')
+        self.led(gate)
+        times = [when] + [entry[0] for entry in end.after(when)]
+        print('MEASURED keeper replaced: longest pause of the commands {:.0f} ms (20 Hz)'.format(
+            max(late - early for early, late in zip(times, times[1:])) * 1e3))
+        self.assertNotIn(ZERO, [entry[1:] for entry in end.after(when)])
+        wait_for(lambda: len(self.keepers_of(gate)) == 1, 10.0, 'one keeper')
+        self.assertNotEqual(self.keepers_of(gate), before, 'the old one is still registered')
+
+    @staticmethod
+    def keepers_of(gate):
+        """Return the names of the keepers that the master knows for a robot."""
+        publishers = dict(rosgraph.Master('/keeper_test').getSystemState()[0])
+        return [node for node in publishers.get(gate.topics[0], ()) if 'gate_keeper' in node]
 
     def test_a_zero_that_died_with_the_keeper_is_said_again(self):
         _, gate, end = self.driven()
