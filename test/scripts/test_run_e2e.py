@@ -40,7 +40,9 @@ class Run:
     def __init__(self, folder, arguments, before=(), script=SCRIPT):
         self.mark = 'MHRI_E2E={}'.format(uuid.uuid4())
         name, value = self.mark.split('=')
-        environment = dict(os.environ, ROS_HOME=str(folder / 'ros'), **{name: value})
+        # What roslaunch says comes at its end otherwise: its output is no terminal here.
+        environment = dict(os.environ, ROS_HOME=str(folder / 'ros'), PYTHONUNBUFFERED='1',
+                           **{name: value})
         for name in ('DISPLAY', 'WAYLAND_DISPLAY', 'XAUTHORITY', 'ROS_MASTER_URI', 'ROS_IP'):
             environment.pop(name, None)
         self._log = folder / 'log-{}'.format(value)
