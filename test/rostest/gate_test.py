@@ -146,7 +146,9 @@ class GateTest(unittest.TestCase):
         wait_for(lambda: end.after(when) and unselected_end.after(when), what='the zeros')
         print('MEASURED first zero after stop-all: {:.1f} ms'.format(
             (end.after(when)[0][0] - when) * 1e3))
-        self.drive(0.2)
+        # Two topics: the command has to be there before the release is.
+        driven = self.drive(0.2)
+        wait_for(lambda: gate.rule._heard_at >= driven, what='the command at the gate')
         self.stop.publish(False)
         wait_for(lambda: not gate.rule.stopped, what='the release')
         self.assertEqual([entry[1:] for entry in end.after(when)], [(0.0, 0.0)])
@@ -189,8 +191,8 @@ class GateTest(unittest.TestCase):
     def test_closing_sends_every_robot_one_zero_and_nothing_after(self):
         ends = [self.robot() for _ in range(3)]
         self.choose(*[name for name, _, _ in ends])
-        for _, _, end in ends:
-            self.drive_until(end, 0.2)
+        driven = self.drive(0.2)
+        wait_for(lambda: all(end.after(driven) for _, _, end in ends), what='all to be driven')
         when = time.monotonic()
         self.bank.close()
         self.drive(0.3)
