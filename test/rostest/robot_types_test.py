@@ -6,6 +6,7 @@
 Each robot is a process of its own on a real master; looking, links and gates are the panel's.
 """
 import os
+import signal
 import sys
 import tempfile
 import threading
@@ -93,10 +94,15 @@ class RobotTypesTest(unittest.TestCase):
                 rospy.delete_param(name)
 
     def start(self, command, odometry, *options, node='base', namespace='/'):
-        """Start a plain robot; it goes with the test."""
+        """Start a plain robot and wait until it is up; it goes with the test."""
         process = Process([sys.executable, PLAIN_ROBOT, command, odometry, *options,
                            '__name:=' + node], {'ROS_NAMESPACE': namespace})
-        self.addCleanup(self.gone, process, '{}/{}'.format(namespace.rstrip('/'), node))
+        node = '{}/{}'.format(namespace.rstrip('/'), node)
+        self.addCleanup(self.gone, process, node)
+        if '--halfway' not in options:
+            # It tells the master of its topics one after the other, this one last.
+            topic = command if command.startswith('/') else node.rpartition('/')[0] + '/' + command
+            wait_for(lambda: [topic, node] in self.listeners(), PATIENCE_S, node + ' to be up')
         return process
 
     def gone(self, process, node):
@@ -105,6 +111,11 @@ class RobotTypesTest(unittest.TestCase):
         process.wait(PATIENCE_S)
         process.end()
         wait_for(lambda: node not in self.nodes(), PATIENCE_S, 'the end of ' + node)
+
+    @staticmethod
+    def listeners():
+        state = rospy.get_master().getSystemState()[2]
+        return [[topic, node] for topic, nodes in state[1] for node in nodes]
 
     @staticmethod
     def nodes():
@@ -229,6 +240,18 @@ class RobotTypesTest(unittest.TestCase):
             return self.fleet.robot_type('late').command[0] == 'drive/velocity'
         wait_for(known, PATIENCE_S, 'its topic', 0.1)
         self.drives('late', 0.5)
+
+    def test_a_robot_that_is_found_while_it_comes_up(self):
+        """Its odometry is known, the topic that it listens to is not yet."""
+        process = self.start('drive/velocity', 'odom', '--halfway', namespace='/half')
+        self.assertEqual(self.add('half', self.found('half')['half']).command, ('cmd_vel',))
+        process.send(signal.SIGUSR1)
+
+        def known():
+            self.fleet.supervise()
+            return self.fleet.robot_type('half').command[0] == 'drive/velocity'
+        wait_for(known, PATIENCE_S, 'its topic', 0.1)
+        self.drives('half', 0.5)
 
     def test_a_robot_keeps_its_topic_while_it_is_away(self):
         process = self.start('drive/velocity', 'odom', namespace='/away')

@@ -3,15 +3,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A robot of which mhri was told nothing: a node with the topics that it is given.
 
-``plain_robot.py COMMAND ODOMETRY [--turtle] [--sign TOPIC TYPE]``: reads velocity commands and
-tells how it moves, 20 times a second (``nav_msgs/Odometry``, or ``turtlesim/Pose`` with
-``--turtle``). It obeys at once, and stops 0.5 s after the last command. ``--sign`` is one more
-topic that it publishes.
+``plain_robot.py COMMAND ODOMETRY [--turtle] [--sign TOPIC TYPE] [--halfway]``: reads velocity
+commands and tells how it moves, 20 times a second (``nav_msgs/Odometry``, or ``turtlesim/Pose``
+with ``--turtle``). It obeys at once, and stops 0.5 s after the last command. ``--sign`` is one more
+topic that it publishes. ``--halfway`` stops while it comes up: it subscribes its commands when it
+gets SIGUSR1.
 """
 import argparse
 import math
 import os
+import signal
 import sys
+import threading
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), 'messages'))
@@ -36,7 +39,12 @@ class PlainRobot:
                                           queue_size=1)
         self._signs = [rospy.Publisher(topic, generate_dynamic(kind, 'uint8 state\n')[kind],
                                        queue_size=1) for topic, kind in options.sign]
-        rospy.Subscriber(options.command, Twist, self._obey, queue_size=1, tcp_nodelay=True)
+        self._topic = options.command
+        if not options.halfway:
+            self.listen()
+
+    def listen(self):
+        rospy.Subscriber(self._topic, Twist, self._obey, queue_size=1, tcp_nodelay=True)
 
     def _obey(self, message):
         self._command = (time.monotonic(), message.linear.x, message.angular.z)
@@ -67,11 +75,17 @@ def main():
     parser.add_argument('odometry')
     parser.add_argument('--turtle', action='store_true')
     parser.add_argument('--sign', nargs=2, action='append', default=[])
+    parser.add_argument('--halfway', action='store_true')
     options = parser.parse_args(rospy.myargv()[1:])
+    go_on = threading.Event()
+    signal.signal(signal.SIGUSR1, lambda *_: go_on.set())
     rospy.init_node('base')
     robot = PlainRobot(options)
     rate = rospy.Rate(1.0 / PERIOD_S)
     while not rospy.is_shutdown():
+        if go_on.is_set():
+            go_on.clear()
+            robot.listen()
         robot.step()
         try:
             rate.sleep()
