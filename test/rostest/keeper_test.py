@@ -24,6 +24,7 @@ from mhri.msg import RobotSelect  # noqa: E402
 from mhri.ros.gates import Gate, GateBank  # noqa: E402
 from mhri.ros.keeper import KeeperLink  # noqa: E402
 from mhri.ros.resources import robot_types  # noqa: E402
+from support.deaf_robot import DeafRobot  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
 
@@ -92,7 +93,7 @@ class KeeperTest(unittest.TestCase):
         return name, gate, end
 
     def led(self, gate):
-        wait_for(lambda: gate._follows, START_S, 'the keeper to lead')
+        wait_for(lambda: gate.follows, START_S, 'the keeper to lead')
 
     def driven(self, value=0.2):
         """Return a robot that is being driven, through the keeper."""
@@ -221,7 +222,7 @@ class KeeperTest(unittest.TestCase):
         name, gate, end = self.driven()
         keeper, when = self.child(), time.monotonic()
         keeper.kill()
-        wait_for(lambda: not gate._follows, 5.0, 'the panel to lead')
+        wait_for(lambda: not gate.follows, 5.0, 'the panel to lead')
         print('MEASURED keeper killed: the panel leads after {:.1f} ms'.format(
             (time.monotonic() - when) * 1e3))
         wait_for(lambda: len(end.after(time.monotonic() - 0.1)) > 1, 5.0, 'commands')
@@ -245,7 +246,7 @@ class KeeperTest(unittest.TestCase):
         keeper, when = self.child(), time.monotonic()
         before = self.keepers_of(gate)
         self.link._take('dropped', name)
-        self.assertFalse(gate._follows, 'the panel speaks for it')
+        self.assertFalse(gate.follows, 'the panel speaks for it')
         wait_for(lambda: ZERO in [entry[1:] for entry in end.after(when)], 5.0, 'its zero')
         when = time.monotonic()
         self.bank.hold(name, False)
@@ -273,6 +274,30 @@ class KeeperTest(unittest.TestCase):
         delay = self.zero_after(end, when, 'deselected while the keeper hangs')
         self.assertLess(delay, 1.5, 'promised: 0.55 s')
         self.led(gate)
+
+    def test_a_robot_that_missed_the_announcement_of_a_keeper_gets_another(self):
+        """The master tells once; a robot that was out of reach then hears of no keeper."""
+        KeeperTest.number += 1
+        name = 'kept{}'.format(KeeperTest.number)
+        deaf = DeafRobot('/{}/cmd_vel'.format(name))
+        self.addCleanup(deaf.close)
+        gate = Gate.of_type(name, self.generic)
+        self.bank.add(gate)
+        wait_for(lambda: any('gate_keeper' in names for names in deaf.told), START_S,
+                 'the keeper to be announced')
+        deaf.told[:] = []
+        self.bank.announce(name)
+        wait_for(lambda: any('gate_keeper' in names for names in deaf.told), 10.0,
+                 'the keeper to be announced again')
+        self.assertIn(rospy.get_name(), deaf.told[-1], 'and the panel')
+        VelocityEnd('/{}/cmd_vel'.format(name))
+        self.led(gate)
+        deaf.told[:] = []
+        self.bank.announce(name)
+        self.bank.remove(name)
+        gate.unregister()
+        wait_for(lambda: deaf.told and rospy.get_name() not in deaf.told[-1], 10.0, 'the end')
+        self.assertLess(len(deaf.told), 6, 'a robot that listens was told again')
 
     def test_a_press_before_there_is_a_keeper_holds_in_it(self):
         name, gate, end = self.driven()
@@ -329,7 +354,7 @@ KeeperLink(bank).start()
 bank.start()
 gate = Gate.of_type(sys.argv[1], robot_types()[0]['generic'])
 bank.add(gate)
-while not gate._follows:
+while not gate.follows:
     time.sleep(0.02)
 print('led by its keeper', flush=True)
 time.sleep(1000)

@@ -31,6 +31,7 @@ from mhri.ros.gates import GateBank  # noqa: E402
 from mhri.ros.graph import look_for_robots, shipped_ignore_list  # noqa: E402
 from mhri.ros.resources import robot_types  # noqa: E402
 from mhri.ros.worker import Worker  # noqa: E402
+from support.deaf_robot import DeafRobot  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 PATIENCE_S = 30.0
@@ -252,6 +253,21 @@ class RobotTypesTest(unittest.TestCase):
             return self.fleet.robot_type('half').command[0] == 'drive/velocity'
         wait_for(known, PATIENCE_S, 'its topic', 0.1)
         self.drives('half', 0.5)
+
+    def test_a_robot_that_is_heard_and_does_not_listen_is_told_again_who_speaks(self):
+        """It was out of reach when the master told it."""
+        deaf = DeafRobot('/deaf/cmd_vel')
+        self.addCleanup(deaf.close)
+        self.start('drive/velocity', 'odom', '--halfway', namespace='/deaf')
+        self.add('deaf', self.found('deaf')['deaf'])
+        wait_for(lambda: deaf.told, PATIENCE_S, 'the first time')
+        told = len(deaf.told)
+
+        def again():
+            self.fleet.supervise()
+            return len(deaf.told) > told
+        wait_for(again, PATIENCE_S, 'the next time', 0.1)
+        self.assertIn(rospy.get_name(), deaf.told[-1])
 
     def test_a_robot_keeps_its_topic_while_it_is_away(self):
         process = self.start('drive/velocity', 'odom', namespace='/away')

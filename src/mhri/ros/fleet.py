@@ -8,12 +8,16 @@ from dataclasses import replace
 import rospy
 
 from mhri.core.robot_types import resolve_robot_type, Seen
-from mhri.core.views import GONE, RobotView, SILENT, WAITING
+from mhri.core.views import GONE, LIVE, RobotView, SILENT, WAITING
 from mhri.ros.bot_feeds import BotFeeds
 from mhri.ros.gates import Gate
 from mhri.ros.graph import robot_facts
 from mhri.ros.master_api import MasterError
 from mhri.ros.robot_link import RobotLink
+
+
+# A robot that is heard and does not listen is told of its publishers again this often.
+ANNOUNCE_S = 5.0
 
 
 class Fleet:
@@ -36,6 +40,7 @@ class Fleet:
         self._wanted = set()
         self._problems = {}
         self._seen = {}
+        self._announced = {}
 
     def want(self, name):
         """Take note that a robot is in the list; :meth:`connect` makes its link."""
@@ -48,6 +53,7 @@ class Fleet:
             self._wanted.discard(name)
             link = self._links.pop(name, None)
             self._seen.pop(name, None)
+            self._announced.pop(name, None)
         self._bank.remove(name)
         return link
 
@@ -113,6 +119,19 @@ class Fleet:
             return
         for name in names:
             self.connect(name, facts[name])
+        self._announce()
+
+    def _announce(self):
+        """Let robots that are heard, but not reached, know who speaks to them."""
+        now = self._clock()
+        with self._lock:
+            links = list(self._links.values())
+        for link in links:
+            due = now - self._announced.get(link.name, link.added_at) >= ANNOUNCE_S
+            if due and link.view().link == LIVE and not (
+                    link.gate.follows and link.gate.reachable()):
+                self._announced[link.name] = now
+                self._bank.announce(link.name)
 
     def hold_silent(self):
         """Hold the robots that were heard and are not any more; let go those that are heard again.

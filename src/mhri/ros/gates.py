@@ -16,6 +16,7 @@ from mhri.core.limits import ZERO
 from mhri.core.names import topic_of
 from mhri.msg import RobotSelect
 from mhri.ros.convert import from_twist, to_twist
+from mhri.ros.master_api import MasterApi, MasterError
 from mhri.ros.prompt import PromptPublisher
 
 # Below a robot's namespace: where its guard (utils/remote/mhri_guard) listens.
@@ -37,7 +38,7 @@ class Gate:
     (``/<robot>/mhri_guard/command``, ``geometry_msgs/TwistStamped``, stamped by the clock here).
 
     There may be two of a robot, in two processes (:mod:`mhri.ros.keeper`). One of them leads; the
-    other one follows: it decides the same and keeps its words to itself.
+    other one ``follows``: it decides the same and keeps its words to itself.
 
     :param name: the robot
     :param topics: absolute names of its velocity topics, in order of preference
@@ -54,7 +55,7 @@ class Gate:
         self._publishers = [self._guard] + [
             PromptPublisher(topic, Twist) for topic in self.topics]
         self._used = None
-        self._follows = False
+        self.follows = False
         self._zero_at = None
 
     @classmethod
@@ -82,18 +83,18 @@ class Gate:
         if publisher is self._guard:
             message = TwistStamped(twist=message)
             message.header.stamp = rospy.Time.from_sec(time.time())
-        if not self._follows:
+        if not self.follows:
             publish = publisher.publish_urgent if velocity.is_zero() else publisher.publish
             publish(message)
         return message
 
     def follow(self):
         """From now on the other gate of this robot speaks."""
-        self._follows = True
+        self.follows = True
 
     def lead(self):
         """Speak from now on."""
-        self._follows = False
+        self.follows = False
 
     def drop_backlog(self):
         """Take back what a stalled link has not delivered; tell whether there was such a link.
@@ -109,7 +110,7 @@ class Gate:
 
     def take_over(self, now):
         """Speak again: the other gate has ended, and may have taken its last zero with it."""
-        if self._follows:
+        if self.follows:
             self.lead()
             if self._zero_at is not None and now - self._zero_at < REPEAT_ZERO_S:
                 self.send(ZERO, self._zero_at)
@@ -121,6 +122,21 @@ class Gate:
     def guarded(self):
         """Tell whether the commands go through a guard on the robot."""
         return self._guard.get_num_connections() > 0
+
+    def announce(self):
+        """Tell the master of the velocity topics once more, where nobody listens (blocking).
+
+        It tells a robot of a new publisher once. One that was out of reach then would never know.
+        """
+        if self.reachable():
+            return
+        own = rospy.get_node_uri()
+        try:
+            MasterApi(rospy.get_name()).call_many(
+                [('registerPublisher', publisher.resolved_name, publisher.type, own)
+                 for publisher in self._publishers])
+        except MasterError as error:
+            rospy.logdebug('%s: its topics cannot be announced now: %s', self.name, error)
 
     def unregister(self):
         """Give the topics back (blocking: it asks the master); others may look all the while."""
@@ -234,6 +250,15 @@ class GateBank:
         with self._changed:
             if name in self._gates:
                 self._gates[name].follow()
+
+    def announce(self, name):
+        """See :meth:`Gate.announce`: here, and in the other process where that does not lead."""
+        with self._changed:
+            gate = self._gates.get(name)
+            if gate is not None and not gate.follows:
+                self._tell('announce', name)
+        if gate is not None:
+            gate.announce()
 
     def speak_for(self, name):
         """Let the gate of one robot speak, and say zero first: the other one cannot reach it."""

@@ -17,11 +17,11 @@ decided, and speak for any robot that the keeper does not reach yet, or when it 
   another connection only from another node: once it is heard again, the keeper is replaced.
 
 The pipes carry one JSON list per line. To the keeper: ``["open", name, [topic, ...], m/s, rad/s]``,
-``["close", name]``, ``["held", name, bool]``, ``["select", [name, ...]]``, ``["press"]``,
-``["withdraw"]``, ``["pace", together, share]``, ``["leave"]``, ``["bye"]``. From it: ``["alive"]``
-ten times a second, ``["leads", name]``, ``["dropped", name]``, ``["leaves"]``, ``["closed"]`` after
-bye. The keeper hears commands and stop-all from the mux itself, and the selection from the panel
-alone.
+``["close", name]``, ``["announce", name]``, ``["held", name, bool]``, ``["select", [name, ...]]``,
+``["press"]``, ``["withdraw"]``, ``["pace", together, share]``, ``["leave"]``, ``["bye"]``. From it:
+``["alive"]`` ten times a second, ``["leads", name]``, ``["dropped", name]``, ``["leaves"]``,
+``["closed"]`` after bye. The keeper hears commands and stop-all from the mux itself, and the
+selection from the panel alone.
 """
 import json
 import os
@@ -237,6 +237,8 @@ class Keeper:
             self._worker.do(self._open, *rest)
         elif word == 'close':
             self._worker.do(self._close, rest[0], self._bank.remove(rest[0]))
+        elif word == 'announce':
+            self._worker.do(self._bank.announce, *rest)
         else:
             {'select': self._bank.select, 'press': self._bank.press_stop,
              'withdraw': self._bank.withdraw_press, 'pace': self._bank.set_pace,

@@ -99,7 +99,7 @@ class RobotLink:
         self.feeds = feeds
         self._clock = clock
         self._lock = threading.Lock()
-        self._added_at = clock()
+        self.added_at = clock()
         self.held = False
         self._heard_at = None
         self._heard_wall = ''
@@ -187,7 +187,7 @@ class RobotLink:
         return RobotView(
             name=self.name, type_label=self.robot_type.label, window=self.robot_type.window,
             link=state, age_s=age,
-            note=link_note(state, age, self._heard_wall, now - self._added_at) or warning,
+            note=link_note(state, age, self._heard_wall, now - self.added_at) or warning,
             figures=figures, slow=bool(warning), waits=waits,
             linear_mps=motion and motion.linear_mps, angular_rad_s=motion and motion.angular_rad_s,
             heading_rad=motion and motion.heading_rad, x_m=motion and motion.x_m,
