@@ -21,7 +21,8 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 
 from mhri.core.robot_types import Limits  # noqa: E402
 from mhri.msg import RobotSelect  # noqa: E402
-from mhri.ros.gates import Gate, GateBank  # noqa: E402
+from mhri.ros.gate import Gate  # noqa: E402
+from mhri.ros.gates import GateBank  # noqa: E402
 from mhri.ros.keeper import KeeperLink  # noqa: E402
 from mhri.ros.resources import robot_types  # noqa: E402
 from support.deaf_robot import DeafRobot  # noqa: E402
@@ -241,22 +242,38 @@ class KeeperTest(unittest.TestCase):
         self.zero_after(end, when, 'stop-all through the new keeper')
 
     def test_a_keeper_that_is_replaced_leaves_no_gap_and_no_trace(self):
-        """After a robot of which it had to drop the connection is back."""
-        name, gate, end = self.driven()
-        keeper, when = self.child(), time.monotonic()
+        """After a robot of which it had to drop the connection is back; another one goes on."""
+        name, gate, end = self.robot()
+        other, other_gate, other_end = self.robot()
+        self.select.publish([name, other])
+        self.pilot.drive(0.2)
+        for one in (end, other_end):
+            wait_for(lambda: (0.2, 0.0) in one.values(), START_S, 'both to be driven')
+        keeper, began = self.child(), time.monotonic()
         before = self.keepers_of(gate)
         self.link._take('dropped', name)
         self.assertFalse(gate.follows, 'the panel speaks for it')
-        wait_for(lambda: ZERO in [entry[1:] for entry in end.after(when)], 5.0, 'its zero')
+        self.zero_after(end, began, 'its connection was dropped')
+        when = time.monotonic()
+        wait_for(lambda: len(other_end.after(when)) > 10, 5.0, 'commands of the other one')
+        # One of each process: in truth this keeper has a connection still.
+        self.assertEqual([entry[1:] for entry in end.after(began)][-2:], [ZERO, ZERO])
+        sent = len(end.received)
         when = time.monotonic()
         self.bank.hold(name, False)
         wait_for(lambda: not keeper.is_running() or keeper.status() == psutil.STATUS_ZOMBIE, 5.0,
                  'the keeper to leave')
         self.led(gate)
-        times = [when] + [entry[0] for entry in end.after(when)]
+        self.led(other_gate)
+        times = [when] + [entry[0] for entry in other_end.after(when)]
         print('MEASURED keeper replaced: longest pause of the commands {:.0f} ms (20 Hz)'.format(
             max(late - early for early, late in zip(times, times[1:])) * 1e3))
-        self.assertNotIn(ZERO, [entry[1:] for entry in end.after(when)])
+        self.assertNotIn(ZERO, [entry[1:] for entry in other_end.after(began)])
+        self.assertEqual(len(end.received), sent, 'it waits for a centred stick')
+        self.pilot.drive(0.0)
+        wait_for(lambda: len(end.received) > sent, 5.0, 'the zero of the centred stick')
+        self.pilot.drive(0.2)
+        wait_for(lambda: end.values()[-1] == (0.2, 0.0), 5.0, 'it to be driven again')
         wait_for(lambda: len(self.keepers_of(gate)) == 1, 10.0, 'one keeper')
         self.assertNotEqual(self.keepers_of(gate), before, 'the old one is still registered')
 
@@ -345,7 +362,8 @@ class KeeperTest(unittest.TestCase):
 KILLED_PANEL = """
 import sys, time
 import rospy
-from mhri.ros.gates import Gate, GateBank
+from mhri.ros.gate import Gate
+from mhri.ros.gates import GateBank
 from mhri.ros.keeper import KeeperLink
 from mhri.ros.resources import robot_types
 rospy.init_node('killed_panel', disable_signals=True)

@@ -19,7 +19,8 @@ from mhri.core.limits import Velocity  # noqa: E402
 from mhri.core.robot_types import Limits  # noqa: E402
 from mhri.ros.bot_feeds import BotFeeds  # noqa: E402
 from mhri.ros.fleet import Fleet  # noqa: E402
-from mhri.ros.gates import Gate, GateBank  # noqa: E402
+from mhri.ros.gate import Gate  # noqa: E402
+from mhri.ros.gates import GateBank  # noqa: E402
 from mhri.ros.resources import robot_types  # noqa: E402
 from mhri.ros.robot_link import RobotLink  # noqa: E402
 from mhri.ros.worker import Worker  # noqa: E402

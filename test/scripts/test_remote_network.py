@@ -282,6 +282,35 @@ def test_robot_stops_without_its_link_and_is_usable_with_it(lab, operator, name,
     wait_for(operator.witnesses[name].at_rest, 20, name + ' to rest', poll_s=0.05)
 
 
+@pytest.mark.parametrize('name', ['bot1', 'bot2'])
+def test_an_outage_too_short_to_be_noticed_brings_no_motion_back(lab, operator, name):
+    """The robot has stopped by itself, the host has not missed it yet: nothing is taken back."""
+    robot, rows = lab.robots[name], lab.observer(name)
+    operator.drive(name)
+    wait_for(lambda: rows(3)[-1][1] > 0.05, 20, 'commands to ' + name)
+    cut = time.monotonic()
+    robot.unplug()
+    try:
+        wait_for(lambda: time.monotonic() > cut + 0.3, poll_s=0.005)
+        operator.stick.hold(0.0, 0.0)
+        wait_for(lambda: time.monotonic() > cut + 0.55, poll_s=0.005)
+    finally:
+        robot.plug()
+    mended = time.monotonic()
+    wait_for(lambda: first_standstill(rows(), cut), 20, name + ' to stop', poll_s=0.05)
+    wait_for(operator.witnesses[name].live, START_S, 'word of ' + name, poll_s=0.05)
+    wait_for(lambda: time.monotonic() > mended + 3.0, 20, 'the rest of the backlog')
+    stopped = first_standstill(rows(), cut)
+    strayed = path_m(rows(), stopped)
+    print('MEASURED link of {} ({}) cut for {:.2f} s: stands still after {:.0f} ms, moved {:.3f} m '
+          'by itself after that'.format(name, 'guarded' if name in GUARDED else 'no guard',
+                                        mended - cut, 1e3 * (stopped - cut), strayed))
+    assert strayed < 0.02, 'a stale command moved it'
+    operator.drive(name)
+    operator.stick.hold(0.0, 0.0)
+    wait_for(operator.witnesses[name].at_rest, 20, name + ' to rest', poll_s=0.05)
+
+
 def test_robot_is_recorded_on_the_host(lab, operator):
     import rosbag
     import rospy

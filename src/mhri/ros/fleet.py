@@ -10,7 +10,7 @@ import rospy
 from mhri.core.robot_types import resolve_robot_type, Seen
 from mhri.core.views import GONE, LIVE, RobotView, SILENT, WAITING
 from mhri.ros.bot_feeds import BotFeeds
-from mhri.ros.gates import Gate
+from mhri.ros.gate import Gate
 from mhri.ros.graph import robot_facts
 from mhri.ros.master_api import MasterError
 from mhri.ros.robot_link import RobotLink
@@ -26,7 +26,7 @@ class Fleet:
     :param types: {name: RobotType}
     :param bank: :class:`mhri.ros.gates.GateBank`
     :param worker: :class:`mhri.ros.worker.Worker` for the feeds of the windows
-    :param on_sent: see :class:`mhri.ros.gates.Gate`
+    :param on_sent: see :class:`mhri.ros.gate.Gate`
     """
 
     def __init__(self, types, bank, worker, on_sent, clock=time.monotonic):
@@ -138,12 +138,12 @@ class Fleet:
 
         Called several times a second, on a thread.
         """
+        self._bank.drop_cut()
         with self._lock:
             links = list(self._links.values())
         for link in links:
-            held = link.view().link in (SILENT, GONE)
-            if held != link.held:
-                link.held = held
+            held = link.view().link in (SILENT, GONE) or not link.heard_since(link.gate.lost_at)
+            if held != link.gate.rule.held:
                 self._bank.hold(link.name, held)
 
     def on_stop(self, stopped, now):

@@ -11,10 +11,11 @@ decided, and speak for any robot that the keeper does not reach yet, or when it 
 - The panel ends, however it went: their pipe breaks, and the keeper sends the zeros.
 - The keeper ends: its pipe breaks, and the panel's gates take over, with a zero where one was just
   said. A keeper that is silent for :data:`SILENCE_S` is ended.
-- A robot's link is lost: the network keeps the last commands of the keeper and would bring them,
-  late, when it is back. So the keeper drops its connection, and the panel's gate, which has never
-  said anything on its own, says zero there: the first word that comes through. The robot takes
-  another connection only from another node: once it is heard again, the keeper is replaced.
+- A robot's link is cut: the network keeps the last commands of the keeper and would bring them,
+  late, when it is back. So the keeper drops its connection before the robot's watchdog has stopped
+  it, and the panel's gate, which has never said anything on its own, says zero there: the first
+  word that comes through. The robot takes another connection only from another node: once it is
+  heard again, the keeper is replaced.
 
 The pipes carry one JSON list per line. To the keeper: ``["open", name, [topic, ...], m/s, rad/s]``,
 ``["close", name]``, ``["announce", name]``, ``["held", name, bool]``, ``["select", [name, ...]]``,
@@ -37,7 +38,7 @@ import rospy
 from mhri.core.arbiter import REPEAT_HZ, ZEROS_S
 from mhri.core.limits import ZERO
 from mhri.core.robot_types import Limits
-from mhri.ros.gates import Gate
+from mhri.ros.gate import Gate
 from mhri.ros.worker import Worker
 
 ALIVE_S = 0.1
@@ -248,8 +249,6 @@ class Keeper:
         """Hold a robot, or let it go; one that is still to be opened is held from then on."""
         self._held = self._held | {name} if held else self._held - {name}
         self._bank.hold(name, held)
-        if held and self._bank.drop_backlog(name):
-            self._answer('dropped', name)
 
     def _open(self, name, topics, linear_mps, angular_rad_s):
         gate = Gate(name, topics, Limits(linear_mps, angular_rad_s))
@@ -271,6 +270,9 @@ class Keeper:
                 if self._closed.is_set():
                     return
                 self._lead_connected()
+                for name in self._bank.drop_cut():
+                    self._bank.follow(name)
+                    self._answer('dropped', name)
                 self._answer('alive')
             self._closed.wait(ALIVE_S)
 

@@ -9,7 +9,9 @@ take now goes to the connection's thread, and there the newest message wins as a
 
 And TCP keeps what it was given: a link that comes back after a second brings a second of old
 commands. So nothing is given to a connection whose peer has confirmed nothing for a while; the
-newest message follows as soon as it confirms something again.
+newest message follows as soon as it confirms something again. A connection that has stalled with
+commands in it can be dropped before the robot's own watchdog has stopped it
+(:meth:`PromptPublisher.drop_cut`): what is taken back moves nothing later.
 """
 import socket
 import struct
@@ -21,6 +23,9 @@ from rospy.impl.tcpros_pubsub import QueuedConnection
 
 # A peer may take 40 ms before it confirms (RFC 1122, 4.2.3.2: at most 500, Linux: 40).
 LEAST_STALL_S = 0.1
+# Of the watchdogs the quickest, TurtleBot3's, stops a robot 0.5 s after the last command it heard,
+# which is one period (0.05 s) before the first one it did not; looked at ten times a second.
+CUT_S = 0.33
 _CONFIRMS_WITHIN_S = 0.05
 _LOOK_AGAIN_S = 0.01
 # struct tcp_info of linux/tcp.h: unacked, last_ack_recv [ms], rtt [us].
@@ -36,15 +41,16 @@ class Flow:
 
     def __init__(self, end, clock=time.monotonic):
         self._end = end
-        self._clock = clock
-        self._clear_at = clock()
+        self.clock = clock
+        self.clear_at = clock()
         self._option = getattr(socket, 'TCP_INFO', None) if end.family in (
             socket.AF_INET, socket.AF_INET6) else None
 
-    def stalled(self):
+    def stalled(self, least_s=LEAST_STALL_S):
         """Tell whether nothing has been confirmed for longer than two round trips take.
 
-        Never less than :data:`LEAST_STALL_S`; False where the system does not tell.
+        Never less than ``least_s``; False where the system does not tell. ``clear_at`` is when
+        everything was last seen confirmed.
         """
         if self._option is None:
             return False
@@ -53,12 +59,12 @@ class Flow:
                 self._end.getsockopt(socket.IPPROTO_TCP, self._option, _INFO.size))
         except (OSError, struct.error):
             return False
-        now = self._clock()
+        now = self.clock()
         if not unacked:
-            self._clear_at = now
+            self.clear_at = now
             return False
-        quiet_s = min(now - self._clear_at, ack_ms * 1e-3)
-        return quiet_s > max(LEAST_STALL_S, 2e-6 * rtt_us + _CONFIRMS_WITHIN_S)
+        quiet_s = min(now - self.clear_at, ack_ms * 1e-3)
+        return quiet_s > max(least_s, 2e-6 * rtt_us + _CONFIRMS_WITHIN_S)
 
 
 class _Call(threading.local):
@@ -83,6 +89,7 @@ class PromptConnection(QueuedConnection):
         self._call = call
         self._busy = self._urgent = False
         self._rest = b''
+        self._moves_at = None
         super().__init__(connection, queue_size)
 
     def write_data(self, data):
@@ -101,6 +108,8 @@ class PromptConnection(QueuedConnection):
             sent = 0
             if not self._busy and not self._queue and (self._urgent or not self._flow.stalled()):
                 sent = self._send(data)
+            if sent and not self._urgent:
+                self._moves_at = self._flow.clock()
             if sent == len(data):
                 return True
             if sent:
@@ -126,13 +135,15 @@ class PromptConnection(QueuedConnection):
             connection.stat_num_msg += 1
         return sent
 
-    def drop_if_stalled(self):
-        """Close a connection whose peer confirms nothing, with all that is on its way; tell if so.
+    def drop_if_cut(self):
+        """Close a connection that has stalled for :data:`CUT_S`, with all that is on its way.
 
-        The peer does not learn of it: it would take a new connection from another node at once,
-        from this one only when its own keepalive has found out (rospy: after a minute).
+        Only where that may be more than the word to stop; tell whether it was closed. The peer does
+        not learn of it: it would take a new connection from another node at once, from this one
+        only when its own keepalive has found out (rospy: after a minute).
         """
-        if not self._flow.stalled():
+        if not self._flow.stalled(CUT_S) or self._moves_at is None \
+                or self._moves_at < self._flow.clear_at:
             return False
         try:
             # Without lingering TCP forgets what was not confirmed.
@@ -153,6 +164,7 @@ class PromptConnection(QueuedConnection):
                 if self._queue and (self._urgent or not self._flow.stalled()):
                     waiting, self._queue = self._queue, []
                     self._busy = True
+                    self._moves_at = self._flow.clock()
                     return waiting
                 self._cond_data_available.wait(_LOOK_AGAIN_S if self._queue else None)
             return []
@@ -171,6 +183,7 @@ class PromptConnection(QueuedConnection):
                 error = reason
             with self._lock:
                 self._busy = False
+                self._moves_at = self._flow.clock()
                 self._error = error or self._error
 
 
@@ -195,9 +208,9 @@ class PromptPublisher(rospy.Publisher):
         impl.set_queue_size(None)
         impl.add_connection = add_connection
 
-    def drop_stalled(self):
-        """Close the connections that have stalled; return how many."""
-        return sum(connection.drop_if_stalled() for connection in list(self.impl.connections)
+    def drop_cut(self):
+        """Close the connections that have stalled with commands in them; return how many."""
+        return sum(connection.drop_if_cut() for connection in list(self.impl.connections)
                    if isinstance(connection, PromptConnection))
 
     def publish_urgent(self, message):

@@ -88,7 +88,7 @@ class RobotLink:
 
     :param name: the robot's namespace
     :param robot_type: :class:`mhri.core.robot_types.RobotType`
-    :param gate: :class:`mhri.ros.gates.Gate` of the robot
+    :param gate: :class:`mhri.ros.gate.Gate` of the robot
     :param feeds: :class:`mhri.ros.bot_feeds.BotFeeds` of its window
     """
 
@@ -100,7 +100,6 @@ class RobotLink:
         self._clock = clock
         self._lock = threading.Lock()
         self.added_at = clock()
-        self.held = False
         self._heard_at = None
         self._heard_wall = ''
         self._pending = None
@@ -160,6 +159,14 @@ class RobotLink:
         """Begin (or end) the proof of a stop."""
         with self._lock:
             self._proof = StopProof(now) if stopped else None
+
+    def heard_since(self, when):
+        """Tell whether the robot has been heard since a time; a robot that never is, always.
+
+        :param when: None: it does not matter
+        """
+        with self._lock:
+            return None in (when, self._heard_at) or self._heard_at > when
 
     @property
     def stopped_ms(self):
