@@ -8,7 +8,7 @@ import sys
 import time
 import unittest
 
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import Twist, TwistStamped
 import rosgraph
 import rospy
 import rostest
@@ -140,9 +140,9 @@ class LinkTest(unittest.TestCase):
         command(0.0)
         drive_until(0.1, lambda: end.values()[-1] == (0.1, 0.0), 'it to be driven again')
 
-    def guarded(self, name):
+    def guarded(self, name, *options):
         """Start a guard on a robot; return its process."""
-        process = subprocess.Popen([sys.executable, GUARD, '_command:=cmd_vel'],
+        process = subprocess.Popen([sys.executable, GUARD, '_command:=cmd_vel', *options],
                                    env=dict(os.environ, ROS_NAMESPACE=name))
         self.addCleanup(process.wait)
         self.addCleanup(process.terminate)
@@ -156,7 +156,8 @@ class LinkTest(unittest.TestCase):
         for topic, kind in (('/far1/mhri_guard/command', 'geometry_msgs/TwistStamped'),
                             ('/far2/cmd_vel', 'geometry_msgs/Twist')):
             put_in_front(slow, rospy.get_name(), rospy.get_node_uri(), topic, kind)
-        self.guarded('far1')
+        # The stall outlasts its memory: what comes behind is late all the same.
+        self.guarded('far1', '_memory_s:=1.0')
         ends = {name: VelocityEnd('/{}/cmd_vel'.format(name)) for name in gates}
         wait_for(gates['far1'].guarded, START_S, 'the guard')
         wait_for(gates['far2'].reachable, START_S, 'the robot without a guard')
@@ -194,6 +195,28 @@ class LinkTest(unittest.TestCase):
             self.assertLess(time.monotonic() - back, START_S, 'it to be driven again')
         late = [entry for entry in ends['far1'].after(back) if entry[1:] not in (ZERO, (0.2, 0.0))]
         self.assertEqual(late, [], 'a command from before the stall')
+
+    def test_what_a_guard_drops_is_said(self):
+        link = self.far_robot()
+        self.assertEqual(link.view().note, '')
+        self.guarded('bot1')
+        wait_for(link.gate.guarded, START_S, 'the guard')
+        publisher = rospy.Publisher('/bot1/mhri_guard/command', TwistStamped, queue_size=1)
+        wait_for(publisher.get_num_connections, START_S, 'the guard')
+
+        def said(age_s):
+            link.listen_to_guard()
+            message = TwistStamped()
+            message.header.stamp = rospy.Time.from_sec(time.time() - age_s)
+            message.twist.linear.x = 0.1
+            publisher.publish(message)
+            return 'its guard drops late commands' in link.view().note
+        end = VelocityEnd('/bot1/cmd_vel')
+        wait_for(lambda: said(0.0) or (0.1, 0.0) in end.values(), START_S, 'commands', 0.05)
+        self.assertFalse(said(0.0))
+        wait_for(lambda: said(1.0), START_S, 'word of what was dropped', 0.05)
+        self.assertTrue(link.view().slow)
+        wait_for(lambda: not said(0.0), 10.0, 'the word to go', 0.05)
 
     def test_a_guard_that_ends_stops_its_robot(self):
         gate = Gate('far3', ['/far3/cmd_vel'], Limits(0.5, 1.0))

@@ -95,6 +95,43 @@ def test_clocks_that_are_set_are_followed_after_the_memory(guard_class):
     assert guard.on_command(GO, 0.01, 0.1) == GO, 'a smaller delay is the best at once'
 
 
+def drive(guard, seconds, delay_s=0.01, begin=0.0):
+    """Drive 20 times a second; return the time of the last command."""
+    times = [begin + 0.05 * step for step in range(int(20 * seconds))]
+    for now in times:
+        guard.on_command(GO, delay_s, now)
+    return times[-1]
+
+
+@pytest.mark.parametrize('stall_s', [20.0, 29.5, 33.0, 600.0])
+@pytest.mark.parametrize('flush_s', [0.01, 1.5, 5.0])
+def test_a_backlog_is_not_replayed_however_long_it_waited(guard_class, stall_s, flush_s):
+    guard = guard_class()
+    last = drive(guard, 40.0)
+    stamps = [last + 0.05 * step for step in range(1, int(20 * stall_s))]
+    for index, stamp in enumerate(stamps):
+        # The backlog comes as fast as the link gives it, oldest first; nothing newer joins it.
+        now = last + stall_s + flush_s * index / len(stamps)
+        said = guard.on_command(GO, now - stamp + 0.01, now)
+        assert said != GO or now - stamp <= 0.2, 'a command from {:.1f} s ago'.format(now - stamp)
+    assert drive(guard, 1.0, begin=now + 0.05) and guard.tick(now + 1.0) is None, 'it drives on'
+
+
+def test_a_late_command_after_a_long_rest_is_late(guard_class):
+    guard = guard_class()
+    last = drive(guard, 5.0)
+    assert guard.on_command(GO, 2.01, last + 31.0) != GO
+    assert guard.on_command(GO, 0.02, last + 31.1) == GO
+
+
+def test_clocks_that_drifted_overnight_are_believed_when_the_delay_stays(guard_class):
+    guard = guard_class()
+    now = drive(guard, 5.0) + 8 * 3600.0
+    heard = [step for step in range(200)
+             if guard.on_command(GO, 1.41 + 0.01 * (step % 5), now + 0.05 * step) == GO]
+    assert 1.9 <= 0.05 * heard[0] <= 2.2 and heard == list(range(heard[0], 200))
+
+
 def test_a_thousand_drives_never_outlast_the_lease(guard_class):
     rng = random.Random(5)
     guard, now, last = guard_class(), 0.0, None

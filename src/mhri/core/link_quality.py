@@ -81,9 +81,12 @@ class LinkQuality:
             loss=lost / (lost + len(self._counts)) if self._counts else None)
 
 
-def link_warning(figures):
-    """Say what is wrong with a link that is live; '' where all is well."""
-    words = []
+def link_warning(figures, dropped=False):
+    """Say what is wrong with a link that is live; '' where all is well.
+
+    :param dropped: whether the robot's guard drops commands now
+    """
+    words = ['its guard drops late commands'] if dropped else []
     if figures.round_trip_s is not None and figures.round_trip_s > WARN_ROUND_TRIP_S:
         words.append('slow link: {:.0f} ms round trip'.format(1e3 * figures.round_trip_s))
     if figures.loss is not None and figures.loss > WARN_LOSS:

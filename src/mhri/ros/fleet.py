@@ -119,13 +119,15 @@ class Fleet:
             return
         for name in names:
             self.connect(name, facts[name])
-        self._announce()
-
-    def _announce(self):
-        """Let robots that are heard, but not reached, know who speaks to them."""
-        now = self._clock()
         with self._lock:
             links = list(self._links.values())
+        self._announce(links)
+        for link in links:
+            link.listen_to_guard()
+
+    def _announce(self, links):
+        """Let robots that are heard, but not reached, know who speaks to them."""
+        now = self._clock()
         for link in links:
             due = now - self._announced.get(link.name, link.added_at) >= ANNOUNCE_S
             if due and link.view().link == LIVE and not (

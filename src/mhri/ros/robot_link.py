@@ -6,6 +6,7 @@ import math
 import threading
 import time
 
+from geometry_msgs.msg import TwistStamped
 import rospy
 from sensor_msgs.msg import BatteryState
 
@@ -19,6 +20,10 @@ from mhri.ros.link_probe import LinkProbe
 
 _READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
             'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
+
+# Below a robot's namespace: the late commands that its guard kept from it.
+DROPPED = 'mhri_guard/dropped'
+DROPPED_SHOWN_S = 1.0
 
 
 def battery_fraction(message):
@@ -107,6 +112,8 @@ class RobotLink:
         self._quality = LinkQuality()
         self._proof = None
         self._battery = None
+        self._guard_feed = None
+        self._dropped_at = -math.inf
         self._feeds = self._open_feeds()
         self._battery_feeds = [
             Feed(topic_of(name, topic), BatteryState, battery_fraction, self._on_battery)
@@ -144,6 +151,15 @@ class RobotLink:
             if self._proof is not None:
                 self._take()
                 self._proof.on_motion(self._motion, now)
+
+    def listen_to_guard(self):
+        """Hear what the robot's guard drops, once it has one (blocking: it asks the master)."""
+        if self._guard_feed is None and self.gate.guarded():
+            self._guard_feed = Feed('/{}/{}'.format(self.name, DROPPED), TwistStamped,
+                                    lambda message: message, self._on_dropped)
+
+    def _on_dropped(self, feed, message, now):
+        self._dropped_at = now
 
     def _on_battery(self, feed, message, now):
         self._battery = feed.value(message)
@@ -187,7 +203,8 @@ class RobotLink:
                 self._heard_wall = time.strftime('%H:%M:%S')
             proof = self._proof.view(now) if self._proof else None
             figures = self._quality.read(now)
-        warning = link_warning(figures) if state == LIVE else ''
+        dropped = now - self._dropped_at < DROPPED_SHOWN_S
+        warning = link_warning(figures, dropped) if state == LIVE else ''
         waits = self.gate.rule.waits and state == LIVE
         if waits:
             warning = 'centre the stick: it was out of reach'
@@ -207,6 +224,7 @@ class RobotLink:
         """Stop listening and give the velocity topics back (blocking: it asks the master)."""
         self._probe.close()
         self.feeds.close()
-        for feed in self._feeds + self._battery_feeds:
+        guard_feeds = [self._guard_feed] if self._guard_feed else []
+        for feed in self._feeds + self._battery_feeds + guard_feeds:
             feed.unregister()
         self.gate.unregister()
