@@ -61,6 +61,53 @@ def test_auto_repeat_is_not_a_press_nor_a_release(panel, operator, heard):
     assert moved == [AHEAD]
 
 
+class Keyboard:
+    """What a :class:`mhri.gui.key_state.KeyState` knows."""
+
+    def __init__(self, *codes):
+        self.codes = set(codes)
+
+    def down(self):
+        return frozenset(self.codes)
+
+
+def test_a_repeat_that_is_not_marked_as_one_is_known(panel, operator, heard):
+    """Qt takes some repeats of a held key for a release and a press (X11, Qt 5)."""
+    keyboard = panel.drive_keys._keys = Keyboard(W, ONE)
+    moved, switched = heard(panel.stick_moved), heard(panel.drive_keys.robot_pressed)
+    for key, code in ((Qt.Key_W, W), (Qt.Key_1, ONE)):
+        operator.press(panel, key, code)
+        for _ in range(5):
+            operator.release(panel, key, code)
+            operator.press(panel, key, code)
+    assert (moved, switched) == ([AHEAD], [1])
+    operator.press(panel, Qt.Key_Space, SPACE)
+    operator.release(panel, Qt.Key_W, W)
+    operator.press(panel, Qt.Key_W, W)
+    assert panel.stick() == (0.0, 0.0), 'a dead key stays dead while it is held'
+    keyboard.codes.clear()
+    operator.release(panel, Qt.Key_W, W)
+    operator.press(panel, Qt.Key_W, W)
+    assert panel.stick() == AHEAD
+    operator.release(panel, Qt.Key_W, W)
+    assert panel.stick() == (0.0, 0.0)
+
+
+def test_a_key_that_is_held_while_the_window_is_left_has_to_be_pressed_again(panel, operator):
+    keyboard = panel.drive_keys._keys = Keyboard(W)
+    operator.press(panel, Qt.Key_W, W)
+    QApplication.sendEvent(panel, QEvent(QEvent.WindowDeactivate))
+    QApplication.sendEvent(panel, QEvent(QEvent.WindowActivate))
+    operator.press(panel, Qt.Key_W, W)
+    assert panel.stick() == (0.0, 0.0)
+    # Let go while somebody else has the keyboard.
+    QApplication.sendEvent(panel, QEvent(QEvent.WindowDeactivate))
+    keyboard.codes.clear()
+    QApplication.sendEvent(panel, QEvent(QEvent.WindowActivate))
+    operator.press(panel, Qt.Key_W, W)
+    assert panel.stick() == AHEAD
+
+
 def test_a_release_counts_even_if_a_modifier_changed_the_key(panel, operator):
     operator.press(panel, Qt.Key_Up, 80, Qt.KeypadModifier)
     assert panel.stick() == AHEAD

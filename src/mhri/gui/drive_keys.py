@@ -12,6 +12,8 @@ from python_qt_binding.QtWidgets import (
     QAbstractButton, QAbstractItemView, QAbstractSlider, QAbstractSpinBox, QApplication, QComboBox,
     QLineEdit, QPlainTextEdit, QTextEdit, QWidget)
 
+from mhri.gui.key_state import KeyState
+
 _AHEAD, _BACK, _LEFT, _RIGHT = (1, 0), (-1, 0), (0, 1), (0, -1)
 
 _ARROWS = {int(Qt.Key_Up): _AHEAD, int(Qt.Key_Down): _BACK, int(Qt.Key_Left): _LEFT,
@@ -29,6 +31,9 @@ _TALK = int(Qt.Key_T)
 _KEYS = frozenset((QEvent.KeyPress, QEvent.KeyRelease, QEvent.ShortcutOverride))
 # After one of these the releases of held keys may go to somebody else.
 _LOSSES = frozenset((QEvent.WindowDeactivate, QEvent.WindowBlocked, QEvent.ApplicationDeactivate))
+# Before one of these somebody else may have had the releases of keys that were held.
+_ARRIVALS = frozenset((QEvent.WindowActivate, QEvent.WindowUnblocked, QEvent.ApplicationActivate,
+                       QEvent.FocusIn))
 
 _TEXT_FIELDS = (QLineEdit, QAbstractSpinBox, QTextEdit, QPlainTextEdit)
 _ARROW_USERS = (QAbstractSlider, QComboBox, QAbstractItemView)
@@ -83,9 +88,11 @@ class DriveKeys(QObject):
     the keys held then are dead until released. T held is push-to-talk. Digits are the switches of
     the robots. Return activates the focused button, since space never does. Without effect while a
     text field has the focus or a list is open, and with Ctrl, Alt or Meta; but Shift+Space stops
-    everything, always.
+    everything, always. A key acts once, however long it is held, and counts as let go when it is
+    (:mod:`mhri.gui.key_state`).
 
     :param panel: the panel; a key that no widget has the focus for is its own
+    :param keys: :class:`mhri.gui.key_state.KeyState`
     """
 
     #: forward and turn, each -1, 0 or 1; on every change, at once
@@ -101,9 +108,12 @@ class DriveKeys(QObject):
     #: T was pressed or let go (push-to-talk)
     talk_changed = Signal(bool)
 
-    def __init__(self, panel):
+    def __init__(self, panel, keys=None):
         super().__init__(panel)
         self._panel = panel
+        self._keys = keys or KeyState()
+        # Identities of the keys that are down, as far as they are known here.
+        self._down = set()
         self._held = {}
         self._dead = set()
         self._deflection = (0.0, 0.0)
@@ -122,6 +132,7 @@ class DriveKeys(QObject):
         """Count every key as released; one that is still down has to be pressed again."""
         self._held.clear()
         self._dead.clear()
+        self._down = set(self._keys.down() or ())
         self._set_talk(None)
         self._update()
 
@@ -136,16 +147,19 @@ class DriveKeys(QObject):
         kind = event.type()
         if kind in _LOSSES:
             self.release()
+        elif kind in _ARRIVALS:
+            self._down.intersection_update(self._keys.down() or ())
         elif kind in _KEYS and isinstance(watched, QWidget):
             return self._on_key(watched, event, kind)
         return False
 
     def _on_key(self, watched, event, kind):
         """Return whether a key event is used up."""
-        if event.key() == _SPACE and event.modifiers() & Qt.ShiftModifier:
-            return self._on_stop(event, kind)
+        stops = event.key() == _SPACE and event.modifiers() & Qt.ShiftModifier
         if kind == QEvent.KeyRelease:
-            return self._on_release(event)
+            return self._on_release(event) or bool(stops)
+        if stops:
+            return self._on_stop(event, kind)
         focus = QApplication.focusWidget() or watched
         if not self._listens(watched, focus) or event.modifiers() & (
                 Qt.ControlModifier | Qt.AltModifier | Qt.MetaModifier):
@@ -155,15 +169,24 @@ class DriveKeys(QObject):
             return False
         if kind == QEvent.ShortcutOverride:
             event.accept()
-        elif not event.isAutoRepeat():
+        elif self._is_new(event):
             action()
+        return True
+
+    def _is_new(self, event):
+        """Tell whether a press is one, and not the repeat of one."""
+        identity = _identity(event)
+        if event.isAutoRepeat() or identity in self._down:
+            return False
+        self._down.add(identity)
         return True
 
     def _on_stop(self, event, kind):
         """Stop everything; accepted as override, the key is not taken by a shortcut of the host."""
         if kind == QEvent.ShortcutOverride:
             event.accept()
-        elif kind == QEvent.KeyPress and not event.isAutoRepeat():
+        elif not event.isAutoRepeat():
+            # Whatever else was pressed: to stop once more than needed does no harm.
             self.centre()
             self.stop_pressed.emit()
         return True
@@ -171,17 +194,17 @@ class DriveKeys(QObject):
     def _on_release(self, event):
         """Take a release wherever it arrives, so that no key is held for ever."""
         identity = _identity(event)
+        ours = identity == self._talk or identity in self._held or identity in self._dead
+        if event.isAutoRepeat() or event.nativeScanCode() in (self._keys.down() or ()):
+            return ours
+        self._down.discard(identity)
         if identity == self._talk:
-            if not event.isAutoRepeat():
-                self._set_talk(None)
-            return True
-        if identity not in self._held and identity not in self._dead:
-            return False
-        if not event.isAutoRepeat():
+            self._set_talk(None)
+        elif ours:
             self._held.pop(identity, None)
             self._dead.discard(identity)
             self._update()
-        return True
+        return ours
 
     def _listens(self, watched, focus):
         """Tell whether keys drive, going by where they are typed."""

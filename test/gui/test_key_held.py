@@ -1,0 +1,81 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A key of the X server's own keyboard, held for seconds: it is one press and one release."""
+import subprocess
+import time
+
+import pytest
+from python_qt_binding.QtWidgets import QApplication
+
+from mhri.gui.key_state import KeyState
+from support.ros_system import wait_for
+
+HELD_S = 4.0
+
+
+def xdotool(*words):
+    subprocess.run(('xdotool',) + words, check=True, timeout=30)
+
+
+@pytest.fixture
+def down(panel):
+    """Return a function that holds a key in the panel; afterwards every key is up."""
+    panel.show()
+    window = str(int(panel.winId()))
+    pressed = []
+
+    def press(key):
+        wait_for(lambda: (xdotool('windowfocus', window), QApplication.processEvents(),
+                          panel.isActiveWindow())[-1], 20, 'the keyboard', poll_s=0.05)
+        pressed.append(key)
+        xdotool('keydown', key)
+    yield press
+    for key in pressed:
+        xdotool('keyup', key)
+
+
+def run_for(seconds):
+    """Let the program run, as busy as one that draws: what Qt reads late it misjudges."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        QApplication.processEvents()
+        time.sleep(0.001)
+
+
+def test_a_drive_key_that_is_held_is_never_let_go(panel, heard, down):
+    moved = heard(panel.stick_moved)
+    down('w')
+    run_for(HELD_S)
+    assert moved == [(1.0, 0.0)]
+    begun = time.monotonic()
+    xdotool('keyup', 'w')
+    wait_for(lambda: (QApplication.processEvents(), moved[-1] == (0.0, 0.0))[-1], 5, 'the release')
+    print('MEASURED key let go: stick at zero after {:.0f} ms, xdotool and all'.format(
+        1e3 * (time.monotonic() - begun)))
+
+
+def test_a_switch_that_is_held_switches_once(panel, heard, down):
+    switched = heard(panel.drive_keys.robot_pressed)
+    down('1')
+    run_for(HELD_S)
+    assert switched == [1]
+
+
+def test_the_keys_that_are_down_are_known(down):
+    keys = KeyState()
+    assert keys.down() == frozenset()
+    down('w')
+    wait_for(lambda: keys.down() == frozenset({25}), 5, 'W')
+    times = []
+    for _ in range(200):
+        begun = time.perf_counter()
+        keys.down()
+        times.append(1e6 * (time.perf_counter() - begun))
+    print('MEASURED one look at the keyboard: {:.0f} us (median)'.format(sorted(times)[100]))
+    keys.close()
+    assert keys.down() is None
+
+
+def test_without_an_x_server_nothing_is_known(monkeypatch):
+    monkeypatch.setattr('mhri.gui.key_state.QGuiApplication.platformName', lambda: 'wayland')
+    assert KeyState().down() is None
