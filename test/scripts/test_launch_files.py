@@ -41,9 +41,9 @@ def test_file_says_its_licence_and_its_arguments(path):
 def test_host_by_default():
     config = load(MHRI)
     found = nodes(config)
-    assert sorted(found) == ['/mhri_joy', '/mhri_pedal', '/mhri_voice', '/mux', '/panel']
-    assert found['/panel'].required and '--gui auto' in found['/panel'].args
-    assert '--demo ' not in found['/panel'].args + ' '
+    assert sorted(found) == ['/mhri_joy', '/mhri_panel', '/mhri_pedal', '/mhri_voice', '/mux']
+    assert found['/mhri_panel'].required and '--gui auto' in found['/mhri_panel'].args
+    assert '--demo ' not in found['/mhri_panel'].args + ' '
     assert not found['/mux'].respawn, 'two hosts on one master would fight for its name'
     assert Path(config.params['/mux/config'].value).is_file()
 
@@ -56,7 +56,7 @@ def test_host_by_default():
     (['demo:=false', 'screenshot:=/tmp/a.png'], [], ['--demo ']),
 ])
 def test_panels_command_line(arguments, said, unsaid):
-    args = nodes(load(MHRI, *arguments))['/panel'].args
+    args = nodes(load(MHRI, *arguments))['/mhri_panel'].args
     assert [text for text in said if text not in args] == []
     assert [text for text in unsaid if text in args] == []
 
@@ -69,7 +69,7 @@ def test_arguments_of_the_host():
     assert enabled['/mux/enabling'].value == 'pedal'
     assert load(MHRI, 'automatic_switching:=true').params['/mux/automatic_switching'].value is True
     assert '/mux/automatic_switching' not in load(MHRI).params, "the file's word counts then"
-    assert not nodes(load(MHRI, 'required:=false'))['/panel'].required
+    assert not nodes(load(MHRI, 'required:=false'))['/mhri_panel'].required
     assert load(MHRI, 'mux_config:=/x.yaml').params['/mux/config'].value == '/x.yaml'
 
 

@@ -138,7 +138,7 @@ def test_new_checkout_builds_and_runs(start, tmp_path, name, arguments, space):
 def test_ctrl_c_takes_everything_down(start, master):
     uri, proxy = master
     run = start('--sim', '1', '--master', uri)
-    wait_for(lambda: node_uri(proxy, '/mux') and node_uri(proxy, '/panel'), 'mux and panel')
+    wait_for(lambda: node_uri(proxy, '/mux') and node_uri(proxy, '/mhri_panel'), 'mux and panel')
     wait_for(lambda: publishers(proxy, '/bot1/odom'), 'the robot')
     assert 'there is no display: the panel runs under Xvfb' in run.output
     run.process.send_signal(signal.SIGINT)
@@ -149,8 +149,8 @@ def test_ctrl_c_takes_everything_down(start, master):
 def test_end_of_the_panel_ends_everything(start, master):
     uri, proxy = master
     run = start('--sim', '1', '--master', uri)
-    wait_for(lambda: node_uri(proxy, '/panel'), 'the panel')
-    panel = xmlrpc.client.ServerProxy(node_uri(proxy, '/panel'))
+    wait_for(lambda: node_uri(proxy, '/mhri_panel'), 'the panel')
+    panel = xmlrpc.client.ServerProxy(node_uri(proxy, '/mhri_panel'))
     os.kill(panel.getPid('/test')[2], signal.SIGTERM)
     assert run.wait(30) == 0, run.output
 

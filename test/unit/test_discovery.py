@@ -37,7 +37,15 @@ CASES = {
     'ignored_node': (('/bot1/rosout', '/bot1/helper'), {}, (), []),
     'ignored_node_does_not_hide_others': (
         ('/bot1/rosout', '/bot1/base'), {}, (), [Candidate('bot1', None, ('/bot1/base',))]),
-    'ignored_namespace': (('/rqt_gui/a',), {'mux': {'robot_type': 'x'}}, (), []),
+    'ignored_namespace': (('/rqt_gui/a',), {}, (), []),
+    'ignored_name_of_one_that_says_it_is_a_robot': (
+        ('/rqt_bot/a', '/rqt_bot/rosout'), {'rqt_bot': {'robot_type': 'x'}}, (),
+        [Candidate('rqt_bot', 'x', ('/rqt_bot/a',))]),
+    'ignored_node_of_one_that_says_it_is_a_robot': (
+        ('/bot1/base', '/bot1/helper'), {'bot1': {'robot_type': 'x'}}, (),
+        [Candidate('bot1', 'x', ('/bot1/base',))]),
+    'name_of_mhri_itself': ((), {'mux': {'robot_type': 'x'}}, (), [Candidate(
+        'mux', 'x', problem='"mux" is a name of mhri itself: choose another one')]),
     'known': (('/bot1/base', '/bot2/base'), {'bot1': {'robot_type': 'x'}}, ('bot1',),
               [Candidate('bot2', None, ('/bot2/base',))]),
     'sorted': (('/b/n', '/c/n'), {'a': {'robot_type': 'x'}}, (), [
@@ -46,6 +54,18 @@ CASES = {
         ('/bot1/camera/driver',), {}, (), [Candidate('bot1', None, ('/bot1/camera/driver',))]),
     'type_of_another_kind': ((), {'bot1': {'robot_type': 3}}, (), [Candidate('bot1', '3')]),
 }
+
+
+@pytest.mark.parametrize('name', ['turtlebot', 'gazebo', 'tfbot', 'mhri_1', 'rviz_bot', 'rqt_2'])
+def test_no_pattern_of_the_shipped_list_hides_a_robot_with_a_type(name):
+    """The contract: a namespace with a robot_type is a robot."""
+    with open(RESOURCE) as file:
+        ignore = parse_ignore_list(file.read(), RESOURCE)
+    node, topic = '/{}/base'.format(name), '/{}/cmd_vel'.format(name)
+    graph = [[['/{}/odom'.format(name), [node]]], [[topic, [node]]], []]
+    found = find_candidates(graph, {name: {'robot_type': 'turtlebot3'}}, ignore,
+                            topic_types=[(topic, TWIST)])
+    assert [(item.name, item.nodes, item.problem) for item in found] == [(name, (node,), None)]
 
 
 @pytest.mark.parametrize('case', sorted(CASES))

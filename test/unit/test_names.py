@@ -17,7 +17,7 @@ def test_good_names(name):
     ('bot 1', 'a space'), ('bot-1', '"-"'), ('lab/bot1', '"/"'), ('/bot1', '"/"'),
     ('böt', '"ö"'), ('öbot', 'begins with a letter'), ('bot1\n', 'cannot be seen'),
     ('bot\u200b', 'cannot be seen'), ('bot\u0661', '"\u0661"'), ('x' * 65, 'at most 64'),
-    ('bot;reboot', '";"'), ('~bot', 'begins with'), ('bot$(x)', '"$"')])
+    ('bot;reboot', '";"'), ('~bot', 'begins with'), ('mux', 'of mhri itself'), ('bot$(x)', '"$"')])
 def test_bad_names_and_their_reason(name, reason):
     """The reason stands next to the field."""
     assert reason in name_problem(name)

@@ -42,7 +42,7 @@ TIMEOUT_S = 3.0
 PR_SET_PDEATHSIG = 1
 CALLER = '/mhri_remote'
 # The host's own nodes, by which it is seen what address it gives them.
-HOST_NODES = ('/rosout', '/mux', '/panel')
+HOST_NODES = ('/rosout', '/mux', '/mhri_panel')
 WATCH_EVERY_S = 2.0
 RUN_ID_TIMEOUT_S = 3.0
 RUN_ID_TRIES = 15

@@ -134,8 +134,16 @@ class Survey:
         self._share_out_commands()
 
     def _ignored(self, name):
-        """Tell whether a node or a topic is ignored, by its name or its namespace."""
-        return self._ignore.covers(name, split(name)[0])
+        """Tell whether a node or a topic is ignored, by its name or its namespace.
+
+        A robot that says of itself that it is one may be called what else is ignored: of its nodes
+        only those are which a pattern of two segments names.
+        """
+        namespace, _ = split(name)
+        if namespace in self._typed:
+            return any(fnmatchcase(name, pattern) for pattern in self._ignore.nodes
+                       if pattern.count('/') > 1)
+        return self._ignore.covers(name, namespace)
 
     def _typed_below(self):
         """Yield ``lab/bot1`` where a robot was started two namespaces deep."""
@@ -188,7 +196,7 @@ class Survey:
             names = {name for name in names if name in self._typed
                      or name in self._members and name in self._commands}
         found = [self._in_namespace(name) for name in names
-                 if not self._ignore.covers('/' + name, name)]
+                 if name in self._typed or not self._ignore.covers('/' + name, name)]
         found += [Candidate(name, problem=name_problem(name)) for name in self._nested]
         if root:
             taken = any(item.name == root.name for item in found)

@@ -6,6 +6,8 @@ import re
 _LEGAL = re.compile(r'[A-Za-z][A-Za-z0-9_]*\Z')
 _GLOBAL = re.compile(r'(/[A-Za-z][A-Za-z0-9_]*)+\Z')
 MAX_LENGTH = 64
+# Namespaces of mhri itself.
+RESERVED = frozenset(('mhri', 'mux', 'mux_in', 'panel_in', 'robot_controller'))
 
 
 def name_problem(name):
@@ -28,6 +30,8 @@ def name_problem(name):
         shown = 'a space' if odd == ' ' else '"{}"'.format(odd) if odd.isprintable() else \
             'a character that cannot be seen'
         return 'use letters, digits and _ only: {} is not allowed'.format(shown)
+    if name in RESERVED:
+        return '"{}" is a name of mhri itself: choose another one'.format(name)
     return None
 
 

@@ -100,6 +100,9 @@ class MasterWatch:
                           rospy.get_name())
             rospy.signal_shutdown('name taken over')
             return
+        if rospy.is_shutdown():
+            # What the master does not know any more, this node has taken back itself.
+            return
         if uri is None:
             if self.state == PRESENT:
                 self._lose('the ROS master was restarted')
@@ -133,6 +136,7 @@ class MasterWatch:
         subscriptions = topics.get_subscriptions()
         calls += [('registerSubscriber', name, kind, own) for name, kind in subscriptions]
         answers = self._api.call_many(calls)
-        manager = get_registration_listeners().listeners[0]
+        manager = next(iter(get_registration_listeners().listeners), None)
         for (name, _), publishers in zip(subscriptions, answers[len(calls) - len(subscriptions):]):
-            manager.publisher_update(name, publishers or [])
+            if manager is not None:
+                manager.publisher_update(name, publishers or [])

@@ -103,6 +103,8 @@ class Operator:
         self._keeper.start()
         self._bank.start()
         self._mux = mux
+        if self._bank.stopped:
+            mux.stop_all()
         if self._first_limits:
             mux.request_limits(*self._first_limits)
         mux.select(self.selection.selected)
@@ -260,14 +262,18 @@ class Operator:
             self._devices.rumble()
 
     def stop_all(self):
-        """Stop every robot in the list, now."""
+        """Stop every robot in the list, now; pressed without a master, it waits for the mux."""
         if self._mux:
             self._mux.stop_all()
+        else:
+            self._bank.press_stop()
 
     def release(self):
         """Give up stop-all, where the mux agrees."""
         if self._mux:
             self._mux.release()
+        else:
+            self._bank.withdraw_press()
 
     # What there is to see.
 
