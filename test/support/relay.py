@@ -11,6 +11,8 @@ import socket
 import threading
 import time
 
+import rosgraph
+
 
 class Relay:
     """Relays connections to one address.
@@ -164,3 +166,10 @@ class SlowNode:
         """End the network."""
         for relay in (self._relay, *self._streams.values()):
             relay.close()
+
+
+def put_in_front(slow, node, uri, topic, kind):
+    """Let everybody find a topic of a node behind the slow network only."""
+    master = rosgraph.Master(node)
+    master.unregisterPublisher(topic, uri)
+    rosgraph.Master('/slow' + topic.replace('/', '_')).registerPublisher(topic, kind, slow.uri)
