@@ -29,7 +29,7 @@ pytestmark = pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))
 REMOTE = REPO / 'utils' / 'remote'
 # What a robot needs to stand still, at most: the smoother's 0.5 s of patience and its ramp, or the
 # watchdog's 0.5 s; the rest is for a machine under load.
-STOP_S = 3.0
+STOP_S = {'bot1': 1.5, 'bot2': 1.0}
 
 
 @pytest.fixture(scope='module')
@@ -267,7 +267,7 @@ def test_robot_stops_without_its_link_and_is_usable_with_it(lab, operator, name,
           'of again after {:.1f} s, moved {:.3f} m by itself, then driven again'.format(
               name, 'guarded' if name in GUARDED else 'no guard', mended - cut, stopped * 1e3,
               back, strayed))
-    assert stopped < STOP_S
+    assert stopped < STOP_S[name]
     assert strayed < 0.01, 'a stale command moved it'
     # Without a guard, what the keeper had sent was taken back, which costs it its connection.
     if name in GUARDED:
