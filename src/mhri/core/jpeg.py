@@ -9,7 +9,6 @@ handle of its own, so that any thread may call. Interface: turbojpeg.h, 1.5 and 
 """
 import ctypes
 
-import cv2
 import numpy as np
 
 _NAMES = ('libturbojpeg.so.0', 'libturbojpeg.so', 'libturbojpeg.dylib')
@@ -89,9 +88,15 @@ def encode_jpeg(rgb, quality=80):
     :param rgb: uint8 (h, w, 3)
     :param quality: 1 to 100
     """
-    return _encode_by_library(np.ascontiguousarray(rgb), quality) or cv2.imencode(
-        '.jpg', cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR),
-        [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
+    return _encode_by_library(np.ascontiguousarray(rgb), quality) or _encode_by_cv2(rgb, quality)
+
+
+def _encode_by_cv2(rgb, quality):
+    """Return the bytes as OpenCV writes them."""
+    # Its import takes a second on a busy machine: not for whoever only asks for the library.
+    import cv2
+    return cv2.imencode('.jpg', cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR),
+                        [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
 
 
 def _encode_by_library(rgb, quality):
