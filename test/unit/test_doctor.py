@@ -276,6 +276,20 @@ def test_nobody_listens_and_nobody_tells():
     assert [item.check for item in world.wrong()] == ['odometry_missing']
 
 
+def test_without_a_mux_the_master_may_be_the_wrong_one():
+    world = World()
+    without('/mux')(world)
+    facts = world.facts()
+    there = 'http://192.0.2.1:11322', 'http://192.0.2.9:11311'
+    finding, = [item for item in diagnose(replace(facts, master=replace(
+        facts.master, elsewhere=there)), TYPES, IGNORE) if item.severity != FINE]
+    assert finding.check == 'mux_missing' and facts.master.uri in finding.problem
+    for uri in there:
+        assert uri in finding.problem and 'export ROS_MASTER_URI=' + uri in finding.remedy
+    assert finding.remedy.endswith('if this one is right: rosrun mhri mux')
+    assert 'ROS_MASTER_URI' not in world.wrong()[0].remedy
+
+
 def test_publishers_disagree():
     world = World()
     add('/two', ['/bot1/odom'])(world)

@@ -150,7 +150,7 @@ def test_master_of_another_computer_is_started_there():
 
 
 def test_master_elsewhere_is_named():
-    other = replace(MASTER, state=REFUSED, elsewhere='http://localhost:11311')
+    other = replace(MASTER, state=REFUSED, elsewhere=('http://localhost:11311',))
     finding, = find_on_master(facts(master=other))
     assert finding.check == 'master_elsewhere'
     assert finding.remedy == 'export ROS_MASTER_URI=http://localhost:11311'

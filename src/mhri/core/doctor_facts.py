@@ -98,7 +98,8 @@ class Computer:
 class Master:
     """The master: its URI as configured, how it answered, in words where not, in how long [s].
 
-    ``elsewhere`` is the URI of a master that answers on the default port, where this one does not.
+    ``elsewhere`` are the URIs of other masters: where this one does not answer those that do, where
+    it has no mux those that have one.
     """
 
     uri: str = 'http://localhost:11311'
@@ -107,7 +108,7 @@ class Master:
     state: str = ANSWERS
     detail: str = ''
     took_s: float = 0.0
-    elsewhere: str = ''
+    elsewhere: Tuple[str, ...] = ()
     uri_problem: str = ''
 
 

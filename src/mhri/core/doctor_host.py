@@ -62,7 +62,8 @@ def _known_uri(facts):
     """Return the URI of a master that answers, or a place for it."""
     if facts.master.state == ANSWERS:
         return facts.master.uri
-    return facts.master.elsewhere or 'http://<address of the computer with the panel>:11311'
+    return (facts.master.elsewhere or (
+        'http://<address of the computer with the panel>:11311',))[0]
 
 
 def _address_problem(facts, host, variable):
@@ -204,6 +205,11 @@ def package_of(name, computer):
                           name.replace('_', '-'))
 
 
+def use_other(master):
+    """Return the command that turns to another master, one for each there is."""
+    return '   # or: '.join('export ROS_MASTER_URI={}'.format(uri) for uri in master.elsewhere[:4])
+
+
 _NOTHING = 'no robot is found, programs end with "unable to communicate with master"'
 
 
@@ -219,8 +225,8 @@ def find_on_master(facts):
             master.uri, master.took_s * 1e3, len(facts.nodes)))]
     if master.elsewhere:
         return [Finding(FAULT, 'master_elsewhere', MASTER, 'none answers at {} ({}), but one does '
-                        'at {}'.format(master.uri, master.detail, master.elsewhere), _NOTHING,
-                        'export ROS_MASTER_URI={}'.format(master.elsewhere))]
+                        'at {}'.format(master.uri, master.detail or master.state,
+                                       listed(master.elsewhere)), _NOTHING, use_other(master))]
     start = 'roslaunch mhri mhri.launch' if computer.is_own(master.host) else \
         'on {}: roslaunch mhri mhri.launch'.format(master.host)
     if master.state == STRANGER:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The doctor on mhri's own nodes: panel, mux, topics that one node alone may publish."""
 from mhri.core.doctor_facts import FAULT, FINE, Finding, listed, SYSTEM
+from mhri.core.doctor_host import use_other
 
 TWIST, SELECT, MODE = ('/robot_controller/twist', '/robot_controller/robot_select', '/mux/mode')
 STOP_ALL = '/robot_controller/stop_all'
@@ -13,7 +14,7 @@ def find_on_system(facts):
     if all(item.severity == FINE for item in found):
         panels = _publishers(facts, SELECT)
         found.append(Finding(FINE, 'system', SYSTEM, 'one mux ({}), {}'.format(
-            listed(_publishers(facts, MODE)),
+            listed(muxes(facts)),
             'one panel ({})'.format(panels[0]) if panels else 'no panel runs now')))
     return found
 
@@ -24,23 +25,37 @@ def _publishers(facts, topic):
             if node not in facts.nodes or facts.answering(node)]
 
 
+def muxes(facts):
+    """Return the names of the muxes that run."""
+    return _publishers(facts, MODE)
+
+
+def _mux_missing(facts):
+    """Say that no mux runs; where another master has one, this may be the wrong master."""
+    nothing = 'robots are selected, the stick is moved, and nothing happens'
+    if facts.master.elsewhere:
+        return Finding(
+            FAULT, 'mux_missing', SYSTEM, 'no mux runs at the master {}, but one does at {}: is '
+            'this the right master?'.format(facts.master.uri, listed(facts.master.elsewhere)),
+            nothing + '; or robots of the other master are not found',
+            '{}   # or, if this one is right: rosrun mhri mux'.format(use_other(facts.master)))
+    return Finding(
+        FAULT, 'mux_missing', SYSTEM, 'no mux runs: nothing turns the stick into a velocity',
+        nothing, 'rosrun mhri mux   # or everything: roslaunch mhri mhri.launch')
+
+
 def _mux(facts):
     """Judge how many muxes there are, and who else speaks in their place."""
-    muxes = _publishers(facts, MODE)
-    found = []
-    if not muxes:
+    running = muxes(facts)
+    found = [] if running else [_mux_missing(facts)]
+    if len(running) > 1:
         found.append(Finding(
-            FAULT, 'mux_missing', SYSTEM, 'no mux runs: nothing turns the stick into a velocity',
-            'robots are selected, the stick is moved, and nothing happens',
-            'rosrun mhri mux   # or everything: roslaunch mhri mhri.launch'))
-    if len(muxes) > 1:
-        found.append(Finding(
-            FAULT, 'mux_several', SYSTEM, '{} muxes run: {}'.format(len(muxes), listed(muxes)),
+            FAULT, 'mux_several', SYSTEM, '{} muxes run: {}'.format(len(running), listed(running)),
             'robots twitch: each mux sends velocities of its own, and stop all of one does not '
             'hold the other', 'rosnode kill {}'.format(' '.join(
-                sorted(muxes, key=lambda name: name != '/mux')[1:]))))
+                sorted(running, key=lambda name: name != '/mux')[1:]))))
     for topic, words in ((TWIST, 'the one velocity command'), (STOP_ALL, 'stop all')):
-        foreign = [node for node in _publishers(facts, topic) if node not in muxes]
+        foreign = [node for node in _publishers(facts, topic) if node not in running]
         if foreign:
             found.append(Finding(
                 FAULT, 'mux_bypassed', SYSTEM, '{} publishes {} ({}), which is the mux\'s '

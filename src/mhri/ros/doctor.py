@@ -7,7 +7,6 @@ It disturbs nothing: it registers no node, sets no parameter, and hangs up where
 import os
 import time
 from dataclasses import replace
-from urllib.parse import urlsplit
 import xmlrpc.client
 
 import genpy.message
@@ -18,28 +17,33 @@ from mhri.core.config import ConfigError
 from mhri.core.discovery import IgnoreList
 from mhri.core.doctor import diagnose, odd_ones
 from mhri.core.doctor_facts import (
-    Facts, Graph, Master, REFUSED, SILENT, STRANGER, UNRESOLVED)
+    Facts, Graph, REFUSED, SILENT, STRANGER, UNRESOLVED)
 from mhri.core.doctor_host import find_on_host
 from mhri.core.doctor_robots import robots_of
+from mhri.core.doctor_system import muxes
 from mhri.ros.doctor_host import look_at_computer
+from mhri.ros.doctor_masters import look_elsewhere, parse_uri
 from mhri.ros.doctor_probe import Probe
 from mhri.ros.graph import shipped_ignore_list
 from mhri.ros.master_api import MasterApi, MasterError
 from mhri.ros.resources import robot_types
 
-LIMIT_S = 1.9
-SECOND_LOOK_S = 0.5
-_MASTER_S = 1.0
-_DEFAULT_PORT = 11311
+# When the nodes have been asked, and asked again, counted from the start; what began late has less
+# time for them, yet the least in which one that listens can answer.
+ASKED_S, AGAIN_S = 1.9, 2.6
+LEAST_S, LEAST_AGAIN_S = 0.8, 0.3
+_MASTER_S = 0.8
 
 
-def examine(robots=(), environ=None):
+def examine(robots=(), environ=None, begun=None):
     """Examine the system (blocking, 3 s at most; never on the GUI thread).
 
     :param robots: names of the robots to judge, () for all
     :param environ: the environment to judge, default that of this program
+    :param begun: since when somebody waits for it [s, monotonic], default now
     :returns: list of :class:`mhri.core.doctor_facts.Finding`: faults, warnings, what is fine
     """
+    begun = time.monotonic() if begun is None else begun
     environ = os.environ if environ is None else environ
     caller_id = '/mhri_doctor_{}'.format(os.getpid())
     try:
@@ -47,9 +51,9 @@ def examine(robots=(), environ=None):
         ignore, faults = _ignore_list()
     except rospkg.ResourceNotFound:
         # Without the workspace there are no templates to judge robots by: that comes first.
-        master = _parse_uri(environ.get('ROS_MASTER_URI') or rosgraph.rosenv.DEFAULT_MASTER_URI)
+        master = parse_uri(environ.get('ROS_MASTER_URI') or rosgraph.rosenv.DEFAULT_MASTER_URI)
         return find_on_host(Facts(computer=look_at_computer(environ, master.host), master=master))
-    facts = replace(look(environ, types, ignore, robots, caller_id),
+    facts = replace(look(environ, types, ignore, begun, robots, caller_id),
                     template_errors=tuple(str(error) for error in errors + faults))
     return diagnose(facts, types, ignore)
 
@@ -62,42 +66,38 @@ def _ignore_list():
         return IgnoreList(), [error]
 
 
-def look(environ, types, ignore, robots=(), caller_id='/mhri_doctor'):
-    """Return the :class:`Facts` of this moment (blocking, 3 s at most)."""
-    begun = time.monotonic()
-    master = _parse_uri(environ.get('ROS_MASTER_URI') or rosgraph.rosenv.DEFAULT_MASTER_URI)
+def look(environ, types, ignore, begun, robots=(), caller_id='/mhri_doctor'):
+    """Return the :class:`Facts` of this moment (blocking, until 3 s after ``begun`` at most)."""
+    master = parse_uri(environ.get('ROS_MASTER_URI') or rosgraph.rosenv.DEFAULT_MASTER_URI)
     computer = look_at_computer(environ, master.host)
     facts = Facts(computer=computer, wanted=tuple(robots), caller_id=caller_id)
     if master.uri_problem:
-        return replace(facts, master=replace(master, elsewhere=_elsewhere(master, caller_id)))
+        return _without_master(facts, master)
     if not computer.addresses_of(master.host):
-        return replace(facts, master=replace(master, state=UNRESOLVED,
-                                             elsewhere=_elsewhere(master, caller_id)))
+        return _without_master(facts, replace(master, state=UNRESOLVED))
     api = MasterApi(caller_id, _MASTER_S, master.uri)
     try:
         master, graph, uris = _ask_master(api, master)
     except MasterError as error:
-        return replace(facts, master=_why_not(master, error, caller_id))
+        return _without_master(facts, _why_not(master, error))
     facts = replace(facts, master=master, graph=graph)
     known = robots_of(graph, types, ignore)
-    facts = _ask_nodes(facts, known, uris, begun + LIMIT_S)
-    return _look_again(facts, known, api)
+    facts = _ask_nodes(facts, known, uris, _deadline(begun + ASKED_S, LEAST_S))
+    if not muxes(facts):
+        facts = replace(facts, master=replace(master, elsewhere=look_elsewhere(
+            master, computer, caller_id, only_with_mux=True)))
+    return _look_again(facts, known, api, begun + AGAIN_S)
 
 
-def _parse_uri(uri):
-    """Return the :class:`Master` of a URI, with what is wrong with it."""
-    try:
-        parts = urlsplit(uri.strip())
-        host, port = parts.hostname or '', parts.port
-    except ValueError as error:
-        return Master(uri, '', 0, SILENT, uri_problem=str(error))
-    if parts.scheme != 'http' or not host or uri != uri.strip():
-        return Master(uri, host, port or 0, SILENT, uri_problem='it has the form '
-                      'http://<address>:{}'.format(_DEFAULT_PORT))
-    if port is None:
-        return Master(uri, host, 0, SILENT, uri_problem='it names no port; the usual one is '
-                      '{}'.format(_DEFAULT_PORT))
-    return Master(uri, host, port)
+def _deadline(wanted, least_s):
+    """Return a deadline, or a later one where that leaves too little time."""
+    return max(wanted, time.monotonic() + least_s)
+
+
+def _without_master(facts, master):
+    """Return the facts with a master that cannot be asked, and others that can."""
+    return replace(facts, master=replace(master, elsewhere=look_elsewhere(
+        master, facts.computer, facts.caller_id)))
 
 
 def _ask_master(api, master):
@@ -129,7 +129,7 @@ def _uris(api, graph):
     return {name: uri for name, uri in zip(names, answers) if uri}
 
 
-def _why_not(master, error, caller_id):
+def _why_not(master, error):
     """Return the master with the reason why it cannot be asked."""
     cause = error.__context__
     if isinstance(cause, ConnectionRefusedError):
@@ -140,21 +140,7 @@ def _why_not(master, error, caller_id):
     else:
         state = SILENT
     detail = str(getattr(cause, 'strerror', None) or cause or error)
-    return replace(master, state=state, detail=detail, elsewhere=_elsewhere(master, caller_id))
-
-
-def _elsewhere(master, caller_id):
-    """Return the URI of a master that answers at the default port, '' where there is none."""
-    for host in dict.fromkeys((master.host, 'localhost')):
-        uri = 'http://{}:{}'.format(host, _DEFAULT_PORT)
-        if not host or uri == master.uri.rstrip('/'):
-            continue
-        try:
-            MasterApi(caller_id, 0.3, uri).call('getUri')
-            return uri
-        except MasterError:
-            continue
-    return ''
+    return replace(master, state=state, detail=detail)
 
 
 def _ask_nodes(facts, robots, uris, deadline):
@@ -184,7 +170,7 @@ def _own_md5(kind):
     return found._md5sum if found is not None else None
 
 
-def _look_again(facts, robots, api):
+def _look_again(facts, robots, api, wanted):
     """Ask the master once more, and the nodes that looked odd."""
     try:
         odd = odd_ones(facts, robots)
@@ -194,7 +180,7 @@ def _look_again(facts, robots, api):
         uris = _uris(api, graph)
     except MasterError:
         return facts
-    probe = Probe(facts.caller_id, time.monotonic() + SECOND_LOOK_S)
+    probe = Probe(facts.caller_id, _deadline(wanted, LEAST_AGAIN_S))
     for name in sorted(odd & set(uris)):
         probe.ask(name, uris[name])
     nodes = {name: replace(node, uri_later=uris.get(name, ''))
