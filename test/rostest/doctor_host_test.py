@@ -16,11 +16,24 @@ import rostest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from support.ros_system import free_port, wait_for  # noqa: E402
+from support.ros_system import free_port, System, wait_for  # noqa: E402
 from support.surgery import BlackHole, Clinic, wrong  # noqa: E402
 
 TWIST, ODOMETRY = 'geometry_msgs/Twist', 'nav_msgs/Odometry'
 ROBOTS = 12
+PROMISED_S = 3.0
+# What does not end in time at all takes minutes; a machine under load, a few seconds more.
+LOADED_S = 10.0
+LATE_S = 1.0
+
+
+def server(test):
+    """Return the URI of an XML-RPC server that is no ROS node."""
+    found = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False)
+    threading.Thread(target=found.serve_forever, daemon=True).start()
+    test.addCleanup(found.server_close)
+    test.addCleanup(found.shutdown)
+    return 'http://127.0.0.1:{}'.format(found.server_address[1])
 
 
 class EnvironmentTest(unittest.TestCase):
@@ -40,14 +53,6 @@ class EnvironmentTest(unittest.TestCase):
         for item in findings.values():
             print('FOUND {check}: {about}: {problem} | {shows} | {remedy}'.format(**item))
         self.assertIn(remedy or '', findings[checks[0]]['remedy'])
-
-    def server(self):
-        """Return the URI of an XML-RPC server that is no ROS node."""
-        server = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False)
-        threading.Thread(target=server.serve_forever, daemon=True).start()
-        self.addCleanup(server.server_close)
-        self.addCleanup(server.shutdown)
-        return 'http://127.0.0.1:{}'.format(server.server_address[1])
 
     def test_address_of_another_computer(self):
         self.found('address_foreign', remedy='export ROS_IP=', env={'ROS_IP': '203.0.113.9'})
@@ -72,34 +77,16 @@ class EnvironmentTest(unittest.TestCase):
         _, report = self.clinic.examine(unset=['ROS_MASTER_URI'])
         self.assertIn('export ROS_MASTER_URI=', wrong(report)['master_uri_unset']['remedy'])
 
-    def master(self, uri, check, remedy):
-        """Examine with this master, of which this is said, or that one is elsewhere."""
-        _, report = self.clinic.examine(env={'ROS_MASTER_URI': uri})
-        findings = wrong(report)
-        if 'master_elsewhere' in findings:
-            self.assertIn(':11311', findings['master_elsewhere']['remedy'])
-        else:
-            self.assertEqual(set(findings), {check})
-            self.assertIn(remedy, findings[check]['remedy'])
+    def test_master_that_does_not_answer_while_another_does(self):
+        self.found('master_elsewhere', remedy='export ROS_MASTER_URI=' + self.clinic.uri,
+                   env={'ROS_MASTER_URI': 'http://127.0.0.1:{}'.format(free_port())})
 
-    def test_master_that_is_not_running(self):
-        self.master('http://127.0.0.1:{}'.format(free_port()), 'master_refused',
-                    'roslaunch mhri mhri.launch')
-
-    def test_master_that_is_out_of_reach(self):
-        hole = BlackHole()
-        self.addCleanup(hole.close)
-        self.master(hole.uri, 'master_silent', 'ping -c 3')
-
-    def test_master_whose_name_is_unknown(self):
-        self.master('http://no-such-name.invalid:11311', 'master_unresolved', '/etc/hosts')
-
-    def test_master_that_is_something_else(self):
-        self.master(self.server(), 'master_stranger', 'export ROS_MASTER_URI=')
-
-    def test_master_that_is_a_node(self):
-        self.master(self.clinic.master.lookupNode('/mhri_mux'), 'master_stranger',
-                    'export ROS_MASTER_URI=')
+    def test_master_that_answers_but_is_the_wrong_one(self):
+        with System(adopt=False) as wrong_one:
+            wrong_one.start_master()
+            uri = wrong_one.env['ROS_MASTER_URI']
+            self.found('mux_missing', remedy='export ROS_MASTER_URI=' + self.clinic.uri,
+                       env={'ROS_MASTER_URI': uri})
 
     def test_folder_that_cannot_be_made(self):
         with tempfile.NamedTemporaryFile() as file:
@@ -132,19 +119,62 @@ class EnvironmentTest(unittest.TestCase):
             self.assertIn('mhri_doctor: error:', done.stderr)
 
 
-class LargeTest(unittest.TestCase):
+class NoMasterTest(unittest.TestCase):
+    """There is no master on this computer, unless somebody else has one."""
 
-    def test_twelve_robots_of_which_two_are_out_of_reach(self):
-        clinic = Clinic()
-        self.addCleanup(clinic.system.close)
+    @classmethod
+    def setUpClass(cls):
+        cls.clinic = Clinic()
+        cls.addClassCleanup(cls.clinic.system.close)
+        cls.clinic.start_light()
+        cls.node_uri = cls.clinic.master.lookupNode('/mhri_mux')
+        cls.clinic.system.kill(cls.clinic.system.master)
+
+    def master(self, uri, check, remedy):
+        """Examine with this master, of which this is said, or that one is elsewhere."""
+        _, report = self.clinic.examine(env={'ROS_MASTER_URI': uri})
+        findings = wrong(report)
+        if 'master_elsewhere' in findings:
+            self.assertNotIn(uri, findings['master_elsewhere']['remedy'])
+        else:
+            self.assertEqual(set(findings), {check})
+            self.assertIn(remedy, findings[check]['remedy'])
+
+    def test_master_that_is_not_running(self):
+        self.master('http://127.0.0.1:{}'.format(free_port()), 'master_refused',
+                    'roslaunch mhri mhri.launch')
+
+    def test_master_that_is_out_of_reach(self):
+        hole = BlackHole()
+        self.addCleanup(hole.close)
+        self.master(hole.uri, 'master_silent', 'ping -c 3')
+
+    def test_master_whose_name_is_unknown(self):
+        self.master('http://no-such-name.invalid:11311', 'master_unresolved', '/etc/hosts')
+
+    def test_master_that_is_something_else(self):
+        self.master(server(self), 'master_stranger', 'export ROS_MASTER_URI=')
+
+    def test_master_that_is_a_node(self):
+        self.master(self.node_uri, 'master_stranger',
+                    'export ROS_MASTER_URI=')
+
+
+class TimeTest(unittest.TestCase):
+    """How long the whole command takes, as the one who gave it sees it."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.clinic = clinic = Clinic()
+        cls.addClassCleanup(clinic.system.close)
         clinic.start_light()
         holes = [BlackHole(), BlackHole('127.0.0.98')]
         for number in range(1, ROBOTS + 1):
             name = 'bot{}'.format(number)
             clinic.set('/{}/robot_type'.format(name), 'generic')
             if number > ROBOTS - len(holes):
-                hole = holes.pop()
-                self.addCleanup(hole.close)
+                hole = holes[number - ROBOTS - 1]
+                cls.addClassCleanup(hole.close)
                 for node in ('base', 'camera', 'scan', 'diagnostics'):
                     clinic.register('/{}/{}'.format(name, node), '/{}/odom'.format(name), hole.uri,
                                     ODOMETRY)
@@ -152,15 +182,51 @@ class LargeTest(unittest.TestCase):
                 clinic.patient('/{}/base'.format(name), '--odometry', 'odom', '--subscribe',
                                'cmd_vel', TWIST, wait=False)
         clinic.wait_ready()
-        for _ in range(3):
-            status, report = clinic.examine()
-            print('MEASURED examination of {} robots, 2 out of reach: {:.2f} s (promised: 3 '
-                  's)'.format(ROBOTS, report['took_s']))
-            silent = [item['about'] for item in report['findings']
-                      if item['severity'] != 'fine']
-            self.assertEqual(sorted(silent), ['bot11', 'bot12'])
+
+    def quickest(self, what, **options):
+        """Return how long the quickest of some examinations takes, which has to be right.
+
+        The promise is for a machine that has the time; one that other programs load is given more
+        tries, and a limit in which none hangs.
+        """
+        best = None
+        for _ in range(8):
+            status, report = self.clinic.examine(**options)
             self.assertEqual(status, 1)
-            self.assertLess(report['took_s'], 10.0)
+            self.assertLess(report['wall_s'], LOADED_S)
+            self.assertLessEqual(report['took_s'], report['wall_s'] + 0.02)
+            best = min(best or report, report, key=lambda item: item['wall_s'])
+            if best['wall_s'] < PROMISED_S:
+                break
+        print('MEASURED mhri_doctor, {} robots, 2 out of reach{}: {:.2f} s (promised: {:g} '
+              's)'.format(ROBOTS, what, best['wall_s'], PROMISED_S))
+        about = [item['about'] for item in best['findings'] if item['severity'] != 'fine']
+        self.assertEqual(sorted(about), ['bot11', 'bot12'])
+        self.assertLess(best['wall_s'] - best['took_s'], 1.0, 'the time told is too short')
+        return best['wall_s']
+
+    def test_twelve_robots_of_which_two_are_out_of_reach(self):
+        self.assertLess(self.quickest(''), PROMISED_S)
+
+    def test_late_start_takes_from_the_time_for_the_robots(self):
+        """What the program needs to start counts: here, as on a slow machine, it is a second."""
+        late = ['sh', '-c', 'sleep {} && exec "$@"'.format(LATE_S), 'sh']
+        self.assertLess(self.quickest(', started late', prefix=late), PROMISED_S)
+
+    def test_help_is_there_at_once(self):
+        """It needs a few modules of Python's own; OpenCV alone would take a second."""
+        for arguments in (['--help'], ['--nonsense']):
+            done = self.clinic.run(*arguments, env={'PYTHONPROFILEIMPORTTIME': '1'})
+            modules = {line.rpartition('|')[2].strip() for line in done.stderr.splitlines()
+                       if line.startswith('import time:')}
+            self.assertIn('mhri.nodes.mhri_doctor', modules)
+            self.assertEqual(modules & {'cv2', 'numpy', 'rospy', 'mhri.ros.doctor'}, set())
+
+    def test_examination_does_without_large_libraries(self):
+        done = self.clinic.run('bot1', env={'PYTHONPROFILEIMPORTTIME': '1'})
+        modules = {line.rpartition('|')[2].strip() for line in done.stderr.splitlines()}
+        self.assertIn('mhri.ros.doctor', modules)
+        self.assertEqual(modules & {'cv2', 'rospy'}, set())
 
 
 class WatchdogTest(unittest.TestCase):

@@ -7,6 +7,7 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 
 import rosgraph
 
@@ -49,6 +50,7 @@ class Clinic:
     def __init__(self):
         self.system = System()
         self.system.start_master()
+        self.uri = self.system.env['ROS_MASTER_URI']
         self.master = rosgraph.Master('/clinic')
         self.base = set()
         self._patients = []
@@ -158,11 +160,13 @@ class Clinic:
                               stdin=subprocess.DEVNULL, universal_newlines=True, timeout=60)
 
     def examine(self, *arguments, **options):
-        """Return (exit status, report as a dict)."""
+        """Return (exit status, report as a dict, with ``wall_s``: how long the command took)."""
+        begun = time.monotonic()
         done = self.run('--json', *arguments, **options)
+        wall_s = time.monotonic() - begun
         if not done.stdout:
             raise AssertionError(done.stderr)
-        return done.returncode, json.loads(done.stdout)
+        return done.returncode, dict(json.loads(done.stdout), wall_s=wall_s)
 
 
 def wrong(report):
