@@ -26,11 +26,11 @@ def robot(monkeypatch):
     monkeypatch.delenv('TURTLEBOT3_MODEL', raising=False)
 
 
-def load(name, *arguments):
+def load(name, *arguments, folder=REMOTE):
     """Return roslaunch's configuration of one of the robot's launch files."""
     config = roslaunch.config.ROSLaunchConfig()
     roslaunch.xmlloader.XmlLoader(resolve_anon=False).load(
-        str(REMOTE / name), config, argv=list(arguments), verbose=False)
+        str(folder / name), config, argv=list(arguments), verbose=False)
     assert config.config_errors == []
     return config
 
@@ -133,6 +133,46 @@ def test_turtlebot3_waffle_has_a_camera_in_its_group():
     frames = values(config, '/bot3/camera/driver/')
     assert frames['color_optical_frame_id'] == 'bot3/camera_rgb_optical_frame'
     assert all(frame.startswith('bot3/') for frame in frames.values())
+
+
+def real(*arguments):
+    """Return the configuration of turtlebot.launch for a real robot."""
+    return load('turtlebot.launch', 'sim:=false', *arguments, folder=REPO / 'launch')
+
+
+def told(*configs):
+    """Return ({node: (program, arguments, remaps)}, {parameter: value}) of configurations."""
+    found = {name: (node.package, node.type, node.args, sorted(node.remap_args))
+             for config in configs for name, node in nodes(config).items()}
+    return found, {key: param.value for config in configs for key, param in config.params.items()}
+
+
+@pytest.mark.parametrize('arguments, files', [
+    (['type:=turtlebot2'], [['mhri_turtlebot2.launch'], ['mhri_sensor.launch']]),
+    (['type:=turtlebot2', 'camera:=false', 'smoother:=false'],
+     [['mhri_turtlebot2.launch', 'smoother:=false']]),
+    (['type:=turtlebot3'], [['mhri_turtlebot3.launch', 'model:=burger']]),
+    (['type:=turtlebot3_waffle_pi'], [['mhri_turtlebot3.launch', 'model:=waffle_pi']]),
+    (['type:=turtlebot3_waffle'], [['mhri_turtlebot3.launch', 'model:=waffle'],
+                                   ['mhri_turtlebot3_sensor.launch']]),
+    (['type:=turtlebot3_waffle', 'camera:=false'], [['mhri_turtlebot3.launch', 'model:=waffle']]),
+])
+def test_turtlebot_launch_starts_a_real_robot_the_same_way(arguments, files, monkeypatch):
+    monkeypatch.setenv('TURTLEBOT3_MODEL', 'burger')
+    expected = told(*[load(name, 'name:=bot1', *more) for name, *more in files])
+    assert expected[0]
+    assert told(real('name:=bot1', *arguments)) == expected
+
+
+def test_frames_of_two_real_turtlebot2_do_not_mix():
+    frames = []
+    for name in ('bot1', 'bot2'):
+        params = real('name:=' + name, 'type:=turtlebot2').params
+        assert params['/{}/tf_prefix'.format(name)].value == name
+        frames.append({param.value for key, param in params.items()
+                       if key.endswith(('_frame', '_frame_id'))})
+    assert {'bot1/odom', 'bot1/base_footprint', 'bot1/camera_depth_frame'} <= frames[0]
+    assert not frames[0] & frames[1]
 
 
 GENERIC = '''<launch>

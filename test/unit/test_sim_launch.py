@@ -13,15 +13,17 @@ LAUNCH = Path(__file__).resolve().parents[2] / 'launch'
 TYPES = ('turtlebot2', 'turtlebot3_burger', 'turtlebot3_waffle')
 PACKAGE = ('<package format="2"><name>{0}</name><version>0.0.0</version><description>{0}'
            '</description><maintainer email="a@b.c">a</maintainer><license>x</license></package>')
-# What stands for the robots' own bringup: a file, its arguments, one node.
+# What stands for the robots' own bringup: files, their arguments, one node each.
+CAMERA = ('', 'camera')
 BRINGUP = {
-    'turtlebot_bringup': ('minimal.launch', '', 'kobuki'),
-    'turtlebot3_bringup': (
-        'turtlebot3_robot.launch', '<arg name="multi_robot_name" default=""/>'
+    'turtlebot_bringup': {'minimal.launch': ('', 'kobuki'), '3dsensor.launch': CAMERA},
+    'turtlebot3_bringup': {'turtlebot3_realsense.launch': CAMERA, 'turtlebot3_robot.launch': (
+        '<arg name="multi_robot_name" default=""/>'
         '<arg name="set_lidar_frame_id" default="base_scan"/>'
         '<arg name="model" default="$(env TURTLEBOT3_MODEL)"/>'
-        '<param name="tf_prefix" value="$(arg multi_robot_name)"/>', 'core'),
+        '<param name="tf_prefix" value="$(arg multi_robot_name)"/>', 'core')},
 }
+SMOOTHER = 'turtlebot_bringup/param/defaults/smoother.yaml'
 
 
 def load(name, *arguments):
@@ -45,12 +47,15 @@ def roslaunch_nodes(*arguments, **env):
 @pytest.fixture
 def bringup(tmp_path):
     """Return the package path with fake bringup packages in front."""
-    for package, (name, body, node) in BRINGUP.items():
+    for package, files in BRINGUP.items():
         folder = tmp_path / package
         (folder / 'launch').mkdir(parents=True)
         (folder / 'package.xml').write_text(PACKAGE.format(package))
-        (folder / 'launch' / name).write_text(
-            '<launch>{}<node pkg="mhri" type="sim_robot" name="{}"/></launch>'.format(body, node))
+        for name, (body, node) in files.items():
+            (folder / 'launch' / name).write_text('<launch>{}<node pkg="mhri" type="sim_robot" '
+                                                  'name="{}"/></launch>'.format(body, node))
+    (tmp_path / SMOOTHER).parent.mkdir(parents=True)
+    (tmp_path / SMOOTHER).write_text('{}')
     return '{}:{}'.format(tmp_path, os.environ['ROS_PACKAGE_PATH'])
 
 
@@ -113,16 +118,17 @@ def test_turtlebot_needs_a_name():
 @pytest.mark.parametrize('kind, package', [
     ('turtlebot2', 'turtlebot_bringup'), ('turtlebot3_burger', 'turtlebot3_bringup')])
 def test_real_robot_without_its_bringup_is_roslaunchs_error(kind, package):
-    status, output = roslaunch_nodes('name:=bot7', 'sim:=false', 'type:=' + kind)
+    status, output = roslaunch_nodes('name:=bot7', 'sim:=false', 'type:=' + kind,
+                                     TURTLEBOT3_MODEL='burger')
     assert status != 0 and package in output
     assert 'Traceback' not in output
 
 
 @pytest.mark.parametrize('kind, wanted', [
-    ('turtlebot2', '/bot7/kobuki'), ('turtlebot3_burger', '/bot7/core'),
-    ('turtlebot3_waffle', '/bot7/core')])
+    ('turtlebot2', ['/bot7/camera', '/bot7/kobuki', '/bot7/teleop_velocity_smoother']),
+    ('turtlebot3_burger', ['/bot7/core']), ('turtlebot3_waffle', ['/bot7/camera', '/bot7/core'])])
 def test_real_robot_includes_its_bringup(bringup, kind, wanted):
     status, output = roslaunch_nodes('name:=bot7', 'sim:=false', 'type:=' + kind,
                                      ROS_PACKAGE_PATH=bringup, TURTLEBOT3_MODEL='burger')
     assert status == 0, output
-    assert output.split() == [wanted], 'and no simulator beside it'
+    assert sorted(output.split()) == wanted, 'and no simulator beside it'
