@@ -4,6 +4,7 @@
 """mhri_doctor on a real master with real nodes: each ailment is seeded, found, and nothing else."""
 import os
 import signal
+import subprocess
 import sys
 import threading
 import unittest
@@ -219,6 +220,35 @@ class DoctorTest(unittest.TestCase):
     def test_leftover_parameters(self):
         self.clinic.set('/bot9/robot_type', 'generic')
         self.found('robot_leftover', about='bot9', remedy='rosparam delete /bot9')
+
+    def mend(self, command):
+        """Do what a remedy says, as the one who reads it; nothing is wrong then."""
+        subprocess.run(command, shell=True, check=True, env=self.clinic.system.env,
+                       stdout=subprocess.DEVNULL)
+        _, report = self.clinic.examine()
+        self.assertEqual(wrong(report), {})
+
+    def test_leftover_parameters_of_a_robot_without_a_namespace(self):
+        self.clinic.set('/robot_type', 'generic')
+        self.clinic.set('/robot_name', 'lonely')
+        findings = self.found('robot_leftover', about='lonely')
+        self.mend(findings['robot_leftover']['remedy'])
+
+    def test_parameter_of_a_robot_without_a_namespace(self):
+        self.clinic.set('/robot_type', 'turtlebot3')
+        self.clinic.set('/robot_model', 'limousine')
+        self.clinic.patient('/base', *ROBOT)
+        findings = self.found('parameter_bad', about='robot')
+        self.mend(findings['parameter_bad']['remedy'])
+
+    def test_robot_without_a_namespace_that_nobody_hears(self):
+        self.clinic.set('/robot_type', 'generic')
+        self.clinic.patient('/base', '--odometry', 'odom')
+        item = self.found('velocity_unheard', about='robot')['velocity_unheard']
+        command = item['remedy'].partition('#')[0]
+        listed = subprocess.run(command, shell=True, check=True, env=self.clinic.system.env,
+                                stdout=subprocess.PIPE, universal_newlines=True).stdout
+        self.assertIn('/odom', listed.split())
 
     def test_robot_that_is_not_there(self):
         item = self.found('robot_absent', about='bott1', remedy='turtle_remote.sh',

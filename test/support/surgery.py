@@ -126,7 +126,8 @@ class Clinic:
         for node, topic, uri in self._registered:
             self.master.handle.unregisterPublisher(node, topic, uri)
         for name in self._parameters:
-            self.master.deleteParam(name)
+            if self.master.hasParam(name):
+                self.master.deleteParam(name)
         self._patients, self._registered, self._parameters = [], [], []
         for node in self.nodes() - self.base:
             self.forget(node)

@@ -1,161 +1,27 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The doctor's judgement of nodes, connections, robots, mhri's own nodes: a table of ailments."""
-from dataclasses import replace
 import json
 import os
+import sys
 
 import pytest
 
-from mhri.core.discovery import IgnoreList
 from mhri.core.doctor import as_dict, as_lines, diagnose, exit_status, odd_ones
 from mhri.core.doctor_facts import (
-    Computer, Connection, FAULT, Facts, FINE, Graph, Master, Node, REFUSED, SILENT, STRANGER,
-    Stream, UNRESOLVED, WARNING)
+    Connection, FAULT, FINE, REFUSED, SILENT, STRANGER, Stream, UNRESOLVED, WARNING)
 from mhri.core.doctor_robots import clock_offset, robots_of
-from mhri.core.robot_types import load_robot_types
 
-FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'robots')
-TYPES = load_robot_types([(name, open(os.path.join(FOLDER, name), encoding='utf-8').read())
-                          for name in sorted(os.listdir(FOLDER))])[0]
-IGNORE = IgnoreList(('/rosout',), ('mux', 'robot_controller', 'mhri_*'))
-TWIST, ODOMETRY, BOOL = 'geometry_msgs/Twist', 'nav_msgs/Odometry', 'std_msgs/Bool'
-HOST_IP, BOT_IP = '192.0.2.1', '192.0.2.7'
-COMPUTER = Computer(
-    name='desk', variables={'ROS_MASTER_URI': 'http://192.0.2.1:11311', 'ROS_IP': HOST_IP},
-    addresses=('127.0.0.1', HOST_IP), package_path='/ws/src/mhri',
-    python_paths=('/ws/src/mhri/src/mhri',))
-KINDS = {'/bot1/cmd_vel': TWIST, '/bot1/odom': ODOMETRY, '/robot_controller/twist': TWIST,
-         '/mux/mode': 'mhri/ControlMode', '/robot_controller/robot_select': 'mhri/RobotSelect'}
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-
-class World:
-    """A healthy system of a mux, a panel and one robot on another computer; to be spoilt."""
-
-    def __init__(self):
-        self.hosts = {'/mux': HOST_IP, '/mhri_panel': HOST_IP, '/bot1/base': BOT_IP}
-        self.publish = {'/mux/mode': ['/mux'], '/robot_controller/twist': ['/mux'],
-                        '/robot_controller/robot_select': ['/mhri_panel'],
-                        '/bot1/cmd_vel': ['/mhri_panel'], '/bot1/odom': ['/bot1/base']}
-        self.subscribe = {'/bot1/cmd_vel': ['/bot1/base'], '/bot1/odom': ['/mhri_panel'],
-                          '/robot_controller/twist': ['/mhri_panel']}
-        self.kinds = dict(KINDS)
-        self.parameters = {'bot1': {'robot_type': 'generic'}}
-        self.changed = {}
-        self.apart = set()
-        self.extra = {}
-        self.streams = {}
-        self.wanted = ()
-        self.again = None
-
-    def topics(self, node, group):
-        return {topic: self.kinds[topic] for topic, nodes in group.items() if node in nodes}
-
-    def node(self, name, number):
-        links = [Connection(True, topic, listener)
-                 for topic, nodes in self.publish.items() if name in nodes
-                 for listener in self.subscribe.get(topic, ())
-                 if (topic, name, listener) not in self.apart]
-        links += self.extra.get(name, [])
-        host = self.hosts[name]
-        node = Node(name, 'http://{}:{}/'.format(host, 4000 + number), host, took_s=0.01,
-                    publications=self.topics(name, self.publish),
-                    subscriptions=self.topics(name, self.subscribe), connections=tuple(links))
-        return replace(node, **self.changed.get(name, {}))
-
-    def graph(self):
-        return Graph({topic: tuple(nodes) for topic, nodes in self.publish.items()},
-                     {topic: tuple(nodes) for topic, nodes in self.subscribe.items()},
-                     {}, self.kinds, self.parameters)
-
-    def facts(self):
-        nodes = {name: self.node(name, number)
-                 for number, name in enumerate(sorted(self.hosts))}
-        streams = {topic: Stream(topic, names[0], self.kinds[topic], 'same', names[0], '', 0.6, 9)
-                   for topic, names in self.publish.items()}
-        streams.update(self.streams)
-        facts = Facts(
-            computer=COMPUTER, master=Master('http://192.0.2.1:11311', HOST_IP, 11311),
-            graph=self.graph(), nodes=nodes, streams=tuple(streams.values()), wanted=self.wanted,
-            known={kind: None if kind.endswith('/Odd') else 'same'
-                   for kind in self.kinds.values()})
-        if self.again:
-            self.again(self)
-        return facts.with_later(self.graph(), {
-            name: self.node(name, number) for number, name in enumerate(sorted(self.hosts))})
-
-    def wrong(self):
-        findings = diagnose(self.facts(), TYPES, IGNORE)
-        assert all(item.shows and item.remedy for item in findings if item.severity != FINE)
-        return [item for item in findings if item.severity != FINE]
-
-
-def answer(**changes):
-    """Return an ailment: the robot's node answers otherwise."""
-    def spoil(world):
-        world.changed['/bot1/base'] = changes
-    return spoil
-
-
-def add(name, publish=(), subscribe=(), kind=BOOL, host=HOST_IP):
-    """Return an ailment: one more node."""
-    def spoil(world):
-        world.hosts[name] = host
-        for topics, group in ((publish, world.publish), (subscribe, world.subscribe)):
-            for topic in topics:
-                world.kinds.setdefault(topic, kind)
-                group[topic] = group.get(topic, []) + [name]
-    return spoil
-
-
-def without(name):
-    """Return an ailment: a node does not run."""
-    def spoil(world):
-        del world.hosts[name]
-        for group in (world.publish, world.subscribe):
-            for topic, nodes in list(group.items()):
-                group[topic] = [node for node in nodes if node != name]
-                if not group[topic]:
-                    del group[topic]
-    return spoil
-
-
-def parameter(**values):
-    def spoil(world):
-        world.parameters.update(values)
-    return spoil
-
-
-def stream(topic, **changes):
-    def spoil(world):
-        node = world.publish[topic][0]
-        world.streams[topic] = replace(
-            Stream(topic, node, world.kinds[topic], 'same', node, '', 0.6, 9), **changes)
-    return spoil
-
-
-def apart(*links):
-    def spoil(world):
-        world.apart.update(links)
-    return spoil
-
-
-def links(name, *extra):
-    def spoil(world):
-        world.extra[name] = list(extra)
-    return spoil
+from support.doctor_world import (  # noqa: E402
+    add, answer, apart, BOOL, BOT_IP, IGNORE, links, ODOMETRY, parameter, seen_as, stream, TYPES,
+    without, World)
 
 
 def samples(ahead_s, count=20):
     return tuple((100.0 + number, 100.0 + number + ahead_s - 0.002 * (1 + number % 3))
                  for number in range(count))
-
-
-def seen_as(topic, kind, node):
-    """Return an ailment: a node takes a topic for another type than the others do."""
-    def spoil(world):
-        world.changed[node] = {'subscriptions': {topic: kind}}
-    return spoil
 
 
 CASES = {
@@ -276,35 +142,11 @@ def test_nobody_listens_and_nobody_tells():
     assert [item.check for item in world.wrong()] == ['odometry_missing']
 
 
-def test_without_a_mux_the_master_may_be_the_wrong_one():
-    world = World()
-    without('/mux')(world)
-    facts = world.facts()
-    there = 'http://192.0.2.1:11322', 'http://192.0.2.9:11311'
-    finding, = [item for item in diagnose(replace(facts, master=replace(
-        facts.master, elsewhere=there)), TYPES, IGNORE) if item.severity != FINE]
-    assert finding.check == 'mux_missing' and facts.master.uri in finding.problem
-    for uri in there:
-        assert uri in finding.problem and 'export ROS_MASTER_URI=' + uri in finding.remedy
-    assert finding.remedy.endswith('if this one is right: rosrun mhri mux')
-    assert 'ROS_MASTER_URI' not in world.wrong()[0].remedy
-
-
 def test_publishers_disagree():
     world = World()
     add('/two', ['/bot1/odom'])(world)
     world.streams['second'] = Stream('/bot1/odom', '/two', ODOMETRY, 'x', '/two')
     assert 'publishers_differ' in [item.check for item in world.wrong()]
-
-
-def test_remedies_never_end_the_wrong_node():
-    """At the address of the dead node another one lives: to kill by name would end that one."""
-    world = World()
-    CASES['another node there'][0][0](world)
-    assert 'not "rosnode kill /bot1/base"' in world.wrong()[0].remedy
-    world = World()
-    CASES['forgotten topic'][0][0](world)
-    assert 'rosnode kill' not in world.wrong()[0].remedy
 
 
 def test_a_robot_that_reaches_back_is_said_so():

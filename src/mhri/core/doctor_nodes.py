@@ -17,6 +17,20 @@ def robot_of(node):
     return namespace if rest else ''
 
 
+def start_robot(facts, name):
+    """Return the command that starts a real robot under a name."""
+    computer, master = facts.computer, facts.master.host
+    address = computer.good_ip() if computer.is_own(master) else master
+    return 'on the robot: turtle_remote.sh {} {}'.format(address or '<IP of this computer>', name)
+
+
+def _other_name(facts, name):
+    """Return how two programs come to have a name each."""
+    robot = robot_of(name)
+    return 'give each robot a name of its own ({})'.format(start_robot(facts, robot + '_2')) \
+        if robot else 'give one of them another name (__name:={}_2)'.format(name.lstrip('/'))
+
+
 def find_on_nodes(facts):
     """Return the findings about reachability, registrations and names of the nodes."""
     found = (_dead(facts) + _hosts(facts) + _strangers(facts) + _loopback(facts) + _stale(facts)
@@ -191,8 +205,7 @@ def _fought(facts):
         WARNING, 'name_fought', name, 'it changed from {} to {} while it was looked at'.format(
             node.uri, node.uri_later),
         'robots come and go by themselves; programs end with "new node registered with same name"',
-        'give each robot a name of its own (roslaunch mhri turtlebot.launch name:=bot2 ...), and '
-        'start one copy of {} only'.format(name),
+        '{}, or start one copy of {} only'.format(_other_name(facts, name), name),
         'two programs take the name from each other, or it was started again just now')
         for name, node in sorted(facts.nodes.items())
         if node.uri_later and node.uri and node.uri_later != node.uri]
@@ -227,8 +240,8 @@ def _doubles(facts):
         WARNING, 'name_twice', peer, 'two connections of that name take {}'.format(
             listed(sorted(topics))),
         'one of two robots obeys commands meant for the other, or its data jumps',
-        'give each robot a name of its own (name:=bot2); rosnode info {}   # tells where the one '
-        'is that the master knows: end the other'.format(peer),
+        '{}; rosnode info {}   # tells where the one is that the master knows: end the '
+        'other'.format(_other_name(facts, peer), peer),
         'two programs share the name, or one was switched off without saying goodbye')
         for peer, topics in sorted(names.items())]
 

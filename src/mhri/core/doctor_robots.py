@@ -7,8 +7,10 @@ from fnmatch import fnmatchcase
 from statistics import median
 from typing import Dict, Tuple
 
-from mhri.core.discovery import Candidate, find_candidates, parameters_of
+from mhri.core.discovery import (
+    Candidate, find_candidates, NAME_PARAMETER, parameters_of, ROOT_PARAMETERS)
 from mhri.core.doctor_facts import ANSWERS, FAULT, FINE, Finding, listed, WARNING
+from mhri.core.doctor_nodes import start_robot
 from mhri.core.names import topic_of
 from mhri.core.robot_types import resolve_robot_type, RobotType
 
@@ -20,7 +22,6 @@ _TYPES = (('imu', 'sensor_msgs/Imu'), ('rgb', 'sensor_msgs/Image'),
 DRIVERS = ('/mhri_panel*', '/rqt_gui*', '/mhri_gate_keeper*', '/*/mhri_guard', '/mhri_guard',
            '/mhri_doctor*')
 OFFSET_WARN_S, OFFSET_FAULT_S = 0.1, 0.5
-_LAUNCH = 'roslaunch mhri turtlebot.launch name:={0} type:=<its type> sim:=false'
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,18 @@ class Robot:
         """Return the absolute names of the topics under some keys of its template, in order."""
         return [topic_of(self.candidate.name, topic)
                 for key in keys for topic in getattr(self.template, key)]
+
+    def parameter(self, key):
+        """Return the absolute name of one of its parameters, ``key`` as in its messages."""
+        path = key.partition('[')[0].replace('.', '/')
+        if self.candidate.seen.at_root and path in ROOT_PARAMETERS:
+            return '/' + path
+        return '/{}/{}'.format(self.candidate.name, path)
+
+    def list_topics(self):
+        """Return the command that lists its topics, and perhaps those of others."""
+        return 'rostopic list' if self.candidate.seen.at_root else \
+            'rostopic list | grep /{}/'.format(self.candidate.name)
 
 
 def robots_of(graph, types, ignore):
@@ -63,15 +76,26 @@ def find_on_robots(facts, types, robots):
         if candidate.problem:
             found.append(Finding(
                 FAULT, 'robot_name_bad', candidate.name, 'this cannot be the name of a robot: '
-                + candidate.problem, 'the panel refuses to add it', _LAUNCH.format('bot1')))
+                + candidate.problem, 'the panel refuses to add it',
+                'rosparam set /{} <its name>'.format(NAME_PARAMETER) if candidate.seen.at_root
+                else start_robot(facts, 'bot1')))
         elif not candidate.nodes:
             found.append(Finding(
                 WARNING, 'robot_leftover', candidate.name, 'only its parameters are left, no node '
                 'of it is registered', 'the panel shows a robot that is not there',
-                'rosparam delete /{}'.format(candidate.name)))
+                '; '.join('rosparam delete /' + key for key in _left_over(facts, candidate))))
         else:
             found += _robot(facts, types, robot)
     return found
+
+
+def _left_over(facts, candidate):
+    """Return the parameters of a robot, those with others below them once."""
+    own = [candidate.name] if isinstance(facts.graph.parameters.get(candidate.name), dict) else []
+    if not candidate.seen.at_root:
+        return own
+    return [key for key in ROOT_PARAMETERS + (NAME_PARAMETER,)
+            if key in facts.graph.parameters] + own
 
 
 def _absent(facts, candidates):
@@ -88,7 +112,7 @@ def _absent(facts, candidates):
                 ' (is "{}" meant?)'.format(near[0]) if near else '',
                 'are ' + listed(sorted(there), 12) if there else 'are no robots at all'),
             'its row in the panel says that nothing has been heard yet',
-            'on the robot: turtle_remote.sh <IP of this computer> {}'.format(name)))
+            start_robot(facts, name)))
     return found
 
 
@@ -109,7 +133,7 @@ def _robot(facts, types, robot):
 def _type(robot, types):
     """Judge ``robot_type`` and the other parameters."""
     name, found = robot.candidate.name, []
-    key = '/robot_type' if robot.candidate.seen.at_root else '/{}/robot_type'.format(name)
+    key = robot.parameter('robot_type')
     if 'robot_type' not in robot.parameters:
         found.append(Finding(
             WARNING, 'robot_untyped', name, 'it has no robot_type, so it is driven as {}{}'.format(
@@ -123,8 +147,8 @@ def _type(robot, types):
         found.append(Finding(
             FAULT, check, name, str(error), 'wrong speed limits, topics or window',
             'rosparam set {} {}'.format(key, near[0] if near else 'generic')
-            if check == 'robot_type_unknown' else 'rosparam get /{0}; rosparam delete /{0}/{1}'
-            .format(name, error.key.replace('.', '/'))))
+            if check == 'robot_type_unknown' else 'rosparam get /{}; rosparam delete {}'.format(
+                robot.parameter(error.key).split('/')[1], robot.parameter(error.key))))
     return found
 
 
@@ -138,8 +162,8 @@ def _velocity(facts, robot):
         return [Finding(
             FAULT, 'velocity_unheard', name, 'nobody listens to {}'.format(' or '.join(topics)),
             'the robot is selected, but does not move',
-            'rostopic list | grep /{0}/   # its real topic, then: rosparam set /{0}/mhri/command '
-            '"[<topic>]"; or start its base: {1}'.format(name, _LAUNCH.format(name)))]
+            '{}   # its real topic, then: rosparam set /{}/mhri/command "[<topic>]"; or start its '
+            'base: {}'.format(robot.list_topics(), name, start_robot(facts, name)))]
     found = []
     foreign = [node for node in facts.graph.publishers.get(chosen, ())
                if not any(fnmatchcase(node, pattern) for pattern in DRIVERS)]
@@ -206,8 +230,8 @@ def _topics(facts, robot):
                 FAULT, 'topic_type', name, '{} is {}, but template "{}" expects {}'.format(
                     full, real, template.name, kind),
                 'the robot does not obey' if kind == TWIST else 'the panel shows nothing of it',
-                'rosparam set /{0}/robot_type <its type>   # or name the right topic: rosparam set '
-                '/{0}/mhri/{1} "[<topic>]"'.format(name, key)))
+                'rosparam set {} <its type>   # or name the right topic: rosparam set '
+                '/{}/mhri/{} "[<topic>]"'.format(robot.parameter('robot_type'), name, key)))
     return found
 
 
@@ -219,8 +243,8 @@ def _odometry(facts, robot):
     if topics and not any(publishers.values()):
         return [Finding(
             WARNING, 'odometry_missing', name, 'nobody publishes {}'.format(' or '.join(topics)),
-            mute, 'rostopic list | grep /{0}/   # its real topic, then: rosparam set '
-            '/{0}/mhri/odometry "[<topic>]"; on the robot: is its base switched on?'.format(name))]
+            mute, '{}   # its real topic, then: rosparam set /{}/mhri/odometry "[<topic>]"; on '
+            'the robot: is its base switched on?'.format(robot.list_topics(), name))]
     found = []
     for topic, nodes in publishers.items():
         if len(nodes) > 1:
