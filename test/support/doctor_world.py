@@ -39,6 +39,7 @@ class World:
         self.apart = set()
         self.extra = {}
         self.streams = {}
+        self.seen_at = {}
         self.wanted = ()
         self.again = None
 
@@ -46,7 +47,7 @@ class World:
         return {topic: self.kinds[topic] for topic, nodes in group.items() if node in nodes}
 
     def node(self, name, number):
-        links = [Connection(True, topic, listener)
+        links = [Connection(True, topic, listener, self.seen_at.get(listener, ''))
                  for topic, nodes in self.publish.items() if name in nodes
                  for listener in self.subscribe.get(topic, ())
                  if (topic, name, listener) not in self.apart]
@@ -88,6 +89,13 @@ def answer(**changes):
     """Return an ailment: the robot's node answers otherwise."""
     def spoil(world):
         world.changed['/bot1/base'] = changes
+    return spoil
+
+
+def seen_at(**addresses):
+    """Return an ailment: the robot's nodes are seen to be connected from these addresses."""
+    def spoil(world):
+        world.seen_at.update({'/bot1/' + name: address for name, address in addresses.items()})
     return spoil
 
 

@@ -15,8 +15,8 @@ from mhri.core.doctor_robots import clock_offset, robots_of
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
 from support.doctor_world import (  # noqa: E402
-    add, answer, apart, BOOL, BOT_IP, IGNORE, links, ODOMETRY, parameter, seen_as, stream, TYPES,
-    without, World)
+    add, answer, apart, BOOL, BOT_IP, IGNORE, links, ODOMETRY, parameter, seen_as, seen_at, stream,
+    TYPES, without, World)
 
 
 def samples(ahead_s, count=20):
@@ -31,6 +31,19 @@ CASES = {
     'hangs beside one that answers': (
         [answer(state=SILENT), add('/bot1/camera', host=BOT_IP, publish=['/bot1/x'])],
         ['node_silent', 'velocity_unheard']),
+    'its other network': ([answer(host='198.51.100.5', state=SILENT),
+                           add('/bot1/cam', ['/bot1/x'], host=BOT_IP)],
+                          ['node_address', 'velocity_unheard']),
+    'its other network, by its connections': (
+        [answer(host='198.51.100.5', state=REFUSED), seen_at(base=BOT_IP)], ['node_address']),
+    'lost from where it was connected': (
+        [answer(state=SILENT), seen_at(base=BOT_IP)], ['host_silent']),
+    'its other network, and the host has a node of its name': (
+        [answer(state=SILENT), add('/bot1/rviz', ['/bot1/x'])],
+        ['host_silent', 'velocity_unheard']),
+    'loopback, refused': ([answer(host='127.0.0.1', state=REFUSED),
+                           add('/bot1/cam', ['/bot1/x'], host=BOT_IP)],
+                          ['node_loopback', 'velocity_unheard']),
     'unresolved': ([answer(state=UNRESOLVED)], ['host_unresolved']),
     'no node at all': ([answer(state=STRANGER)], ['node_stranger']),
     'another node there': ([stream('/bot1/odom', callerid='/other')], ['node_stranger']),

@@ -8,13 +8,14 @@ import sys
 import pytest
 
 from mhri.core.doctor import diagnose
-from mhri.core.doctor_facts import Connection, FINE, Master
+from mhri.core.doctor_facts import Connection, FINE, Master, REFUSED, SILENT, UNRESOLVED
 from mhri.core.doctor_nodes import start_robot
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
 from support.doctor_world import (  # noqa: E402
-    add, answer, BOOL, HOST_IP, IGNORE, links, stream, TYPES, without, World)
+    add, answer, BOOL, BOT_IP, COMPUTER, HOST_IP, IGNORE, links, seen_at, stream, TYPES, without,
+    World)
 
 
 def test_without_a_mux_the_master_may_be_the_wrong_one():
@@ -29,6 +30,35 @@ def test_without_a_mux_the_master_may_be_the_wrong_one():
         assert uri in finding.problem and 'export ROS_MASTER_URI=' + uri in finding.remedy
     assert finding.remedy.endswith('if this one is right: rosrun mhri mux')
     assert 'ROS_MASTER_URI' not in world.wrong()[0].remedy
+
+
+@pytest.mark.parametrize('host, state, where, words', [
+    ('198.51.100.5', SILENT, '', 'on {0}: export ROS_IP={0}, then start /bot1/base'),
+    ('198.51.100.5', REFUSED, BOT_IP, 'on {0}: export ROS_IP={0}, then start /bot1/base'),
+    ('198.51.100.5', SILENT, HOST_IP, 'here: export ROS_IP=' + HOST_IP),
+    ('127.0.0.1', REFUSED, '', 'on its computer: export ROS_IP={0},'),
+    ('bot1.local', UNRESOLVED, '', 'export ROS_IP={0}, then start it again   # or here: echo '
+     '"{0} bot1.local"')])
+def test_node_that_lives_is_not_taken_off_the_master(host, state, where, words):
+    """It tells a wrong address, which is mended there: "rosnode cleanup" would end its topics."""
+    world = World()
+    answer(host=host, state=state)(world)
+    add('/bot1/cam', ['/bot1/x'], host=BOT_IP)(world)
+    if where:
+        seen_at(base=where)(world)
+    finding = [item for item in world.wrong() if item.check.startswith(('node', 'host'))][0]
+    assert words.format(BOT_IP) in finding.remedy
+    assert 'y: it takes dead nodes' not in finding.remedy
+
+
+def test_computer_known_by_two_names():
+    world = World()
+    answer(host='bot1.local', state=SILENT)(world)
+    world.hosts['/camera'] = 'bot1'
+    add('/camera', ['/camera/x'], host='bot1')(world)
+    facts = replace(world.facts(), computer=replace(COMPUTER, resolved={'bot1': (BOT_IP,)}))
+    finding = [item for item in diagnose(facts, TYPES, IGNORE) if item.check == 'node_address'][0]
+    assert 'on {0}: export ROS_IP={0}'.format(BOT_IP) in finding.remedy and finding.sure
 
 
 def at_root(**parameters):

@@ -142,12 +142,14 @@ class Graph:
 class Connection:
     """A connection as a node tells of it: ``out`` or not, its topic, who is at the other end.
 
-    ``peer`` is the other node's name of an outgoing, its URI of an incoming one.
+    ``peer`` is the other node's name of an outgoing, its URI of an incoming one; ``address`` the
+    IPv4 address that the other end really has, '' where it is not told.
     """
 
     out: bool
     topic: str
     peer: str
+    address: str = ''
 
 
 @dataclass(frozen=True)

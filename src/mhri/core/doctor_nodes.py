@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The doctor on the nodes: which answer, which are dead, which share a name."""
 from mhri.core.doctor_facts import (
-    ANSWERS, FAULT, FINE, Finding, is_loopback, listed, MASTER, REFUSED, SILENT, STRANGER, SYSTEM,
-    UNRESOLVED, WARNING)
+    ANSWERS, FAULT, FINE, Finding, is_ipv4, is_loopback, listed, MASTER, REFUSED, SILENT, STRANGER,
+    SYSTEM, UNRESOLVED, WARNING)
 
 CLEAN_UP = 'rosnode cleanup   # answer y: it takes dead nodes off the master'
 _GHOST = 'a robot or node is listed that is not there; others try in vain to reach it'
@@ -33,8 +33,9 @@ def _other_name(facts, name):
 
 def find_on_nodes(facts):
     """Return the findings about reachability, registrations and names of the nodes."""
-    found = (_dead(facts) + _hosts(facts) + _strangers(facts) + _loopback(facts) + _stale(facts)
-             + _fought(facts) + _doubles(facts) + _forgotten(facts))
+    found = (_dead(facts) + _hosts(facts) + _wrong_address(facts) + _strangers(facts)
+             + _loopback(facts) + _stale(facts) + _fought(facts) + _doubles(facts)
+             + _forgotten(facts))
     if not found and facts.nodes:
         answering = [node for node in facts.nodes.values() if node.state == ANSWERS]
         slowest = max(answering, key=lambda node: node.took_s, default=None)
@@ -71,18 +72,19 @@ def _names(nodes):
 
 def _dead(facts):
     """Registered, the computer is there, but no program listens: crashed or killed."""
+    nodes = [node for node in _in_state(facts, REFUSED) if not true_address(facts, node)]
     return [Finding(
-        FAULT, 'node_dead', _about(nodes, host), '{} registered at {}, but not running'.format(
-            _names(nodes) + (' is' if len(nodes) == 1 else ' are'), host), _GHOST,
-        '{}; then start {} again'.format(CLEAN_UP, _about(nodes, 'them')))
-        for (host, _), nodes in _by(_in_state(facts, REFUSED),
-                                    lambda node: (node.host, robot_of(node.name)))]
+        FAULT, 'node_dead', _about(group, host), '{} registered at {}, but not running'.format(
+            _names(group) + (' is' if len(group) == 1 else ' are'), host), _GHOST,
+        '{}; then start {} again'.format(CLEAN_UP, _about(group, 'them')))
+        for (host, _), group in _by(nodes, lambda node: (node.host, robot_of(node.name)))]
 
 
 def _hosts(facts):
     """Computers that do not answer, or whose name is unknown."""
     found = []
-    for host, nodes in _by(_in_state(facts, SILENT), lambda node: node.host):
+    silent = [node for node in _in_state(facts, SILENT) if not true_address(facts, node)]
+    for host, nodes in _by(silent, lambda node: node.host):
         hung = [node for node in facts.nodes.values()
                 if node.host == host and node.state in (ANSWERS, REFUSED)]
         if hung:
@@ -102,12 +104,73 @@ def _hosts(facts):
             '{}'.format(host, CLEAN_UP), '; '.join(sorted({node.detail for node in nodes}))))
     for host, nodes in _by(_in_state(facts, UNRESOLVED), lambda node: node.host):
         about = _about(nodes, host)
+        address = true_address(facts, nodes[0]) or '<its IP address>'
         found.append(Finding(
             FAULT, 'host_unresolved', about, 'the name "{}" is unknown here; {} {} known by '
             'it'.format(host, _names(nodes), 'is' if len(nodes) == 1 else 'are'),
             'its topics are listed, but no data arrives',
-            'on {0}: export ROS_IP=<its IP address>, then start it again   # or here: echo "<its '
-            'IP address> {0}" | sudo tee -a /etc/hosts'.format(host)))
+            'on {0}: export ROS_IP={1}, then start it again   # or here: echo "{1} {0}" | sudo '
+            'tee -a /etc/hosts'.format(host, address)))
+    return found
+
+
+def _seen_at(facts, node):
+    """Return the addresses that a node is connected from, by those that it has its topics of."""
+    return {link.address for other in facts.nodes.values() if facts.answering(other.name)
+            for link in other.connections or ()
+            if link.out and link.peer == node.name and link.address
+            and not is_loopback(link.address)}
+
+
+def _beside(facts, node):
+    """Return the addresses of other nodes that answer, of the same robot or computer's name."""
+    def machine(host):
+        """Return the name of a computer without its domain, '' of an address."""
+        return '' if is_ipv4(host) else host.partition('.')[0]
+
+    robot, name = robot_of(node.name), machine(node.host)
+    return {(facts.computer.addresses_of(other.host) or (other.host,))[0]
+            for other in facts.nodes.values()
+            if facts.answering(other.name) and facts.is_remote(other)
+            and not is_loopback(other.host)
+            and (robot and robot_of(other.name) == robot or name and machine(other.host) == name)}
+
+
+def true_address(facts, node):
+    """Return the address that a node which does not answer ought to tell, '' where it is unknown.
+
+    Where it is seen to be connected from another address than it tells, that is it. Else, where
+    nothing answers at the address it tells, it is the one at which the rest of its robot does.
+    """
+    told = set(facts.computer.addresses_of(node.host)) | {node.host}
+    seen = _seen_at(facts, node)
+    if seen:
+        return '' if seen & told else sorted(seen)[0]
+    lost = node.state in (SILENT, UNRESOLVED) or node.state == REFUSED and is_loopback(node.host)
+    beside = _beside(facts, node) if lost else set()
+    return '' if beside & told else min(beside, default='')
+
+
+def _wrong_address(facts):
+    """Nodes that live, as far as can be seen, but tell others an address that is not theirs."""
+    nodes = [node for node in _in_state(facts, SILENT, REFUSED)
+             if true_address(facts, node)
+             and not (is_loopback(node.host) and facts.several_computers())]
+    found = []
+    for (host, address, _), group in _by(nodes, lambda node: (
+            node.host, true_address(facts, node), robot_of(node.name))):
+        seen = any(_seen_at(facts, node) for node in group)
+        own = facts.computer.is_own(address)
+        found.append(Finding(
+            FAULT, 'node_address', _about(group, host), '{} {} others the address {}, where it '
+            'does not answer; {} {}'.format(
+                _names(group), 'tells' if len(group) == 1 else 'tell', host,
+                'its connections come from' if seen else 'the rest of its robot answers at',
+                address), 'its topics are listed, but no data arrives',
+            '{}: export ROS_IP={}, then start {} again   # not "rosnode cleanup": it would take '
+            'living nodes off the master'.format(
+                'here' if own else 'on ' + address, address, _names(group)),
+            '' if seen else 'concluded; if it is on a computer of its own: ping -c 3 ' + host))
     return found
 
 
@@ -157,8 +220,9 @@ def _loopback(facts):
         'another computer on each computer'.format(
             _names(group) + (' is' if len(group) == 1 else ' are'), host),
         'no data between this node and other computers, in one direction or both',
-        'on its computer: export ROS_IP=<its address on the robots\' network>, then start it again')
-        for host, group in _by(nodes, lambda node: node.host)]
+        'on its computer: export ROS_IP={}, then start it again'.format(
+            true_address(facts, group[0]) or '<its address on the robots\' network>'))
+            for host, group in _by(nodes, lambda node: node.host)]
 
 
 def _second(facts):

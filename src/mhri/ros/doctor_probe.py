@@ -6,6 +6,7 @@ Nothing is registered at the master. A topic is asked for as a subscriber does i
 once; pictures and point clouds are left alone, since a driver may start its sensor for them.
 """
 import http.client
+import re
 import select
 import socket
 import struct
@@ -30,6 +31,8 @@ LISTEN_S = 0.6
 ENOUGH_SAMPLES = 25
 _QUESTIONS = ('getPid', 'getPublications', 'getSubscriptions', 'getBusInfo')
 _STAMP = struct.Struct('<II')
+# As rospy and roscpp say it, and rosnode reads it: "... to [192.0.2.7:40623 on socket 6]".
+_OTHER_END = re.compile(r' to \[([0-9.]+):\d+ on socket ')
 
 
 class Probe:
@@ -203,10 +206,17 @@ def _topics(pairs):
         return None
 
 
+def _address(text):
+    """Return the IPv4 address in what a node says of a connection, '' where there is none."""
+    found = _OTHER_END.search(str(text))
+    return found.group(1) if found and is_ipv4(found.group(1)) else ''
+
+
 def _connections(entries):
     """Return the :class:`Connection` tuple of ``getBusInfo``, None where it cannot be read."""
     try:
-        return tuple(Connection(entry[2] == 'o', str(entry[4]), str(entry[1]))
+        return tuple(Connection(entry[2] == 'o', str(entry[4]), str(entry[1]),
+                                _address(entry[6] if len(entry) > 6 else ''))
                      for entry in entries if len(entry) < 6 or entry[5])
     except (TypeError, IndexError, KeyError):
         return None
