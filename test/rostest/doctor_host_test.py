@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """mhri_doctor in environments that are wrong, with a large system, and trying watchdogs."""
+import importlib.util
 import os
 import shutil
 import signal
@@ -13,6 +14,9 @@ import unittest
 from xmlrpc.server import SimpleXMLRPCServer
 
 import rostest
+
+import mhri.msg
+from mhri.ros.resources import resource_path
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
@@ -93,15 +97,53 @@ class EnvironmentTest(unittest.TestCase):
             self.found('folder_unwritable', remedy='ROS_HOME',
                        env={'ROS_HOME': os.path.join(file.name, 'ros')})
 
-    def test_disk_that_is_full(self):
+    def folder(self):
+        """Return a folder that is there until the end of the test."""
         folder = tempfile.mkdtemp(prefix='mhri_test_')
         self.addCleanup(shutil.rmtree, folder)
+        return folder
+
+    def behind_a_disk(self, folder):
+        """Return the words that run a command for which a folder is a small empty disk."""
         mount = 'mount -t tmpfs -o size=1m none "$0" && exec "$@"'
         own = ['unshare', '--mount', 'sh', '-c', mount, folder]
         if not shutil.which('unshare') or subprocess.run(
                 own + ['true'], stderr=subprocess.DEVNULL).returncode:
             self.skipTest('a small disk needs root and mount namespaces')
-        self.found('disk_full', remedy='rosclean purge', prefix=own, env={'ROS_HOME': folder})
+        return own
+
+    def test_disk_that_is_full(self):
+        folder = self.folder()
+        self.found('disk_full', remedy='rosclean purge', prefix=self.behind_a_disk(folder),
+                   env={'ROS_HOME': folder})
+
+    def test_module_that_was_uninstalled(self):
+        """Of a package that was taken away, its folder stays where something is in it."""
+        place = os.path.dirname(importlib.util.find_spec('evdev').origin)
+        self.found('package_missing', remedy='sudo apt install python3-evdev',
+                   prefix=self.behind_a_disk(place))
+
+    def test_another_workspace_for_python(self):
+        """Its setup.bash was sourced, and then that of this one by a line that lacks Python."""
+        other = self.folder()
+        source = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', '..', 'src')
+        shutil.copytree(os.path.join(source, 'mhri'), os.path.join(other, 'mhri'))
+        shutil.copytree(mhri.msg.__path__[0], os.path.join(other, 'mhri', 'msg'))
+        self.found('workspace_two', remedy='source one workspace only',
+                   env={'PYTHONPATH': '{}:{}'.format(other, os.environ['PYTHONPATH'])})
+
+    def test_another_workspace_for_rosrun_and_a_package_that_it_wants(self):
+        other = os.path.join(self.folder(), 'mhri')
+        shutil.copytree(resource_path(), os.path.join(other, 'resource'))
+        with open(resource_path('..', 'package.xml'), encoding='utf-8') as file:
+            package = file.read()
+        wants = '<exec_depend>rospy</exec_depend>'
+        self.assertIn(wants, package)
+        with open(os.path.join(other, 'package.xml'), 'w', encoding='utf-8') as file:
+            file.write(package.replace(wants, wants + wants.replace('rospy', 'kobuki_driver')))
+        self.found('package_missing', 'workspace_two', remedy='sudo apt install ros-noetic-kobuki',
+                   env={'ROS_PACKAGE_PATH': '{}:{}'.format(other, os.environ['ROS_PACKAGE_PATH']),
+                        'ROS_DISTRO': 'noetic'})
 
     def test_workspace_that_is_not_sourced(self):
         self.found('workspace_missing', remedy='devel/setup.bash', unset=['ROS_PACKAGE_PATH'])

@@ -54,6 +54,7 @@ class Clinic:
         self.master = rosgraph.Master('/clinic')
         self.base = set()
         self._patients = []
+        self._others = []
         self._registered = []
         self._parameters = []
 
@@ -100,6 +101,19 @@ class Clinic:
             self.wait_ready()
         return process
 
+    def start(self, *command):
+        """Start another program until the end of the test; return the process."""
+        process = self.system.start(*command)
+        self._others.append(process)
+        return process
+
+    def uri_of(self, node):
+        """Return where a node is registered, '' where it is not."""
+        try:
+            return self.master.lookupNode(node)
+        except rosgraph.MasterError:
+            return ''
+
     def wait_ready(self):
         """Wait until all patients have registered all they have."""
         wait_for(lambda: all('ready' in read_text(process.log) for process in self._patients),
@@ -117,18 +131,20 @@ class Clinic:
 
     def heal(self):
         """Undo whatever a test did; wait until only the healthy system is left."""
-        for process in self._patients:
+        ending = self._patients + self._others
+        for process in ending:
             if process.poll() is None:
                 process.send_signal(signal.SIGCONT)
                 process.terminate()
-        for process in self._patients:
+        for process in ending:
             process.wait(START_S)
         for node, topic, uri in self._registered:
             self.master.handle.unregisterPublisher(node, topic, uri)
         for name in self._parameters:
             if self.master.hasParam(name):
                 self.master.deleteParam(name)
-        self._patients, self._registered, self._parameters = [], [], []
+        self._patients, self._others = [], []
+        self._registered, self._parameters = [], []
         for node in self.nodes() - self.base:
             self.forget(node)
         if not self.base <= self.nodes():

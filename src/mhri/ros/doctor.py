@@ -32,6 +32,8 @@ from mhri.ros.resources import robot_types
 # time for them, yet the least in which one that listens can answer.
 ASKED_S, AGAIN_S = 1.9, 2.6
 LEAST_S, LEAST_AGAIN_S = 0.8, 0.3
+# Programs that take a name from each other do so about once a second.
+WATCH_S, WATCH_EACH_S = 1.5, 0.2
 _MASTER_S = 0.8
 
 
@@ -81,12 +83,14 @@ def look(environ, types, ignore, begun, robots=(), caller_id='/mhri_doctor'):
     except MasterError as error:
         return _without_master(facts, _why_not(master, error))
     facts = replace(facts, master=master, graph=graph)
+    watch_until = min(time.monotonic() + WATCH_S, begun + AGAIN_S)
     known = robots_of(graph, types, ignore)
     facts = _ask_nodes(facts, known, uris, _deadline(begun + ASKED_S, LEAST_S))
     if not muxes(facts):
         facts = replace(facts, master=replace(master, elsewhere=look_elsewhere(
             master, computer, caller_id, only_with_mux=True)))
-    return _look_again(facts, known, api, begun + AGAIN_S)
+    facts = _look_again(facts, known, api, begun + AGAIN_S)
+    return _watch_names(facts, api, watch_until)
 
 
 def _deadline(wanted, least_s):
@@ -186,3 +190,18 @@ def _look_again(facts, robots, api, wanted):
     nodes = {name: replace(node, uri_later=uris.get(name, ''))
              for name, node in facts.nodes.items()}
     return replace(facts, nodes=nodes).with_later(graph, probe.result()[0])
+
+
+def _watch_names(facts, api, until):
+    """Return the facts with the nodes that are registered elsewhere meanwhile; asks to the end."""
+    nodes = facts.nodes
+    try:
+        while not any(node.uri_later not in ('', node.uri) for node in nodes.values()) \
+                and time.monotonic() < until:
+            time.sleep(WATCH_EACH_S)
+            uris = _uris(api, facts.graph)
+            nodes = {name: replace(node, uri_later=uris.get(name, ''))
+                     for name, node in nodes.items()}
+    except MasterError:
+        pass  # it has ended just now: what was seen before still holds
+    return replace(facts, nodes=nodes)

@@ -144,7 +144,7 @@ def _packages(package_path):
         if name in _LIBRARIES:
             found[name] = '' if _LIBRARIES[name]() else 'the library cannot be loaded'
         elif module is not None:
-            found[name] = '' if importlib.util.find_spec(module) else \
+            found[name] = '' if _has_module(module) else \
                 'no Python module "{}"'.format(module)
         elif not name.startswith('python3-') and name not in _OPTIONAL:
             found[name] = '' if _has_package(finder, name) else 'no ROS package of that name'
@@ -157,4 +157,10 @@ def _has_package(finder, name):
         finder.get_path(name)
         return True
     except rospkg.ResourceNotFound:
-        return importlib.util.find_spec(name) is not None
+        return _has_module(name)
+
+
+def _has_module(name):
+    """Tell whether there is a Python module; a folder that was left without files is none."""
+    spec = importlib.util.find_spec(name)
+    return spec is not None and spec.origin is not None
