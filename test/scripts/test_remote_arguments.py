@@ -168,6 +168,19 @@ def test_what_goes_to_ssh(run):
     assert 'StrictHostKeyChecking' not in call and 'UserKnownHostsFile' not in call
 
 
+@pytest.mark.parametrize('addresses, said', [
+    ('', 'this computer has no IPv4 address'),
+    ('198.51.100.2 203.0.113.9', 'which of the addresses of this computer'),
+])
+def test_option_that_is_named_is_the_scripts_own(run, addresses, said):
+    """The robot's --ip is another thing: with it, the question would come again."""
+    (run.folder / 'bin' / 'hostname').write_text('#!/bin/sh\necho "{} "\n'.format(addresses))
+    status, output = run('connect', *RIGHT['connect'])
+    assert status == 1 and said in output
+    assert 'with --host-ip ADDR' in output and ' --ip ' not in output
+    assert not [call for call in run.calls() if call.startswith('ssh')]
+
+
 def test_host_keys_are_left_to_ssh():
     """No script tells ssh to trust what it does not know."""
     for script in SCRIPTS.values():

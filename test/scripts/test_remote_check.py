@@ -38,10 +38,10 @@ HOST = '127.0.0.1'
 ])
 def test_address_on_the_network_of_the_other(target, own, lengths, out, chosen):
     if chosen is None:
-        with pytest.raises(turtle_check.Problem, match='--ip ADDR'):
-            turtle_check.choose_address(target, own, lengths, out)
+        with pytest.raises(turtle_check.Problem, match='with --host-ip ADDR'):
+            turtle_check.choose_address(target, own, lengths, out, '--host-ip')
     else:
-        assert turtle_check.choose_address(target, own, lengths, out) == chosen
+        assert turtle_check.choose_address(target, own, lengths, out, '--ip') == chosen
 
 
 class FakeMaster:

@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What turtle_remote.sh and connect_turtlebot.sh ask of the network; no operator calls it.
 
-turtle_check.py address TARGET ADDRESS...   prints that of ADDRESS... which TARGET reaches us at
+turtle_check.py address OPTION TARGET ADDRESS...  prints that of ADDRESS... which TARGET reaches us
+                                            at; OPTION is the caller's, which names one
 turtle_check.py host HOST PORT OWN NAME     checks the master, both ways, and that NAME is free
 turtle_check.py watch HOST PORT NAME TOKEN  notes there that NAME runs from here; ends when the
                                             host has a new master, which does not know it
@@ -97,17 +98,18 @@ def way_out(target):
             return None
 
 
-def choose_address(target, own, lengths, out):
+def choose_address(target, own, lengths, out, option):
     """Return the one of our addresses at which a target reaches us.
 
     :param own: our IPv4 addresses, as ``hostname -I`` has them
     :param lengths: {address: prefix length}; an address that is not in it counts as of a /24
     :param out: the address the system would use towards the target, or None
+    :param option: the option with which the operator names one, e.g. ``--ip``
     :raises Problem: there is none, or several would do
     """
     if not own:
         raise Problem('this computer has no IPv4 address: connect it to the network of {0}, or '
-                      'name one with --ip ADDR'.format(target))
+                      'name one with {1} ADDR'.format(target, option))
     if target in own:
         return target
     near = []
@@ -122,7 +124,7 @@ def choose_address(target, own, lengths, out):
     if len(own) == 1:
         return own[0]
     raise Problem('which of the addresses of this computer ({0}) does {1} reach? Name it with '
-                  '--ip ADDR'.format(' '.join(own), target))
+                  '{2} ADDR'.format(' '.join(own), target, option))
 
 
 def connect(host, port):
@@ -370,8 +372,8 @@ def watch(host, port, name, token):
 
 
 COMMANDS = {
-    'address': lambda target, *own: print_line(
-        choose_address(target, own, prefix_lengths(), way_out(target))),
+    'address': lambda option, target, *own: print_line(
+        choose_address(target, own, prefix_lengths(), way_out(target), option)),
     'host': lambda host, port, own, name: check_host(host, int(port), own, name),
     'watch': watch,
     'release': lambda host, port, name, token: Claim(host, port, name, token).give_up(),
