@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""turtle_check.py: which address is taken, and what is said of each thing that can be wrong."""
+"""turtle_check.py: what is said of each thing that can be wrong."""
 import importlib.util
 import socket
 import subprocess
@@ -17,31 +17,6 @@ SPEC = importlib.util.spec_from_file_location('turtle_check', str(PATH))
 turtle_check = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(turtle_check)
 HOST = '127.0.0.1'
-
-
-@pytest.mark.parametrize('target, own, lengths, out, chosen', [
-    ('192.168.0.103', ['192.168.0.7'], {}, None, '192.168.0.7'),
-    ('192.168.0.103', ['10.0.0.5', '192.168.0.7'], {}, None, '192.168.0.7'),
-    ('192.168.0.103', ['192.168.0.7', '10.0.0.5'], {}, '10.0.0.5', '192.168.0.7'),
-    ('10.1.2.3', ['10.200.0.5', '172.17.0.1'], {'10.200.0.5': 8}, None, '10.200.0.5'),
-    ('192.168.0.103', ['192.168.0.7', '192.168.0.8'], {}, '192.168.0.8', '192.168.0.8'),
-    ('192.168.0.103', ['192.168.0.7', '192.168.0.200'],
-     {'192.168.0.7': 26, '192.168.0.200': 26}, None, None),
-    ('192.168.0.70', ['192.168.0.7', '192.168.0.80'],
-     {'192.168.0.7': 26, '192.168.0.80': 26}, None, '192.168.0.80'),
-    ('203.0.113.1', ['192.168.0.7', '10.0.0.5'], {}, '10.0.0.5', '10.0.0.5'),
-    ('203.0.113.1', ['192.168.0.7'], {}, None, '192.168.0.7'),
-    ('203.0.113.1', ['192.168.0.7', '10.0.0.5'], {}, '172.17.0.1', None),
-    ('192.168.0.7', ['10.0.0.5', '192.168.0.7'], {}, None, '192.168.0.7'),
-    ('192.168.0.103', ['192.168.0.7'], {'192.168.0.7': 32}, None, '192.168.0.7'),
-    ('192.168.0.103', [], {}, None, None),
-])
-def test_address_on_the_network_of_the_other(target, own, lengths, out, chosen):
-    if chosen is None:
-        with pytest.raises(turtle_check.Problem, match='with --host-ip ADDR'):
-            turtle_check.choose_address(target, own, lengths, out, '--host-ip')
-    else:
-        assert turtle_check.choose_address(target, own, lengths, out, '--ip') == chosen
 
 
 class FakeMaster:
@@ -97,6 +72,7 @@ class FakeMaster:
 def master(monkeypatch):
     monkeypatch.setattr(turtle_check, 'TIMEOUT_S', 1.0)
     before = socket.getdefaulttimeout()
+    socket.setdefaulttimeout(2.0)  # as main() does
     fake = FakeMaster()
     yield fake
     fake.close()
@@ -149,16 +125,16 @@ def test_something_else_has_the_port(master):
     server = socket.create_server((HOST, 0))
 
     def answer():
-        try:
-            with server.accept()[0]:
-                pass
-            with server.accept()[0] as second:
-                second.sendall(b'SSH-2.0-none\r\n')
-        except OSError:
-            return
+        while True:
+            try:
+                with server.accept()[0] as connection:
+                    connection.sendall(b'SSH-2.0-none\r\n')
+            except OSError:
+                return
     threading.Thread(target=answer, daemon=True).start()
     with pytest.raises(turtle_check.Problem, match='is not a ROS master.*--port'):
         turtle_check.check_host(HOST, server.getsockname()[1], HOST, 'bot1')
+    server.shutdown(socket.SHUT_RDWR)
     server.close()
 
 

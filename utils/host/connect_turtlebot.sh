@@ -110,8 +110,8 @@ choose_address() {
   for address in "${all[@]}"; do
     if valid_ip "$address"; then v4+=("$address"); fi
   done
-  HOST_IP=$(/usr/bin/python3 "$REPO/utils/remote/turtle_check.py" address --host-ip \
-    "$ROBOT_IP" "${v4[@]}" 2>&1) || die "${HOST_IP#mhri: }"
+  HOST_IP=$(/usr/bin/python3 "$REPO/utils/remote/turtle_address.py" --host-ip "$ROBOT_IP" \
+    "${v4[@]}" 2>&1) || die "${HOST_IP#mhri: }"
 }
 
 main() {

@@ -1,10 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What turtle_remote.sh and connect_turtlebot.sh ask of the network; no operator calls it.
+"""What turtle_remote.sh asks of the network; no operator calls it.
 
-turtle_check.py address OPTION TARGET ADDRESS...  prints that of ADDRESS... which TARGET reaches us
-                                            at; OPTION is the caller's, which names one
 turtle_check.py host HOST PORT OWN NAME     checks the master, both ways, and that NAME is free
 turtle_check.py watch HOST PORT NAME TOKEN  notes there that NAME runs from here; ends when the
                                             host has a new master, which does not know it
@@ -14,14 +12,11 @@ turtle_check.py hold COMMAND...             becomes COMMAND; the kernel ends it 
 Exit status 1, and one line that says what is wrong and what mends it, where something is. Needs the
 standard library alone; runs under the Python 2.7 of older robots, too.
 """
-import contextlib
 import ctypes
 import errno
 import os
 import signal
 import socket
-import struct
-import subprocess
 import sys
 import threading
 import time
@@ -62,69 +57,6 @@ def say(text):
         sys.stderr.flush()
     except (OSError, IOError):
         return
-
-
-def print_line(text):
-    """Print a result."""
-    sys.stdout.write('{0}\n'.format(text))
-
-
-def number(address):
-    """Return an IPv4 address as a number."""
-    return struct.unpack('!I', socket.inet_aton(address))[0]
-
-
-def prefix_lengths():
-    """Return {own address: length of its network's prefix in bits}, as far as ``ip`` says."""
-    try:
-        text = subprocess.check_output(['ip', '-o', '-4', 'addr', 'show']).decode()
-    except (OSError, subprocess.CalledProcessError):
-        return {}
-    found = {}
-    for word in text.split():
-        address, slash, length = word.partition('/')
-        if slash and address.count('.') == 3 and length.isdigit():
-            found[address] = int(length)
-    return found
-
-
-def way_out(target):
-    """Return the address from which this computer would speak to a target, or None."""
-    with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as probe:
-        try:
-            probe.connect((target, 9))
-            return probe.getsockname()[0]
-        except OSError:
-            return None
-
-
-def choose_address(target, own, lengths, out, option):
-    """Return the one of our addresses at which a target reaches us.
-
-    :param own: our IPv4 addresses, as ``hostname -I`` has them
-    :param lengths: {address: prefix length}; an address that is not in it counts as of a /24
-    :param out: the address the system would use towards the target, or None
-    :param option: the option with which the operator names one, e.g. ``--ip``
-    :raises Problem: there is none, or several would do
-    """
-    if not own:
-        raise Problem('this computer has no IPv4 address: connect it to the network of {0}, or '
-                      'name one with {1} ADDR'.format(target, option))
-    if target in own:
-        return target
-    near = []
-    for address in own:
-        shift = 32 - lengths.get(address, 24)
-        if number(address) >> shift == number(target) >> shift:
-            near.append(address)
-    if len(near) == 1:
-        return near[0]
-    if out in (near or own):
-        return out
-    if len(own) == 1:
-        return own[0]
-    raise Problem('which of the addresses of this computer ({0}) does {1} reach? Name it with '
-                  '{2} ADDR'.format(' '.join(own), target, option))
 
 
 def connect(host, port):
@@ -372,8 +304,6 @@ def watch(host, port, name, token):
 
 
 COMMANDS = {
-    'address': lambda option, target, *own: print_line(
-        choose_address(target, own, prefix_lengths(), way_out(target), option)),
     'host': lambda host, port, own, name: check_host(host, int(port), own, name),
     'watch': watch,
     'release': lambda host, port, name, token: Claim(host, port, name, token).give_up(),

@@ -171,7 +171,7 @@ choose_network() {
     if valid_ip "$address"; then v4+=("$address"); fi
   done
   if [ -z "$IP" ]; then
-    IP=$("$PYTHON" "$HERE/turtle_check.py" address --ip "$HOST_IP" "${v4[@]}") || exit 1
+    IP=$("$PYTHON" "$HERE/turtle_address.py" --ip "$HOST_IP" "${v4[@]}") || exit 1
   elif [[ " ${v4[*]} 127.0.0.1 " != *" $IP "* ]]; then
     die "--ip: $IP is none of the addresses of this robot (${v4[*]:-it has none})"
   fi
