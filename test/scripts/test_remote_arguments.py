@@ -22,7 +22,7 @@ NAMES = ['bot1; reboot', '../x', '$(id)', '`id`', 'my bot', '-oProxyCommand=touc
          '/bot1', '~bot', 'x' * 33, 'bot1:=2', '--', '-']
 ADDRESSES = ['300.1.1.1', '1.2.3', '1.2.3.4.5', 'robot', 'fe80::1', '1.2.3.4; touch hacked',
              '$(touch hacked)', '`touch hacked`', '1.2.3.4\n5', '-oProxyCommand=touch hacked', '',
-             '1.2.3.4 5.6.7.8', '1.2.3.4/24', '0x7f.1.1.1', '--', '1.2.3.4,1.2.3.5']
+             '08.1.1.300', '1.2.3.4 5.6.7.8', '1.2.3.4/24', '0x7f.1.1.1', '--', '1.2.3.4,1.2.3.5']
 USERS = ['-oProxyCommand=touch hacked', 'root; touch hacked', '$(touch hacked)', 'a b', '../x',
          'a@b', '', 'a\nb', "a'b", '-l', 'a:b', '`id`', 'x' * 33]
 FOLDERS = ['/etc', '../x', 'a/../b', '..', '.', '-x', 'a b', '$(touch hacked)', 'a;b', '', '~',
@@ -88,6 +88,21 @@ def test_wrong_addresses_are_refused(run, address):
     is_refused(run, 'connect', RIGHT['connect'] + ['--host-ip', address])
     is_refused(run, 'remote', RIGHT['remote'] + ['--ip', address])
     is_refused(run, 'connect', RIGHT['connect'] + ['--ip', address])
+
+
+@pytest.mark.parametrize('address, right', [
+    ('08.1.1.1', '8.1.1.1'), ('010.1.1.1', '10.1.1.1'), ('192.168.000.007', '192.168.0.7'),
+    ('0010.0.00.1', '10.0.0.1'), ('192.168.0.0103', '192.168.0.103')])
+def test_addresses_with_leading_zeros_are_refused_with_the_right_ones(run, address, right):
+    """To one program 010.1.1.1 is 10.1.1.1, to another it is 8.1.1.1."""
+    said = "'{}' has leading zeros, which not every program reads alike: write {} ".format(
+        address, right)
+    is_refused(run, 'remote', with_one('remote', 0, address), 'HOST_IP: ' + said)
+    is_refused(run, 'remote', RIGHT['remote'] + ['--ip', address], '--ip: ' + said)
+    is_refused(run, 'connect', with_one('connect', 1, address), 'IP: ' + said)
+    is_refused(run, 'connect', RIGHT['connect'] + ['--host-ip', address], '--host-ip: ' + said)
+    is_refused(run, 'connect', RIGHT['connect'] + ['--ip', address], '--ip: ' + said)
+    is_refused(run, 'deploy', ['turtle@' + address], 'IP: ' + said)
 
 
 @pytest.mark.parametrize('user', USERS)

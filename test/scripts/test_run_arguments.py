@@ -26,6 +26,7 @@ import pytest
     (['--ip', '300.1.1.1'], "'300.1.1.1' is not an IPv4 address"),
     (['--ip', '1.2.3'], "'1.2.3'"),
     (['--ip', '1.2.3.4.5'], "'1.2.3.4.5'"),
+    (['--ip', '010.1.1.1'], 'has leading zeros, which not every program reads alike: write 10.1'),
     (['--ip', 'fe80::1'], "'fe80::1'"),
     (['--ip', '1.2.3.4\n5'], 'is not an IPv4 address'),
     (['--ip', '`touch hacked`'], "'`touch hacked`'"),

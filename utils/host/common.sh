@@ -1,10 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 # shellcheck shell=bash
-# What mhri_run.sh and mhri_test.sh share: messages, packages, the workspace, a display without a
-# screen. Sourced, never run.
+# What the scripts of this folder share: messages, arguments, packages, the workspace, a display
+# without a screen. Sourced, never run.
 
 REPO=$(cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
+# shellcheck source-path=SCRIPTDIR source=../remote/turtle_arguments.sh
+. "$REPO/utils/remote/turtle_arguments.sh"
 WS="$REPO/build/.ws"
 # The tests point these elsewhere to see what happens on other systems.
 OS_RELEASE=${MHRI_OS_RELEASE:-/etc/os-release}

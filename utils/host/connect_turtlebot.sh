@@ -90,16 +90,14 @@ check_arguments() {
   check_login "$ROBOT_USER" "$ROBOT_IP"
   [[ $NAME =~ ^[A-Za-z][A-Za-z0-9_]{0,31}$ ]] ||
     usage_error "NAME: '$NAME' is not a robot's name: a letter, then letters, digits and _"
-  [ -z "$HOST_IP" ] || valid_ip "$HOST_IP" ||
-    usage_error "--host-ip: '$HOST_IP' is not an IPv4 address such as 192.168.0.103"
+  [ -z "$HOST_IP" ] || check_ip --host-ip "$HOST_IP" 192.168.0.103
   check_ssh_port "$SSH_PORT"
   check_folder "$FOLDER"
   # The robot checks them again; nothing that a shell could read as more than a word gets there.
   for text in "${PASSED_ON[@]}"; do
     [[ $text =~ ^[A-Za-z0-9_./~+-]+$ ]] || usage_error "'$text' cannot be passed on to the robot"
   done
-  [ -z "$OWN_IP" ] || valid_ip "$OWN_IP" ||
-    usage_error "--ip: '$OWN_IP' is not an IPv4 address such as 192.168.0.7"
+  [ -z "$OWN_IP" ] || check_ip --ip "$OWN_IP" 192.168.0.7
 }
 
 # choose_address: HOST_IP, by the rule that the robot has for its own.

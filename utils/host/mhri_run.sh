@@ -67,21 +67,6 @@ LAUNCH_ARGS=()
 STOPPED_WITH=
 LAUNCH_PID=
 
-valid_ip() {
-  local part octets
-  [[ $1 =~ ^[0-9]{1,3}(\.[0-9]{1,3}){3}$ ]] || return 1
-  IFS=. read -r -a octets <<<"$1"
-  for part in "${octets[@]}"; do [ "$((10#$part))" -le 255 ] || return 1; done
-}
-
-# value OPTION [VALUE]: the value of an option, or the error that there is none.
-value() {
-  case "${2:-}" in
-    '' | -*) usage_error "$1 needs a value" ;;
-  esac
-  printf '%s' "$2"
-}
-
 parse_arguments() {
   while [ $# -gt 0 ]; do
     case "$1" in
@@ -111,8 +96,7 @@ check_arguments() {
     usage_error "--sim: '$SIM_TYPES' is not a list of robot types: names with spaces between"
   [ -z "$SIM_TYPES" ] || [ -n "$SIM" ] || "$DEMO" ||
     usage_error "--sim-types says of what type the robots of --sim N are: give --sim as well"
-  [ -z "$IP" ] || valid_ip "$IP" ||
-    usage_error "--ip: '$IP' is not an IPv4 address such as 192.168.0.103"
+  [ -z "$IP" ] || check_ip --ip "$IP" 192.168.0.103
   [[ -z $MASTER || $MASTER =~ ^http://[A-Za-z0-9]([A-Za-z0-9.-]*)?:[0-9]{1,5}/?$ ]] ||
     usage_error "--master: '$MASTER' is not an address such as http://192.168.0.103:11311"
   MASTER=${MASTER%/}

@@ -4,26 +4,11 @@
 # What connect_turtlebot.sh and turtlebot_deploy.sh share: checks of what goes to ssh and, through
 # it, to a shell on the robot. Sourced after common.sh, never run.
 
-valid_ip() {
-  local part octets
-  [[ $1 =~ ^[0-9]{1,3}(\.[0-9]{1,3}){3}$ ]] || return 1
-  IFS=. read -r -a octets <<<"$1"
-  for part in "${octets[@]}"; do [ "$((10#$part))" -le 255 ] || return 1; done
-}
-
-# value OPTION [VALUE]: the value of an option, or the error that there is none.
-value() {
-  case "${2:-}" in
-    '' | -*) usage_error "$1 needs a value" ;;
-  esac
-  printf '%s' "$2"
-}
-
 # check_login USER IP
 check_login() {
   [[ $1 =~ ^[A-Za-z_][A-Za-z0-9_.-]{0,31}$ ]] ||
     usage_error "USER: '$1' is not a user name such as turtlebot"
-  valid_ip "$2" || usage_error "IP: '$2' is not an IPv4 address such as 192.168.0.7"
+  check_ip IP "$2" 192.168.0.7
 }
 
 # check_ssh_port PORT: empty is right, too.

@@ -6,6 +6,8 @@
 set -eo pipefail
 
 HERE=$(cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
+# shellcheck source-path=SCRIPTDIR source=turtle_arguments.sh
+. "$HERE/turtle_arguments.sh"
 # shellcheck source-path=SCRIPTDIR source=turtle_bringup.sh
 . "$HERE/turtle_bringup.sh"
 
@@ -80,21 +82,6 @@ warn() { printf 'mhri: %s\n' "$*" >&2 || true; }
 die() { warn "$*"; exit 1; }
 usage_error() { warn "$* (--help lists every option)"; exit 2; }
 
-valid_ip() {
-  local part octets
-  [[ $1 =~ ^[0-9]{1,3}(\.[0-9]{1,3}){3}$ ]] || return 1
-  IFS=. read -r -a octets <<<"$1"
-  for part in "${octets[@]}"; do [ "$((10#$part))" -le 255 ] || return 1; done
-}
-
-# value OPTION [VALUE]: the value of an option, or the error that there is none.
-value() {
-  case "${2:-}" in
-    '' | -*) usage_error "$1 needs a value" ;;
-  esac
-  printf '%s' "$2"
-}
-
 parse_arguments() {
   local words=()
   while [ $# -gt 0 ]; do
@@ -121,8 +108,7 @@ parse_arguments() {
 }
 
 check_arguments() {
-  valid_ip "$HOST_IP" ||
-    usage_error "HOST_IP: '$HOST_IP' is not an IPv4 address such as 192.168.0.103"
+  check_ip HOST_IP "$HOST_IP" 192.168.0.103
   [[ $NAME =~ ^[A-Za-z][A-Za-z0-9_]{0,31}$ ]] ||
     usage_error "NAME: '$NAME' is not a robot's name: a letter, then letters, digits and _"
   [[ -z $TYPE || $TYPE =~ ^[a-z][a-z0-9_]{0,31}$ ]] ||
@@ -131,8 +117,7 @@ check_arguments() {
     usage_error "--model: '$MODEL' is none of burger, waffle, waffle_pi"
   [[ -z $LAUNCH || $LAUNCH =~ ^[A-Za-z0-9_./~+-]+$ ]] ||
     usage_error "--launch: '$LAUNCH' is neither a path nor PACKAGE/FILE.launch"
-  [ -z "$IP" ] || valid_ip "$IP" ||
-    usage_error "--ip: '$IP' is not an IPv4 address such as 192.168.0.7"
+  [ -z "$IP" ] || check_ip --ip "$IP" 192.168.0.7
   if ! [[ $PORT =~ ^[0-9]{1,5}$ ]] || [ "$((10#$PORT))" -gt 65535 ] || [ "$((10#$PORT))" = 0 ]; then
     usage_error "--port: there is no port '$PORT'"
   fi
