@@ -7,7 +7,7 @@ import subprocess
 import sys
 import threading
 from xmlrpc.client import ServerProxy
-from xmlrpc.server import SimpleXMLRPCServer
+from xmlrpc.server import SimpleXMLRPCRequestHandler, SimpleXMLRPCServer
 
 from conftest import REPO
 import pytest
@@ -19,12 +19,22 @@ SPEC.loader.exec_module(turtle_check)
 HOST = '127.0.0.1'
 
 
+class MortalHandler(SimpleXMLRPCRequestHandler):
+    """Answers no more once the server has answered the call that is its last."""
+
+    def do_POST(self):  # noqa: N802 (the name is http.server's)
+        if not self.server.ended:
+            super().do_POST()
+
+
 class FakeMaster:
     """A master as far as a robot asks it; each test makes one thing of it wrong."""
 
     def __init__(self):
         self.params, self.nodes, self.subscribers, self.calls_back = {'/run_id': 'x'}, {}, {}, True
-        self.server = SimpleXMLRPCServer((HOST, 0), logRequests=False, allow_none=True)
+        self.server = SimpleXMLRPCServer((HOST, 0), MortalHandler, logRequests=False,
+                                         allow_none=True)
+        self.server.ended = False
         self.port = self.server.server_address[1]
         for name in ('getPid', 'getParam', 'setParam', 'deleteParam', 'subscribeParam',
                      'unsubscribeParam', 'lookupNode', 'getSystemState'):
@@ -36,6 +46,13 @@ class FakeMaster:
         self.server.shutdown()
         self.server.server_close()
         self.thread.join()
+
+    def end_after(self, call):
+        """Answer this call and then nothing any more."""
+        def last(*arguments):
+            self.server.ended = True
+            return getattr(self, call)(*arguments)
+        self.server.register_function(last, call)
 
     def getPid(self, _):  # noqa: N802 (names of the master's)
         return 1, '', 77
@@ -128,14 +145,33 @@ def test_something_else_has_the_port(master):
         while True:
             try:
                 with server.accept()[0] as connection:
+                    connection.recv(4096)
                     connection.sendall(b'SSH-2.0-none\r\n')
             except OSError:
                 return
     threading.Thread(target=answer, daemon=True).start()
-    with pytest.raises(turtle_check.Problem, match='is not a ROS master.*--port'):
+    with pytest.raises(turtle_check.Problem, match='is not a ROS master.*--port') as raised:
         turtle_check.check_host(HOST, server.getsockname()[1], HOST, 'bot1')
+    assert 'end it' not in str(raised.value)
     server.shutdown(socket.SHUT_RDWR)
     server.close()
+
+
+@pytest.mark.parametrize('call', ['getPid', 'subscribeParam', 'setParam', 'unsubscribeParam',
+                                  'lookupNode', 'getSystemState'])
+def test_master_that_ends_meanwhile(master, call):
+    master.nodes['/rosout'] = 'http://{}:1/'.format(HOST)
+    master.end_after(call)
+    assert 'stopped answering while it was asked' in problem(master)
+
+
+def test_master_that_does_not_answer(master, listener):
+    """It may be a busy master: that nobody is told to end it."""
+    with pytest.raises(turtle_check.Problem) as raised:
+        turtle_check.check_host(HOST, listener, HOST, 'bot1')
+    said = str(raised.value)
+    assert 'does not answer' in said and 'overloaded or hangs' in said and ' end ' not in said
+    assert "sudo ss -ltnp 'sport = :{}'".format(listener) in said
 
 
 def test_host_that_does_not_reach_back(master):

@@ -21,6 +21,7 @@ import sys
 import threading
 import time
 import uuid
+from xml.parsers.expat import ExpatError
 
 try:
     from http.client import HTTPException
@@ -42,8 +43,10 @@ HOST_NODES = ('/rosout', '/mux', '/mhri_panel')
 WATCH_EVERY_S = 2.0
 RUN_ID_TIMEOUT_S = 3.0
 RUN_ID_TRIES = 15
-# Ways in which a call to a master fails.
-FAILURES = (XmlRpcError, HTTPException, OSError, socket.error)
+# Ways in which a call to a master fails; half an answer is one of them.
+FAILURES = (XmlRpcError, HTTPException, ExpatError, OSError, socket.error)
+# On the host: which program has a port.
+WHO = "sudo ss -ltnp 'sport = :{0}'"
 
 
 class Problem(Exception):
@@ -87,11 +90,19 @@ def master_at(host, port):
     proxy = ServerProxy('http://{0}:{1}'.format(host, port))
     try:
         is_master = proxy.getPid(CALLER)[0] == 1
+    except (OSError, socket.error):
+        # It may be the master of robots that are driven: nobody shall end it on our word.
+        raise Problem('{0} takes the connection at its port {1} and does not answer within '
+                      '{2:.0f} s: the ROS master there is overloaded or hangs, or something else '
+                      'has the port. Other robots may depend on it: see on the host what it is, '
+                      'with {3} and top, and try again'.format(
+                          host, port, TIMEOUT_S, WHO.format(port)))
     except Exception:  # whatever it answers, it is not a master's answer
         is_master = False
     if not is_master:
-        raise Problem('what has port {0} of {1} is not a ROS master: end it there, or give the '
-                      "master's port with --port".format(port, host))
+        raise Problem('what has port {0} of {1} is not a ROS master: see on the host what it is, '
+                      "with {2}, or give the master's port with --port".format(
+                          port, host, WHO.format(port)))
     return proxy
 
 
@@ -126,6 +137,8 @@ def check_way_back(master, host, own, name):
         master.subscribeParam(caller, api, key)
         master.setParam(CALLER, key, 1)
         if not called.wait(TIMEOUT_S):
+            # One that has ended meanwhile calls nobody back, and this says so.
+            master.getPid(CALLER)
             raise Problem('{0} does not reach this robot at {1}: does a firewall here stop it '
                           '(sudo ufw status), or is another address meant (--ip ADDR)?'.format(
                               host, own))
@@ -169,7 +182,7 @@ def check_name(master, own, name):
 
     :raises Problem: one is
     """
-    state = answer(master.getSystemState) or []
+    state = master.getSystemState(CALLER)[2]
     nodes = set(node for kind in state for _, users in kind for node in users
                 if node.startswith('/{0}/'.format(name)))
     places = {}
@@ -208,7 +221,7 @@ def settle_run_id(master):
         if answer(master.getParam, '/run_id') is not None:
             return
         time.sleep(RUN_ID_TIMEOUT_S / RUN_ID_TRIES)
-    answer(master.setParam, '/run_id', str(uuid.uuid1()))
+    master.setParam(CALLER, '/run_id', str(uuid.uuid1()))
 
 
 def check_host(host, port, own, name):
@@ -217,10 +230,14 @@ def check_host(host, port, own, name):
     :raises Problem: something is wrong
     """
     master = master_at(host, port)
-    check_way_back(master, host, own, name)
-    check_names_of_host(master, host, own)
-    check_name(master, own, name)
-    settle_run_id(master)
+    try:
+        check_way_back(master, host, own, name)
+        check_names_of_host(master, host, own)
+        check_name(master, own, name)
+        settle_run_id(master)
+    except FAILURES:
+        raise Problem('the master at {0} stopped answering while it was asked: see that mhri runs '
+                      'there (mhri_run.sh --ip {0}), then start this robot again'.format(host))
 
 
 class Claim(object):
