@@ -44,6 +44,7 @@ def no_master():
         while True:
             try:
                 with server.accept()[0] as connection:
+                    connection.recv(4096)
                     connection.sendall(b'SSH-2.0-none\r\n')
             except OSError:
                 return
@@ -109,7 +110,18 @@ def test_port_taken_by_something_else(checkout, no_master):
     status, output = checkout.run('--master', uri)
     assert status == 1
     assert 'something that is not a ROS master has ' + uri in output and '--master' in output
+    assert 'end it' not in output
     assert checkout.called('roslaunch') == []
+
+
+def test_master_that_does_not_answer(checkout):
+    """It may be a busy master, and the other robots': nobody is told to end it."""
+    with socket.create_server(('127.0.0.1', 0)) as server:
+        uri = 'http://127.0.0.1:{}'.format(server.getsockname()[1])
+        status, output = checkout.run('--master', uri)
+    assert status == 1
+    assert uri + ' takes the connection and does not answer' in output and 'ss -ltnp' in output
+    assert ' end ' not in output and checkout.called('roslaunch') == []
 
 
 def test_master_that_is_not_there_elsewhere(checkout):

@@ -156,7 +156,7 @@ with socket.socket() as sock:
     print(sock.getsockname()[1])'
 }
 
-# What is at a master's address: prints master, other or nothing.
+# What is at a master's address: prints master, silent, other or nothing.
 probe_master() {
   python3 - "$1" <<'PYTHON'
 import socket
@@ -174,18 +174,23 @@ except OSError:
 try:
     xmlrpc.client.ServerProxy(sys.argv[1]).getPid('/mhri_run')
     print('master')
+except OSError:
+    print('silent')
 except Exception:  # whatever it answers, it is not a master's answer
     print('other')
 PYTHON
 }
 
 check_master() {
-  local host=${MASTER#http://}
+  local host=${MASTER#http://} who="sudo ss -ltnp 'sport = :${MASTER##*:}'"
   host=${host%:*}
   case "$(probe_master "$MASTER")" in
     master) say "a ROS master runs at $MASTER: joining it" ;;
-    other) die "something that is not a ROS master has $MASTER: end it, or choose another port" \
-      "with --master http://$IP:11312" ;;
+    other) die "something that is not a ROS master has $MASTER: see what it is, there, with $who," \
+      "or choose another port with --master http://$IP:11312" ;;
+    silent) die "$MASTER takes the connection and does not answer within 3 s: a ROS master that is" \
+      "overloaded or hangs, or something else. Robots may depend on it: see what it is, there," \
+      "with $who and top, and try again; or choose another port with --master http://$IP:11312" ;;
     nothing)
       # roslaunch starts a master only on its own machine.
       is_loopback "$host" || [ "$host" = "$IP" ] || [ "$host" = "$(hostname)" ] ||
