@@ -220,6 +220,8 @@ def free_port():
     ([], {'ROS_PACKAGE_PATH': '/nowhere'},
      'there is no package turtlebot_bringup or turtlebot3_bringup here'),
     ([], {}, 'both turtlebot_bringup and turtlebot3_bringup are here'),
+    (['--model', 'burger'], {'ONLY': 'turtlebot_bringup'},
+     "--model burger is a TurtleBot3's, and there is only turtlebot_bringup here: leave --model out"),
     (['--launch', 'no_such_package/x.launch'], {}, 'there is no package no_such_package here'),
     (['--launch', './none.launch'], {}, 'there is no file ./none.launch'),
     (['--launch', 'turtlebot_bringup/none.launch'], {}, 'none.launch'),
@@ -227,6 +229,8 @@ def free_port():
      '203.0.113.9 is none of the addresses of this robot'),
 ])
 def test_what_is_missing_on_the_robot_is_said(remote, arguments, environment, said):
+    if 'ONLY' in environment:
+        environment = {'ROS_PACKAGE_PATH': str(PACKAGES / environment['ONLY'])}
     status, output = remote.run('bot1', *arguments, **environment)
     assert status == 1 and said in output
     assert 'process[' not in output and remote.running() == []

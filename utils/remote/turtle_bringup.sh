@@ -101,6 +101,11 @@ choose_type() {
     die "both turtlebot_bringup and turtlebot3_bringup are here: say which robot this is with" \
       "--type turtlebot2 or --type turtlebot3"
   fi
+  if "$two" && [ -n "$MODEL" ]; then
+    die "--model $MODEL is a TurtleBot3's, and there is only turtlebot_bringup here: leave --model" \
+      "out if this is a TurtleBot2; else install turtlebot3_bringup, or name the setup.bash of the" \
+      "workspace with it with --setup FILE"
+  fi
   if "$two"; then TYPE=turtlebot2; else TYPE=turtlebot3; fi
   say "this is a $TYPE, by what is installed"
 }
