@@ -139,14 +139,15 @@ def test_turtlebot3(remote, master):
 def test_robot_with_a_launch_file_of_its_own(remote, master):
     (remote.folder / 'own.launch').write_text(
         '<launch><node pkg="mhri" type="sim_robot" name="own_base"/></launch>')
-    process = remote.start('r1', '--type', 'turtlesim', '--launch', './own.launch')
+    process = remote.start('r1', '--type', 'turtlesim', '--launch', 'own.launch')
     # turtlesim has no simulated body: this robot's launch file starts nothing that lives.
     assert process.wait(timeout=LONG_S) == 1
     assert "the robot's launch has ended" in process.output()
-    (remote.folder / 'own.launch').write_text(
+    (remote.folder / 'launches').mkdir()
+    (remote.folder / 'launches' / 'own.launch').write_text(
         '<launch><param name="robot_type" value="turtlebot2"/>'
         '<node pkg="mhri" type="sim_robot" name="own_base"/></launch>')
-    process = remote.start('r1', '--launch', './own.launch')
+    process = remote.start('r1', '--launch', 'launches/own.launch')
     await_topics(process, master, '/r1/odom')
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=LONG_S) == 130
@@ -223,7 +224,10 @@ def free_port():
     (['--model', 'burger'], {'ONLY': 'turtlebot_bringup'},
      "--model burger is a TurtleBot3's, and there is only turtlebot_bringup here: leave --model out"),
     (['--launch', 'no_such_package/x.launch'], {}, 'there is no package no_such_package here'),
-    (['--launch', './none.launch'], {}, 'there is no file ./none.launch'),
+    (['--launch', 'no_such_package/x.launch'], {}, 'there is no file no_such_package/x.launch in '),
+    (['--launch', './none.launch'], {}, 'there is no file ./none.launch in '),
+    (['--launch', 'none.launch'], {}, 'there is no file none.launch in '),
+    (['--launch', '/no/where/none.launch'], {}, 'there is no file /no/where/none.launch; one of'),
     (['--launch', 'turtlebot_bringup/none.launch'], {}, 'none.launch'),
     (['--type', 'turtlebot2', '--ip', '203.0.113.9'], {},
      '203.0.113.9 is none of the addresses of this robot'),

@@ -58,9 +58,18 @@ has_robot() {
     turtlebot2) package turtlebot_bringup >/dev/null ;;
     turtlebot3) package turtlebot3_bringup >/dev/null ;;
     '') package turtlebot_bringup >/dev/null || package turtlebot3_bringup >/dev/null ;;
-    *) [[ $LAUNCH == /* || $LAUNCH == ./* || $LAUNCH == ../* ]] ||
-      package "${LAUNCH%%/*}" >/dev/null ;;
+    *) [[ $LAUNCH == /* ]] || package "${LAUNCH%%/*}" >/dev/null ;;
   esac
+}
+
+# find_launch: LAUNCH as a full path where it is a file; what else it can be is PACKAGE/FILE.launch.
+find_launch() {
+  local where=
+  [ -n "$LAUNCH" ] || return 0
+  if [ -f "$LAUNCH" ]; then LAUNCH=$(readlink -f "$LAUNCH"); return; fi
+  if [[ $LAUNCH =~ ^[A-Za-z][A-Za-z0-9_-]*/ ]]; then return; fi
+  [[ $LAUNCH == /* ]] || where=" in $PWD"
+  die "--launch: there is no file $LAUNCH$where; one of a package is named PACKAGE/FILE.launch"
 }
 
 prepare_ros() {
@@ -82,13 +91,14 @@ prepare_ros() {
     turtlebot2) missing_package turtlebot_bringup ;;
     turtlebot3) missing_package turtlebot3_bringup ;;
     '') missing_package "turtlebot_bringup or turtlebot3_bringup" ;;
-    *) missing_package "${LAUNCH%%/*}" ;;
+    *) missing_package "${LAUNCH%%/*}" "--launch: there is no file $LAUNCH in $PWD, and " ;;
   esac
 }
 
+# missing_package NAME [BEFORE]: ends with the remedy; BEFORE is what else was looked for.
 missing_package() {
-  die "there is no package $1 here: install it, or name the setup.bash of the workspace with it" \
-    "with --setup FILE"
+  die "${2:-}there is no package $1 here: install it, or name the setup.bash of the workspace with" \
+    "it with --setup FILE"
 }
 
 # choose_type: by what is installed, where --type did not say.
@@ -166,7 +176,7 @@ prepare_turtlebot3() {
 
 prepare_generic() {
   local folder path=$LAUNCH
-  if [[ $LAUNCH != /* && $LAUNCH != ./* && $LAUNCH != ../* ]]; then
+  if [[ $LAUNCH != /* ]]; then
     folder=$(package "${LAUNCH%%/*}") || missing_package "${LAUNCH%%/*}"
     path=$folder/launch/${LAUNCH#*/}
     [ -f "$path" ] || path=$folder/${LAUNCH#*/}

@@ -31,7 +31,8 @@ Robot
                        Default: whichever of turtlebot_bringup and turtlebot3_bringup is here
   --model MODEL        TurtleBot3: burger, waffle or waffle_pi. Default: TURTLEBOT3_MODEL, of this
                        shell or of ~/.bashrc
-  --launch FILE        any other robot: its own launch file, a path or PACKAGE/FILE.launch
+  --launch FILE        any other robot: its own launch file, a path from here (through
+                       connect_turtlebot.sh: from the home on the robot), or PACKAGE/FILE.launch
   --no-camera          do not start the camera
   --no-smoother        TurtleBot2: leave the velocity smoother out
   --guard              also start mhri_guard, which drops commands that come late
@@ -256,6 +257,7 @@ check_parts() {
 main() {
   parse_arguments "$@"
   check_arguments
+  find_launch
   read_bashrc
   prepare_ros
   choose_type
