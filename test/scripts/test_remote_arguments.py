@@ -160,6 +160,26 @@ def test_wrong_command_lines_say_what_is_wrong(run, script, arguments, said):
     is_refused(run, script, arguments, said)
 
 
+@pytest.mark.parametrize('arguments, said', [
+    (['--port', '99999'], "--port: there is no port '99999'"),
+    (['--port', '0'], "--port: there is no port '0'"),
+    (['--type', 'Burger'], "--type: 'Burger' is not a robot type such as turtlebot2"),
+    (['--type', 'x' * 33], 'is not a robot type'),
+    (['--type', 'crawler'], "--type crawler: name the robot's own launch file with --launch"),
+    (['--type', 'turtlebot2', '--launch', 'a/b.launch'], '--launch is for other robots than'),
+    (['--type', 'turtlebot2', '--model', 'burger'], '--model goes with --type turtlebot3'),
+    (['--type', 'turtlebot3_burger', '--model', 'waffle'], 'does not go with'),
+    (['--model', 'tank'], "--model: 'tank' is none of burger, waffle, waffle_pi"),
+    (['--model', 'burger', '--launch', 'a/b.launch'], '--model goes with --type turtlebot3'),
+    (['--launch', 'a b.launch'], "--launch: 'a b.launch' is neither a path nor"),
+    (['--ip', 'here'], "--ip: 'here' is not an IPv4 address such as 192.168.0.7"),
+])
+def test_what_the_robot_would_refuse_is_refused_before_the_login(run, arguments, said):
+    is_refused(run, 'connect', RIGHT['connect'] + arguments, said)
+    assert (run('connect', *RIGHT['connect'], *arguments)
+            == run('remote', *RIGHT['remote'], *arguments)), 'in the same words'
+
+
 @pytest.mark.parametrize('script', sorted(SCRIPTS))
 @pytest.mark.parametrize('flag', ['-h', '--help'])
 def test_help_is_the_manual(run, script, flag):
@@ -174,11 +194,11 @@ def test_help_is_the_manual(run, script, flag):
 
 def test_what_goes_to_ssh(run):
     status, output = run('connect', *RIGHT['connect'], '--host-ip', '192.0.2.1', '--ssh-port',
-                         '222', '--type', 'turtlebot3_burger', '--launch', 'a/b.launch', '--guard')
+                         '222', '--type', 'crawler', '--launch', 'a/b.launch', '--guard')
     assert status == 0, output
     call = '\n'.join(run.calls())
     assert call.startswith('ssh -tt ') and ' -p 222 -l turtle -- 192.0.2.7 exec sh -c ' in call
-    assert call.endswith(' turtle@192.0.2.7 mhri 192.0.2.1 bot1 --type turtlebot3_burger '
+    assert call.endswith(' turtle@192.0.2.7 mhri 192.0.2.1 bot1 --type crawler '
                          '--launch a/b.launch --guard')
     assert 'StrictHostKeyChecking' not in call and 'UserKnownHostsFile' not in call
 

@@ -222,7 +222,7 @@ def free_port():
      'there is no package turtlebot_bringup or turtlebot3_bringup here'),
     ([], {}, 'both turtlebot_bringup and turtlebot3_bringup are here'),
     (['--model', 'burger'], {'ONLY': 'turtlebot_bringup'},
-     "--model burger is a TurtleBot3's, and there is only turtlebot_bringup here: leave --model out"),
+     "--model burger is a TurtleBot3's, and there is only turtlebot_bringup here: leave --model"),
     (['--launch', 'no_such_package/x.launch'], {}, 'there is no package no_such_package here'),
     (['--launch', 'no_such_package/x.launch'], {}, 'there is no file no_such_package/x.launch in '),
     (['--launch', './none.launch'], {}, 'there is no file ./none.launch in '),

@@ -46,7 +46,12 @@ NAME=
 HOST_IP=
 SSH_PORT=
 FOLDER=mhri
-OWN_IP=
+# The robot's options, with the defaults of turtle_remote.sh.
+TYPE=
+MODEL=
+LAUNCH=
+IP=
+PORT=11311
 PASSED_ON=()
 
 # What runs on the robot, as sh. $0 is USER@IP, $1 the folder in the home.
@@ -60,7 +65,7 @@ shift
 exec bash "$folder/turtle_remote.sh" "$@"'
 
 parse_arguments() {
-  local words=() text
+  local words=() option text
   while [ $# -gt 0 ]; do
     case "$1" in
       -h | --help) help_text; exit 0 ;;
@@ -69,7 +74,8 @@ parse_arguments() {
       --to) FOLDER=$(value "$@"); shift ;;
       --type | --model | --launch | --setup | --ip | --port)
         text=$(value "$@")
-        [ "$1" != --ip ] || OWN_IP=$text
+        option=${1#--}
+        printf -v "${option^^}" %s "$text"
         PASSED_ON+=("$1" "$text")
         shift ;;
       --no-camera | --no-smoother | --guard) PASSED_ON+=("$1") ;;
@@ -88,16 +94,16 @@ parse_arguments() {
 check_arguments() {
   local text
   check_login "$ROBOT_USER" "$ROBOT_IP"
-  [[ $NAME =~ ^[A-Za-z][A-Za-z0-9_]{0,31}$ ]] ||
-    usage_error "NAME: '$NAME' is not a robot's name: a letter, then letters, digits and _"
+  check_name "$NAME"
   [ -z "$HOST_IP" ] || check_ip --host-ip "$HOST_IP" 192.168.0.103
   check_ssh_port "$SSH_PORT"
   check_folder "$FOLDER"
-  # The robot checks them again; nothing that a shell could read as more than a word gets there.
+  # The robot checks them again, but after the login. Nothing that a shell could read as more than a
+  # word gets there.
+  check_robot
   for text in "${PASSED_ON[@]}"; do
     [[ $text =~ ^[A-Za-z0-9_./~+-]+$ ]] || usage_error "'$text' cannot be passed on to the robot"
   done
-  [ -z "$OWN_IP" ] || check_ip --ip "$OWN_IP" 192.168.0.7
 }
 
 # choose_address: HOST_IP, by the rule that the robot has for its own.

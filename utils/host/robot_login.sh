@@ -14,9 +14,7 @@ check_login() {
 # check_ssh_port PORT: empty is right, too.
 check_ssh_port() {
   [ -n "$1" ] || return 0
-  if ! [[ $1 =~ ^[0-9]{1,5}$ ]] || [ "$((10#$1))" -gt 65535 ] || [ "$((10#$1))" = 0 ]; then
-    usage_error "--ssh-port: there is no port '$1'"
-  fi
+  check_port --ssh-port "$1"
 }
 
 # check_folder FOLDER: a folder in the home on the robot, never one outside it.

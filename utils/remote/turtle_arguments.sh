@@ -31,3 +31,53 @@ value() {
   esac
   printf '%s' "$2"
 }
+
+# check_name NAME
+check_name() {
+  [[ $1 =~ ^[A-Za-z][A-Za-z0-9_]{0,31}$ ]] ||
+    usage_error "NAME: '$1' is not a robot's name: a letter, then letters, digits and _"
+}
+
+# check_port OPTION PORT
+check_port() {
+  if ! [[ $2 =~ ^[0-9]{1,5}$ ]] || [ "$((10#$2))" -gt 65535 ] || [ "$((10#$2))" = 0 ]; then
+    usage_error "$1: there is no port '$2'"
+  fi
+}
+
+# check_robot: what there is of TYPE, MODEL, LAUNCH, IP and PORT, before anything is started or sent.
+# TYPE becomes one of a robot's template, and PORT a plain number.
+check_robot() {
+  [[ -z $TYPE || $TYPE =~ ^[a-z][a-z0-9_]{0,31}$ ]] ||
+    usage_error "--type: '$TYPE' is not a robot type such as turtlebot2"
+  [[ -z $MODEL || $MODEL =~ ^(burger|waffle|waffle_pi)$ ]] ||
+    usage_error "--model: '$MODEL' is none of burger, waffle, waffle_pi"
+  [[ -z $LAUNCH || $LAUNCH =~ ^[A-Za-z0-9_./~+-]+$ ]] ||
+    usage_error "--launch: '$LAUNCH' is neither a path nor PACKAGE/FILE.launch"
+  [ -z "$IP" ] || check_ip --ip "$IP" 192.168.0.7
+  check_port --port "$PORT"
+  PORT=$((10#$PORT))
+  check_type
+}
+
+# check_type: TYPE and MODEL fit together, and with --launch.
+check_type() {
+  local model
+  case "$TYPE" in
+    turtlebot3_burger | turtlebot3_waffle | turtlebot3_waffle_pi)
+      model=${TYPE#turtlebot3_}
+      [ -z "$MODEL" ] || [ "$MODEL" = "$model" ] ||
+        usage_error "--model $MODEL does not go with --type $TYPE"
+      MODEL=$model
+      TYPE=turtlebot3 ;;
+  esac
+  case "$TYPE" in
+    turtlebot2 | turtlebot3)
+      [ -z "$LAUNCH" ] || usage_error "--launch is for other robots than --type $TYPE" ;;
+    '') [ -z "$LAUNCH" ] || TYPE=generic ;;
+    *) [ -n "$LAUNCH" ] ||
+      usage_error "--type $TYPE: name the robot's own launch file with --launch" ;;
+  esac
+  [ -z "$MODEL" ] || [ -z "$TYPE" ] || [ "$TYPE" = turtlebot3 ] ||
+    usage_error "--model goes with --type turtlebot3"
+}

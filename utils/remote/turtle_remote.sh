@@ -110,43 +110,9 @@ parse_arguments() {
 
 check_arguments() {
   check_ip HOST_IP "$HOST_IP" 192.168.0.103
-  [[ $NAME =~ ^[A-Za-z][A-Za-z0-9_]{0,31}$ ]] ||
-    usage_error "NAME: '$NAME' is not a robot's name: a letter, then letters, digits and _"
-  [[ -z $TYPE || $TYPE =~ ^[a-z][a-z0-9_]{0,31}$ ]] ||
-    usage_error "--type: '$TYPE' is not a robot type such as turtlebot2"
-  [[ -z $MODEL || $MODEL =~ ^(burger|waffle|waffle_pi)$ ]] ||
-    usage_error "--model: '$MODEL' is none of burger, waffle, waffle_pi"
-  [[ -z $LAUNCH || $LAUNCH =~ ^[A-Za-z0-9_./~+-]+$ ]] ||
-    usage_error "--launch: '$LAUNCH' is neither a path nor PACKAGE/FILE.launch"
-  [ -z "$IP" ] || check_ip --ip "$IP" 192.168.0.7
-  if ! [[ $PORT =~ ^[0-9]{1,5}$ ]] || [ "$((10#$PORT))" -gt 65535 ] || [ "$((10#$PORT))" = 0 ]; then
-    usage_error "--port: there is no port '$PORT'"
-  fi
-  PORT=$((10#$PORT))
+  check_name "$NAME"
+  check_robot
   [ -z "$SETUP" ] || [ -f "$SETUP" ] || usage_error "--setup: there is no file '$SETUP'"
-  check_type
-}
-
-# check_type: TYPE and MODEL fit together, and with --launch.
-check_type() {
-  local model
-  case "$TYPE" in
-    turtlebot3_burger | turtlebot3_waffle | turtlebot3_waffle_pi)
-      model=${TYPE#turtlebot3_}
-      [ -z "$MODEL" ] || [ "$MODEL" = "$model" ] ||
-        usage_error "--model $MODEL does not go with --type $TYPE"
-      MODEL=$model
-      TYPE=turtlebot3 ;;
-  esac
-  case "$TYPE" in
-    turtlebot2 | turtlebot3)
-      [ -z "$LAUNCH" ] || usage_error "--launch is for other robots than --type $TYPE" ;;
-    '') [ -z "$LAUNCH" ] || TYPE=generic ;;
-    *) [ -n "$LAUNCH" ] ||
-      usage_error "--type $TYPE: name the robot's own launch file with --launch" ;;
-  esac
-  [ -z "$MODEL" ] || [ -z "$TYPE" ] || [ "$TYPE" = turtlebot3 ] ||
-    usage_error "--model goes with --type turtlebot3"
 }
 
 # choose_network: this robot's address, and what ROS goes by.
