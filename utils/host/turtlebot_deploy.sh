@@ -30,25 +30,31 @@ HELP
 }
 
 SOURCE="$REPO/utils/remote"
+# On the robot the TurtleBot2 has its launch file by the name of the 2016 guide, too: as a link, which
+# this computer has not, since launch/mhri.launch has the name here.
+LINK=mhri.launch
+LINK_TO=mhri_turtlebot2.launch
 ROBOT_USER=
 ROBOT_IP=
 SSH_PORT=
 FOLDER=mhri
 SOCKET=
 
-# What runs on the robot, as sh: any robot has that. $1 is the folder in the home.
+# What runs on the robot, as sh: any robot has that. $1 is the folder in the home, $2 the link, $3
+# where it leads. Of a link counts where it leads, of another file what is in it.
 # shellcheck disable=SC2016 # the dollars are the robot's
 LIST='cd 2>/dev/null || exit 1
 [ -d "$1" ] || exit 0
 cd "$1" || exit 1
 for file in *; do
-[ -f "$file" ] || continue
+if [ "$file" = "$2" ] && [ -h "$file" ]; then kind=l; sum=$(readlink "$file" | sha256sum) || exit 1
+elif [ -f "$file" ]; then
 if [ -x "$file" ]; then kind=x; else kind=-; fi
 sum=$(sha256sum <"$file") || exit 1
+else continue; fi
 printf "%s %s %s\n" "${sum%% *}" "$kind" "$file"
 done'
-# Unpacks beside the folder and moves file by file, which replaces each in one step. On the robot the
-# TurtleBot2 has its launch file by the name of the 2016 guide, too; here launch/mhri.launch has it.
+# Unpacks beside the folder and moves file by file, which replaces each in one step.
 # shellcheck disable=SC2016 # the dollars are the robot's
 RECEIVE='cd || exit 1
 mkdir -p "$1" || exit 1
@@ -58,8 +64,10 @@ trap "rm -rf $new" 0
 trap "exit 1" 1 2 15
 mkdir "$new" || exit 1
 tar -x -o -C "$new" || exit 1
-for file in "$new"/*; do mv -f "$file" . || exit 1; done
-ln -sf mhri_turtlebot2.launch mhri.launch'
+for file in "$new"/*; do
+[ ! -f "$file" ] || mv -f "$file" . || exit 1
+done
+ln -sfn "$3" "$2"'
 
 parse_arguments() {
   local words=()
@@ -83,7 +91,7 @@ parse_arguments() {
 # on_robot PROGRAM [ARG]: runs one of the programs above, over the connection that is open.
 on_robot() {
   ssh -S "$SOCKET" -o ControlMaster=no -l "$ROBOT_USER" ${SSH_PORT:+-p "$SSH_PORT"} \
-    -- "$ROBOT_IP" "exec sh -c '$1' sh $FOLDER"
+    -- "$ROBOT_IP" "exec sh -c '$1' sh $FOLDER $LINK $LINK_TO"
 }
 
 # listing: checksum, x or -, and name of each file here, one a line.
@@ -98,12 +106,16 @@ listing() {
   done
 }
 
-# differing THERE: the names of the files here that the robot's listing does not have as they are.
+# differing THERE: the names of the files here, and of the link, that the robot's listing does not
+# have as they are.
 differing() {
   local line
   while IFS= read -r line; do
     grep -qxF -- "$line" <<<"$1" || printf '%s\n' "${line:67}"
-  done < <(listing)
+  done < <(
+    listing
+    printf '%s l %s\n' "$(printf '%s\n' "$LINK_TO" | sha256sum | cut -d ' ' -f 1)" "$LINK"
+  )
 }
 
 connect() {
@@ -124,7 +136,7 @@ disconnect() {
 }
 
 deploy() {
-  local there files=()
+  local there file files=() sent=()
   there=$(on_robot "$LIST") ||
     die "cannot read ~/$FOLDER on $ROBOT_IP: see the message above"
   mapfile -t files < <(differing "$there")
@@ -133,7 +145,10 @@ deploy() {
     return
   fi
   say "sending to $ROBOT_IP:$FOLDER: ${files[*]}"
-  tar -c -C "$SOURCE" --owner=0 --group=0 --mode=go-w -- "${files[@]}" | on_robot "$RECEIVE" ||
+  for file in "${files[@]}"; do [ "$file" = "$LINK" ] || sent+=("$file"); done
+  # With -T there may be no file at all, where it is the link that is missing.
+  tar -c -C "$SOURCE" --owner=0 --group=0 --mode=go-w -T /dev/null -- "${sent[@]}" |
+    on_robot "$RECEIVE" ||
     die "could not write to ~/$FOLDER on $ROBOT_IP: see the message above (is its disk full?)"
   there=$(on_robot "$LIST") || die "cannot read ~/$FOLDER on $ROBOT_IP again"
   mapfile -t files < <(differing "$there")
