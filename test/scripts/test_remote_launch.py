@@ -112,7 +112,8 @@ def test_turtlebot3(model, monkeypatch):
     assert found['robot_type'] == 'turtlebot3' and found['robot_model'] == model
     assert found['tf_prefix'] == found['turtlebot3_core/tf_prefix'] == 'bot3'
     assert found['turtlebot3_lds/frame_id'] == 'bot3/base_scan'
-    assert found.get('cv_camera/frame_id') == ('bot3/camera' if model == 'waffle_pi' else None)
+    for camera in ('cv_camera/frame_id', 'raspicam_node/camera_frame_id'):
+        assert found.get(camera) == ('bot3/camera' if model == 'waffle_pi' else None)
     remaps = dict(nodes(config)['/bot3/turtlebot3_core'].remap_args)
     assert remaps['cv_camera/image_raw'] == 'camera/rgb/image_raw'
 
