@@ -3,15 +3,18 @@
 """The robot's launch files, as roslaunch reads them, over stand-ins for a robot's own packages."""
 import os
 from pathlib import Path
+import shutil
 import xml.etree.ElementTree as ElementTree
 
 from conftest import REPO
 import pytest
 import roslaunch.config
+import roslaunch.substitution_args
 import roslaunch.xmlloader
 
 REMOTE = REPO / 'utils' / 'remote'
 PACKAGES = REPO / 'test' / 'support' / 'robot_packages'
+OLDER = REPO / 'test' / 'support' / 'older_robot_packages'
 TURTLEBOT = {'TURTLEBOT_BASE': 'kobuki', 'TURTLEBOT_3D_SENSOR': 'kinect',
              'TURTLEBOT_SIMULATION': 'false'}
 
@@ -24,6 +27,13 @@ def robot(monkeypatch):
     for name, value in dict(TURTLEBOT, LDS_MODEL='LDS-01', ROS_NAMESPACE='TurtleBot7').items():
         monkeypatch.setenv(name, value)
     monkeypatch.delenv('TURTLEBOT3_MODEL', raising=False)
+
+
+def put_before(folder, monkeypatch):
+    """Have the packages of a folder before those that are there."""
+    monkeypatch.setenv('ROS_PACKAGE_PATH', '{}:{}'.format(folder, os.environ['ROS_PACKAGE_PATH']))
+    # roslaunch remembers where it found what.
+    monkeypatch.setattr(roslaunch.substitution_args, '_rospack', None)
 
 
 def load(name, *arguments, folder=REMOTE):
@@ -118,6 +128,31 @@ def test_turtlebot3(model, monkeypatch):
     assert remaps['cv_camera/image_raw'] == 'camera/rgb/image_raw'
 
 
+@pytest.mark.parametrize('model', ['burger', 'waffle', 'waffle_pi'])
+def test_turtlebot3_of_older_releases(model, monkeypatch, tmp_path):
+    """From 1.1.0 to 1.2.5 there was no argument called model, and up to 1.0.0 none at all."""
+    monkeypatch.setenv('TURTLEBOT3_MODEL', 'burger')
+    arguments = 'mhri_turtlebot3.launch', 'name:=bot3', 'model:=' + model
+    shutil.copytree(str(OLDER / 'turtlebot3_bringup'), str(tmp_path / 'turtlebot3_bringup'))
+    file = tmp_path / 'turtlebot3_bringup' / 'launch' / 'turtlebot3_robot.launch'
+    file.write_text('<launch><param name="turtlebot3_lds/frame_id" value="base_scan"/></launch>')
+    for folder, running in ((OLDER, ['/bot3/turtlebot3_core']), (tmp_path, [])):
+        put_before(folder, monkeypatch)
+        config = load(*arguments)
+        assert sorted(nodes(config)) == running
+        said = values(config, '/bot3/')
+        assert said['turtlebot3_core/tf_prefix'] == 'bot3' and said['robot_model'] == model
+        assert said['turtlebot3_lds/frame_id'] == 'bot3/base_scan'
+
+
+def test_camera_of_a_waffle_pi_that_does_not_come_with_the_base(monkeypatch):
+    put_before(OLDER, monkeypatch)
+    config = load('mhri_turtlebot3_rpicamera.launch', 'name:=bot3')
+    assert sorted(nodes(config)) == ['/bot3/raspicam_node']
+    for camera in ('raspicam_node/camera_frame_id', 'cv_camera/frame_id'):
+        assert config.params['/bot3/' + camera].value == 'bot3/camera'
+
+
 def test_turtlebot3_model_of_the_environment(monkeypatch):
     with pytest.raises(Exception, match='TURTLEBOT3_MODEL'):
         load('mhri_turtlebot3.launch', 'name:=bot3')
@@ -203,7 +238,7 @@ def test_generic_robot_of_a_labs_type(tmp_path):
 
 
 def test_stand_ins_say_what_they_are():
-    for path in PACKAGES.rglob('*'):
+    for path in [*PACKAGES.rglob('*'), *OLDER.rglob('*')]:
         if path.is_file() and '__pycache__' not in path.parts:
             text = path.read_text()
             assert 'SPDX-License-Identifier: BSD-3-Clause' in text, path

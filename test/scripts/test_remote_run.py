@@ -17,6 +17,7 @@ from support.ros_system import System, wait_for  # noqa: E402
 
 SCRIPT = REPO / 'utils' / 'remote' / 'turtle_remote.sh'
 PACKAGES = REPO / 'test' / 'support' / 'robot_packages'
+OLDER = REPO / 'test' / 'support' / 'older_robot_packages'
 HOST = '127.0.0.1'
 START_S = LONG_S = 120.0
 
@@ -134,6 +135,17 @@ def test_turtlebot3(remote, master):
     process.send_signal(signal.SIGTERM)
     assert process.wait(timeout=LONG_S) == 143, process.output()
     assert remote.running() == []
+
+
+def test_turtlebot3_of_an_older_release(remote, master):
+    """Its launch file knows no model, and its camera has a launch file of its own."""
+    process = remote.start(
+        'bot3', '--type', 'turtlebot3_waffle_pi',
+        ROS_PACKAGE_PATH='{}:{}'.format(OLDER, remote.env['ROS_PACKAGE_PATH']))
+    await_topics(process, master, '/bot3/odom', '/bot3/raspicam_node/image/compressed')
+    assert parameter(master, '/bot3/robot_model') == 'waffle_pi'
+    assert parameter(master, '/bot3/turtlebot3_core/tf_prefix') == 'bot3'
+    assert parameter(master, '/bot3/raspicam_node/camera_frame_id') == 'bot3/camera'
 
 
 def test_robot_with_a_launch_file_of_its_own(remote, master):

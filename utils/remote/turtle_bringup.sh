@@ -167,10 +167,14 @@ prepare_turtlebot3() {
       "lidar) into ~/.bashrc on this robot"
   fi
   BASE_LAUNCH=("$HERE/mhri_turtlebot3.launch" "name:=$NAME" "model:=$MODEL")
-  # The Burger has no camera, and that of the Waffle Pi comes with its base.
+  # The Burger has no camera. That of the Waffle Pi comes with its base from 1.2.6 of
+  # turtlebot3_bringup on, and has a launch file of its own before.
   if [ "$MODEL" = waffle ] && [ -f "$folder/launch/turtlebot3_realsense.launch" ] &&
     package realsense_camera >/dev/null; then
     CAMERA_LAUNCH=("$HERE/mhri_turtlebot3_sensor.launch" "name:=$NAME")
+  elif [ "$MODEL" = waffle_pi ] && [ -f "$folder/launch/turtlebot3_rpicamera.launch" ] &&
+    ! grep -qsF turtlebot3_rpicamera.launch "$folder/launch/turtlebot3_robot.launch"; then
+    CAMERA_LAUNCH=("$HERE/mhri_turtlebot3_rpicamera.launch" "name:=$NAME")
   fi
 }
 
