@@ -43,7 +43,7 @@ def way_out(target):
         try:
             probe.connect((target, 9))
             return probe.getsockname()[0]
-        except OSError:
+        except (OSError, socket.error):  # not the same in Python 2
             return None
 
 
