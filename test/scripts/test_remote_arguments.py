@@ -19,7 +19,7 @@ RIGHT = {'connect': ['turtle', '192.0.2.7', 'bot1'], 'deploy': ['turtle@192.0.2.
          'remote': ['192.0.2.1', 'bot1']}
 NAMES = ['bot1; reboot', '../x', '$(id)', '`id`', 'my bot', '-oProxyCommand=touch hacked', '1bot',
          'bot1\nreboot', 'bot1|touch hacked', 'bot1&', 'bot/1', "bot'1", 'bot"1', 'bot*', 'böt', '',
-         '/bot1', '~bot', 'x' * 33, 'bot1:=2', '--', '-']
+         '/bot1', '~bot', 'x' * 33, 'bot1:=2', '--', '-', 'mux', 'robot_controller']
 ADDRESSES = ['300.1.1.1', '1.2.3', '1.2.3.4.5', 'robot', 'fe80::1', '1.2.3.4; touch hacked',
              '$(touch hacked)', '`touch hacked`', '1.2.3.4\n5', '-oProxyCommand=touch hacked', '',
              '08.1.1.300', '1.2.3.4 5.6.7.8', '1.2.3.4/24', '0x7f.1.1.1', '--', '1.2.3.4,1.2.3.5']

@@ -36,6 +36,10 @@ value() {
 check_name() {
   [[ $1 =~ ^[A-Za-z][A-Za-z0-9_]{0,31}$ ]] ||
     usage_error "NAME: '$1' is not a robot's name: a letter, then letters, digits and _"
+  case $1 in
+    mhri | mux | mux_in | panel_in | robot_controller)
+      usage_error "NAME: '$1' is a name of mhri itself: choose another one" ;;
+  esac
 }
 
 # check_port OPTION PORT
