@@ -34,7 +34,9 @@ def test_the_class_follows_the_type(key, expected):
     ({}, False, 'not selected'),
     ({'selected': True}, False, 'selected'),
     ({'selected': True, 'driven': True}, False, 'DRIVING'),
-    ({'selected': True}, True, 'STOPPED'),
+    ({'selected': True}, True, 'STOPPING'),
+    ({'proof': ProofView(views.PROOF_WAITING, 'stopping')}, True, 'STOPPING'),
+    ({'proof': ProofView(views.PROOF_NOT_CONFIRMED, 'NOT CONFIRMED')}, True, 'NOT CONFIRMED'),
     ({'selected': True, 'proof': CONFIRMED}, False, 'STOPPED'),
 ])
 def test_title_edge_and_pill_say_whether_it_is_driven(window, changes, stop_all, state):
@@ -83,7 +85,7 @@ def test_stop_acts_on_press_and_again_while_stopped(window, heard):
     QTest.mousePress(window.stop_button, Qt.LeftButton)
     window.show_view(VIEW, stop_all=True)
     QTest.mouseRelease(window.stop_button, Qt.LeftButton)
-    assert asked == [()] and window.stop_button.text().startswith('STOPPED')
+    assert asked == [()] and window.stop_button.text().startswith('STOP ALL in force')
     QTest.mousePress(window.stop_button, Qt.LeftButton)
     assert len(asked) == 2
 

@@ -50,11 +50,22 @@ def test_looking_says_so_in_place(panel):
     assert panel.look_button.isEnabled()
 
 
+@pytest.mark.parametrize('state, headline', [
+    (views.PROOF_STOPPED, 'STOPPED - all robots'),
+    (views.PROOF_WAITING, 'STOP ALL in force \u2013 stopping bot1'),
+    (views.PROOF_NOT_CONFIRMED, 'STOP ALL in force \u2013 bot1 NOT CONFIRMED'),
+])
+def test_the_stop_bar_claims_what_the_rows_prove(panel, four_robots, state, headline):
+    robot = replace(four_robots.robots[0], proof=views.ProofView(state, state))
+    panel.show_view(replace(four_robots, stop_all=True, robots=(robot,)))
+    assert panel.stop_bar._headline.text() == headline
+
+
 @pytest.mark.parametrize('changes, active, note', [
     ({}, True, 'drag'),
     ({'mode': 'ps3joy'}, False, 'PS3 Controller drives'),
     ({'mode': None}, False, 'not known'),
-    ({'stop_all': True}, False, 'stopped'),
+    ({'stop_all': True}, False, 'stop all is in force'),
 ])
 def test_the_stick_says_whether_anybody_listens(panel, drag, heard, four_robots, changes, active,
                                                 note):

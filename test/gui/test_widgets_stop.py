@@ -5,6 +5,7 @@ import pytest
 from python_qt_binding.QtCore import QEvent, Qt
 from python_qt_binding.QtTest import QTest
 
+from mhri.core.stop_words import StopWords
 from mhri.gui import stop_bar
 from mhri.gui.stop_bar import StopBar
 
@@ -87,6 +88,20 @@ def test_a_refused_release_says_why_and_can_be_tried_again(stopped, operator):
     stopped.show_stop(True, 'centre the stick first')
     assert stopped.release_button.isEnabled()
     assert stopped._note_line.text() == 'centre the stick first'
+
+
+def test_the_headline_says_what_is_proved_and_gives_way_to_a_shorter_one(stopped, operator):
+    assert 'STOPPED' not in stopped._headline.text(), 'nothing is proved yet'
+    said = StopWords(('STOP ALL in force \u2013 bot3 NOT CONFIRMED', 'bot3 NOT CONFIRMED'),
+                     'go and look', '')
+    stopped.show_stop(True, '', said)
+    assert stopped._headline.shown_text() == said.headlines[0]
+    assert stopped._note_line.text() == 'go and look'
+    stopped.resize(700, 90)
+    operator.settle()
+    assert stopped._headline.shown_text() == said.headlines[1]
+    stopped._headline.grab()
+    assert stopped._headline.toolTip() == said.headlines[0]
 
 
 def test_a_new_stop_takes_the_question_back(stopped, operator):

@@ -8,8 +8,8 @@ import pytest
 
 from mhri.core.status import ATTENTION, CALM, status_line, STOPPED
 from mhri.core.views import (
-    GONE, LINK_STATES, LIVE, PanelView, ROS_CONNECTED, ROS_NO_MASTER, ROS_STARTING, RobotView,
-    SILENT)
+    GONE, LINK_STATES, LIVE, PanelView, PROOF_NOT_CONFIRMED, PROOF_STOPPED, ProofView,
+    ROS_CONNECTED, ROS_NO_MASTER, ROS_STARTING, RobotView, SILENT)
 
 SOURCES = (('joy', 'Virtual joystick'), ('ps3joy', 'PS3 Controller'))
 
@@ -17,6 +17,11 @@ SOURCES = (('joy', 'Virtual joystick'), ('ps3joy', 'PS3 Controller'))
 def panel(robots=(), ros=ROS_CONNECTED, mode='joy', **values):
     """Return a view with the given robots."""
     return PanelView(ros=ros, sources=SOURCES, mode=mode, robots=tuple(robots), **values)
+
+
+def proved(state, name='bot1'):
+    """Return a robot with a proof of its stop."""
+    return RobotView(name, link=LIVE, age_s=0.01, selected=True, proof=ProofView(state, state))
 
 
 DRIVEN = RobotView('bot1', link=LIVE, selected=True, driven=True)
@@ -28,7 +33,10 @@ LOST = RobotView('bot5', link=GONE, selected=True, note='switched off')
 CASES = {
     'starting': (panel(ros=ROS_STARTING, mode=None), None, 'connecting', CALM),
     'no_master': (panel(ros=ROS_NO_MASTER, stop_all=True), '', 'http://host:11311', ATTENTION),
-    'stopped': (panel([MUTE], stop_all=True), 'release', 'everything is stopped', STOPPED),
+    'stopped': (panel([proved(PROOF_STOPPED)], stop_all=True), 'release', 'everything is stopped',
+                STOPPED),
+    'not_confirmed': (panel([proved(PROOF_STOPPED), proved(PROOF_NOT_CONFIRMED, 'bot9')],
+                            stop_all=True), 'release', 'bot9 NOT CONFIRMED', STOPPED),
     'no_mux': (panel([READY], mode=None), None, 'the mux is not running', ATTENTION),
     'no_robots': (panel(), 'source', 'no robots yet', CALM),
     'none_selected': (panel([IDLE]), '', 'no robot selected', CALM),

@@ -49,6 +49,27 @@ CASES = {
 }
 
 
+HALT = 4.0  # when a robot that was held up on the way is heard again
+UNSEEN = {
+    'at_rest_when_heard_again': (
+        every(0.02, 0.1, MOVES) + every(0.02, HALT + 0.1, REST, HALT),
+        'standstill seen after 4.0 s'),
+    'moved_when_heard_again': (
+        every(0.02, 0.1, MOVES) + every(0.02, HALT + 0.1, MOVES, HALT)
+        + every(0.02, HALT + 0.2, REST, HALT + 0.1), 'stopped in 4120 ms'),
+    'proved_before_it_fell_silent': (STOPS + every(0.02, HALT + 0.1, REST, HALT),
+                                     'stopped in 220 ms'),
+}
+
+
+@pytest.mark.parametrize('case', sorted(UNSEEN))
+def test_the_time_to_the_proof_is_not_called_that_to_the_stop(case):
+    """A robot that was not heard in between may have stood still for long."""
+    readings, text = UNSEEN[case]
+    view = follow(*readings).view(readings[-1][0])
+    assert (view.state, view.text) == (PROOF_STOPPED, text)
+
+
 @pytest.mark.parametrize('case', sorted(CASES))
 def test_transition(case):
     """State and words after a row of readings."""

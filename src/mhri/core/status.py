@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The one line at the bottom of the panel: the one thing that matters now."""
+from mhri.core.stop_words import stop_words
 from mhri.core.views import GONE, ROS_CONNECTED, ROS_STARTING, SILENT
 
 CALM = 'calm'
@@ -33,7 +34,7 @@ def _no_ros(view, _, master_uri):
 
 def _stopped(view, _, __):
     if view.stop_all:
-        return 'everything is stopped; release stop all to drive again', STOPPED
+        return stop_words(view.robots).sentence, STOPPED
     return None
 
 

@@ -21,7 +21,8 @@ class StopProof:
         NOT_CONFIRMED  -> STOPPED        READINGS readings of standstill in a row
 
     The time given is that of the first reading of the row. One reading alone proves nothing: it may
-    have been under way since before the stop.
+    have been under way since before the stop. Where the robot was not heard for HEARING_S before
+    that reading it may have stood still long before, and the words say so.
 
     :param now: when the zero was sent
     """
@@ -34,10 +35,13 @@ class StopProof:
         self._speed = None
         self.state = PROOF_WAITING
         self._stopped_ms = None
+        # Whether nobody can tell when the robot came to rest: it was not heard until it had.
+        self._unseen = False
 
     def on_motion(self, motion, now):
         """Take in one reading of the robot's odometry, received at ``now``."""
-        if now - self._heard > HEARING_S:
+        silent = now - self._heard > HEARING_S
+        if silent:
             self._run = 0
         self._heard = now
         self._speed = motion
@@ -49,6 +53,8 @@ class StopProof:
             return
         if self._run == 0:
             self._run_began = now
+            if self._stopped_ms is None:
+                self._unseen = silent
         self._run += 1
         if self._run >= READINGS and self.state != PROOF_STOPPED:
             self.state = PROOF_STOPPED
@@ -71,6 +77,8 @@ class StopProof:
 
     def _words(self, silent):
         if self.state == PROOF_STOPPED:
+            if self._unseen:
+                return 'standstill seen after {:.1f} s'.format(self._stopped_ms / 1000.0)
             return 'stopped in {:.0f} ms'.format(self._stopped_ms)
         if self.state == PROOF_WAITING:
             return 'stopping'

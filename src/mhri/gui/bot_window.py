@@ -35,6 +35,8 @@ _LEAST_CAMERA_UNITS = 17
 DRIVING = 'DRIVING'
 SELECTED = 'selected'
 NOT_SELECTED = 'not selected'
+STOPPING = 'STOPPING'
+NOT_CONFIRMED = 'NOT CONFIRMED'
 STOPPED = 'STOPPED'
 
 # How each drive state looks: colour, whether the pill is filled, width of the window's edge [px].
@@ -42,8 +44,12 @@ _LOOKS = {
     DRIVING: (theme.DRIVE, True, 8),
     SELECTED: (theme.DRIVE, False, 3),
     NOT_SELECTED: (theme.MUTED, False, 1),
+    STOPPING: (theme.STOP, False, 8),
+    NOT_CONFIRMED: (theme.STOP, True, 8),
     STOPPED: (theme.STOP, True, 8),
 }
+# What a stop is called that is proved so far.
+_STOPS = {views.PROOF_STOPPED: STOPPED, views.PROOF_NOT_CONFIRMED: NOT_CONFIRMED}
 _EDGE_PX = 8
 
 
@@ -222,7 +228,7 @@ class BotWindow(QDialog):
 
     @property
     def drive_state(self):
-        """One of DRIVING, SELECTED, NOT_SELECTED, STOPPED."""
+        """One of DRIVING, SELECTED, NOT_SELECTED, STOPPING, NOT_CONFIRMED, STOPPED."""
         return self._drive
 
     def show_view(self, view, stop_all=False):
@@ -242,15 +248,18 @@ class BotWindow(QDialog):
 
     def _show_drive_state(self, view, stopped):
         """Show in title, edge and pill whether this robot is driven right now."""
-        drive = STOPPED if stopped else DRIVING if view.driven else \
-            SELECTED if view.selected else NOT_SELECTED
+        if stopped:
+            drive = _STOPS.get(view.proof.state, STOPPING) if view.proof else STOPPING
+        else:
+            drive = DRIVING if view.driven else SELECTED if view.selected else NOT_SELECTED
         if drive == self._drive:
             return
         self._drive = drive
         self.setWindowTitle('{} - {}'.format(self.name, drive))
         ink, filled, _ = _LOOKS[drive]
         self.pill.say(drive, ink, filled)
-        self.stop_button.setText('STOPPED - release it in the panel' if stopped else 'STOP ALL')
+        self.stop_button.setText(
+            'STOP ALL in force - release it in the panel' if stopped else 'STOP ALL')
         self.stop_button.show_engaged(stopped)
         self.update()
 

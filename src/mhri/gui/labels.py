@@ -9,7 +9,9 @@ from mhri.gui import theme
 
 
 class TextLine(QLabel):
-    """One line of text; what does not fit ends in "..." and is told whole by the tool tip.
+    """One line of text; what does not fit is told whole by the tool tip.
+
+    In its place there are fewer words, where the caller has some that fit, or it ends in "...".
 
     It is as wide as it is given, never wider because of its text: nothing beside it jumps.
     """
@@ -17,13 +19,20 @@ class TextLine(QLabel):
     def __init__(self, parent=None):
         super().__init__(parent)
         self._tone = theme.TEXT
+        self._shorter = ()
         self.setTextFormat(Qt.PlainText)
         self.setSizePolicy(QSizePolicy.Ignored, QSizePolicy.Fixed)
 
-    def show_text(self, text, tone=theme.TEXT):
-        """Show a text in one of the colours of the theme; the same again costs nothing."""
+    def show_text(self, text, tone=theme.TEXT, shorter=()):
+        """Show a text in one of the colours of the theme; the same again costs nothing.
+
+        :param shorter: what to say where there is no room for the text, the longest first
+        """
         if text != self.text():
             self.setText(text)
+        if tuple(shorter) != self._shorter:
+            self._shorter = tuple(shorter)
+            self.update()
         if tone != self._tone:
             self._tone = tone
             self.update()
@@ -31,6 +40,15 @@ class TextLine(QLabel):
     def set_tone(self, tone):
         """Choose one of the colours of the theme."""
         self.show_text(self.text(), tone)
+
+    def shown_text(self):
+        """Return what can be read in the width there is."""
+        metrics, width = self.fontMetrics(), self.contentsRect().width()
+        for text in (self.text(), *self._shorter):
+            if metrics.horizontalAdvance(text) <= width:
+                return text
+        last = self._shorter[-1] if self._shorter else self.text()
+        return metrics.elidedText(last, Qt.ElideRight, width)
 
     def fix_width(self, *samples):
         """Be exactly as wide as the widest of the samples."""
@@ -48,7 +66,7 @@ class TextLine(QLabel):
 
     def paintEvent(self, event):  # noqa: N802
         """Paint the text, shortened to the width there is."""
-        shown = self.fontMetrics().elidedText(self.text(), Qt.ElideRight, self.width())
+        shown = self.shown_text()
         whole = '' if shown == self.text() else self.text()
         if whole != self.toolTip():
             self.setToolTip(whole)

@@ -6,6 +6,7 @@ import base64
 from python_qt_binding.QtCore import QByteArray, Qt, Signal
 from python_qt_binding.QtWidgets import QPushButton, QWidget
 
+from mhri.core.stop_words import stop_words
 from mhri.core.views import PanelView
 from mhri.gui import theme, words
 from mhri.gui.drive_keys import DriveKeys, mark_drive_area
@@ -152,7 +153,7 @@ class PanelWidget(QWidget):
         self.mode_combo.show_mode(view.sources, view.mode)
         self.speed_limits.show_limits(view.limits)
         self.speed_limits.show_pace(view.together, view.pace, view.slowed)
-        self.stop_bar.show_stop(view.stop_all, view.stop_note)
+        self.stop_bar.show_stop(view.stop_all, view.stop_note, stop_words(view.robots))
         self.status_line.show_status(view.status, view.status_level)
         self._show_buttons()
         self._show_stick(numbers)
@@ -289,7 +290,7 @@ class PanelWidget(QWidget):
         self.joystick.show_active(in_force)
         self.talk_button.setVisible(view.mode == VOICE)
         if view.stop_all:
-            note = 'no effect: everything is stopped'
+            note = 'no effect: stop all is in force'
         elif view.mode is None:
             note = 'no effect: the mode is not known yet'
         elif view.mode == VOICE:

@@ -6,6 +6,7 @@ from python_qt_binding.QtGui import QPainter
 from python_qt_binding.QtWidgets import (
     QHBoxLayout, QPushButton, QSizePolicy, QStackedLayout, QVBoxLayout, QWidget)
 
+from mhri.core.stop_words import NOBODY_HEARD
 from mhri.gui import theme
 from mhri.gui.labels import Sign, TextLine
 from mhri.gui.pending import Pending
@@ -29,6 +30,7 @@ class StopBar(QWidget):
         super().__init__(parent)
         self._stopped = False
         self._note = ''
+        self._words = NOBODY_HEARD
         self._asked = Pending(ANSWER_WITHIN_S)
         self._build()
         self._connect()
@@ -112,18 +114,19 @@ class StopBar(QWidget):
         self._countdown.timeout.connect(self._cancel)
         self._answer.timeout.connect(self._show)
 
-    def show_stop(self, stopped, note=''):
+    def show_stop(self, stopped, note='', said=NOBODY_HEARD):
         """Show whether stop-all is in force, and what is worth saying about it.
 
         :param note: e.g. why a release was refused; '' for nothing
+        :param said: :class:`mhri.core.stop_words.StopWords`, how far it is proved
         """
         if not stopped or not self._stopped:
             self._countdown.stop()
         if stopped and note != self._note:
             # Why it stays stopped is an answer, too.
             self._asked.drop()
-        changed = (stopped, note) != (self._stopped, self._note)
-        self._stopped, self._note = stopped, note
+        changed = (stopped, note, said) != (self._stopped, self._note, self._words)
+        self._stopped, self._note, self._words = stopped, note, said
         if changed:
             self._show()
 
@@ -162,8 +165,9 @@ class StopBar(QWidget):
         stopping = asked and not self._stopped
         self.stop_button.setText('STOPPING ...' if stopping else 'STOP ALL')
         releasing = self._stopped and not asked
-        self._headline.show_text('RELEASING ...' if releasing else 'STOPPED - all robots')
-        self._note_line.show_text(self._note or 'nothing moves until you release it')
+        headline, *shorter = ('RELEASING ...',) if releasing else self._words.headlines
+        self._headline.show_text(headline, shorter=shorter)
+        self._note_line.show_text(self._note or self._words.note)
         confirming = self._countdown.isActive()
         self.confirm_button.setVisible(confirming)
         self._second.setCurrentIndex(1 if confirming else 0)
