@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Joins the window of the doctor with the examination; everything here runs on the GUI thread."""
 from python_qt_binding.QtCore import Qt
-from python_qt_binding.QtGui import QGuiApplication
 
 from mhri.gui.doctor_window import DoctorWindow
-from mhri.gui.windows import free_corner
+from mhri.gui.placing import place_window
 
 
 class DoctorHost:
@@ -29,11 +28,7 @@ class DoctorHost:
             self.window = DoctorWindow()
             self.window.examine_requested.connect(self._examine)
             self.window.setAttribute(Qt.WA_ShowWithoutActivating)
-            screen = QGuiApplication.screenAt(self._panel.window().geometry().center()) \
-                or QGuiApplication.primaryScreen()
-            others = [window.frameGeometry() for window in self._windows.values()]
-            self.window.move(free_corner(screen.availableGeometry(), self.window.sizeHint(),
-                                         self._panel.window().frameGeometry(), others))
+            place_window(self.window, self._panel, self._windows.values())
         self.window.show()
         self.window.raise_()
         self._examine()

@@ -9,7 +9,6 @@ import gc
 import json
 
 from python_qt_binding.QtCore import QByteArray, QObject, Qt, QTimer
-from python_qt_binding.QtGui import QGuiApplication
 from python_qt_binding.QtWidgets import QApplication
 import rospy
 
@@ -17,8 +16,8 @@ from mhri.core.names import tidy_name
 from mhri.core.views import GONE, SILENT
 from mhri.doctor_host import DoctorHost
 from mhri.gui.panel import PanelWidget
+from mhri.gui.placing import place_window
 from mhri.gui.window_maker import WindowMaker
-from mhri.gui.windows import free_corner
 from mhri.requests_host import RequestsHost
 from mhri.ros.resources import resource_path
 from mhri.window_host import WindowHost
@@ -273,16 +272,13 @@ class PanelHost(QObject):
             self._open(name)
 
     def _place(self, name, window):
-        """Put a window where it was last time, else where it covers the panel and others least."""
+        """Put a window where it was last time, else beside the panel and the others."""
         saved = self._places.get(name)
         if saved:
             window.restoreGeometry(QByteArray.fromHex(saved.encode('ascii')))
             return
-        screen = QGuiApplication.screenAt(self.panel.window().geometry().center()) \
-            or QGuiApplication.primaryScreen()
-        others = [other.frameGeometry() for other in self.windows.values() if other is not window]
-        window.move(free_corner(screen.availableGeometry(), window.sizeHint(),
-                                self.panel.window().frameGeometry(), others))
+        place_window(window, self.panel,
+                     [other for other in self.windows.values() if other is not window])
 
     def _on_window_closed(self, name):
         """A robot whose window is closed is not driven any more: its zero leaves here, at once."""

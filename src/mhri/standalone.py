@@ -6,6 +6,7 @@ import signal
 import socket
 
 from python_qt_binding.QtCore import QSettings, QSocketNotifier, Signal
+from python_qt_binding.QtGui import QGuiApplication
 from python_qt_binding.QtWidgets import QApplication, QMainWindow
 import rospy
 
@@ -69,6 +70,9 @@ class Standalone:
         geometry = self._settings.value('geometry')
         if geometry is not None:
             self.window.restoreGeometry(geometry)
+        else:
+            # In a corner, and not in the middle, it leaves room for the robots' windows.
+            self.window.move(QGuiApplication.primaryScreen().availableGeometry().topLeft())
 
     def close(self):
         """Stop the robots, save the settings, end."""

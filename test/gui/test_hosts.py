@@ -6,7 +6,7 @@ import sys
 import types
 
 import pytest
-from python_qt_binding.QtCore import QPoint, QSettings
+from python_qt_binding.QtCore import QPoint, QRect, QSettings
 from python_qt_binding.QtWidgets import QApplication, QWidget
 
 from mhri.panel_host import PanelHost
@@ -66,6 +66,20 @@ def test_standalone_keeps_its_settings_in_a_file(tmp_path):
     second = Standalone(['panel'], path)
     second.restore()
     check_restored(second.host)
+    second.window.close()
+
+
+def test_the_first_time_the_panel_leaves_room_for_the_windows(tmp_path):
+    path = str(tmp_path / 'panel.ini')
+    first = Standalone(['panel'], path)
+    first.restore()
+    screen = QApplication.primaryScreen().availableGeometry()
+    assert first.window.pos() == screen.topLeft()
+    first.window.setGeometry(101, 102, 960, 610)
+    first.window.close()
+    second = Standalone(['panel'], path)
+    second.restore()
+    assert second.window.geometry() == QRect(101, 102, 960, 610), 'later it is where it was left'
     second.window.close()
 
 

@@ -197,7 +197,7 @@ class Chart(QWidget):
         self.view = pyqtgraph.GraphicsView(self)
         self.view.setFocusPolicy(Qt.NoFocus)
         self.view.setAttribute(Qt.WA_TransparentForMouseEvents)
-        self.view.setMinimumHeight(3 * self.fontMetrics().height())
+        self.view.setMinimumHeight(round(2.2 * self.fontMetrics().height()))
         self.box = pyqtgraph.ViewBox(enableMenu=False, enableMouse=False)
         self.box.disableAutoRange()
         self._left = pyqtgraph.AxisItem('left')

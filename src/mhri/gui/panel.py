@@ -3,7 +3,7 @@
 """The panel: robots on the left, driving on the right, stop-all and one sentence below."""
 import base64
 
-from python_qt_binding.QtCore import QByteArray, Qt, Signal
+from python_qt_binding.QtCore import QByteArray, QPoint, QRect, Qt, Signal
 from python_qt_binding.QtWidgets import QPushButton, QWidget
 
 from mhri.core.stop_words import stop_words
@@ -174,6 +174,13 @@ class PanelWidget(QWidget):
         """Empty the name field, after its robot was added."""
         self.name_edit.clear()
         self.show_name_problem('')
+
+    def keep_in_sight(self):
+        """Return the rectangle on the screen (``QRect``) of stop bar and bottom line."""
+        top = self.stop_bar.mapToGlobal(QPoint(0, 0)).y()
+        area = QRect(self.mapToGlobal(QPoint(0, 0)), self.size())
+        area.setTop(top)
+        return area
 
     def stick(self):
         """Return (forward, turn), each in [-1, 1], as held by pointer or keys now."""

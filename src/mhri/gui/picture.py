@@ -135,7 +135,7 @@ class PictureView(QWidget):
     def minimumSizeHint(self):  # noqa: N802
         """Return the least in which something can be seen."""
         unit = self.fontMetrics().height()
-        return QSize(9 * unit, 6 * unit)
+        return QSize(9 * unit, 5 * unit)
 
     def mouseMoveEvent(self, event):  # noqa: N802
         """Follow the pointer."""
