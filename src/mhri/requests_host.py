@@ -4,9 +4,24 @@
 
 Joins widgets and the ROS side; everything here runs on the GUI thread.
 """
-from mhri.core.recording import OFF, RECORDING
+from mhri.core.recording import ENDED, OFF, read_fallback, RECORDING
 from mhri.core.requests import (
     check_request, RECORD, RequestRefused, selection_after, STOP_RECORDING)
+
+
+def short_ends(ends):
+    """Return in fewer and fewer words how recordings ended, what went wrong first.
+
+    :param ends: pairs (robot's name, its :class:`mhri.core.recording.RecordingStatus`)
+    """
+    kinds = (('not saved', [name for name, status in ends if status.state != ENDED]),
+             ('saved elsewhere', [name for name, status in ends if status.state == ENDED
+                                  and read_fallback(status.note)[0]]),
+             ('saved', [name for name, status in ends if status.state == ENDED
+                        and not read_fallback(status.note)[0]]))
+    kinds = [(words, names) for words, names in kinds if names]
+    return (', '.join('{} {}'.format(words, ', '.join(names)) for words, names in kinds),
+            ', '.join('{} {}'.format(len(names), words) for words, names in kinds))
 
 
 class RequestsHost:
@@ -62,8 +77,10 @@ class RequestsHost:
             status = self._operator.recordings.status(name)
             if status.state != RECORDING:
                 self._asked.discard(name)
-                ended.append('{}: {}'.format(name, status.note if status.state != OFF else
-                                             'not recorded, its type is not known yet'))
+                ended.append((name, status))
         if ended:
             self._ends += ended
-            self._tell('; '.join(self._ends))
+            self._tell('; '.join('{}: {}'.format(
+                name, status.note if status.state != OFF
+                else 'not recorded, its type is not known yet') for name, status in self._ends),
+                shorter=short_ends(self._ends))

@@ -17,7 +17,7 @@ from mhri.core.frames import DEPTH, Frame, RGB, StreamStatus
 from mhri.gui import theme
 from mhri.gui.camera_view import (
     bandwidth_text, CameraView, still_name, stream_text, stream_warning)
-from mhri.gui.picture import distance_text
+from mhri.gui.picture import distance_text, titles
 
 LIVE = StreamStatus('jpeg', 29.9, 0.041, 6.4e6, 100)
 
@@ -233,3 +233,7 @@ def test_the_pointer_may_be_anywhere(view, operator, point):
         QTest.mouseMove(view.picture, point)
         operator.settle()
         assert not view.picture.grab().isNull()
+
+
+def test_of_an_old_picture_the_age_is_the_last_to_go():
+    assert titles('OLD PICTURE, 2.4 s') == ('OLD PICTURE, 2.4 s', 'OLD 2.4 s', '2.4 s')

@@ -168,3 +168,36 @@ def test_the_keyboard_and_the_mouse_pass_the_plot(graph):
     assert all(chart.view.focusPolicy() == Qt.NoFocus
                and chart.view.testAttribute(Qt.WA_TransparentForMouseEvents)
                for chart in graph.charts)
+
+
+@pytest.mark.parametrize('width, quantity, shown', [
+    (600, 0, ('caption', 'names', 'values')), (360, 0, ('names', 'values')),
+    (270, 1, ('values',)), (700, 1, ('caption', 'names', 'values'))])
+def test_where_there_is_little_room_the_values_are_the_last_to_go(graph, width, quantity, shown):
+    """The yaw rate is that of the second chart, with two curves."""
+    graph.quantity_combo.setCurrentIndex(quantity)
+    legend = graph.charts[1 if quantity == 0 else 0].legend
+    legend.resize(width, legend.height())
+    assert legend.shown == shown
+    assert legend._plot.caption in legend.toolTip()
+
+
+def test_old_values_do_not_look_like_those_of_now(graph):
+    pictures = []
+    for old in (False, True, False):
+        graph.show_old(old)
+        assert all(chart.legend.old == old for chart in graph.charts)
+        pictures.append(graph.charts[1].legend.grab().toImage())
+    assert pictures[0] == pictures[2] != pictures[1]
+
+
+def test_a_paused_graph_does_not_end_now(graph, operator):
+    def ends():
+        return {chart._bottom._tickLevels[0][0][1] for chart in graph.charts}
+    assert ends() == {'now'}
+    operator.click(graph.pause_button)
+    assert ends() == {'end'}
+    graph.window_combo.setCurrentIndex(0)
+    assert ends() == {'end'}
+    operator.click(graph.pause_button)
+    assert ends() == {'now'}

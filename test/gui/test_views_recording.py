@@ -19,6 +19,9 @@ LIVE = RecordingStatus('recording', PATH, 12.3, 2400, 812345, 199.7)
 SAVED = replace(LIVE, state='ended', note='saved 2400 messages, 0.8 MB: ' + PATH)
 REFUSED = RecordingStatus('failed', note='no IMU topic', attention=True)
 OFF = RecordingStatus()
+NOT_THERE = ('cannot write to "/proc/x.bag": /proc belongs to the system; '
+             'saving to {} instead'.format(PATH))
+ELSEWHERE = replace(SAVED, note=NOT_THERE + '; ' + SAVED.note)
 
 
 @pytest.fixture
@@ -36,6 +39,11 @@ def row(operator):
     (replace(LIVE, note='the disk is nearly full: 0.8 GB free', attention=True),
      'recording 00:12   2,400 messages   0.8 MB   200 Hz   the disk is nearly full: 0.8 GB free'),
     (SAVED, 'saved 2400 messages, 0.8 MB: ' + PATH),
+    (replace(LIVE, note=NOT_THERE, attention=True),
+     'recording 00:12   2,400 messages   0.8 MB   200 Hz   saving elsewhere, /proc belongs to the '
+     'system'),
+    (ELSEWHERE,
+     'saved elsewhere, /proc belongs to the system: 2400 messages, 0.8 MB: ' + PATH),
     (REFUSED, 'no IMU topic'),
 ])
 def test_the_line(row, status, text):
@@ -52,12 +60,25 @@ def test_durations(duration_s, text):
 
 @pytest.mark.parametrize('status, shape', [
     (OFF, None), (LIVE, theme.DISC), (replace(LIVE, attention=True), theme.TRIANGLE),
-    (SAVED, theme.TICK), (REFUSED, theme.TRIANGLE)])
+    (SAVED, theme.TICK), (ELSEWHERE, theme.TRIANGLE), (REFUSED, theme.TRIANGLE)])
 def test_every_state_has_a_shape(row, status, shape):
     row._numbers._next = None
     row.show_recording(status)
     sign = row.recording_sign.sign
     assert (sign and sign[0]) == shape
+
+
+@pytest.mark.parametrize('status, important', [
+    (SAVED, 'saved 2400 messages, 0.8 MB'),
+    (ELSEWHERE, 'saved elsewhere, /proc belongs to the system: 2400 messages, 0.8 MB')])
+def test_in_a_narrow_window_the_folder_gives_way_first(row, operator, status, important):
+    row._numbers._next = None
+    row.show_recording(status)
+    widths = [row.recording_label.fontMetrics().horizontalAdvance(text) for text in (
+        recording_text(status).replace('/home/op/.ros/', ''), important)]
+    for width, text in zip(widths, (important + ': ' + PATH.rpartition('/')[2], important)):
+        row.recording_label.resize(width + 1, 20)
+        assert row.recording_label.shown_text() == text
 
 
 def test_a_click_asks_and_a_second_one_ends(row, operator, heard):

@@ -70,6 +70,8 @@ def test_the_header_line(window):
     ({}, None, ''),
     ({'link': views.SILENT, 'note': 'nothing for 3.2 s'}, theme.TRIANGLE, 'nothing for 3.2 s'),
     ({'link': views.GONE, 'note': 'master lost it'}, theme.CROSSED_SQUARE, 'master lost it'),
+    ({'slow': True, 'note': 'centre the stick: it was out of reach'}, theme.TRIANGLE,
+     'centre the stick: it was out of reach'),
     ({'proof': CONFIRMED}, theme.TICK, 'stopped in 180 ms'),
     ({'link': views.GONE, 'proof': ProofView(views.PROOF_NOT_CONFIRMED, 'NOT CONFIRMED')},
      theme.OCTAGON, 'NOT CONFIRMED'),
@@ -78,6 +80,21 @@ def test_the_sentence(window, changes, shape, text):
     window.show_view(replace(VIEW, **changes))
     sign = window.sentence_sign.sign
     assert (sign and sign[0], window.sentence_label.text()) == (shape, text)
+
+
+def test_a_sentence_has_the_room_of_the_place_and_then_fewer_words(window, operator):
+    for width, text in ((930, 'centre the stick: it was out of reach'), (640, 'centre the stick')):
+        window.resize(width, 540)
+        window.show_view(VIEW)
+        operator.settle()
+        assert window.pose_label.isVisible() == (width == 930)
+        window.show_view(replace(VIEW, slow=True, note='centre the stick: it was out of reach'))
+        operator.settle()
+        assert window.sentence_label.shown_text() == text and not window.pose_label.isVisible()
+        window.show_view(replace(VIEW, proof=ProofView(
+            views.PROOF_NOT_CONFIRMED, 'NOT CONFIRMED: it cannot be heard')))
+        operator.settle()
+        assert window.sentence_label.shown_text().startswith('NOT CONFIRMED')
 
 
 def test_stop_acts_on_press_and_again_while_stopped(window, heard):

@@ -50,6 +50,52 @@ def test_looking_says_so_in_place(panel):
     assert panel.look_button.isEnabled()
 
 
+def test_a_result_is_news_for_a_while(operator, ui_dir, monkeypatch):
+    monkeypatch.setattr('mhri.gui.panel.RESULT_MS', 40)
+    panel = operator.show(PanelWidget(ui_dir))
+    panel.show_look_result('looking', busy=True)
+    QTest.qWait(80)
+    assert panel.look_label.text() == 'looking', 'as long as it looks'
+    panel.show_look_result('found bot1')
+    assert panel.look_label.text() == 'found bot1'
+    operator.wait_until(lambda: panel.look_label.text() == '')
+
+
+def test_the_drop_down_makes_room_for_the_button_to_talk(panel, operator, four_robots):
+    panel.resize(940, 600)
+    for mode in ('joy', 'voice'):
+        panel.show_view(replace(four_robots, mode=mode))
+        operator.settle()
+        assert panel.width() == 940 and panel.minimumSizeHint().width() <= 940
+    assert panel.drive_note.shown_text().endswith('"stop" is always heard')
+
+
+@pytest.mark.parametrize('pace, slowed, shown', [
+    ('all as bot2 and bot3: at most 0.22 m/s, 1.82 rad/s', False, '0.22 m/s, 1.82 rad/s'),
+    ('80 % of the speed: the link to bot2 takes 130 ms', True, '80 % of the speed'),
+    ('each does its best', False, 'each does its best')])
+def test_of_the_pace_the_speed_is_what_matters(panel, operator, four_robots, pace, slowed, shown):
+    panel.resize(940, 600)
+    panel.show_view(replace(four_robots, together=True, pace=pace, slowed=slowed))
+    operator.settle()
+    assert panel.speed_limits.pace_label.shown_text().endswith(shown)
+
+
+def test_the_bottom_line_has_the_room_of_cameras_that_are_not_there(
+        panel, operator, four_robots):
+    text = 'no ROS master at http://host:11311: start roscore there; looking again every second'
+    widths = []
+    for bits in (0.0, 2e7, 0.0):
+        panel._numbers._next = None
+        panel.show_view(replace(four_robots, status=text, camera_bits_per_s=bits))
+        operator.settle()
+        widths.append(panel.status_line.width())
+    assert widths[0] == widths[2] > widths[1] + 100
+    panel.status_line.resize(620, panel.status_line.height())
+    operator.settle()
+    assert panel.status_line._line.shown_text() == text.partition(';')[0]
+
+
 @pytest.mark.parametrize('state, headline', [
     (views.PROOF_STOPPED, 'STOPPED - all robots'),
     (views.PROOF_WAITING, 'STOP ALL in force \u2013 stopping bot1'),

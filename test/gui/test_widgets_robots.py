@@ -71,6 +71,17 @@ def test_numbers_wait_for_their_turn_but_states_do_not(robots):
     assert (row.link.text(), row.age.text()) == ('silent', '1.1 s')
 
 
+def test_a_sentence_that_is_too_long_says_first_what_to_do(robots, operator):
+    robots.resize(400, 300)
+    robots.show_robots([replace(LIVE, waits=True, slow=True, battery=0.97,
+                                note='centre the stick: it was out of reach')])
+    operator.settle()
+    trouble = robots.row('bot1').trouble
+    assert trouble.shown_text() == 'centre the stick'
+    trouble.grab()
+    assert trouble.toolTip() == 'centre the stick: it was out of reach'
+
+
 def test_nothing_jumps(robots, operator, four_robots):
     def places():
         return {name: (robots.row(name).y(), robots.row(name).height(), robots.row(name).link.x())

@@ -50,6 +50,26 @@ def test_words(function, value, text):
     assert function(value) == text
 
 
+@pytest.mark.parametrize('text, shorter', [
+    ('centre the stick: it was out of reach', ('centre the stick',)),
+    ('NOT CONFIRMED: moves at 0.30 m/s, 0.00 rad/s', ('NOT CONFIRMED',)),
+    ('slow link: 120 ms round trip; 8 % of its messages lost',
+     ('slow link: 120 ms round trip', 'slow link')),
+    ('nothing for 2.5 s', ()), ('', ())])
+def test_beginnings(text, shorter):
+    assert words.beginnings(text) == shorter
+
+
+@pytest.mark.parametrize('heard, shorter', [
+    (None, '"stop" is always heard'),
+    (views.HeardView('robot forward', 'forward 0.5', True), 'forward 0.5'),
+    (views.HeardView('robot fly'), 'not a command'),
+    (views.HeardView('x', reason='no wake word'), 'no wake word')])
+def test_of_what_was_heard_the_outcome_is_what_matters(heard, shorter):
+    assert words.heard_shorter(heard)[-1] == shorter
+    assert shorter in words.heard_text(heard)
+
+
 @pytest.mark.parametrize('link, age_s, text', [
     (views.LIVE, 0.012, 'live 12 ms'),
     (views.SILENT, 3.2, 'silent 3.2 s'),

@@ -7,7 +7,8 @@ import pytest
 
 from mhri.core.recording import (
     CHOICES, default_name, expand, fallback_note, MB, numbered, PathRefused, RateMeter,
-    RecordingLimits, RecordingStatus, ros_home, size_text, split_path, system_folder, topics_of,
+    read_fallback, RecordingLimits, RecordingStatus, ros_home, size_text, split_path, system_folder,
+    topics_of,
     warning_of)
 from mhri.core.robot_types import parse_robot_type
 
@@ -98,6 +99,16 @@ def test_fallback_note_can_be_shown():
     note = fallback_note('/x\0\n' + 'y' * 300, 'no permission', '/ros/a.bag')
     assert note.startswith('cannot write to "/x??yyy') and note.isprintable()
     assert note.endswith('..": no permission; saving to /ros/a.bag instead') and len(note) < 160
+
+
+@pytest.mark.parametrize('before, after', [
+    ('', ''), ('', 'saved 464 messages, 0.2 MB: /ros/a.bag'), ('the disk is slow', '')])
+def test_what_a_fallback_note_says_can_be_read_again(before, after):
+    note = '; '.join(filter(None, (
+        before, fallback_note('/x/a "b": c.bag', 'no permission', '/ros/a.bag'), after)))
+    reason, rest = read_fallback(note)
+    assert reason == 'no permission' and rest.strip('; ') == before + after
+    assert read_fallback(rest) == ('', rest)
 
 
 @pytest.mark.parametrize('count, text', [

@@ -198,6 +198,20 @@ def fallback_note(text, reason, path):
     return 'cannot write to "{}": {}; saving to {} instead'.format(shown, reason, path)
 
 
+_FALLBACK = re.compile(r'cannot write to ".*": (.*); saving to /.* instead(?:; )?', re.DOTALL)
+
+
+def read_fallback(note):
+    """Return (why the path could not be used, the rest of a note); ('', note) where it could.
+
+    The opposite of :func:`fallback_note`, for who shows the path elsewhere.
+    """
+    found = _FALLBACK.search(note)
+    if found is None:
+        return '', note
+    return found.group(1), note[:found.start()] + note[found.end():]
+
+
 def size_text(count):
     """Return a number of bytes in words, e.g. ``0.8 MB``."""
     return '{:.1f} GB'.format(count / 1e9) if count >= 1e9 else '{:.1f} MB'.format(count / 1e6)

@@ -243,6 +243,7 @@ class BotWindow(QDialog):
         self.link_sign.show_sign(theme.LINK_SIGNS[view.link])
         self.type_label.show_text(words.type_text(view), theme.MUTED)
         self._show_sentence(view)
+        self.graph.show_old(view.link != views.LIVE)
         if numbers:
             self._show_numbers(view)
 
@@ -259,19 +260,30 @@ class BotWindow(QDialog):
         ink, filled, _ = _LOOKS[drive]
         self.pill.say(drive, ink, filled)
         self.stop_button.setText(
-            'STOP ALL in force - release it in the panel' if stopped else 'STOP ALL')
+            'STOP ALL in force - see the panel' if stopped else 'STOP ALL')
         self.stop_button.show_engaged(stopped)
         self.update()
 
     def _show_sentence(self, view):
         """Show the proof of a stop, or what is worth saying about the link."""
         if view.proof is not None:
-            self.sentence_sign.show_sign(theme.PROOF_SIGNS[view.proof.state])
-            self.sentence_label.show_text(view.proof.text)
+            sign, text = theme.PROOF_SIGNS[view.proof.state], view.proof.text
+        elif view.note and (view.slow or view.link != views.LIVE):
+            sign = (theme.TRIANGLE, theme.ATTENTION) if view.link == views.LIVE \
+                else theme.LINK_SIGNS[view.link]
+            text = view.note
         else:
-            trouble = view.note and view.link != views.LIVE
-            self.sentence_sign.show_sign(theme.LINK_SIGNS[view.link] if trouble else None)
-            self.sentence_label.show_text(view.note)
+            sign, text = None, view.note
+        self.sentence_sign.show_sign(sign)
+        self.sentence_label.show_text(text, shorter=words.beginnings(text))
+        self._make_room()
+
+    def _make_room(self):
+        """Leave the place out of a narrow header, and what a sentence needs the room of."""
+        wide = self.width() > _POSE_FROM_UNITS * self.fontMetrics().height()
+        speaking = bool(self.sentence_label.text())
+        self.pose_label.setVisible(wide and not speaking)
+        self.heading_label.setVisible(wide or not speaking)
 
     def _show_numbers(self, view):
         """Show what changes all the time."""
@@ -325,7 +337,7 @@ class BotWindow(QDialog):
     def resizeEvent(self, event):  # noqa: N802
         """Leave the place out of a narrow header."""
         super().resizeEvent(event)
-        self.pose_label.setVisible(self.width() > _POSE_FROM_UNITS * self.fontMetrics().height())
+        self._make_room()
 
     def eventFilter(self, watched, event):  # noqa: N802
         """Share out another width of the views."""

@@ -63,6 +63,20 @@ def value_text(value):
     return '{:.2f}'.format(round(value, 2) + 0.0)
 
 
+class _Fit(NamedTuple):
+    """How much of a legend is shown: stroke and gap in heights of a line, and which parts."""
+
+    stroke: float
+    gap: float
+    caption: bool = True
+    names: bool = True
+    values: bool = True
+
+
+_AMPLE = _Fit(1.5, 0.5)
+_TIGHT = _Fit(1.1, 0.3)
+
+
 class Legend(QWidget):
     """The caption of a chart, and each curve's stroke, name and newest value."""
 
@@ -71,6 +85,7 @@ class Legend(QWidget):
         self._plot = None
         self._texts = ()
         self._paused = False
+        self._old = False
         self.setSizePolicy(QSizePolicy.MinimumExpanding, QSizePolicy.Fixed)
 
     @property
@@ -81,6 +96,8 @@ class Legend(QWidget):
     def show_plot(self, plot):
         """Show the names of another :class:`Plot`."""
         self._plot, self._texts = plot, (words.UNKNOWN,) * len(plot.traces)
+        self.setToolTip('{}: {}'.format(
+            plot.caption, ', '.join(trace.label for trace in plot.traces)))
         self.updateGeometry()
         self.update()
 
@@ -88,6 +105,23 @@ class Legend(QWidget):
         """Say that the curves stand still."""
         self._paused = paused
         self.update()
+
+    @property
+    def old(self):
+        """Whether the newest values are not those of now."""
+        return self._old
+
+    def show_old(self, old):
+        """Say whether the newest values are old: the robot is not heard any more."""
+        if old != self._old:
+            self._old = old
+            self.update()
+
+    @property
+    def shown(self):
+        """What there is room for: of 'caption', 'names' and 'values'."""
+        fit = self._fit()
+        return tuple(part for part in ('caption', 'names', 'values') if getattr(fit, part))
 
     def show_values(self, values):
         """Show the newest value of each curve."""
@@ -98,9 +132,37 @@ class Legend(QWidget):
 
     def _names_width(self):
         """Return the width of the strokes and names of all curves."""
+        return self._width(_AMPLE) - len(self._plot.traces) * self._value_width(_AMPLE)
+
+    def _value_width(self, fit):
+        """Return the width of a value and the gap after it; 0 where there is none."""
         metrics = self.fontMetrics()
-        return sum(metrics.horizontalAdvance(trace.label) + 3 * metrics.height()
+        return metrics.horizontalAdvance('-00.00') + round(fit.gap * metrics.height()) \
+            if fit.values else 0
+
+    def _width(self, fit):
+        """Return the width that all curves need."""
+        metrics = self.fontMetrics()
+        each = round((fit.stroke + 2.0 * fit.gap) * metrics.height()) + self._value_width(fit)
+        gap = round(fit.gap * metrics.height())
+        return sum(each + (metrics.horizontalAdvance(trace.label) + gap if fit.names else 0)
                    for trace in self._plot.traces)
+
+    def _caption(self, fit):
+        """Return the caption, or of it the unit alone."""
+        caption = self._plot.caption if fit.caption else \
+            self._plot.caption.rpartition('[')[2].rstrip(']')
+        return PAUSED + caption if self._paused else caption
+
+    def _fit(self):
+        """Return the most ample :class:`_Fit` that there is room for."""
+        gap = self.fontMetrics().height() // 2
+        for fit in (_AMPLE, _TIGHT, _TIGHT._replace(caption=False),
+                    _TIGHT._replace(caption=False, names=False)):
+            if self._width(fit) + gap + self.fontMetrics().horizontalAdvance(
+                    self._caption(fit)) <= self.width():
+                return fit
+        return _AMPLE._replace(values=False)
 
     def sizeHint(self):  # noqa: N802
         """Return the room for caption and names; the values need not be there."""
@@ -112,34 +174,31 @@ class Legend(QWidget):
     minimumSizeHint = sizeHint
 
     def paintEvent(self, event):  # noqa: N802
-        """Paint caption and legend; the values are left out where there is no room for them."""
+        """Paint caption and legend; where there is little room, the values are the last to go."""
         if self._plot is None:
             return
-        painter = QPainter(self)
+        painter, fit = QPainter(self), self._fit()
         metrics, unit, middle = self.fontMetrics(), self.fontMetrics().height(), self.height() // 2
-        text, muted = (theme.colour(name, self.palette()) for name in (theme.TEXT, theme.MUTED))
+        ink, muted = (theme.colour(name, self.palette()) for name in (
+            theme.MUTED if self._old else theme.TEXT, theme.MUTED))
         base = (self.height() + metrics.ascent() - metrics.descent()) // 2
-        caption = PAUSED + self._plot.caption if self._paused else self._plot.caption
-        labels = [trace.label for trace in self._plot.traces]
-        value_width = metrics.horizontalAdvance('-00.00') + unit // 2
-        names_width = self._names_width()
-        room = self.width() - metrics.horizontalAdvance(caption) - unit
-        with_values = names_width + value_width * len(labels) <= room
-        painter.setPen(text)
-        painter.drawText(0, base, caption)
-        x = self.width() - names_width - (value_width * len(labels) if with_values else 0)
-        for index, label in enumerate(labels):
-            painter.setPen(trace_pen(self._plot.traces[index].stroke, self.palette(), 3))
-            painter.drawLine(x + unit // 2, middle, x + 2 * unit + unit // 4, middle)
-            x += round(2.5 * unit)
-            painter.setPen(muted)
-            painter.drawText(x, base, label)
-            x += metrics.horizontalAdvance(label) + unit // 2
-            if with_values:
-                painter.setPen(text)
-                painter.drawText(x, 0, value_width - unit // 2, self.height(),
-                                 int(Qt.AlignRight | Qt.AlignVCenter), self._texts[index])
-                x += value_width
+        gap, stroke = round(fit.gap * unit), round(fit.stroke * unit)
+        painter.setPen(theme.colour(theme.TEXT, self.palette()))
+        painter.drawText(0, base, self._caption(fit))
+        x = self.width() - self._width(fit)
+        for trace, text in zip(self._plot.traces, self._texts):
+            painter.setPen(trace_pen(trace.stroke, self.palette(), 3))
+            painter.drawLine(x + gap, middle, x + gap + stroke, middle)
+            x += 2 * gap + stroke
+            if fit.names:
+                painter.setPen(muted)
+                painter.drawText(x, base, trace.label)
+                x += metrics.horizontalAdvance(trace.label) + gap
+            if fit.values:
+                painter.setPen(ink)
+                painter.drawText(x, 0, self._value_width(fit) - gap, self.height(),
+                                 int(Qt.AlignRight | Qt.AlignVCenter), text)
+                x += self._value_width(fit)
 
 
 class _Frame(pyqtgraph.GraphicsWidget):
@@ -184,6 +243,8 @@ class Chart(QWidget):
     def __init__(self, parent=None):
         super().__init__(parent)
         self._plot = None
+        self._times = (30, True)
+        self._paused = False
         self._curves = []
         self._range = AxisRange(1.0)
         self._limits = None
@@ -233,12 +294,20 @@ class Chart(QWidget):
 
     def set_window(self, window_s, with_times=True):
         """Show so many seconds; with the times below, or without where another chart has them."""
+        self._times = (window_s, with_times)
         step = _TICK_STEPS_S[window_s]
-        self._bottom.setTicks([[(-second, '-{} s'.format(second) if second else 'now')
+        end = 'end' if self._paused else 'now'
+        self._bottom.setTicks([[(-second, '-{} s'.format(second) if second else end)
                                 for second in range(0, window_s + 1, step)]])
         self._bottom.setStyle(showValues=with_times)
         self._frame.give(bottom_px=self.fontMetrics().height() + 6 if with_times else 4)
         self.box.setXRange(-window_s, 0.0, padding=_END_ROOM)
+
+    def show_paused(self, paused):
+        """Say that the curves stand still: they do not end now."""
+        self._paused = paused
+        self.legend.show_paused(paused)
+        self.set_window(*self._times)
 
     def _mark_values(self):
         """Put as many round numbers beside the axis as there is room for, zero among them."""

@@ -110,6 +110,11 @@ class ImuGraph(QWidget):
         """Seconds on show."""
         return self.window_combo.currentData()
 
+    def show_old(self, old):
+        """Say whether the newest values are old: the robot is not heard any more."""
+        for chart in self.charts:
+            chart.legend.show_old(old)
+
     def show_series(self, series):
         """Draw a :class:`mhri.core.series.Series`; without effect while paused or hidden."""
         if self.paused or not self.isVisible():
@@ -139,7 +144,7 @@ class ImuGraph(QWidget):
         """Say in the button what it does next."""
         self.pause_button.setText(RESUME if paused else PAUSE)
         for chart in self.charts:
-            chart.legend.show_paused(paused)
+            chart.show_paused(paused)
 
     def save_settings(self):
         """Return the choices as a plain dict."""

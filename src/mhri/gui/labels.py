@@ -43,12 +43,7 @@ class TextLine(QLabel):
 
     def shown_text(self):
         """Return what can be read in the width there is."""
-        metrics, width = self.fontMetrics(), self.contentsRect().width()
-        for text in (self.text(), *self._shorter):
-            if metrics.horizontalAdvance(text) <= width:
-                return text
-        last = self._shorter[-1] if self._shorter else self.text()
-        return metrics.elidedText(last, Qt.ElideRight, width)
+        return theme.fitting_text(self.fontMetrics(), (self.text(), *self._shorter), self.width())
 
     def fix_width(self, *samples):
         """Be exactly as wide as the widest of the samples."""

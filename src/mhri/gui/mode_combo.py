@@ -34,7 +34,8 @@ class ModeCombo(QComboBox):
         """Set what never changes."""
         self.setFocusPolicy(Qt.TabFocus)
         self.setSizeAdjustPolicy(QComboBox.AdjustToMinimumContentsLengthWithIcon)
-        self.setMinimumContentsLength(18)
+        # With the button to talk beside it, it must not make the panel wider.
+        self.setMinimumContentsLength(10)
         self.setAccessibleName('Drive with')
         self._answer = QTimer(self)
         self._answer.setSingleShot(True)

@@ -3,7 +3,7 @@
 """The panel: robots on the left, driving on the right, stop-all and one sentence below."""
 import base64
 
-from python_qt_binding.QtCore import QByteArray, QPoint, QRect, Qt, Signal
+from python_qt_binding.QtCore import QByteArray, QPoint, QRect, Qt, QTimer, Signal
 from python_qt_binding.QtWidgets import QPushButton, QWidget
 
 from mhri.core.stop_words import stop_words
@@ -24,6 +24,8 @@ VIRTUAL_JOYSTICK, VOICE = 'joy', 'voice'
 NUMBERS_PERIOD_S = 0.25
 RECORD = 'Record selected'
 STOP_RECORDING = 'Stop recording ({})'
+# What came of looking or recording is news for so long.
+RESULT_MS = 20000
 
 _WIDGETS = (
     ModeCombo, RobotList, Sign, SpeedLimits, StatusLine, StopBar, TextLine, VirtualJoystick)
@@ -104,12 +106,16 @@ class PanelWidget(QWidget):
         self.cameras_label.fix_width('cameras 000.0 Mbit/s')
         self.cameras_label.setAlignment(Qt.AlignRight | Qt.AlignVCenter)
         self.name_edit.setTextMargins(touch // 6, 0, touch // 6, 0)
+        self._result_timer = QTimer(self)
+        self._result_timer.setSingleShot(True)
+        self._result_timer.setInterval(RESULT_MS)
         self.splitter.setCollapsible(0, False)
         self.splitter.setCollapsible(1, False)
 
     def _connect(self):
         """Wire widgets to signals."""
         self.look_button.clicked.connect(self._look)
+        self._result_timer.timeout.connect(lambda: self.look_label.show_text('', theme.MUTED))
         self.doctor_button.clicked.connect(self.doctor_requested)
         self.add_button.clicked.connect(self._add)
         self.name_edit.returnPressed.connect(self._add)
@@ -158,17 +164,26 @@ class PanelWidget(QWidget):
         self._show_buttons()
         self._show_stick(numbers)
         if numbers:
-            self.cameras_label.show_text(words.bandwidth_text(view.camera_bits_per_s), theme.MUTED)
+            cameras = words.bandwidth_text(view.camera_bits_per_s)
+            self.cameras_label.show_text(cameras, theme.MUTED)
+            self.cameras_label.setVisible(bool(cameras))
 
     def show_name_problem(self, text):
         """Say below the name field why a name was refused; '' clears it."""
         self.name_problem_label.show_text(text)
         self.name_problem_sign.show_sign((theme.TRIANGLE, theme.ATTENTION) if text else None)
 
-    def show_look_result(self, text, busy=False):
-        """Say beside the button what looking found; ``busy`` while it looks."""
-        self.look_label.show_text(text, theme.MUTED)
+    def show_look_result(self, text, busy=False, shorter=()):
+        """Say beside the button for a while what came of looking; ``busy`` while it looks.
+
+        :param shorter: what to say where there is no room, the longest first
+        """
+        self.look_label.show_text(text, theme.MUTED, shorter)
         self.look_button.setEnabled(not busy)
+        if busy:
+            self._result_timer.stop()
+        else:
+            self._result_timer.start()
 
     def clear_name(self):
         """Empty the name field, after its robot was added."""
@@ -296,17 +311,18 @@ class PanelWidget(QWidget):
         in_force = view.mode == VIRTUAL_JOYSTICK and not view.stop_all
         self.joystick.show_active(in_force)
         self.talk_button.setVisible(view.mode == VOICE)
+        shorter = ()
         if view.stop_all:
             note = 'no effect: stop all is in force'
         elif view.mode is None:
             note = 'no effect: the mode is not known yet'
         elif view.mode == VOICE:
-            note = words.heard_text(view.heard)
+            note, shorter = words.heard_text(view.heard), words.heard_shorter(view.heard)
         elif not in_force:
             note = 'no effect: {} drives'.format(self.mode_combo.label_of(view.mode))
         else:
             note = 'drag, arrow keys or W A S D; space centres'
-        self.drive_note.show_text(note, theme.MUTED)
+        self.drive_note.show_text(note, theme.MUTED, shorter)
         if numbers:
             tone = theme.TEXT if in_force else theme.MUTED
             linear, turn = words.command_texts(*self._stick, limits=view.limits)

@@ -27,6 +27,12 @@ def distance_text(depth_m):
     return '{:.2f} m'.format(depth_m)
 
 
+def titles(warning):
+    """Return the first line of a warning in fewer and fewer words: "OLD PICTURE, 2.4 s"."""
+    age = warning.rpartition(', ')[2]
+    return warning, warning.replace(' PICTURE, ', ' '), age
+
+
 class PictureView(QWidget):
     """Shows one :class:`mhri.core.frames.Frame`, or words where there is none.
 
@@ -252,8 +258,9 @@ class PictureView(QWidget):
         title, _, reason = self._warning.partition('\n')
         words = band.adjusted(2.4 * unit, 0, -unit / 2.0, 0)
         painter.setPen(theme.readable_on(ink))
-        painter.drawText(words, int(Qt.AlignLeft | Qt.AlignVCenter), painter.fontMetrics(
-            ).elidedText(title, Qt.ElideRight, int(words.width())))
+        # The age is what matters: the word before it gives way.
+        painter.drawText(words, int(Qt.AlignLeft | Qt.AlignVCenter), theme.fitting_text(
+            painter.fontMetrics(), titles(title), words.width()))
         painter.setFont(self.font())
         painter.setPen(Qt.white)
         below = QRectF(target.left() + unit, band.bottom() + unit / 2.0,

@@ -8,7 +8,8 @@ from python_qt_binding.QtWidgets import (
     QApplication, QFileDialog, QHBoxLayout, QLineEdit, QMenu, QPushButton, QVBoxLayout,
     QWidget)
 
-from mhri.core.recording import CHOICES, ENDED, FAILED, RECORDING, size_text
+from mhri.core.recording import (
+    CHOICES, ENDED, FAILED, read_fallback, RECORDING, size_text)
 from mhri.gui import theme
 from mhri.gui.labels import Sign, TextLine
 from mhri.gui.pending import Pace, Pending
@@ -28,12 +29,24 @@ def clock_text(duration_s):
 
 def recording_text(status):
     """Return a :class:`mhri.core.recording.RecordingStatus` as a line; '' where all is off."""
+    reason, rest = read_fallback(status.note)
     if status.state == RECORDING:
         figures = 'recording {}   {:,} messages   {}   {:.0f} Hz'.format(
             clock_text(status.duration_s), status.messages, size_text(status.bytes),
             status.rate_hz)
-        return '{}   {}'.format(figures, status.note) if status.note else figures
+        notes = (rest.strip('; '), 'saving elsewhere, {}'.format(reason) if reason else '')
+        return '   '.join(filter(None, (figures, *notes)))
+    if reason and status.state == ENDED:
+        return rest.replace('saved ', 'saved elsewhere, {}: '.format(reason), 1)
     return status.note
+
+
+def shorter_text(status):
+    """Return fewer words for :func:`recording_text`: a saved file without its folder."""
+    text = recording_text(status)
+    if status.state != ENDED:
+        return ()
+    return (text.replace(os.path.dirname(status.path) + '/', ''), text.rpartition(': ')[0])
 
 
 class RecordingRow(QWidget):
@@ -175,9 +188,11 @@ class RecordingRow(QWidget):
         """Show state, figures and note."""
         signs = {RECORDING: (theme.DISC, theme.DRIVE), ENDED: (theme.TICK, theme.LIVE),
                  FAILED: (theme.TRIANGLE, theme.ATTENTION)}
-        self.recording_sign.show_sign((theme.TRIANGLE, theme.ATTENTION) if status.attention
+        # Saved, but not where it was asked for, is no success.
+        fault = status.attention or read_fallback(status.note)[0]
+        self.recording_sign.show_sign((theme.TRIANGLE, theme.ATTENTION) if fault
                                       else signs.get(status.state))
-        self.recording_label.show_text(recording_text(status))
+        self.recording_label.show_text(recording_text(status), shorter=shorter_text(status))
 
     def _show_checked(self):
         """Show in the box what is asked for, then what is."""

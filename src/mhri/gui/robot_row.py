@@ -213,7 +213,7 @@ class RobotRow(QWidget):
         if font.bold() != loud:
             font.setBold(loud)
             self.trouble.setFont(font)
-        self.trouble.show_text(text)
+        self.trouble.show_text(text, shorter=words.beginnings(text))
         if (speaking, state, sign is None) == self._trouble_shown:
             return
         self._trouble_shown = (speaking, state, sign is None)

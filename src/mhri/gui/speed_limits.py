@@ -182,7 +182,10 @@ class SpeedLimits(QWidget):
     def show_pace(self, together, pace, slowed=False):
         """Show how the robots keep to each other, in words; ``slowed`` by a link points at it."""
         self.together_box.setChecked(together)
-        self.pace_label.show_text(pace, theme.ATTENTION if slowed else theme.MUTED)
+        head, _, tail = pace.partition(': ')
+        # The speed is what matters: by how much it is less, or how much it is at most.
+        shorter = (head,) if slowed else (tail, tail.replace('at most ', '')) if tail else ()
+        self.pace_label.show_text(pace, theme.ATTENTION if slowed else theme.MUTED, shorter)
 
     def _show(self):
         """Place the sliders; a limit outside their range is still told by its number."""

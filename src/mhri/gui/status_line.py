@@ -3,7 +3,7 @@
 """The one line at the bottom that says what matters now."""
 from python_qt_binding.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
-from mhri.gui import theme
+from mhri.gui import theme, words
 from mhri.gui.labels import Sign, TextLine
 
 _SIGNS = {'calm': None, 'attention': (theme.TRIANGLE, theme.ATTENTION),
@@ -27,4 +27,4 @@ class StatusLine(QWidget):
     def show_status(self, text, level):
         """Show a sentence; the level is 'calm', 'attention' or 'stopped'."""
         self._sign.show_sign(_SIGNS[level])
-        self._line.show_text(text)
+        self._line.show_text(text, shorter=words.beginnings(text, ('; ',)))

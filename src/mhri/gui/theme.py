@@ -117,6 +117,17 @@ def text_width(font, *samples):
     return max(metrics.horizontalAdvance(sample) for sample in samples) + 2
 
 
+def fitting_text(metrics, texts, width):
+    """Return the first of some texts that fits a width [px]; where none does, the last, cut off.
+
+    :param metrics: :class:`QFontMetrics` of the font they are written in
+    """
+    for text in texts:
+        if metrics.horizontalAdvance(text) <= width:
+            return text
+    return metrics.elidedText(texts[-1], Qt.ElideRight, int(width))
+
+
 def paint_sign(painter, rect, shape, ink, ground):
     """Paint one of the state shapes.
 

@@ -99,8 +99,29 @@ def heard_text(heard):
     """
     if heard is None:
         return 'say the wake word, or hold the button and talk; "stop" is always heard'
-    outcome = heard.command if heard.accepted else heard.reason or 'not a command'
-    return 'heard "{}": {}'.format(heard.text, outcome)
+    return 'heard "{}": {}'.format(heard.text, heard_outcome(heard))
+
+
+def heard_shorter(heard):
+    """Return :func:`heard_text` in fewer and fewer words: what was made of it is what matters."""
+    if heard is None:
+        return 'wake word or button; "stop" is always heard', '"stop" is always heard'
+    return (heard_outcome(heard),)
+
+
+def heard_outcome(heard):
+    """Return what the voice node made of what it heard."""
+    return heard.command if heard.accepted else heard.reason or 'not a command'
+
+
+def beginnings(text, marks=('; ', ': ')):
+    """Return the beginnings of a sentence that say enough where there is no room for all of it.
+
+    "centre the stick: it was out of reach" is "centre the stick" in short.
+
+    :param marks: what ends a beginning, the longest first
+    """
+    return tuple(dict.fromkeys(text.partition(mark)[0] for mark in marks if mark in text))
 
 
 def type_text(view):
