@@ -159,8 +159,8 @@ class PanelHost(QObject):
         robot = self._due.pop(0)
         if robot.name in self._hosts:
             highlighted = self.panel.robot_list.current
-            self._hosts[robot.name].prominent = highlighted in (None, robot.name) \
-                or highlighted not in self._hosts
+            self._hosts[robot.name].behind = \
+                highlighted if highlighted in self._hosts and highlighted != robot.name else ''
             self._guarded(robot.name, self._hosts[robot.name].draw, robot, self._stopped)
 
     def _repeat_stick(self):

@@ -33,7 +33,8 @@ class WindowHost:
         self._name = window.name
         self._notes = []
         self._drift = DriftMeter()
-        self.prominent = True
+        # The robot that is highlighted instead of this one: its camera has the full rate then.
+        self.behind = ''
         window.camera.transport_chosen.connect(self._choose_transport)
         window.camera.still_requested.connect(self._save_still)
         window.recording.record_requested.connect(self._record)
@@ -104,10 +105,10 @@ class WindowHost:
 
     def _draw_camera(self, feed):
         width, height = self.window.camera_size()
-        if self.prominent:
+        settings = self._operator.settings
+        if not self.behind:
             feed.set_view(width, height)
         else:
-            settings = self._operator.settings
             small = min(width, settings.thumbnail_width_px)
             feed.set_view(small, max(1, round(height * small / max(1, width))),
                           settings.thumbnail_hz)
@@ -116,7 +117,7 @@ class WindowHost:
         if frame is not None:
             camera.show_frame(frame)
         status = feed.status()
-        camera.show_status(status)
+        camera.show_status(status, (settings.thumbnail_hz, self.behind) if self.behind else None)
         if status.age_s is None and status.problem:
             camera.show_placeholder(status.problem)
         camera.show_transports(feed.transports())

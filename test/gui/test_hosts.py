@@ -51,6 +51,28 @@ def test_state_survives_as_json():
     second.close()
 
 
+def test_a_camera_knows_which_robot_is_in_front_of_it():
+    host = PanelHost(Operator())
+    for name in ('bot1', 'bot2', 'bot3'):
+        host._add(name)
+    for name in ('bot1', 'bot2'):
+        host._open(name)
+
+    def behind():
+        host.draw()
+        while host._due:
+            host._draw_next()
+        return [host._hosts[name].behind for name in ('bot1', 'bot2')]
+    assert behind() == ['', '']
+    host.panel.robot_list.activate('bot2')
+    assert behind() == ['bot2', '']
+    host.panel.robot_list.clear()
+    assert behind() == ['', '']
+    host.panel.robot_list.activate('bot3')
+    assert behind() == ['', ''], 'it has no window'
+    host.close()
+
+
 def test_standalone_keeps_its_settings_in_a_file(tmp_path):
     path = str(tmp_path / 'panel.ini')
     first = Standalone(['panel'], path)

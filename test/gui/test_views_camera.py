@@ -235,5 +235,18 @@ def test_the_pointer_may_be_anywhere(view, operator, point):
         assert not view.picture.grab().isNull()
 
 
+@pytest.mark.parametrize('slowed, text', [
+    (None, '29.9 Hz'), ((5.0, 'bot2'), '5 Hz: bot2 is in front'), ((40.0, 'bot2'), '29.9 Hz'),
+    ((0.5, 'bot2'), '0.5 Hz: bot2 is in front')])
+def test_a_picture_that_is_shown_less_often_says_why(view, operator, slowed, text):
+    view.show_frame(colour_frame())
+    view._status_pace._next = None
+    view.show_status(LIVE, slowed)
+    assert view.status_label.text() == text + '  41 ms old  0.8 MB/s  jpeg'
+    view.status_label.resize(170, 20)
+    if slowed:
+        assert view.status_label.shown_text() == text
+
+
 def test_of_an_old_picture_the_age_is_the_last_to_go():
     assert titles('OLD PICTURE, 2.4 s') == ('OLD PICTURE, 2.4 s', 'OLD 2.4 s', '2.4 s')

@@ -50,6 +50,15 @@ def test_looking_says_so_in_place(panel):
     assert panel.look_button.isEnabled()
 
 
+def test_escape_after_a_click_on_a_row_takes_its_highlight_away(panel, operator, four_robots):
+    panel.show_view(four_robots)
+    operator.settle()
+    operator.click(panel.robot_list.row('bot2'))
+    assert panel.robot_list.current == 'bot2' and panel.remove_button.isEnabled()
+    operator.hit(panel.focusWidget() or panel, Qt.Key_Escape)
+    assert panel.robot_list.current is None and not panel.remove_button.isEnabled()
+
+
 def test_a_result_is_news_for_a_while(operator, ui_dir, monkeypatch):
     monkeypatch.setattr('mhri.gui.panel.RESULT_MS', 40)
     panel = operator.show(PanelWidget(ui_dir))

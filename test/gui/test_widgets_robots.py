@@ -136,6 +136,19 @@ def test_selecting(robots, heard, action, asked):
     assert said == asked
 
 
+def test_a_second_click_or_escape_takes_the_highlight_away(robots, operator, heard):
+    activated, cleared = heard(robots.activated), heard(robots.cleared)
+    for away in (lambda: operator.click(robots.row('bot3').title),
+                 lambda: operator.hit(robots, Qt.Key_Escape)):
+        operator.click(robots.row('bot3').title)
+        assert robots.current == 'bot3' and robots.row('bot3')._current
+        away()
+        assert robots.current is None and not robots.row('bot3')._current
+    assert activated == ['bot3', 'bot3'] and cleared == [(), ()]
+    operator.hit(robots, Qt.Key_Escape)
+    assert len(cleared) == 2
+
+
 def test_click_highlights_and_double_click_opens_without_selecting(robots, operator, heard):
     activated, opened = heard(robots.activated), heard(robots.open_requested)
     asked = heard(robots.selection_requested)

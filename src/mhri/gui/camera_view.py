@@ -34,11 +34,24 @@ def bandwidth_text(bits_per_s):
     return '{:.{}f} MB/s'.format(megabytes, 1 if megabytes >= 0.0995 else 2)
 
 
-def stream_text(status):
-    """Return a :class:`mhri.core.frames.StreamStatus` as a line of figures; '' before a picture."""
+def rate_text(status, slowed=None):
+    """Return how often a new picture shows, and why not as often as it comes.
+
+    :param slowed: (rate at most [Hz], robot that is in front instead); None: as often as it comes
+    """
+    if slowed is None or status.rate_hz <= slowed[0]:
+        return '{:.1f} Hz'.format(status.rate_hz)
+    return '{:g} Hz: {} is in front'.format(*slowed)
+
+
+def stream_text(status, slowed=None):
+    """Return a :class:`mhri.core.frames.StreamStatus` as a line of figures; '' before a picture.
+
+    :param slowed: see :func:`rate_text`
+    """
     if status.age_s is None:
         return ''
-    parts = ['{:.1f} Hz'.format(status.rate_hz), words.age_text(status.age_s) + ' old',
+    parts = [rate_text(status, slowed), words.age_text(status.age_s) + ' old',
              bandwidth_text(status.bits_per_s), status.transport]
     if status.bad:
         parts.append('{:,} bad: {}'.format(status.bad, status.problem).rstrip(': '))
@@ -152,8 +165,10 @@ class CameraView(QWidget):
             self.picture.show_frame(frame)
             self.still_button.setEnabled(True)
 
-    def show_status(self, status):
+    def show_status(self, status, slowed=None):
         """Show a :class:`mhri.core.frames.StreamStatus`; numbers four times a second at most.
+
+        :param slowed: see :func:`rate_text`
 
         Call it at every drawing, with or without a new frame: it is what tells old from live.
         """
@@ -167,17 +182,19 @@ class CameraView(QWidget):
             self.show_placeholder(status.problem)
         if not self._note_timer.isActive():
             trouble = old or (status.bad and status.problem)
-            self._say((theme.TRIANGLE, theme.ATTENTION) if trouble else None, stream_text(status))
+            text = stream_text(status, slowed)
+            self._say((theme.TRIANGLE, theme.ATTENTION) if trouble else None, text,
+                      (rate_text(status, slowed),) if slowed and text else ())
 
     def show_note(self, text, good=True):
         """Show a sentence in the status line for a while, e.g. where a still went."""
         self._note_timer.start()
         self._say((theme.TICK, theme.LIVE) if good else (theme.TRIANGLE, theme.ATTENTION), text)
 
-    def _say(self, sign, text):
+    def _say(self, sign, text, shorter=()):
         """Show a line with its sign."""
         self.status_sign.show_sign(sign)
-        self.status_label.show_text(text)
+        self.status_label.show_text(text, shorter=shorter)
 
     def show_transports(self, names):
         """Offer what there is now; 'auto' comes first, and what was chosen stays, there or not."""

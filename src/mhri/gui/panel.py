@@ -126,7 +126,8 @@ class PanelWidget(QWidget):
         self.none_button.clicked.connect(self.robot_list.select_none)
         for name in ('selection_requested', 'activated', 'open_requested'):
             getattr(self.robot_list, name).connect(getattr(self, name))
-        self.robot_list.activated.connect(self._on_highlight)
+        self.robot_list.activated.connect(lambda *_: self._show_buttons())
+        self.robot_list.cleared.connect(self._show_buttons)
         self.mode_combo.mode_requested.connect(self.mode_requested)
         self.speed_limits.limits_requested.connect(self.limits_requested)
         self.speed_limits.together_requested.connect(self.together_requested)
@@ -206,6 +207,13 @@ class PanelWidget(QWidget):
         self.drive_keys.centre()
         self.joystick.centre()
 
+    def keyPressEvent(self, event):  # noqa: N802
+        """Take the highlight away with Escape: a click on a row leaves the keyboard here."""
+        if event.key() == Qt.Key_Escape and self.robot_list.current is not None:
+            self.robot_list.clear()
+        else:
+            super().keyPressEvent(event)
+
     def hideEvent(self, event):  # noqa: N802
         """Let the stick go: nobody drives by a panel that cannot be seen."""
         self.centre_stick()
@@ -238,10 +246,6 @@ class PanelWidget(QWidget):
     def _on_name_edited(self, text):
         """Take back what was said about another name."""
         self.show_name_problem('')
-
-    def _on_highlight(self, name):
-        """Enable what acts on the highlighted robot."""
-        self._show_buttons()
 
     def _add(self):
         """Ask for the robot in the name field."""

@@ -75,13 +75,16 @@ class RobotList(QScrollArea):
     With many robots only those in sight and some around them have a row: what a robot costs that
     nobody sees is nothing.
 
-    Tab reaches the list (arrow keys highlight, Return opens) and then each check box.
+    Tab reaches the list (arrow keys highlight, Return opens, Escape takes the highlight away) and
+    then each check box. A second click on a row takes its highlight away, too.
     """
 
     #: every name that should be selected now, in the order of the list
     selection_requested = Signal(list)
     #: the highlight moved to this robot
     activated = Signal(str)
+    #: no robot is highlighted any more
+    cleared = Signal()
     #: the window of this robot was asked for, without selecting it
     open_requested = Signal(str)
 
@@ -209,7 +212,7 @@ class RobotList(QScrollArea):
         """Make a row."""
         row = self._rows[name] = RobotRow(name, self._inside)
         row.checked.connect(self._on_checked)
-        row.clicked.connect(self.activate)
+        row.clicked.connect(self._on_click)
         row.opened.connect(self.open_requested)
         return row
 
@@ -253,6 +256,19 @@ class RobotList(QScrollArea):
         self.show_robots(self._robots, numbers=False)
         self.selection_requested.emit(names)
 
+    def _on_click(self, name):
+        """Highlight a robot, or none where it is the one already."""
+        if name == self._current:
+            self.clear()
+        else:
+            self.activate(name)
+
+    def clear(self):
+        """Take the highlight away."""
+        if self._current is not None:
+            self._highlight(None)
+            self.cleared.emit()
+
     def activate(self, name):
         """Highlight a robot and tell of it."""
         self._highlight(name)
@@ -282,6 +298,8 @@ class RobotList(QScrollArea):
             self.activate(names[min(len(names) - 1, max(0, place))])
         elif key in (Qt.Key_Return, Qt.Key_Enter) and self._current:
             self.open_requested.emit(self._current)
+        elif key == Qt.Key_Escape and self._current:
+            self.clear()
         else:
             super().keyPressEvent(event)
 
