@@ -81,6 +81,23 @@ def test_in_a_narrow_window_the_folder_gives_way_first(row, operator, status, im
         assert row.recording_label.shown_text() == text
 
 
+def test_the_menu_stays_open_while_entries_are_ticked(row, operator):
+    row.offer_extras(('odometry', 'scan'))
+    menu = row.extras_menu
+    menu.popup(row.mapToGlobal(row.rect().bottomLeft()))
+    operator.wait_until(menu.isVisible)
+    for key in ('odometry', 'scan'):
+        QTest.mouseClick(menu, Qt.LeftButton, Qt.NoModifier,
+                         menu.actionGeometry(row.extras[key]).center())
+        assert menu.isVisible() and key in row.chosen_extras()
+    assert row.extras_button.text() == 'IMU + 2'
+    menu.setActiveAction(row.extras['scan'])
+    QTest.keyClick(menu, Qt.Key_Space)
+    assert menu.isVisible() and row.chosen_extras() == ('odometry',)
+    QTest.keyClick(menu, Qt.Key_Escape)
+    assert not menu.isVisible()
+
+
 def test_a_click_asks_and_a_second_one_ends(row, operator, heard):
     asked, ended = heard(row.record_requested), heard(row.stop_record_requested)
     operator.click(row.record_check)

@@ -50,6 +50,27 @@ def test_looking_says_so_in_place(panel):
     assert panel.look_button.isEnabled()
 
 
+def test_after_adding_a_robot_the_keys_drive_again(panel, operator):
+    operator.click(panel.name_edit)
+    QTest.keyClicks(panel.name_edit, 'bot5')
+    assert panel.name_edit.hasFocus()
+    panel.show_name_problem('no')
+    assert panel.name_edit.hasFocus(), 'a name that was refused is typed again'
+    panel.clear_name()
+    operator.press(panel.focusWidget(), Qt.Key_W, scan=25)
+    assert not panel.name_edit.hasFocus() and panel.stick() == (1.0, 0.0)
+    operator.release(panel.focusWidget(), Qt.Key_W, scan=25)
+
+
+def test_the_bottom_line_begins_at_one_place(panel, operator):
+    places = set()
+    for level in ('calm', 'attention', 'stopped'):
+        panel.status_line.show_status('a sentence', level)
+        operator.settle()
+        places.add(panel.status_line._line.x())
+    assert len(places) == 1
+
+
 def test_escape_after_a_click_on_a_row_takes_its_highlight_away(panel, operator, four_robots):
     panel.show_view(four_robots)
     operator.settle()

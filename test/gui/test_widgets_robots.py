@@ -10,6 +10,7 @@ from python_qt_binding.QtTest import QTest
 from mhri.core import views
 from mhri.core.views import ProofView, RobotView
 from mhri.gui import theme
+from mhri.gui.labels import BatteryLine
 from mhri.gui.robot_list import RobotList
 from mhri.gui.robot_row import DRIVING, MOVING, RobotRow
 
@@ -30,7 +31,7 @@ def robots(operator, four_robots):
     (LIVE, theme.DISC, 'live', '12 ms', '0.31 m/s'),
     (replace(LIVE, link=views.WAITING), theme.RING, 'waiting', '', 'waiting'),
     (replace(LIVE, link=views.SILENT, age_s=3.2, note='nothing for 3.2 s'), theme.TRIANGLE,
-     'silent', '3.2 s', 'nothing for 3.2 s'),
+     'silent', '', 'nothing for 3.2 s'),
     (replace(LIVE, link=views.GONE, note='master lost it'), theme.CROSSED_SQUARE, 'gone', '',
      'master lost it'),
     (replace(LIVE, proof=ProofView(views.PROOF_STOPPED, 'stopped in 180 ms')), theme.DISC, 'live',
@@ -134,6 +135,27 @@ def test_selecting(robots, heard, action, asked):
     said = heard(robots.selection_requested)
     action(robots)
     assert said == asked
+
+
+def test_a_charge_has_a_battery_beside_it(operator, application):
+    line = BatteryLine()
+    line.fix_width('100 %')
+    operator.show(line)
+    pictures = []
+    for charge in (None, 0.0, 0.5, 1.0, float('nan')):
+        line.show_charge(charge)
+        operator.settle()
+        pictures.append(line.grab().toImage())
+    assert line.text() == '' and pictures[0] == pictures[-1]
+    line.show_charge(0.82)
+    operator.settle()
+    assert line.text() == '82 %' and line.toolTip() == 'battery'
+    text_left = line.width() - line.fontMetrics().horizontalAdvance('100 %')
+
+    def ink(image):
+        return sum(image.pixelColor(x, y).lightness() < 100
+                   for x in range(text_left - 2) for y in range(image.height()))
+    assert 0 == ink(pictures[0]) < ink(pictures[1]) < ink(pictures[2]) < ink(pictures[3])
 
 
 def test_a_second_click_or_escape_takes_the_highlight_away(robots, operator, heard):

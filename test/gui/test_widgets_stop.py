@@ -110,6 +110,20 @@ def test_a_new_stop_takes_the_question_back(stopped, operator):
     assert not stopped.confirm_button.isVisible()
 
 
+@pytest.mark.parametrize('state', ['at rest', 'under the pointer', 'down'])
+def test_the_small_print_can_be_read(bar, operator, state):
+    button = bar.stop_button
+    button.setAttribute(Qt.WA_UnderMouse, state == 'under the pointer')
+    button.setDown(state == 'down')
+    colour = button.grab().toImage().pixelColor(40, button.height() // 2)
+
+    def linear(value):
+        return value / 12.92 if value <= 0.03928 else ((value + 0.055) / 1.055) ** 2.4
+    luminance = sum(share * linear(value) for share, value in zip(
+        (0.2126, 0.7152, 0.0722), colour.getRgbF()))
+    assert 1.05 / (luminance + 0.05) >= 4.5
+
+
 def test_its_size_never_changes(bar, operator):
     operator.settle()
     before = bar.sizeHint().height()

@@ -80,6 +80,14 @@ def test_link_text(link, age_s, text):
     assert words.link_text(views.RobotView('bot1', link=link, age_s=age_s)) == text
 
 
+@pytest.mark.parametrize('proof, age', [
+    (None, ''), (views.ProofView(views.PROOF_NOT_CONFIRMED, 'NOT CONFIRMED'), '3.2 s')])
+def test_an_age_that_a_sentence_says_is_not_said_twice(proof, age):
+    view = views.RobotView('bot1', link=views.SILENT, age_s=3.2, note='nothing for 3.2 s',
+                           proof=proof)
+    assert words.link_age(view) == age
+
+
 @pytest.mark.parametrize('stick, text', [
     ((1.0, 1.0), ('forward 0.50 m/s', 'left 1.50 rad/s')),
     ((-0.5, -0.5), ('back 0.25 m/s', 'right 0.75 rad/s')),

@@ -112,7 +112,8 @@ def test_what_a_fallback_note_says_can_be_read_again(before, after):
 
 
 @pytest.mark.parametrize('count, text', [
-    (0, '0.0 MB'), (800000, '0.8 MB'), (999 * MB, '999.0 MB'), (2500 * MB, '2.5 GB')])
+    (0, '0 kB'), (4321, '4 kB'), (99499, '99 kB'), (99500, '0.1 MB'), (800000, '0.8 MB'),
+    (999 * MB, '999.0 MB'), (2500 * MB, '2.5 GB')])
 def test_size_text(count, text):
     assert size_text(count) == text
 

@@ -45,7 +45,7 @@ CASES = {
     'idle_and_silent': (panel([READY, RobotView('x', link=SILENT, note='nothing')]), '', 'ready',
                         CALM),
     'neutral': (panel([READY, IDLE]), 'neutral',
-                '1 of 2 robots  \u2013  Virtual joystick  \u2013  centre the stick', CALM),
+                '1 of 2 robots  \u2013  Virtual joystick  \u2013  centre the stick', ATTENTION),
     'back_again': (panel([READY, replace(READY, name='bot7', waits=True)]), '',
                    'joystick  \u2013  bot7: centre the stick to drive', ATTENTION),
     'back_but_not_selected': (panel([READY, replace(READY, name='bot7', waits=True,

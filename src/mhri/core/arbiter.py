@@ -259,7 +259,7 @@ class Arbiter:
             return 'nothing has been heard from {}: centre it once, or drive with another ' \
                    'source'.format(self.source.label)
         if not self._stick.neutral:
-            return 'centre the stick of {} first'.format(self.source.label)
+            return 'centre the stick first ({})'.format(self.source.label)
         self._enter(WAIT_NEUTRAL, 'released')
         return None
 

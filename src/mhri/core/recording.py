@@ -213,7 +213,9 @@ def read_fallback(note):
 
 
 def size_text(count):
-    """Return a number of bytes in words, e.g. ``0.8 MB``."""
+    """Return a number of bytes in words, e.g. ``0.8 MB``, ``12 kB``."""
+    if count < 99500:
+        return '{:.0f} kB'.format(count / 1e3)
     return '{:.1f} GB'.format(count / 1e9) if count >= 1e9 else '{:.1f} MB'.format(count / 1e6)
 
 

@@ -73,7 +73,7 @@ def _driving(view, waits_for):
              'dead_man': 'hold the dead-man button to drive'}.get(waits_for)
     if words:
         return '{}  \u2013  {}  \u2013  {}'.format(who, label, words), \
-            ATTENTION if waits_for == 'source' else CALM
+            ATTENTION if waits_for in ('source', 'neutral') else CALM
     waiting = [robot.name for robot in view.robots if robot.selected and robot.waits]
     if waiting:
         return '{}  \u2013  {}  \u2013  {}: centre the stick to drive'.format(

@@ -11,7 +11,7 @@ from mhri.gui.camera_view import CameraView
 from mhri.gui.drive_keys import mark_drive_area
 from mhri.gui.forms import load_form
 from mhri.gui.imu_graph import ImuGraph
-from mhri.gui.labels import Pill, Sign, TextLine
+from mhri.gui.labels import BatteryLine, Pill, Sign, TextLine
 from mhri.gui.pending import Pace
 from mhri.gui.recording_row import RecordingRow
 from mhri.gui.scan_view import ScanView
@@ -91,8 +91,8 @@ class BotWindow(QDialog):
         """Load the form and set what a form cannot say."""
         self.setFont(theme.base_font(self.font()))
         load_form(ui_dir, 'bot_window.ui', self, (
-            CameraView, ImuGraph, Pill, RecordingRow, ScanView, Sign, StateLine, StopButton,
-            TextLine, ViewSwitches))
+            BatteryLine, CameraView, ImuGraph, Pill, RecordingRow, ScanView, Sign, StateLine,
+            StopButton, TextLine, ViewSwitches))
         self.setObjectName('window_' + self.name)
         self.setWindowFlags(Qt.Window)
         self.setAttribute(Qt.WA_ShowWithoutActivating)
@@ -292,7 +292,7 @@ class BotWindow(QDialog):
         self.link_label.show_text(words.link_text(view))
         self.speed_label.show_text(words.linear_text(view.linear_mps), tone)
         self.heading_label.show_text('heading ' + words.heading_text(view.heading_rad), tone)
-        self.battery_label.show_text(words.battery_text(view.battery))
+        self.battery_label.show_charge(view.battery)
         self.x_value.show_text('x ' + words.metres_text(view.x_m), tone)
         if self.pose_label.isVisible():
             self.pose_label.show_text('x {}  y {}'.format(

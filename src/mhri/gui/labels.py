@@ -5,7 +5,7 @@ from python_qt_binding.QtCore import QRectF, QSize, Qt
 from python_qt_binding.QtGui import QPainter, QPalette, QPen
 from python_qt_binding.QtWidgets import QLabel, QSizePolicy, QWidget
 
-from mhri.gui import theme
+from mhri.gui import theme, words
 
 
 class TextLine(QLabel):
@@ -59,10 +59,14 @@ class TextLine(QLabel):
         return QSize(self.fontMetrics().horizontalAdvance(self.text()) + 2,
                      self.fontMetrics().height())
 
+    def _hint(self):
+        """Return the tool tip of a text that is told whole."""
+        return ''
+
     def paintEvent(self, event):  # noqa: N802
         """Paint the text, shortened to the width there is."""
         shown = self.shown_text()
-        whole = '' if shown == self.text() else self.text()
+        whole = self._hint() if shown == self.text() else self.text()
         if whole != self.toolTip():
             self.setToolTip(whole)
         painter = QPainter(self)
@@ -70,6 +74,49 @@ class TextLine(QLabel):
         painter.setPen(theme.colour(self._tone, self.palette()) if self.isEnabled()
                        else self.palette().color(group, QPalette.WindowText))
         painter.drawText(self.rect(), int(self.alignment() | Qt.TextSingleLine), shown)
+
+
+class BatteryLine(TextLine):
+    """A battery's charge as percent with a battery in front; nothing where there is none."""
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self._fraction = None
+        self.setAlignment(Qt.AlignRight | Qt.AlignVCenter)
+
+    def show_charge(self, fraction):
+        """Show a charge in [0, 1]; None and NaN show nothing."""
+        if fraction != self._fraction:
+            self._fraction = fraction
+            text = words.battery_text(fraction)
+            self.setAccessibleName('battery {}'.format(text) if text else '')
+            self.show_text(text)
+            self.update()
+
+    def fix_width(self, *samples):
+        """Be exactly as wide as the battery and the widest of the samples."""
+        super().fix_width(*samples)
+        self.setFixedWidth(self.width() + self._mark_width())
+
+    def _mark_width(self):
+        """Return the width of the battery and the gap beside it [px]."""
+        return round(0.7 * self.fontMetrics().height())
+
+    def _hint(self):
+        """Return what the number is."""
+        return 'battery' if self.text() else ''
+
+    def paintEvent(self, event):  # noqa: N802
+        """Paint text and battery."""
+        super().paintEvent(event)
+        if not self.text():
+            return
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.Antialiasing)
+        unit = self.fontMetrics().height()
+        mark = QRectF(1.0, (self.height() - 0.68 * unit) / 2.0, 0.42 * unit, 0.68 * unit)
+        theme.paint_battery(painter, mark, self._fraction,
+                            theme.colour(self._tone, self.palette()))
 
 
 class Sign(QWidget):

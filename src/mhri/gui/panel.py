@@ -187,8 +187,10 @@ class PanelWidget(QWidget):
             self._result_timer.start()
 
     def clear_name(self):
-        """Empty the name field, after its robot was added."""
+        """Empty the name field, after its robot was added, and let the keys drive again."""
         self.name_edit.clear()
+        if self.name_edit.hasFocus():
+            self.setFocus()
         self.show_name_problem('')
 
     def keep_in_sight(self):

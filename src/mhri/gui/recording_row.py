@@ -49,6 +49,29 @@ def shorter_text(status):
     return (text.replace(os.path.dirname(status.path) + '/', ''), text.rpartition(': ')[0])
 
 
+class StayingMenu(QMenu):
+    """A menu that stays open while its entries are ticked, until Escape or a click beside it."""
+
+    def mouseReleaseEvent(self, event):  # noqa: N802
+        """Tick the entry under the pointer."""
+        if not self._tick(self.actionAt(event.pos())):
+            super().mouseReleaseEvent(event)
+
+    def keyPressEvent(self, event):  # noqa: N802
+        """Tick the entry that is chosen."""
+        ticks = event.key() in (Qt.Key_Space, Qt.Key_Return, Qt.Key_Enter)
+        if not (ticks and self._tick(self.activeAction())):
+            super().keyPressEvent(event)
+
+    @staticmethod
+    def _tick(action):
+        """Tick or untick an entry; return whether there is one for it."""
+        if action is None or not (action.isCheckable() and action.isEnabled()):
+            return False
+        action.trigger()
+        return True
+
+
 class RecordingRow(QWidget):
     """Asks for a recording and shows the one there is; nothing is opened or written here.
 
@@ -80,7 +103,7 @@ class RecordingRow(QWidget):
         self.path_edit.installEventFilter(self)
         self.browse_button = QPushButton('Browse', self)
         self.extras_button = QPushButton(self)
-        self.extras_menu = QMenu(self.extras_button)
+        self.extras_menu = StayingMenu(self.extras_button)
         self.extras = {}
         for key, label in CHOICES:
             self.extras[key] = self.extras_menu.addAction(label)

@@ -7,7 +7,7 @@ from python_qt_binding.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QSi
 
 from mhri.core import views
 from mhri.gui import theme, words
-from mhri.gui.labels import Pill, Sign, TextLine
+from mhri.gui.labels import BatteryLine, Pill, Sign, TextLine
 
 DRIVING = 'DRIVING'
 MOVING = 'moving'
@@ -109,12 +109,12 @@ class RobotRow(QWidget):
         self.filler = TextLine(self)
         self.pill = Pill(self)
         self.pill.set_words((DRIVING, MOVING))
-        self.battery = self._fixed_line(numbers, '100 %', Qt.AlignRight)
+        self.battery = self._fixed_line(numbers, '100 %', Qt.AlignRight, BatteryLine)
         self._lay_out()
 
-    def _fixed_line(self, font, sample, align=Qt.AlignLeft):
+    def _fixed_line(self, font, sample, align=Qt.AlignLeft, kind=TextLine):
         """Make a line for a number: its width is that of the sample."""
-        line = TextLine(self)
+        line = kind(self)
         line.setFont(font)
         line.fix_width(sample)
         line.setAlignment(align | Qt.AlignVCenter)
@@ -179,12 +179,11 @@ class RobotRow(QWidget):
 
     def _show_numbers(self, view):
         """Show what changes all the time."""
-        aged = view.link in (views.LIVE, views.SILENT)
-        self.age.show_text(words.age_text(view.age_s) if aged else '', theme.MUTED)
+        self.age.show_text(words.link_age(view), theme.MUTED)
         self.setToolTip(words.figures_text(view.figures))
         self.linear.show_text(words.linear_text(view.linear_mps))
         self.turn.show_text(words.turn_text(view.angular_rad_s))
-        self.battery.show_text(words.battery_text(view.battery))
+        self.battery.show_charge(view.battery)
 
     def _show_second_line(self, view):
         """Show the proof of a stop, or what is wrong with the link, or how the robot moves."""

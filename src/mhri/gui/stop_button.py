@@ -7,6 +7,9 @@ from python_qt_binding.QtWidgets import QAbstractButton, QSizePolicy
 
 from mhri.gui import theme
 
+# How much darker than the colour of the palette the button is [%].
+_AT_REST, _UNDER_POINTER, _DOWN = 112, 120, 140
+
 
 class StopButton(QAbstractButton):
     """A large vermillion button; connect to ``pressed``.
@@ -57,7 +60,7 @@ class StopButton(QAbstractButton):
         return True
 
     def paintEvent(self, event):  # noqa: N802
-        """Paint the button; lighter under the pointer, darker while it is down."""
+        """Paint the button; darker under the pointer, and more so while it is down."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.Antialiasing)
         ink = theme.colour(theme.STOP, self.palette())
@@ -67,8 +70,9 @@ class StopButton(QAbstractButton):
             text = theme.colour(theme.TEXT, self.palette())
             theme.paint_stopped_frame(painter, self.rect(), self.palette())
         else:
-            ground = ink.darker(130) if self.isDown() else \
-                ink.lighter(110) if self.underMouse() else ink
+            # Darker than the palette's: white small print on it has a contrast of 4.5 at least.
+            ground = ink.darker(
+                _DOWN if self.isDown() else _UNDER_POINTER if self.underMouse() else _AT_REST)
             painter.setPen(QPen(ground.darker(125), 2))
             painter.setBrush(ground)
             painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), 6, 6)

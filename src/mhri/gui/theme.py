@@ -145,6 +145,27 @@ def paint_sign(painter, rect, shape, ink, ground):
     painter.restore()
 
 
+def paint_battery(painter, rect, fraction, ink):
+    """Paint an upright battery that is as full as it is charged.
+
+    :param rect: :class:`QRectF` to fill
+    :param fraction: its charge in [0, 1]
+    :param ink: :class:`QColor`
+    """
+    cap = rect.height() / 7.0
+    body = rect.adjusted(0.7, cap, -0.7, -0.7)
+    painter.setPen(Qt.NoPen)
+    painter.setBrush(ink)
+    painter.drawRect(QRectF(rect.center().x() - rect.width() / 5.0, rect.top(),
+                            rect.width() / 2.5, cap))
+    inside = body.adjusted(1.6, 1.6, -1.6, -1.6)
+    inside.setTop(inside.bottom() - inside.height() * min(1.0, max(0.0, fraction)))
+    painter.drawRect(inside)
+    painter.setBrush(Qt.NoBrush)
+    painter.setPen(QPen(ink, 1.4))
+    painter.drawRoundedRect(body, 1.2, 1.2)
+
+
 def paint_stopped_frame(painter, rect, palette):
     """Paint the ground of whatever says that everything is stopped.
 

@@ -154,7 +154,12 @@ def bandwidth_text(bits_per_s):
     return 'cameras {:.1f} Mbit/s'.format(bits_per_s / 1e6)
 
 
+def link_age(view):
+    """Return the age of what a robot said last, where it helps and no sentence says it: "12 ms"."""
+    told = view.link == views.SILENT and view.note and view.proof is None
+    return age_text(view.age_s) if view.link in (views.LIVE, views.SILENT) and not told else ''
+
+
 def link_text(view):
     """Return the word for a robot's link and, where it helps, the age: "live 12 ms"."""
-    age = age_text(view.age_s) if view.link in (views.LIVE, views.SILENT) else ''
-    return '{} {}'.format(LINK_WORDS[view.link], age).strip()
+    return '{} {}'.format(LINK_WORDS[view.link], link_age(view)).strip()
