@@ -170,12 +170,26 @@ def is_script(pid):
         return str(SCRIPT) in file.read()
 
 
+def test_second_host_on_one_master_is_refused(start, master):
+    uri, proxy = master
+    start('gui:=none', '--master', uri)
+    wait_for(lambda: publishers(proxy, '/robot_controller/twist'), 'the first mux')
+    first = node_uri(proxy, '/mux')
+    second = start('--sim', '1', '--master', uri)
+    assert second.wait(60) == 1, second.output
+    assert 'mhri runs at {} already: /mux on this computer'.format(uri) in second.output
+    assert node_uri(proxy, '/mux') == first
+    assert publishers(proxy, '/bot1/odom') == []
+
+
 def test_two_hosts_on_one_master_do_not_fight(start, master):
+    """Started past the script, the newer mux takes over, and the older one stays away."""
     uri, proxy = master
     start('gui:=none', '--master', uri)
     wait_for(lambda: node_uri(proxy, '/mux'), 'the first mux')
     first = node_uri(proxy, '/mux')
-    start('gui:=none', '--master', uri)
+    start('mhri', 'mhri.launch', 'gui:=none', script='roslaunch',
+          before=['env', 'ROS_MASTER_URI=' + uri])
     wait_for(lambda: node_uri(proxy, '/mux') not in (None, first), 'the second mux')
     second = node_uri(proxy, '/mux')
     # Longer than it takes to start a mux again.

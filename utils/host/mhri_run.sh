@@ -156,36 +156,26 @@ with socket.socket() as sock:
     print(sock.getsockname()[1])'
 }
 
-# What is at a master's address: prints master, silent, other or nothing.
-probe_master() {
-  python3 - "$1" <<'PYTHON'
-import socket
-import sys
-import urllib.parse
-import xmlrpc.client
+# look QUESTION...: asks before_start.py.
+look() { python3 "$REPO/utils/host/before_start.py" "$@"; }
 
-place = urllib.parse.urlsplit(sys.argv[1])
-socket.setdefaulttimeout(3.0)
-try:
-    socket.create_connection((place.hostname, place.port)).close()
-except OSError:
-    print('nothing')
-    sys.exit()
-try:
-    xmlrpc.client.ServerProxy(sys.argv[1]).getPid('/mhri_run')
-    print('master')
-except OSError:
-    print('silent')
-except Exception:  # whatever it answers, it is not a master's answer
-    print('other')
-PYTHON
+# A second mux would take the robots from the first, and its panel would be left with nothing.
+check_alone() {
+  local running
+  running=$(look running "$MASTER")
+  [ -z "$running" ] ||
+    die "mhri runs at $MASTER already: $running. Close that panel first (where there is none: Ctrl-C" \
+      "in the terminal it was started from), or start a second system, with a master of its own:" \
+      "--master http://$IP:$((10#${MASTER##*:} + 1))"
 }
 
 check_master() {
   local host=${MASTER#http://} who="sudo ss -ltnp 'sport = :${MASTER##*:}'"
   host=${host%:*}
-  case "$(probe_master "$MASTER")" in
-    master) say "a ROS master runs at $MASTER: joining it" ;;
+  case "$(look master "$MASTER")" in
+    master)
+      check_alone
+      say "a ROS master runs at $MASTER: joining it" ;;
     other) die "something that is not a ROS master has $MASTER: see what it is, there, with $who," \
       "or choose another port with --master http://$IP:11312" ;;
     silent) die "$MASTER takes the connection and does not answer within 3 s: a ROS master that is" \
