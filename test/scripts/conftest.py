@@ -10,6 +10,8 @@ import subprocess
 import pytest
 
 REPO = Path(__file__).resolve().parents[2]
+# What the scripts read beside themselves.
+READ = ('launch', 'resource')
 BUILD_INPUTS = ('CMakeLists.txt', 'package.xml', 'setup.py', 'msg', 'srv', 'scripts')
 
 # Each stand-in writes its name and arguments to the file of calls, and then what its text says.
@@ -38,7 +40,7 @@ class Checkout:
         for program in stand_ins:
             self.stand_in(program, STAND_INS[program])
         shutil.copytree(str(REPO / 'utils'), str(self.root / 'utils'))
-        for part in BUILD_INPUTS:
+        for part in BUILD_INPUTS + READ:
             copy = shutil.copytree if (REPO / part).is_dir() else shutil.copy
             copy(str(REPO / part), str(self.root / part))
         self.os_release(folder / 'os-release', 'debian', '12')

@@ -46,6 +46,24 @@ import pytest
     ([''], "''"),
     (['X Y:=3'], "'X Y:=3' is not ARG:=VALUE"),
     ([':=3'], "':=3' is not ARG:=VALUE"),
+    (['nosucharg:=1'], "no argument 'nosucharg' in mhri.launch: it has gui, required, robots"),
+    (['enabeling:=pedal'], "no argument 'enabeling' in mhri.launch: did you mean enabling?"),
+    (['sim_type:=turtlebot2'], 'did you mean sim_types'),
+    (['restarter:=sh'], "no argument 'restarter'"),
+    (['gui:=foo'], "gui: 'foo' is not auto, rqt, standalone or none"),
+    (['gui:=none', 'gui:='], "gui: ''"),
+    (['enabling:=pedel'], "enabling: 'pedel' is not joy, ps3joy, pedal or voice"),
+    (['inputs:=joy,pedal'], "inputs: 'joy,pedal' is not joy, pedal, voice or none"),
+    (['required:=yes'], "required: 'yes' is not true or false"),
+    (['automatic_switching:=1'], "automatic_switching: '1' is not true or false"),
+    (['sim:=13'], "sim: '13' is not a number from 0 to 12"),
+    (['sim:=many'], "sim: 'many'"),
+    (['--sim', '3', 'turtlebot4'], "'turtlebot4' cannot be simulated; the types that can be are "
+     'turtlebot2, turtlebot3, turtlebot3_burger, turtlebot3_waffle, turtlebot3_waffle_pi'),
+    (['--sim', '3', 'turtlebot2 turtlebot4 turtlebot5'], "'turtlebot4', 'turtlebot5' cannot"),
+    (['--sim', '3', '--sim-types', 'generic'], "'generic' cannot be simulated"),
+    (['--demo', '--sim-types', ' '], "'' cannot be simulated"),
+    (['sim:=3', 'sim_types:=turtlebot4'], "'turtlebot4' cannot be simulated"),
 ])
 def test_wrong_arguments_are_refused(checkout, arguments, said):
     status, output = checkout.run(*arguments)
@@ -78,8 +96,51 @@ def test_help_is_the_manual(checkout, script, flag):
     (['--sim', '2', '--sim-types', 'turtlebot2'], ['sim:=2', 'sim_types:=turtlebot2']),
     (['--sim', '2', 'gui:=none'], ['sim:=2', 'gui:=none']),
     (['robots:=bot1 bot2', 'gui:=standalone'], ['sim:=0', 'robots:=bot1 bot2', 'gui:=standalone']),
+    (['enabling:=pedal', 'inputs:=joy pedal'], ['sim:=0', 'enabling:=pedal', 'inputs:=joy pedal']),
+    (['enabling:=', 'inputs:=none'], ['sim:=0', 'enabling:=', 'inputs:=none']),
+    (['--sim', '1', 'turtlebot3'], ['sim:=1', 'sim_types:=turtlebot3']),
+    (['--sim', '1', 'turtlebot3_waffle_pi'], ['sim:=1', 'sim_types:=turtlebot3_waffle_pi']),
 ])
 def test_right_arguments_reach_the_launch_file(checkout, arguments, launched):
     status, output = checkout.run('--master', 'http://127.0.0.1:1', *arguments)
     assert status == 0, output
     assert checkout.called('roslaunch') == ['roslaunch mhri mhri.launch ' + ' '.join(launched)]
+
+
+def test_a_labs_own_source_can_be_the_enabling_one(checkout, tmp_path):
+    own = tmp_path / 'lab.yaml'
+    own.write_text('sources:\n- name: handle\n')
+    here = ['--master', 'http://127.0.0.1:1', 'mux_config:={}'.format(own)]
+    assert checkout.run('enabling:=handle', *here)[0] == 0
+    status, output = checkout.run('enabling:=pedal', *here)
+    assert status == 2 and "enabling: 'pedal' is not handle" in output
+    own.write_text('sources: [')
+    assert checkout.run('enabling:=handle', *here)[0] == 0, 'the mux says what is wrong with it'
+
+
+@pytest.mark.parametrize('lacks', ['python3', 'yaml'])
+def test_a_bare_machine_is_asked_again_when_all_is_installed(checkout, tmp_path, lacks):
+    """What looks into the launch file comes with the packages."""
+    missing = tmp_path / 'missing'
+    missing.mkdir()
+    (missing / 'yaml.py').write_text('raise ImportError\n')
+    checkout.stand_in('dpkg-query', 'rm -f "{0}/yaml.py"; printf installed'.format(missing))
+    if lacks == 'python3':
+        script = checkout.script.read_text()
+        checkout.script.write_text(script.replace(
+            'command -v python3', '[ ! -e "{}/yaml.py" ]'.format(missing)))
+    status, output = checkout.run('--sim', '3', 'turtlebot4', PYTHONPATH=str(missing))
+    assert status == 2 and "'turtlebot4' cannot be simulated" in output
+    assert checkout.called('dpkg-query') and checkout.called('roslaunch') == []
+
+
+def test_the_values_are_those_of_the_launch_file(checkout):
+    launch = (checkout.root / 'launch' / 'mhri.launch').read_text()
+    source = (checkout.root / 'utils' / 'host' / 'before_start.py').read_text()
+    [gui] = re.findall(r"'gui': \((.*)\)", source)
+    [inputs] = re.findall(r'INPUTS = \((.*)\)', source)
+    documented = re.search(r'name="gui".*?doc="(.*?)"', launch, re.S).group(1)
+    for value in re.findall(r"'(\w+)'", gui):
+        assert re.search(r'\b{}\b'.format(value), documented), value
+    found = re.findall(r"'(\w+)' in inputs.split", launch)
+    assert sorted(re.findall(r"'(\w+)'", inputs)) == sorted(found + ['none'])

@@ -59,7 +59,7 @@ def no_master():
     ('192.0.2.7 198.51.100.2', [], '192.0.2.7', 'several addresses (192.0.2.7 198.51.100.2)'),
     ('fd00::1 192.0.2.7 fe80::2', [], '192.0.2.7', None),
     ('192.0.2.7 198.51.100.2', ['--ip', '198.51.100.2'], '198.51.100.2', None),
-    ('', ['--ip', '198.51.100.2'], '198.51.100.2', None),
+    ('', ['--ip', '127.0.0.1'], '127.0.0.1', None),
     ('', ['--sim', '3'], '127.0.0.1', None),
     ('192.0.2.7', ['--sim', '3'], '127.0.0.1', None),
     ('192.0.2.7', ['--sim', '3', '--ip', '192.0.2.7'], '192.0.2.7', None),
@@ -88,6 +88,30 @@ def test_no_address_is_said_with_the_remedy(checkout, addresses, said):
     assert status == 1
     assert said in output and '--ip ADDR' in output and '--sim' in output
     assert checkout.calls == ['hostname -I'] or checkout.called('catkin_make', 'roslaunch') == []
+
+
+@pytest.mark.parametrize('addresses, has', [
+    ('192.0.2.7 fd00::1 192.0.2.8', '192.0.2.7 192.0.2.8 127.0.0.1'), ('', '127.0.0.1')])
+def test_somebody_elses_address_is_refused(checkout, addresses, has):
+    status, output = checkout.run('--ip', '198.51.100.2', FAKE_ADDRESSES=addresses)
+    assert status == 2
+    assert '198.51.100.2 is not an address of this computer; it has {} ('.format(has) in output
+    assert [call for call in checkout.calls if call != 'hostname -I'] == []
+
+
+def test_address_that_leads_here_is_taken(checkout):
+    """As where a router translates it: the computer has it on none of its interfaces."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        try:
+            sock.connect(('192.0.2.1', 9))
+        except OSError:
+            pytest.skip('this machine has no address but the loopback')
+        own = sock.getsockname()[0]
+    script = checkout.script.read_text()
+    checkout.script.write_text(script.replace('  check_master\n', ''))
+    status, output = checkout.run('--ip', own, FAKE_ADDRESSES='192.0.2.7')
+    assert status == 0, output
+    assert 'ROS_IP=' + own in checkout.calls
 
 
 def test_what_the_shell_had_is_not_used(checkout, quiet_port):

@@ -4,20 +4,32 @@
 
 Usage: before_start.py master URI             prints master, silent, other or nothing
        before_start.py running URI            prints the mux and the panel that run on a master
+       before_start.py reaches ADDRESS        prints yes where this computer reaches itself there
+       before_start.py arguments FILE [ARG:=VALUE]...
+                                              prints what is wrong with arguments of a launch file
+
+Works without ROS: what needs YAML is left out as long as that is not installed.
 """
+import difflib
+import os
 import socket
 import sys
 import threading
 import time
 import urllib.parse
+import uuid
+import xml.etree.ElementTree as ElementTree
 import xmlrpc.client
 
 CALLER = '/mhri_run'
 PATIENCE_S = 3.0
-# Who serves or publishes all of these is one; the last is a topic that it publishes itself, by which
-# it is told from whoever has its port by now.
+# Who serves or publishes all of these is one. By what it publishes it is told from a node that has
+# its port by now.
 MUX_SERVICE, MUX_TOPIC = '/mux/set_stop_all', '/robot_controller/twist'
 PANEL_TOPICS = ('/mux_in/mode_select', '/robot_controller/robot_select')
+CHOICES = {'gui': ('auto', 'rqt', 'standalone', 'none')}
+INPUTS = ('joy', 'pedal', 'voice', 'none')
+MOST_ROBOTS = 12
 
 
 def what_is_at(uri):
@@ -92,11 +104,104 @@ def running(uri):
         for host in sorted(set(dict(found).values())))
 
 
+def reaches(address):
+    """Tell whether this computer reaches itself at an address (one that is translated, say)."""
+    token = uuid.uuid4().bytes
+    with socket.create_server(('', 0)) as server:
+        try:
+            with socket.create_connection((address, server.getsockname()[1])) as sending:
+                sending.sendall(token)
+                return server.accept()[0].recv(len(token)) == token
+        except OSError:
+            return False
+
+
+def read_yaml(path):
+    """Return what is in a YAML file; None where it cannot be read, which its reader then says."""
+    try:
+        import yaml
+        with open(path, encoding='utf-8') as stream:
+            return yaml.safe_load(stream)
+    except Exception:
+        return None
+
+
+def simulated_types(resource):
+    """Return the names that --sim takes, or None where they are not known."""
+    try:
+        bodies = sorted(read_yaml(os.path.join(resource, 'sim', 'bodies.yaml'))['bodies'])
+    except (TypeError, KeyError):
+        return None
+    # turtlebot.launch takes it for a Burger.
+    return sorted(bodies + ['turtlebot3']) if 'turtlebot3_burger' in bodies else bodies
+
+
+def source_names(path):
+    """Return the names of the sources that a mux file lists, or None where they are not known."""
+    try:
+        return [source['name'] for source in read_yaml(path)['sources']]
+    except (TypeError, KeyError):
+        return None
+
+
+def one_of(words):
+    """Return words as they are said: 'a, b or c'."""
+    return ' or '.join(filter(None, [', '.join(words[:-1]), words[-1]]))
+
+
+def wrong_value(name, value, default, resource, mux_config):
+    """Return what is wrong with the value of an argument, or None."""
+    allowed, given = CHOICES.get(name), [value]
+    if default in ('true', 'false'):
+        allowed = ('true', 'false')
+    elif name == 'inputs':
+        allowed, given = INPUTS, value.split()
+    elif name == 'sim':
+        allowed = [str(number) for number in range(MOST_ROBOTS + 1)]
+    elif name == 'enabling' and value:
+        allowed = source_names(mux_config)
+    elif name == 'sim_types':
+        allowed, given = simulated_types(resource), value.split() or ['']
+        wrong = [word for word in given if word not in (allowed or given)]
+        return wrong and "'{}' cannot be simulated; the types that can be are {}".format(
+            "', '".join(wrong), ', '.join(allowed))
+    wrong = [word for word in given if word not in (allowed or given)]
+    return wrong and "{}: '{}' is not {}".format(
+        name, wrong[0], 'a number from 0 to 12' if name == 'sim' else one_of(allowed))
+
+
+def wrong_argument(path, words):
+    """Return what is wrong with the first wrong one of ARG:=VALUE, or None.
+
+    :param path: of the launch file; what it reads is in ``resource`` beside its folder
+    """
+    known = {arg.get('name'): arg.get('default') for arg in ElementTree.parse(path).findall('arg')
+             if arg.get('value') is None}
+    resource = os.path.join(os.path.dirname(path), '..', 'resource')
+    values = dict(word.split(':=', 1) for word in words)
+    mux_config = values.get('mux_config', os.path.join(resource, 'mux.yaml'))
+    for name, value in values.items():
+        if name not in known:
+            near = difflib.get_close_matches(name, known)
+            return "there is no argument '{}' in {}: {}".format(
+                name, os.path.basename(path), 'did you mean {}?'.format(one_of(near)) if near
+                else 'it has ' + ', '.join(known))
+        problem = wrong_value(name, value, known[name], resource, mux_config)
+        if problem:
+            return problem
+    return None
+
+
 def main(what, *args):
     """Answer one question on the standard output."""
     socket.setdefaulttimeout(PATIENCE_S)
-    answer = {'master': what_is_at, 'running': running}[what](*args)
-    print(answer)
+    if what == 'arguments':
+        answer = wrong_argument(args[0], args[1:])
+    elif what == 'reaches':
+        answer = 'yes' if reaches(*args) else 'no'
+    else:
+        answer = {'master': what_is_at, 'running': running}[what](*args)
+    print(answer or '')
 
 
 if __name__ == '__main__':

@@ -16,7 +16,8 @@ changed, it does neither and needs no network. Ctrl-C, or closing the panel, end
 
 Robots
   --sim N [TYPES]      add N simulated robots (1 to 12). TYPES names their types in turn, e.g.
-                       --sim 3 "turtlebot2 turtlebot3_burger turtlebot3_waffle"
+                       --sim 3 "turtlebot2 turtlebot3_burger turtlebot3_waffle"; also there:
+                       turtlebot3_waffle_pi
   --sim-types TYPES    the same, as an option of its own
   --demo               drive simulated robots by a script, with no hands: discover, select two of
                        three, drive both, change the selection while moving, stop all. Prints what
@@ -31,6 +32,8 @@ Network
                        127.0.0.1, and no network is needed.
   --master URI         use the ROS master at URI, e.g. http://192.168.0.103:11311. Default: port
                        11311 of this computer; one that runs there is used, else one is started.
+                       One master, one mhri: where it runs already, nothing is started. A second
+                       system on one computer takes a port of its own.
 
   ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME are set from these; what the shell had is not used.
 
@@ -113,6 +116,21 @@ check_arguments() {
   done
 }
 
+# look QUESTION...: asks before_start.py; on a bare machine python3 comes with the other packages.
+look() {
+  command -v python3 >/dev/null || return 0
+  python3 "$REPO/utils/host/before_start.py" "$@"
+}
+
+# roslaunch takes any argument for right, so that without this a misspelled enabling:=pedal would
+# start without the pedal.
+check_launch_arguments() {
+  local wrong args=("${LAUNCH_ARGS[@]}")
+  [ -z "$SIM_TYPES" ] || args+=("sim_types:=$SIM_TYPES")
+  wrong=$(look arguments "$REPO/launch/mhri.launch" "${args[@]}")
+  [ -z "$wrong" ] || usage_error "$wrong"
+}
+
 # A picture that cannot be written is said before the drive, not after it.
 check_picture() {
   local folder
@@ -126,19 +144,38 @@ check_picture() {
 
 is_loopback() { [[ $1 == localhost || $1 == 127.* ]]; }
 
-# choose_address: sets IP where --ip did not.
-choose_address() {
-  local master_host=${MASTER#http://} all=() address v4=()
-  master_host=${master_host%:*}
-  [ -z "$IP" ] || return 0
-  if is_loopback "$master_host" || { [ -n "$SIM" ] && [ -z "$MASTER" ]; }; then
-    IP=127.0.0.1
-    return
-  fi
+# own_addresses: sets all (what this computer has) and v4 (those ROS 1 can use) of the caller.
+own_addresses() {
+  local address
   read -r -a all < <(hostname -I) || true
   for address in "${all[@]}"; do
     if valid_ip "$address"; then v4+=("$address"); fi
   done
+}
+
+# check_own_address: roslaunch says of somebody else's address, after all has been built, that it
+# cannot contact its own server. One that a router passes on to this computer is right, though.
+check_own_address() {
+  local all=() v4=()
+  if is_loopback "$IP"; then return 0; fi
+  own_addresses
+  [[ " ${v4[*]} " == *" $IP "* ]] || [ "$(look reaches "$IP")" = yes ] ||
+    usage_error "--ip: $IP is not an address of this computer; it has" "${v4[@]}" 127.0.0.1
+}
+
+# choose_address: sets IP where --ip did not.
+choose_address() {
+  local master_host=${MASTER#http://} all=() v4=()
+  master_host=${master_host%:*}
+  if [ -n "$IP" ]; then
+    check_own_address
+    return
+  fi
+  if is_loopback "$master_host" || { [ -n "$SIM" ] && [ -z "$MASTER" ]; }; then
+    IP=127.0.0.1
+    return
+  fi
+  own_addresses
   if [ "${#v4[@]}" = 0 ]; then
     die "this computer has no IPv4 address${all:+ (only ${all[*]}, and ROS 1 needs one)}:" \
       "connect it to the robots' network, or name an address with --ip ADDR;" \
@@ -155,9 +192,6 @@ with socket.socket() as sock:
     sock.bind(("127.0.0.1", 0))
     print(sock.getsockname()[1])'
 }
-
-# look QUESTION...: asks before_start.py.
-look() { python3 "$REPO/utils/host/before_start.py" "$@"; }
 
 # A second mux would take the robots from the first, and its panel would be left with nothing.
 check_alone() {
@@ -262,6 +296,7 @@ main() {
   parse_arguments "$@"
   check_arguments
   check_picture
+  check_launch_arguments
   if "$DEMO"; then SIM=${SIM:-3}; fi
   os_family >/dev/null
   choose_address
@@ -270,6 +305,8 @@ main() {
   trap 'stop 130' INT
   trap 'stop 143' TERM HUP
   prepare_code
+  # Once more, for a machine that had no Python or no YAML before.
+  check_launch_arguments
   choose_network
   prepare_display
   launch
