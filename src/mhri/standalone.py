@@ -50,15 +50,18 @@ class Standalone:
 
     :param argv: the node's command line
     :param settings_path: an INI file, None for the user's own
+    :param remember: False leaves the settings alone, whatever happens
     """
 
-    def __init__(self, argv, settings_path=None):
+    def __init__(self, argv, settings_path=None, remember=True):
+        self._remember = remember
         self._settings = QSettings(settings_path, QSettings.IniFormat) if settings_path else \
             QSettings('mhri', 'panel')
         self.host = PanelHost(Operator(argv))
         self.window = PanelWindow(self.host)
         self.window.closing.connect(self.close)
         self._bell = SignalBell(self.window.close)
+        self._robots_at_first = None
         self._closed = False
 
     def restore(self):
@@ -74,15 +77,36 @@ class Standalone:
             # In a corner, and not in the middle, it leaves room for the robots' windows.
             self.window.move(QGuiApplication.primaryScreen().availableGeometry().topLeft())
 
+    def begin_afresh(self):
+        """Keep the saved settings until the operator changes robots, mode or limits in this run.
+
+        Call it when the robots of the command line are in the list.
+        """
+        self._remember = False
+        self._robots_at_first = self.host.operator.selection.robots
+        panel = self.host.panel
+        # The mux tells a mode and limits by itself, so that their values do not say who chose them.
+        for signal_ in (panel.mode_requested, panel.limits_requested, panel.together_requested):
+            signal_.connect(self._on_change)
+
+    def _on_change(self, *_):
+        self._remember = True
+
+    def _has_changed_robots(self):
+        """Tell whether robots came or went in a run that began afresh."""
+        return self._robots_at_first not in (None, self.host.operator.selection.robots)
+
     def close(self):
         """Stop the robots, save the settings, end."""
         if self._closed:
             return
         self._closed = True
         state = json.dumps(self.host.save_state())
+        remember = self._remember or self._has_changed_robots()
         self.host.close()
-        self._settings.setValue('state', state)
-        self._settings.setValue('geometry', self.window.saveGeometry())
-        self._settings.sync()
+        if remember:
+            self._settings.setValue('state', state)
+            self._settings.setValue('geometry', self.window.saveGeometry())
+            self._settings.sync()
         rospy.signal_shutdown('the panel was closed')
         QApplication.instance().quit()

@@ -117,6 +117,52 @@ def test_settings_that_cannot_be_used_are_left_out(tmp_path, rubbish):
     program.window.close()
 
 
+@pytest.fixture
+def saved(tmp_path):
+    """The path of settings with one robot in them."""
+    path = str(tmp_path / 'panel.ini')
+    program = Standalone(['panel'], path)
+    program.host._add('kept')
+    program.window.close()
+    assert robots_in(path) == ['kept']
+    return path
+
+
+def robots_in(path):
+    return json.loads(QSettings(path, QSettings.IniFormat).value('state'))['robots']
+
+
+def test_a_demo_leaves_the_settings_alone(saved):
+    with open(saved, 'rb') as stream:
+        before = stream.read()
+    program = Standalone(['panel'], saved, remember=False)
+    program.host._add('bot1')
+    program.host.panel.limits_requested.emit(0.3, 0.8)
+    program.window.close()
+    with open(saved, 'rb') as stream:
+        assert stream.read() == before
+
+
+@pytest.mark.parametrize('change, robots', [
+    (lambda host: None, ['kept']),
+    (lambda host: host._open('bot1'), ['kept']),
+    (lambda host: host._add('bot2'), ['bot1', 'bot2']),
+    (lambda host: host._remove('bot1'), []),
+    (lambda host: host.panel.mode_requested.emit('ps3joy'), ['bot1']),
+    (lambda host: host.panel.limits_requested.emit(0.3, 0.8), ['bot1']),
+    (lambda host: host.panel.together_requested.emit(True), ['bot1']),
+], ids=['none', 'a window', 'one more', 'one less', 'mode', 'limits', 'together'])
+def test_a_fresh_panel_keeps_the_settings_until_something_is_changed(saved, change, robots):
+    program = Standalone(['panel'], saved)
+    program.window.show()
+    program.host._add('bot1')
+    program.begin_afresh()
+    program.host.draw()
+    change(program.host)
+    program.window.close()
+    assert robots_in(saved) == robots
+
+
 class Settings(dict):
     """As qt_gui's Settings: set_value and value."""
 

@@ -42,7 +42,7 @@ class Run:
         name, value = self.mark.split('=')
         # What roslaunch says comes at its end otherwise: its output is no terminal here.
         environment = dict(os.environ, ROS_HOME=str(folder / 'ros'), PYTHONUNBUFFERED='1',
-                           **{name: value})
+                           XDG_CONFIG_HOME=str(folder / 'config'), **{name: value})
         for name in ('DISPLAY', 'WAYLAND_DISPLAY', 'XAUTHORITY', 'ROS_MASTER_URI', 'ROS_IP'):
             environment.pop(name, None)
         self._log = folder / 'log-{}'.format(value)
@@ -109,6 +109,9 @@ def publishers(proxy, topic):
 
 def test_demo_drives_three_robots_without_hands(start, tmp_path):
     before = NO_NETWORK if has_own_network() else ()
+    settings = tmp_path / 'config' / 'mhri' / 'panel.conf'
+    settings.parent.mkdir(parents=True)
+    settings.write_text('[General]\nstate="the operator\'s"\n')
     run = start('--demo', '--screenshot', 'drive.png', before=before)
     status = run.wait(180)
     print('\n' + '\n'.join(line for line in run.output.splitlines() if 'bot' in line))
@@ -119,6 +122,8 @@ def test_demo_drives_three_robots_without_hands(start, tmp_path):
     picture = cv2.imread(str(tmp_path / 'drive.png'))
     assert picture is not None and picture.shape[0] >= 400 and picture.shape[1] >= 600
     assert picture.std() > 5, 'the picture shows something'
+    assert settings.read_text() == '[General]\nstate="the operator\'s"\n'
+    assert list(settings.parent.iterdir()) == [settings]
 
 
 @pytest.mark.parametrize('name, arguments, space', [

@@ -22,7 +22,9 @@ def parse(argv):
     parser.add_argument('--robots', default='', help='names to add at start, separated by spaces')
     parser.add_argument('--select', default='', help='names to add and select at start')
     parser.add_argument('--settings', help='INI file for the settings, instead of the user\'s own')
-    parser.add_argument('--fresh', action='store_true', help='begin without the saved settings')
+    parser.add_argument('--fresh', action='store_true',
+                        help='begin without the saved settings, and keep them until robots, mode '
+                             'or limits are changed')
     parser.add_argument('--demo', action='store_true',
                         help='play a scripted drive without hands, then end')
     parser.add_argument('--screenshot', help='with --demo: write a picture (PNG) to this file')
@@ -40,11 +42,13 @@ def main():
         extra = ['--args', '--robots', options.robots] if options.robots else []
         os.execvp('rqt', ['rqt', '--standalone', PLUGIN] + remappings + extra)
     app = QApplication(sys.argv[:1])
-    program = Standalone(sys.argv, options.settings)
+    program = Standalone(sys.argv, options.settings, remember=not options.demo)
     if not options.fresh and not options.demo:
         program.restore()
     program.window.show()
     program.host.start(options.robots.split(), options.select.split())
+    if options.fresh and not options.demo:
+        program.begin_afresh()
     demo = start_demo(program, options) if options.demo else None
     app.exec_()
     sys.exit(demo.exit_status if demo else 0)
