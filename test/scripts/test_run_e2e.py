@@ -135,9 +135,21 @@ def test_new_checkout_builds_and_runs(start, tmp_path, name, arguments, space):
                     ignore=shutil.ignore_patterns('build', '.git', '__pycache__'))
     run = start('--demo', *arguments, script=tmp_path / name / 'utils' / 'host' / 'mhri_run.sh')
     assert run.wait(240) == 0, run.output
-    place = tmp_path / name / 'build' / '.ws' / ('src' if space == 'devel' else space)
-    assert '{}/'.format(place) in run.output
+    workspace = tmp_path / name / 'build' / '.ws'
+    place = tmp_path / name if space == 'devel' else workspace / space / 'share' / 'mhri'
+    assert '{}/launch/mhri.launch'.format(place) in run.output
+    assert in_new_terminal('rosrun mhri mhri_doctor --help', workspace / space)[:6] == 'usage:'
     assert cv2.imread(str(tmp_path / 'mhri-demo.png')) is not None
+
+
+def in_new_terminal(command, space):
+    """Return what a command prints in a terminal in which the setup file was sourced, as told."""
+    done = subprocess.run(
+        ['bash', '-c', 'source "$0/setup.bash"; ' + command, str(space)], env={
+            'PATH': '/usr/bin:/bin', 'HOME': str(space)}, stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT, universal_newlines=True)
+    assert done.returncode == 0, done.stdout
+    return done.stdout
 
 
 def test_ctrl_c_takes_everything_down(start, master):

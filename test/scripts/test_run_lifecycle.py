@@ -74,6 +74,19 @@ def test_moved_checkout_is_built_anew(checkout, tmp_path):
     assert not (moved / 'build' / '.ws' / 'build' / 'old').exists()
 
 
+def test_workspace_with_a_link_to_the_checkout_is_built_anew(checkout):
+    """As older versions made it: find, and with it rosrun, complained of the loop."""
+    checkout.run(*HERE)
+    workspace = checkout.root / 'build' / '.ws'
+    (workspace / 'src').mkdir()
+    (workspace / 'src' / 'mhri').symlink_to('../../..')
+    (workspace / 'build' / 'old').touch()
+    assert checkout.run(*HERE)[0] == 0
+    assert len(checkout.called('catkin_make')) == 2
+    assert not (workspace / 'src').exists() and not (workspace / 'build' / 'old').exists()
+    assert (checkout.root / 'utils').is_dir(), 'the link is gone, not what it led to'
+
+
 def test_workspace_of_the_tests_is_left_to_them(checkout):
     checkout.run(*HERE)
     (checkout.root / 'build' / '.ws' / 'build' / 'CMakeCache.txt').write_text(

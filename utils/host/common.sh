@@ -151,23 +151,24 @@ needs_plain_path() {
 
 # build_workspace TESTING [MAKE_TARGET]: builds this checkout in its own workspace; TESTING is ON or
 # OFF. The workspace is in build, which rosrun leaves out where it searches a package, and hidden,
-# which roslaunch leaves out: either would find every file of the package twice.
+# which roslaunch leaves out: either would find every file of the package twice. The checkout itself is
+# its source folder: a link to it in there would be a loop for whoever searches the package.
 build_workspace() {
   local testing=$1 target=${2:-} stamp="$WS/built" log="$WS/build.log"
-  mkdir -p "$WS/src" 2>/dev/null ||
+  mkdir -p "$WS" 2>/dev/null ||
     die "cannot write to $REPO: the workspace is built there, in build/.ws"
   exec {BUILD_LOCK}>"$WS/lock"
   flock "$BUILD_LOCK"
-  ln -sfn ../../.. "$WS/src/mhri"
-  if [ -z "$target" ] && [ "$testing" = OFF ] && nothing_changed "$stamp"; then
+  if [ -z "$target" ] && [ "$testing" = OFF ] && [ ! -e "$WS/src" ] && nothing_changed "$stamp"; then
     exec {BUILD_LOCK}>&-
     return 0
   fi
   # Stamped with the time of the start: what is saved during the build is built next time.
   printf '%s' "$REPO" >"$stamp.new"
-  # CMake refuses a build folder that was made for another place (a copied or moved checkout).
-  if [ -f "$WS/place" ] && [ "$(cat "$WS/place")" != "$REPO" ]; then
-    rm -rf "$WS/build" "$WS/devel" "$WS/install" "$stamp"
+  # CMake refuses a build folder that was made for another place (a copied or moved checkout), or
+  # through a link in src, as it once was.
+  if [ -e "$WS/src" ] || { [ -f "$WS/place" ] && [ "$(cat "$WS/place")" != "$REPO" ]; }; then
+    rm -rf "$WS/src" "$WS/build" "$WS/devel" "$WS/install" "$stamp"
   fi
   printf '%s' "$REPO" >"$WS/place"
   # A workspace set up for the tests stays so: a start in the middle of a test run must not take
@@ -177,7 +178,7 @@ build_workspace() {
   # With a master's address already set, catkin does not bake the default one into the environment
   # that it gives to the tests.
   (cd -P "$WS" && ROS_MASTER_URI=${ROS_MASTER_URI:-http://127.0.0.1:11311} catkin_make \
-    -DPYTHON_EXECUTABLE=/usr/bin/python3 "-DCATKIN_ENABLE_TESTING=$testing" \
+    --source "$REPO" -DPYTHON_EXECUTABLE=/usr/bin/python3 "-DCATKIN_ENABLE_TESTING=$testing" \
     ${target:+"$target"}) >"$log" 2>&1 {BUILD_LOCK}>&- || {
     tail -n 40 "$log" >&2
     die "the build failed; the whole log is $log"
