@@ -170,6 +170,17 @@ def test_end_of_the_panel_ends_everything(start, master):
     panel = xmlrpc.client.ServerProxy(node_uri(proxy, '/mhri_panel'))
     os.kill(panel.getPid('/test')[2], signal.SIGTERM)
     assert run.wait(30) == 0, run.output
+    assert 'died' not in run.output, 'a panel that is closed is no fault'
+
+
+def test_panel_that_fails_ends_everything_and_is_told(start, master):
+    uri, proxy = master
+    run = start('--master', uri)
+    wait_for(lambda: node_uri(proxy, '/mhri_panel'), 'the panel')
+    panel = xmlrpc.client.ServerProxy(node_uri(proxy, '/mhri_panel'))
+    os.kill(panel.getPid('/test')[2], signal.SIGKILL)
+    assert run.wait(30) == 1, run.output
+    assert 'REQUIRED process' in run.output and 'the panel failed' in run.output
 
 
 @pytest.mark.skipif(not has_own_network(), reason='no network namespaces for us here')

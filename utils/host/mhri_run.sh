@@ -48,8 +48,8 @@ Works on Debian 12, and on Ubuntu 20.04 with ROS Noetic. sudo is asked for only 
 missing. The workspace is build/.ws in the checkout; deleting it costs a minute at the next
 start.
 
-Exit status: 0 ended by itself, 1 could not start or the demo failed, 2 wrong option,
-130 or 143 ended by Ctrl-C or a signal.
+Exit status: 0 the panel was closed, 1 could not start, or the panel or the demo failed,
+2 wrong option, 130 or 143 ended by Ctrl-C or a signal.
 
 Examples
   mhri_run.sh                       drive the robots of the network
@@ -276,13 +276,22 @@ launch() {
   say "ROS_MASTER_URI=$ROS_MASTER_URI ROS_IP=$ROS_IP ROS_HOSTNAME=$ROS_HOSTNAME"
   # A session of its own: Ctrl-C in the terminal reaches this script alone, which passes it on once.
   # Should this script be killed, the kernel does.
-  MHRI_RUN_ID=$RUN_ID setsid setpriv --pdeathsig TERM roslaunch mhri mhri.launch "${args[@]}" &
+  MHRI_RUN_ID=$RUN_ID MHRI_PANEL_STATUS="$SCRATCH/panel_status" \
+    setsid setpriv --pdeathsig TERM roslaunch mhri mhri.launch "${args[@]}" &
   LAUNCH_PID=$!
   while kill -0 "$LAUNCH_PID" 2>/dev/null; do
     status=0
     wait "$LAUNCH_PID" || status=$?
   done
+  [ -n "$STOPPED_WITH" ] || "$DEMO" || check_panel
   return "${STOPPED_WITH:-$status}"
+}
+
+# roslaunch ends with 0 whatever the panel ended with.
+check_panel() {
+  local status=0
+  [ ! -s "$SCRATCH/panel_status" ] || status=$(cat "$SCRATCH/panel_status")
+  [ "$status" = 0 ] || die "the panel failed (its exit status was $status): see above"
 }
 
 demo_verdict() {

@@ -38,6 +38,8 @@ def main():
     options = parse(rospy.myargv(sys.argv)[1:])
     in_rqt = options.gui == 'rqt' or options.gui == 'auto' and shutil.which('rqt')
     if in_rqt and not options.demo:
+        if not shutil.which('rqt'):
+            sys.exit('the panel cannot start: rqt is not installed; leave out gui:=rqt')
         remappings = [arg for arg in sys.argv[1:] if ':=' in arg]
         extra = ['--args', '--robots', options.robots] if options.robots else []
         os.execvp('rqt', ['rqt', '--standalone', PLUGIN] + remappings + extra)
