@@ -78,6 +78,14 @@ def test_what_does_not_fit_shows_the_titles_of_what_it_covers(case):
         assert not upper.intersects(title)
 
 
+def test_where_it_fits_nowhere_beside_the_panel_little_of_it_is_covered():
+    """Windows rather lie on each other than on what drives."""
+    screen, taken = QRect(0, 0, 1600, 1000), panel_at(0, 0, 1002)
+    for place in opened(screen, taken, 3):
+        assert not place.intersects(taken.keep)
+        assert place.intersected(taken.panel).width() < 110
+
+
 def test_a_screen_that_is_too_small_for_anything():
     screen = QRect(0, 0, 500, 400)
     assert free_place(screen, WANTED, LEAST, panel_at(0, 0, 500, 400)) == screen

@@ -56,7 +56,7 @@ UNSEEN = {
         'standstill seen after 4.0 s'),
     'moved_when_heard_again': (
         every(0.02, 0.1, MOVES) + every(0.02, HALT + 0.1, MOVES, HALT)
-        + every(0.02, HALT + 0.2, REST, HALT + 0.1), 'stopped in 4120 ms'),
+        + every(0.02, HALT + 0.2, REST, HALT + 0.1), 'standstill seen after 4.1 s'),
     'proved_before_it_fell_silent': (STOPS + every(0.02, HALT + 0.1, REST, HALT),
                                      'stopped in 220 ms'),
 }

@@ -21,8 +21,9 @@ class StopProof:
         NOT_CONFIRMED  -> STOPPED        READINGS readings of standstill in a row
 
     The time given is that of the first reading of the row. One reading alone proves nothing: it may
-    have been under way since before the stop. Where the robot was not heard for HEARING_S before
-    that reading it may have stood still long before, and the words say so.
+    have been under way since before the stop. Where the robot was not heard for HEARING_S on the way
+    to that reading it may have stood still long before, and the words say so: what comes first
+    after a silence may be old.
 
     :param now: when the zero was sent
     """
@@ -35,7 +36,7 @@ class StopProof:
         self._speed = None
         self.state = PROOF_WAITING
         self._stopped_ms = None
-        # Whether nobody can tell when the robot came to rest: it was not heard until it had.
+        # Whether nobody can tell when the robot came to rest: it was not heard all the while.
         self._unseen = False
 
     def on_motion(self, motion, now):
@@ -43,6 +44,8 @@ class StopProof:
         silent = now - self._heard > HEARING_S
         if silent:
             self._run = 0
+            if self._stopped_ms is None:
+                self._unseen = True
         self._heard = now
         self._speed = motion
         if not motion.is_standstill():
@@ -53,8 +56,6 @@ class StopProof:
             return
         if self._run == 0:
             self._run_began = now
-            if self._stopped_ms is None:
-                self._unseen = silent
         self._run += 1
         if self._run >= READINGS and self.state != PROOF_STOPPED:
             self.state = PROOF_STOPPED

@@ -103,18 +103,25 @@ def _cascaded(areas, wanted, least, taken):
         # Over the panel a window is as small as it can be, elsewhere it leaves room to step down.
         size = least if area.intersects(taken.panel) else \
             (_share(area, wanted, least) - QSize(0, CASCADE_PX)).expandedTo(least)
-        for y in range(area.top(), area.bottom() - size.height() + 2, CASCADE_PX):
-            for x in range(area.left(), area.right() - size.width() + 2, CASCADE_PX):
-                places.append(QRect(QPoint(x, y), size))
+        right, bottom = area.right() - size.width() + 1, area.bottom() - size.height() + 1
+        # From both sides, so that a window can go to every corner.
+        across = set(range(area.left(), right + 1, CASCADE_PX)) | set(
+            range(right, area.left() - 1, -CASCADE_PX))
+        for y in [*range(area.top(), bottom + 1, CASCADE_PX), bottom]:
+            places += [QRect(QPoint(x, y), size) for x in across]
 
     def cost(place):
-        """Return what a place covers: one on another window, or over its title, comes last."""
+        """Return what a place covers: one on another window comes last.
+
+        A title that is covered counts as much as a strip of the panel.
+        """
         near = sum((corner - place.topLeft()).manhattanLength() < CASCADE_PX
                    for corner in corners)
         cuts = [_surface(place.intersected(rect).size()) if place.intersects(rect) else 0
                 for rect in (taken.keep, taken.panel) + tuple(taken.others)]
         hidden = sum(place.intersects(title) for title in titles)
-        return near, cuts[0], hidden, _PANEL_COUNTS * cuts[1] + sum(cuts[2:]), place.y(), place.x()
+        strips = cuts[1] + hidden * CASCADE_PX * place.height()
+        return near, cuts[0], _PANEL_COUNTS * strips + sum(cuts[2:]), place.y(), place.x()
 
     return min(places, key=cost)
 
