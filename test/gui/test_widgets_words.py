@@ -55,6 +55,7 @@ def test_words(function, value, text):
     ('NOT CONFIRMED: moves at 0.30 m/s, 0.00 rad/s', ('NOT CONFIRMED',)),
     ('slow link: 120 ms round trip; 8 % of its messages lost',
      ('slow link: 120 ms round trip', 'slow link')),
+    ('standstill seen after 4.1 s', ('standstill seen',)),
     ('nothing for 2.5 s', ()), ('', ())])
 def test_beginnings(text, shorter):
     assert words.beginnings(text) == shorter

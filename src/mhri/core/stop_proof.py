@@ -21,8 +21,8 @@ class StopProof:
         NOT_CONFIRMED  -> STOPPED        READINGS readings of standstill in a row
 
     The time given is that of the first reading of the row. One reading alone proves nothing: it may
-    have been under way since before the stop. Where the robot was not heard for HEARING_S on the way
-    to that reading it may have stood still long before, and the words say so: what comes first
+    have been under way since before the stop. Where the robot was not heard for HEARING_S on the
+    way to that reading it may have stood still long before, and the words say so: what comes first
     after a silence may be old.
 
     :param now: when the zero was sent

@@ -114,7 +114,7 @@ def heard_outcome(heard):
     return heard.command if heard.accepted else heard.reason or 'not a command'
 
 
-def beginnings(text, marks=('; ', ': ')):
+def beginnings(text, marks=('; ', ': ', ' after ')):
     """Return the beginnings of a sentence that say enough where there is no room for all of it.
 
     "centre the stick: it was out of reach" is "centre the stick" in short.
