@@ -150,7 +150,8 @@ class Demo(QObject):
     """Plays the script on the GUI thread, a step whenever its condition has come true.
 
     :param program: :class:`mhri.standalone.Standalone`
-    :param screenshot: where to write a picture of the screen while the robots move, or None
+    :param screenshot: where to write a picture of the screen while the robots move, and those of
+        four windows beside it (``<screenshot>_panel.png``, ...); None for none
     :param result: where to write ``ok`` or the reason why not, or None
     """
 

@@ -122,6 +122,11 @@ def test_demo_drives_three_robots_without_hands(start, tmp_path):
     picture = cv2.imread(str(tmp_path / 'drive.png'))
     assert picture is not None and picture.shape[0] >= 400 and picture.shape[1] >= 600
     assert picture.std() > 5, 'the picture shows something'
+    pictures = ['drive{}.png'.format(end) for end in (
+        '', '_bot_window', '_depth', '_panel', '_stopped')]
+    assert sorted(path.name for path in tmp_path.glob('*.png')) == pictures
+    manual = subprocess.run([str(SCRIPT), '--help'], stdout=subprocess.PIPE).stdout.decode()
+    assert [name for name in pictures if name[5:-4] not in manual] == []
     assert settings.read_text() == '[General]\nstate="the operator\'s"\n'
     assert list(settings.parent.iterdir()) == [settings]
 
@@ -140,6 +145,9 @@ def test_new_checkout_builds_and_runs(start, tmp_path, name, arguments, space):
     assert '{}/launch/mhri.launch'.format(place) in run.output
     assert in_new_terminal('rosrun mhri mhri_doctor --help', workspace / space)[:6] == 'usage:'
     assert cv2.imread(str(tmp_path / 'mhri-demo.png')) is not None
+    ignored = (REPO / '.gitignore').read_text().split()
+    assert [path.name for path in tmp_path.glob('*.png')
+            if not any(path.match(pattern) for pattern in ignored)] == []
 
 
 def in_new_terminal(command, space):

@@ -21,10 +21,13 @@ Robots
   --sim-types TYPES    the same, as an option of its own
   --demo               drive simulated robots by a script, with no hands: discover, select two of
                        three, drive both, change the selection while moving, stop all. Prints what
-                       each robot did, writes a picture and ends: 0 where all went well, else 1.
+                       each robot did, writes pictures and ends: 0 where all went well, else 1.
                        Means --sim 3 unless --sim is given; has a master of its own, so that a
-                       system that is running is not disturbed.
-  --screenshot FILE    where --demo writes its picture (PNG; default mhri-demo.png, here)
+                       system that is running is not disturbed, and neither reads nor writes the
+                       settings of the panel.
+  --screenshot FILE    where --demo writes the picture of the screen (PNG; default mhri-demo.png,
+                       here); beside it come four of windows, e.g. mhri-demo_panel.png, _bot_window,
+                       _depth and _stopped. What is there is overwritten.
 
 Network
   --ip ADDR            this computer's address, as the robots reach it. Default: the first IPv4
@@ -298,7 +301,7 @@ demo_verdict() {
   local verdict=
   [ ! -f "$SCRATCH/demo_result" ] || verdict=$(cat "$SCRATCH/demo_result")
   [ "$verdict" = ok ] || die "the demo failed: ${verdict:-it ended without a result}"
-  say "the demo went well; its picture is $PICTURE"
+  say "the demo went well; its pictures are $PICTURE and four beside it"
 }
 
 main() {

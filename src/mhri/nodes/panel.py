@@ -27,7 +27,8 @@ def parse(argv):
                              'or limits are changed')
     parser.add_argument('--demo', action='store_true',
                         help='play a scripted drive without hands, then end')
-    parser.add_argument('--screenshot', help='with --demo: write a picture (PNG) to this file')
+    parser.add_argument('--screenshot', help='with --demo: write a picture (PNG) of the screen to '
+                                             'this file, and four of windows beside it')
     parser.add_argument('--demo-result',
                         help='with --demo: write "ok", or the reason why not, to this file')
     return parser.parse_args(argv)
