@@ -291,7 +291,9 @@ class RobotTypesTest(unittest.TestCase):
                               (['rosbag', 'record', '-O', bag, '/cmd_vel'], '/record_')):
             process = Process(command)
             self.addCleanup(process.end)
-            self.addCleanup(process.send, 2)
+            # rosbag record ends its own child when it is told to, not when it is killed.
+            self.addCleanup(process.wait)
+            self.addCleanup(process.send, signal.SIGINT)
             wait_for(lambda: any(name.startswith(node) for name in self.nodes()), PATIENCE_S,
                      node)
         publisher = rospy.Publisher('/cmd_vel', Twist, queue_size=1)
