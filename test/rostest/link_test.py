@@ -9,7 +9,6 @@ import time
 import unittest
 
 from geometry_msgs.msg import Twist, TwistStamped
-import rosgraph
 import rospy
 import rostest
 
@@ -24,7 +23,7 @@ from mhri.ros.gates import GateBank  # noqa: E402
 from mhri.ros.resources import robot_types  # noqa: E402
 from mhri.ros.robot_link import RobotLink  # noqa: E402
 from mhri.ros.worker import Worker  # noqa: E402
-from support.relay import Delay, put_in_front, SlowNode  # noqa: E402
+from support.relay import Delay, move_away, put_in_front, SlowNode  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
 
@@ -50,11 +49,7 @@ class LinkTest(unittest.TestCase):
         if cls.far:
             return
         cls.far = True
-        master = rosgraph.Master(rospy.get_name())
-        wait_for(lambda: '/bot1/odom' in dict(master.getSystemState()[0]), START_S, 'the robot')
-        node = dict(master.getSystemState()[0])['/bot1/odom'][0]
-        uri = master.lookupNode(node)
-        put_in_front(SlowNode(uri, cls.delay), node, uri, '/bot1/odom', 'nav_msgs/Odometry')
+        move_away(cls.delay, '/bot1/odom', 'nav_msgs/Odometry', rospy.get_name())
 
     def far_robot(self):
         """Return the link of bot1, through the network."""

@@ -8,7 +8,6 @@ import time
 import unittest
 
 from geometry_msgs.msg import Twist
-import rosgraph
 import rospy
 import rostest
 
@@ -16,7 +15,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 
 from mhri.core.link_quality import link_share  # noqa: E402
 from mhri.ros.operator import Operator  # noqa: E402
-from support.relay import Delay, put_in_front, SlowNode  # noqa: E402
+from support.relay import Delay, move_away  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
 
@@ -30,7 +29,7 @@ class PaceTest(unittest.TestCase):
 
     def setUp(self):
         self.delay = Delay()
-        self.move_away()
+        move_away(self.delay, '/bot1/odom', 'nav_msgs/Odometry', rospy.get_name())
         self.operator = Operator(['panel'])
         self.operator.start()
         self.addCleanup(self.operator.close)
@@ -38,14 +37,6 @@ class PaceTest(unittest.TestCase):
         self.end = VelocityEnd('/bot1/cmd_vel')
         self.twist = rospy.Publisher('/robot_controller/twist', Twist, queue_size=1)
         wait_for(lambda: self.operator.view().ros == 'connected', START_S, 'the panel')
-
-    def move_away(self):
-        """Put what is heard of bot1 behind a network that can be slow."""
-        master = rosgraph.Master(rospy.get_name())
-        wait_for(lambda: '/bot1/odom' in dict(master.getSystemState()[0]), START_S, 'the robot')
-        node = dict(master.getSystemState()[0])['/bot1/odom'][0]
-        uri = master.lookupNode(node)
-        put_in_front(SlowNode(uri, self.delay), node, uri, '/bot1/odom', 'nav_msgs/Odometry')
 
     def told(self):
         """Give a command, as the mux does; return the speed that the robot is told last."""

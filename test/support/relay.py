@@ -13,6 +13,8 @@ import time
 
 import rosgraph
 
+from support.ros_system import wait_for
+
 
 class Relay:
     """Relays connections to one address.
@@ -173,3 +175,12 @@ def put_in_front(slow, node, uri, topic, kind):
     master = rosgraph.Master(node)
     master.unregisterPublisher(topic, uri)
     rosgraph.Master('/slow' + topic.replace('/', '_')).registerPublisher(topic, kind, slow.uri)
+
+
+def move_away(delay, topic, kind, caller, patience_s=60.0):
+    """Put the node that publishes a topic behind a network, once it is there."""
+    master = rosgraph.Master(caller)
+    wait_for(lambda: topic in dict(master.getSystemState()[0]), patience_s, 'the robot')
+    node = dict(master.getSystemState()[0])[topic][0]
+    uri = master.lookupNode(node)
+    put_in_front(SlowNode(uri, delay), node, uri, topic, kind)
