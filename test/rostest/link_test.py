@@ -128,6 +128,29 @@ class LinkTest(unittest.TestCase):
         command(0.0)
         drive_until(0.1, lambda: end.values()[-1] == (0.1, 0.0), 'it to be driven again')
 
+    def test_a_robot_whose_connection_was_dropped_is_held_until_it_is_heard(self):
+        """By the panel's own gate, too: where the link is cut again before there is a keeper."""
+        self.move_away()
+        bank = GateBank()
+        self.addCleanup(bank.close)
+        fleet = Fleet(robot_types()[0], bank, Worker('feeds').start(), lambda *_: None)
+        self.addCleanup(fleet.close)
+        fleet.want('bot1')
+        fleet.connect('bot1')
+        wait_for(lambda: fleet.view('bot1', True).link == 'live', START_S, 'the odometry')
+        gate, = bank.gates()
+        self.delay.stall()
+        wait_for(lambda: fleet.view('bot1', True).age_s > 0.2, 10.0, 'silence')
+        gate.drop_cut = lambda: True
+        fleet.hold_silent()
+        self.assertTrue(gate.rule.held)
+        gate.drop_cut = lambda: False
+        # What came before counts for nothing, however new it is.
+        fleet.hold_silent()
+        self.assertTrue(gate.rule.held)
+        self.delay.go_on()
+        wait_for(lambda: fleet.hold_silent() or not gate.rule.held, START_S, 'its release', 0.05)
+
     def guarded(self, name, *options):
         """Start a guard on a robot; return its process."""
         process = subprocess.Popen([sys.executable, GUARD, '_command:=cmd_vel', *options],
