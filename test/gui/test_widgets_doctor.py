@@ -62,3 +62,13 @@ def test_the_report_goes_to_the_clipboard(window, operator):
     operator.click(window.copy_button)
     copied = QGuiApplication.clipboard().text()
     assert 'rosnode cleanup' in copied and '1 faults, 1 warnings' in copied
+
+
+def test_where_there_is_little_room_the_worst_can_be_read_whole(window, operator):
+    """Beside three robots' windows it is as small as it says that it may be."""
+    window.resize(window.minimumSizeHint())
+    window.show_findings(FOUND, 1.2)
+    operator.settle()
+    for item in FOUND[:2]:
+        found = window.text.document().find(item.remedy)
+        assert window.text.viewport().rect().contains(window.text.cursorRect(found)), item.remedy

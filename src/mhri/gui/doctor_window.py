@@ -63,6 +63,10 @@ class DoctorWindow(QDialog):
         """Return a size at which a few findings can be read."""
         return QSize(720, 440)
 
+    def minimumSizeHint(self):  # noqa: N802
+        """Return the least at which findings and their remedies can be read."""
+        return super().minimumSizeHint().expandedTo(QSize(600, 340))
+
     def show_busy(self):
         """Say that the examination is under way; what was found before stays to be read."""
         self.summary.show_text('examining, 3 s at most ...', theme.MUTED)
