@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The panel as an rqt plugin: a thin adapter over :class:`mhri.panel_host.PanelHost`."""
+"""The panel as an rqt plugin: a thin adapter over :class:`mhri.presenters.panel_host.PanelHost`."""
 import json
 
 import rospy
 from rqt_gui_py.plugin import Plugin
 
-from mhri.panel_host import PanelHost
-from mhri.ros.operator import Operator
+from mhri.presenters.panel_host import PanelHost
+from mhri.ros.screen.backend import ScreenBackend
 
 _KEY = 'state'
 
@@ -21,7 +21,7 @@ class MhriPlugin(Plugin):
     def __init__(self, context):
         super().__init__(context)
         self.setObjectName('MhriPlugin')
-        self._host = PanelHost(Operator())
+        self._host = PanelHost(ScreenBackend())
         if context.serial_number() > 1:
             self._host.panel.setWindowTitle('{} ({})'.format(
                 self._host.panel.windowTitle(), context.serial_number()))

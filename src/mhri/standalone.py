@@ -10,8 +10,8 @@ from python_qt_binding.QtGui import QGuiApplication
 from python_qt_binding.QtWidgets import QApplication, QMainWindow
 import rospy
 
-from mhri.panel_host import PanelHost
-from mhri.ros.operator import Operator
+from mhri.presenters.panel_host import PanelHost
+from mhri.ros.screen.backend import ScreenBackend
 
 
 class PanelWindow(QMainWindow):
@@ -57,7 +57,7 @@ class Standalone:
         self._remember = remember
         self._settings = QSettings(settings_path, QSettings.IniFormat) if settings_path else \
             QSettings('mhri', 'panel')
-        self.host = PanelHost(Operator(argv))
+        self.host = PanelHost(ScreenBackend(argv))
         self.window = PanelWindow(self.host)
         self.window.closing.connect(self.close)
         self._bell = SignalBell(self.window.close)

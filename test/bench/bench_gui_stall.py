@@ -70,14 +70,14 @@ class Measurement:
     def __init__(self, system, seconds):
         import psutil
         from python_qt_binding.QtWidgets import QApplication
-        from mhri.demo import Hands
-        from mhri.panel_host import PanelHost
-        from mhri.ros.operator import Operator
+        from mhri.presenters.demo import Hands
+        from mhri.presenters.panel_host import PanelHost
+        from mhri.ros.screen.backend import ScreenBackend
         self.system = system
         self._seconds = seconds
         self._used = (psutil.Process().cpu_times, psutil.cpu_times)
         self._app = QApplication(['panel'])
-        self.host = PanelHost(Operator(['panel']))
+        self.host = PanelHost(ScreenBackend(['panel']))
         self.operator = self.host.operator
         self.host.panel.resize(1000, 600)
         self.host.panel.show()

@@ -22,8 +22,8 @@ import psutil
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.depth_codec import encode_depth  # noqa: E402
-from mhri.core.robot_types import Limits, RobotType  # noqa: E402
+from mhri.core.camera.depth_codec import encode_depth  # noqa: E402
+from mhri.core.robots.robot_types import Limits, RobotType  # noqa: E402
 from mhri.ros.resources import read_text, resource_path  # noqa: E402
 from mhri.sim.camera import Camera  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402

@@ -27,10 +27,10 @@ sys.path.insert(0, os.path.join(HERE, '..'))
 from support import speech  # noqa: E402
 from support.speech import Voice  # noqa: E402
 
-from mhri.core.sound import BLOCK_BYTES, BLOCK_S  # noqa: E402
-from mhri.core.speech import REST, SURE_OF_STOP, VoiceRules  # noqa: E402
-from mhri.core.speech_grammar import Grammar, STOP  # noqa: E402
-from mhri.core.speech_language import parse_language  # noqa: E402
+from mhri.core.voice.sound import BLOCK_BYTES, BLOCK_S  # noqa: E402
+from mhri.core.voice.speech import REST, SURE_OF_STOP, VoiceRules  # noqa: E402
+from mhri.core.voice.grammar import Grammar, STOP  # noqa: E402
+from mhri.core.voice.language import parse_language  # noqa: E402
 from mhri.inputs.listener import Began, Ended, Listener  # noqa: E402
 from mhri.inputs.recogniser import Dictionary, Recogniser, Tuning  # noqa: E402
 

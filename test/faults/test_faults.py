@@ -29,7 +29,7 @@ class Bench:
     def __init__(self):
         import rospy
         from mhri.msg import ControlMode
-        from mhri.ros.master_watch import MasterWatch
+        from mhri.ros.graph.master_watch import MasterWatch
         from support.robots import Stick, Witness
         self.system = System()
         self.system.screen()

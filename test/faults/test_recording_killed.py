@@ -65,8 +65,8 @@ def recordings(system):
 def place_of_check():
     """Return the middle of the check box "Save IMU Data" on the screen [px], or None."""
     from python_qt_binding.QtWidgets import QApplication
-    from mhri.gui import theme
-    from mhri.gui.switches import SwitchBox
+    from mhri.gui.screen import theme
+    from mhri.gui.screen.switches import SwitchBox
     from support.panel_session import pixels
     app = QApplication.instance() or QApplication(['looker'])
     box = SwitchBox('Save IMU Data')

@@ -14,8 +14,8 @@ PANEL = """
 import time
 import rospy
 from std_msgs.msg import Bool
-from mhri.ros.operator import Operator
-operator = Operator(['panel'])
+from mhri.ros.screen.backend import ScreenBackend
+operator = ScreenBackend(['panel'])
 operator.start()
 while operator.view().ros != 'no_master':
     time.sleep(0.02)

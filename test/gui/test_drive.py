@@ -13,7 +13,7 @@ from python_qt_binding.QtWidgets import QApplication, QWidget
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.demo import Grip  # noqa: E402
+from mhri.presenters.demo import Grip  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
 ROBOTS = ('bot1', 'bot2', 'bot3')
@@ -32,12 +32,12 @@ class Session:
 
     def __init__(self):
         import rospy
-        from mhri.demo import Hands
-        from mhri.panel_host import PanelHost
-        from mhri.ros.operator import Operator
+        from mhri.presenters.demo import Hands
+        from mhri.presenters.panel_host import PanelHost
+        from mhri.ros.screen.backend import ScreenBackend
         self.system = System()
         self.app = QApplication.instance() or QApplication(['panel'])
-        self.host = PanelHost(Operator(['panel']))
+        self.host = PanelHost(ScreenBackend(['panel']))
         self.host.panel.resize(1000, 600)
         self.host.panel.show()
         self.hands = Hands(self.host.panel)
@@ -264,7 +264,7 @@ def test_the_doctor_examines_beside_the_driving(session):
 
 
 def test_a_restarted_master_is_said_and_driving_goes_on_without_a_restart(session):
-    from mhri.ros.master_watch import MasterWatch
+    from mhri.ros.graph.master_watch import MasterWatch
     watch = MasterWatch().start()
     session.select('bot1')
     session.system.kill(session.system.master)

@@ -9,8 +9,8 @@ import pytest
 from python_qt_binding.QtCore import QPoint, QRect, QSettings
 from python_qt_binding.QtWidgets import QApplication, QWidget
 
-from mhri.panel_host import PanelHost
-from mhri.ros.operator import Operator
+from mhri.presenters.panel_host import PanelHost
+from mhri.ros.screen.backend import ScreenBackend
 from mhri.standalone import Standalone
 
 
@@ -21,7 +21,7 @@ def app():
 
 def used_host():
     """A host with something to remember."""
-    host = PanelHost(Operator())
+    host = PanelHost(ScreenBackend())
     for name in ('bot2', 'bot1', 'rover_7'):
         host._add(name)
     host._select(['bot1'])
@@ -45,14 +45,14 @@ def test_state_survives_as_json():
     first = used_host()
     state = json.loads(json.dumps(first.save_state()))
     first.close()
-    second = PanelHost(Operator())
+    second = PanelHost(ScreenBackend())
     second.restore_state(state)
     check_restored(second)
     second.close()
 
 
 def test_a_camera_knows_which_robot_is_in_front_of_it():
-    host = PanelHost(Operator())
+    host = PanelHost(ScreenBackend())
     for name in ('bot1', 'bot2', 'bot3'):
         host._add(name)
     for name in ('bot1', 'bot2'):
@@ -204,7 +204,7 @@ def plugin_class(monkeypatch):
     monkeypatch.setitem(sys.modules, 'rqt_gui_py', package)
     monkeypatch.setitem(sys.modules, 'rqt_gui_py.plugin', module)
     monkeypatch.delitem(sys.modules, 'mhri.mhri_plugin', raising=False)
-    monkeypatch.setattr(Operator, 'start', lambda self: None)
+    monkeypatch.setattr(ScreenBackend, 'start', lambda self: None)
     from mhri.mhri_plugin import MhriPlugin
     return MhriPlugin
 

@@ -7,7 +7,7 @@ import time
 import pytest
 from python_qt_binding.QtWidgets import QApplication
 
-from mhri.gui.key_state import KeyState
+from mhri.gui.driving.key_state import KeyState
 from support.ros_system import wait_for
 
 HELD_S = 4.0
@@ -77,5 +77,6 @@ def test_the_keys_that_are_down_are_known(down):
 
 
 def test_without_an_x_server_nothing_is_known(monkeypatch):
-    monkeypatch.setattr('mhri.gui.key_state.QGuiApplication.platformName', lambda: 'wayland')
+    monkeypatch.setattr('mhri.gui.driving.key_state.QGuiApplication.platformName',
+                        lambda: 'wayland')
     assert KeyState().down() is None

@@ -8,16 +8,16 @@ import sys
 import pytest
 from python_qt_binding.QtWidgets import QApplication, QDialog
 
-from mhri.core import views
-from mhri.core.views import RobotView
-from mhri.gui.window_maker import import_window, WindowMaker
-from mhri.gui.windows import TurtleBotWindow
-from mhri.panel_host import PanelHost
-from mhri.ros.operator import Operator
+from mhri.core.screen import views
+from mhri.core.screen.views import RobotView
+from mhri.gui.screen.window_maker import import_window, WindowMaker
+from mhri.gui.screen.windows import TurtleBotWindow
+from mhri.presenters.panel_host import PanelHost
+from mhri.ros.screen.backend import ScreenBackend
 
 MODULE = '''
-from mhri.gui.bot_window import BotWindow
-from mhri.gui.windows import TurtleBotWindow
+from mhri.gui.screen.bot_window import BotWindow
+from mhri.gui.screen.windows import TurtleBotWindow
 
 NOT_A_CLASS = 3
 
@@ -94,8 +94,9 @@ def test_a_window_of_a_lab(operator, ui_dir):
     ('lab_robot.no_such_module.X', "(ModuleNotFoundError: No module named 'lab_robot.no_such_mod"),
     ('no_such_package.window.X', "cannot be imported (ModuleNotFoundError: No module named 'no_su"),
     ('lab_robot.slip.Half', '(SyntaxError: '), ('lab_robot.quits.X', '(ZeroDivisionError: '),
-    ('lab_robot.window.NOT_A_CLASS', 'is no subclass of mhri.gui.bot_window.BotWindow'),
-    ('python_qt_binding.QtWidgets.QDialog', 'is no subclass of mhri.gui.bot_window.BotWindow'),
+    ('lab_robot.window.NOT_A_CLASS', 'is no subclass of mhri.gui.screen.bot_window.BotWindow'),
+    ('python_qt_binding.QtWidgets.QDialog',
+     'is no subclass of mhri.gui.screen.bot_window.BotWindow'),
     ('lab_robot.window.FailsToBuild', "cannot be opened (KeyError: 'wheel')"),
     ('lab_robot.window.WantsMore', 'cannot be opened (TypeError: '),
     ('.', 'cannot be imported'), ('..X', 'cannot be imported'),
@@ -125,7 +126,7 @@ def test_the_windows_of_mhri_need_no_trust(operator, ui_dir):
 @pytest.fixture
 def host(operator, monkeypatch):
     """The panel with robots whose type is a lab's; nothing is connected to anything."""
-    made = PanelHost(Operator())
+    made = PanelHost(ScreenBackend())
     made.keys = {}
     monkeypatch.setattr(made.operator, '_robot_view', lambda name, selected: RobotView(
         name, 'Lab', window=made.keys[name], link=views.LIVE, x_m=made.x_m))

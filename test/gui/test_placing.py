@@ -8,8 +8,8 @@ from python_qt_binding.QtCore import QRect, QSize
 from python_qt_binding.QtGui import QGuiApplication
 from python_qt_binding.QtWidgets import QMainWindow
 
-from mhri.gui.placing import free_place, place_window, Taken
-from mhri.gui.windows import TurtleBotWindow
+from mhri.gui.screen.placing import free_place, place_window, Taken
+from mhri.gui.screen.windows import TurtleBotWindow
 
 WANTED, LEAST = QSize(940, 564), QSize(622, 483)
 

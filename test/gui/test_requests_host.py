@@ -82,7 +82,7 @@ def test_record_selected_records_each_and_says_how_it_ended(session, ask):
 
 def test_commands_of_the_robot_itself_are_recorded_where_asked_for(session):
     """The robot's velocity topic cannot be subscribed; what the gate sent is written instead."""
-    from mhri.demo import Grip
+    from mhri.presenters.demo import Grip
     from rosbag import Bag
     name = 'bot1'
     session.host._select([name])

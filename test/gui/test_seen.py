@@ -207,7 +207,7 @@ def read_at(session, picture, reader, x, y):
 
 
 def test_the_distance_under_the_cursor_is_that_of_the_plan(session, lens, sight):
-    from mhri.gui import theme
+    from mhri.gui.screen import theme
     window = session.open('bot1')
     picture = session.picture(window, 'depth')
     reader = DistanceReader(theme.number_font(theme.larger(picture.font(), 1.1, bold=True)))
@@ -235,7 +235,7 @@ class YawChart:
     """Reads the odometry's curve of the yaw rate off the screen."""
 
     def __init__(self, session, graph):
-        from mhri.gui import theme
+        from mhri.gui.screen import theme
         self._session = session
         self._chart = graph.charts[1]
         dark = theme.is_dark(graph.palette())
@@ -261,7 +261,7 @@ class YawChart:
 
 
 def test_the_graph_moves_when_the_robot_turns(session):
-    from mhri.demo import Grip
+    from mhri.presenters.demo import Grip
     from support.robots import Witness
     witness = Witness('bot2')
     window = session.open('bot2')

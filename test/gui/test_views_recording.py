@@ -8,9 +8,9 @@ from python_qt_binding.QtCore import QEvent, Qt
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication, QLineEdit
 
-from mhri.core.recording import RecordingStatus
-from mhri.gui import theme
-from mhri.gui.recording_row import clock_text, recording_text, RecordingRow
+from mhri.core.recording.recording import RecordingStatus
+from mhri.gui.screen import theme
+from mhri.gui.recording.recording_row import clock_text, recording_text, RecordingRow
 
 PATH = '/home/op/.ros/bot1_2026-11-21-14-02-11.bag'
 

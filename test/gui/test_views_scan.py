@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from mhri.gui import theme
-from mhri.gui.scan_view import reach_for, scan_points, ScanView
+from mhri.gui.screen import theme
+from mhri.gui.sensors.scan_view import reach_for, scan_points, ScanView
 
 
 def scan_of(bearings_deg, range_m):

@@ -6,9 +6,9 @@ from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QAbstractButton
 
-from mhri.core import views
-from mhri.gui.drive_keys import DriveKeys
-from mhri.gui.windows import TurtleBotWindow
+from mhri.core.screen import views
+from mhri.gui.driving.drive_keys import DriveKeys
+from mhri.gui.screen.windows import TurtleBotWindow
 
 ALL = frozenset(('imu', 'rgb', 'depth', 'scan', 'record'))
 

@@ -7,11 +7,11 @@ import pytest
 from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtTest import QTest
 
-from mhri.core import views
-from mhri.core.views import ProofView, RobotView
-from mhri.gui import theme
-from mhri.gui.bot_window import BotWindow
-from mhri.gui.windows import TurtleBotWindow, window_class
+from mhri.core.screen import views
+from mhri.core.screen.views import ProofView, RobotView
+from mhri.gui.screen import theme
+from mhri.gui.screen.bot_window import BotWindow
+from mhri.gui.screen.windows import TurtleBotWindow, window_class
 
 VIEW = RobotView('bot1', 'TurtleBot2', link=views.LIVE, age_s=0.012, linear_mps=0.31,
                  angular_rad_s=0.2, heading_rad=0.82, x_m=1.25, y_m=-0.4, battery=0.82,

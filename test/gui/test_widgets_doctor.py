@@ -4,8 +4,8 @@
 import pytest
 from python_qt_binding.QtGui import QGuiApplication
 
-from mhri.core.doctor_facts import FAULT, FINE, Finding, WARNING
-from mhri.gui.doctor_window import DoctorWindow
+from mhri.core.doctor.facts import FAULT, FINE, Finding, WARNING
+from mhri.gui.doctor.doctor_window import DoctorWindow
 
 FOUND = [
     Finding(FAULT, 'dead_node', '/bot1/base', 'is registered, but refuses connections',

@@ -6,8 +6,8 @@ from python_qt_binding.QtCore import QEvent, Qt
 from python_qt_binding.QtGui import QKeyEvent
 from python_qt_binding.QtWidgets import QApplication, QLineEdit, QSpinBox, QTextEdit, QWidget
 
-from mhri.gui.drive_keys import DriveKeys, mark_drive_area
-from mhri.gui.windows import window_class
+from mhri.gui.driving.drive_keys import DriveKeys, mark_drive_area
+from mhri.gui.screen.windows import window_class
 
 W, A, S, D, UP, LEFT, RIGHT, DOWN, SPACE, ONE, NINE, ZERO = (
     25, 38, 39, 40, 111, 113, 114, 116, 65, 10, 18, 19)
@@ -62,7 +62,7 @@ def test_auto_repeat_is_not_a_press_nor_a_release(panel, operator, heard):
 
 
 class Keyboard:
-    """What a :class:`mhri.gui.key_state.KeyState` knows."""
+    """What a :class:`mhri.gui.driving.key_state.KeyState` knows."""
 
     def __init__(self, *codes):
         self.codes = set(codes)

@@ -7,12 +7,12 @@ import pytest
 from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtTest import QTest
 
-from mhri.core import views
-from mhri.core.views import ProofView, RobotView
-from mhri.gui import theme
-from mhri.gui.labels import BatteryLine
-from mhri.gui.robot_list import RobotList
-from mhri.gui.robot_row import DRIVING, MOVING, RobotRow
+from mhri.core.screen import views
+from mhri.core.screen.views import ProofView, RobotView
+from mhri.gui.screen import theme
+from mhri.gui.screen.labels import BatteryLine
+from mhri.gui.robots.robot_list import RobotList
+from mhri.gui.robots.robot_row import DRIVING, MOVING, RobotRow
 
 LIVE = RobotView('bot1', 'TurtleBot2', link=views.LIVE, age_s=0.012, linear_mps=0.31,
                  angular_rad_s=-0.2, battery=0.82)

@@ -5,10 +5,10 @@ import math
 
 import pytest
 
-from mhri.core.mocap import Drift, Pose
-from mhri.core.views import StateView
-from mhri.gui import theme
-from mhri.gui.state_line import ages_text, capture_text, StateLine
+from mhri.core.robots.mocap import Drift, Pose
+from mhri.core.screen.views import StateView
+from mhri.gui.screen import theme
+from mhri.gui.screen.state_line import ages_text, capture_text, StateLine
 
 
 @pytest.mark.parametrize('ages, expected', [

@@ -5,9 +5,9 @@ import math
 
 import pytest
 
-from mhri.core import views
-from mhri.gui import words
-from mhri.gui.pending import Pace, Pending
+from mhri.core.screen import views
+from mhri.gui.screen import words
+from mhri.gui.screen.pending import Pace, Pending
 
 NAN = float('nan')
 

@@ -17,9 +17,9 @@ import rostest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.discovery import IgnoreList, parse_ignore_list  # noqa: E402
-from mhri.ros.graph import knock, look_for_robots  # noqa: E402
-from mhri.ros.master_api import MasterApi, MasterError  # noqa: E402
+from mhri.core.robots.discovery import IgnoreList, parse_ignore_list  # noqa: E402
+from mhri.ros.graph.look import knock, look_for_robots  # noqa: E402
+from mhri.ros.graph.master_api import MasterApi, MasterError  # noqa: E402
 from mhri.ros.resources import read_resource  # noqa: E402
 from support.ros_system import free_port, wait_for  # noqa: E402
 

@@ -19,8 +19,8 @@ from std_msgs.msg import Bool
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
 from mhri.msg import RobotSelect  # noqa: E402
-from mhri.ros.gate import Gate  # noqa: E402
-from mhri.ros.gates import GateBank  # noqa: E402
+from mhri.ros.driving.gate import Gate  # noqa: E402
+from mhri.ros.driving.gates import GateBank  # noqa: E402
 from mhri.ros.resources import robot_types  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402

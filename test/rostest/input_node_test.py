@@ -15,7 +15,7 @@ import rospy
 import rostest
 
 from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader, Reading
-from mhri.ros.input_node import InputNode
+from mhri.ros.devices.input_node import InputNode
 from mhri.srv import SetSuspended
 
 NUMBERS = itertools.count()

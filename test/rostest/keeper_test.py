@@ -19,11 +19,11 @@ from std_msgs.msg import Bool
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.robot_types import Limits  # noqa: E402
+from mhri.core.robots.robot_types import Limits  # noqa: E402
 from mhri.msg import RobotSelect  # noqa: E402
-from mhri.ros.gate import Gate  # noqa: E402
-from mhri.ros.gates import GateBank  # noqa: E402
-from mhri.ros.keeper import KeeperLink  # noqa: E402
+from mhri.ros.driving.gate import Gate  # noqa: E402
+from mhri.ros.driving.gates import GateBank  # noqa: E402
+from mhri.ros.driving.keeper import KeeperLink  # noqa: E402
 from mhri.ros.resources import robot_types  # noqa: E402
 from support.deaf_robot import DeafRobot  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
@@ -362,9 +362,9 @@ class KeeperTest(unittest.TestCase):
 KILLED_PANEL = """
 import sys, time
 import rospy
-from mhri.ros.gate import Gate
-from mhri.ros.gates import GateBank
-from mhri.ros.keeper import KeeperLink
+from mhri.ros.driving.gate import Gate
+from mhri.ros.driving.gates import GateBank
+from mhri.ros.driving.keeper import KeeperLink
 from mhri.ros.resources import robot_types
 rospy.init_node('killed_panel', disable_signals=True)
 bank = GateBank()

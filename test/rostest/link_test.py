@@ -14,14 +14,14 @@ import rostest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.limits import Velocity  # noqa: E402
-from mhri.core.robot_types import Limits  # noqa: E402
-from mhri.ros.bot_feeds import BotFeeds  # noqa: E402
-from mhri.ros.fleet import Fleet  # noqa: E402
-from mhri.ros.gate import Gate  # noqa: E402
-from mhri.ros.gates import GateBank  # noqa: E402
+from mhri.core.driving.limits import Velocity  # noqa: E402
+from mhri.core.robots.robot_types import Limits  # noqa: E402
+from mhri.ros.robots.bot_feeds import BotFeeds  # noqa: E402
+from mhri.ros.robots.fleet import Fleet  # noqa: E402
+from mhri.ros.driving.gate import Gate  # noqa: E402
+from mhri.ros.driving.gates import GateBank  # noqa: E402
 from mhri.ros.resources import robot_types  # noqa: E402
-from mhri.ros.robot_link import RobotLink  # noqa: E402
+from mhri.ros.robots.robot_link import RobotLink  # noqa: E402
 from mhri.ros.worker import Worker  # noqa: E402
 from support.relay import Delay, move_away, put_in_front, SlowNode  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402

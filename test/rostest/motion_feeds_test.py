@@ -17,8 +17,8 @@ from sensor_msgs.msg import Imu, LaserScan
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.ros.imu_feed import ImuFeed  # noqa: E402
-from mhri.ros.scan_feed import ScanFeed  # noqa: E402
+from mhri.ros.sensors.imu_feed import ImuFeed  # noqa: E402
+from mhri.ros.sensors.scan_feed import ScanFeed  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 TOGGLES = 1000

@@ -13,8 +13,8 @@ import rostest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.link_quality import link_share  # noqa: E402
-from mhri.ros.operator import Operator  # noqa: E402
+from mhri.core.robots.link_quality import link_share  # noqa: E402
+from mhri.ros.screen.backend import ScreenBackend  # noqa: E402
 from support.relay import Delay, move_away  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
@@ -30,7 +30,7 @@ class PaceTest(unittest.TestCase):
     def setUp(self):
         self.delay = Delay()
         move_away(self.delay, '/bot1/odom', 'nav_msgs/Odometry', rospy.get_name())
-        self.operator = Operator(['panel'])
+        self.operator = ScreenBackend(['panel'])
         self.operator.start()
         self.addCleanup(self.operator.close)
         self.operator.add('bot1')

@@ -26,9 +26,9 @@ except ImportError:
     sys.path.insert(0, os.path.join(HERE, '..', 'support', 'messages'))
 
 from mhri.msg import RobotSelect  # noqa: E402
-from mhri.ros.fleet import Fleet  # noqa: E402
-from mhri.ros.gates import GateBank  # noqa: E402
-from mhri.ros.graph import look_for_robots, shipped_ignore_list  # noqa: E402
+from mhri.ros.robots.fleet import Fleet  # noqa: E402
+from mhri.ros.driving.gates import GateBank  # noqa: E402
+from mhri.ros.graph.look import look_for_robots, shipped_ignore_list  # noqa: E402
 from mhri.ros.resources import robot_types  # noqa: E402
 from mhri.ros.worker import Worker  # noqa: E402
 from support.deaf_robot import DeafRobot  # noqa: E402

@@ -16,8 +16,8 @@ from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.depth_codec import decode_depth  # noqa: E402
-from mhri.core.robot_types import Limits, RobotType  # noqa: E402
+from mhri.core.camera.depth_codec import decode_depth  # noqa: E402
+from mhri.core.robots.robot_types import Limits, RobotType  # noqa: E402
 from mhri.sim.camera import Camera  # noqa: E402
 from mhri.sim.camera_node import SimCamera  # noqa: E402
 from mhri.sim.plan import Landmark, Plan  # noqa: E402

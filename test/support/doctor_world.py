@@ -4,10 +4,10 @@
 from dataclasses import replace
 import os
 
-from mhri.core.discovery import IgnoreList
-from mhri.core.doctor import diagnose
-from mhri.core.doctor_facts import Computer, Connection, Facts, FINE, Graph, Master, Node, Stream
-from mhri.core.robot_types import load_robot_types
+from mhri.core.robots.discovery import IgnoreList
+from mhri.core.doctor.judgement import diagnose
+from mhri.core.doctor.facts import Computer, Connection, Facts, FINE, Graph, Master, Node, Stream
+from mhri.core.robots.robot_types import load_robot_types
 
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'robots')
 TYPES = load_robot_types([(name, open(os.path.join(FOLDER, name), encoding='utf-8').read())

@@ -30,9 +30,9 @@ class PanelSession:
             raise
 
     def _start(self, launches, robots):
-        from mhri.demo import Hands
-        from mhri.panel_host import PanelHost
-        from mhri.ros.operator import Operator
+        from mhri.presenters.demo import Hands
+        from mhri.presenters.panel_host import PanelHost
+        from mhri.ros.screen.backend import ScreenBackend
         # Before there is an application: it takes the screen that is named then.
         self.system.screen()
         self.system.start_master()
@@ -40,7 +40,7 @@ class PanelSession:
         for words in launches:
             self.system.launch(*words)
         self.app = QApplication.instance() or QApplication(['panel'])
-        self.host = PanelHost(Operator(['panel']))
+        self.host = PanelHost(ScreenBackend(['panel']))
         self.operator = self.host.operator
         self.host.panel.resize(1000, 600)
         self.host.panel.show()

@@ -5,7 +5,7 @@ import glob
 from pathlib import Path
 import time
 
-from mhri.core.pedals import DRIVE, KEYS, load_pedal_profiles
+from mhri.core.devices.pedals import DRIVE, KEYS, load_pedal_profiles
 from mhri.inputs.pedal import PedalReader
 from mhri.inputs.pedal_keys import PedalKeys
 from mhri.inputs.reader import Reading

@@ -5,11 +5,11 @@ from collections import Counter
 
 import pytest
 
-from mhri.core.arbiter import (
+from mhri.core.driving.arbiter import (
     Arbiter, DRIVING, READY, STOPPED, WAIT_NEUTRAL)
-from mhri.core.limits import Velocity, ZERO
-from mhri.core.profile import Axis, JoyRefused, Profile
-from mhri.core.sources import MuxConfig, Source
+from mhri.core.driving.limits import Velocity, ZERO
+from mhri.core.driving.profile import Axis, JoyRefused, Profile
+from mhri.core.driving.sources import MuxConfig, Source
 
 FORWARD = (0.0, 1.0)
 NEUTRAL = (0.0, 0.0)

@@ -7,10 +7,10 @@ import random
 import pytest
 from test_arbiter import DRIVE, FORWARD, HELD, make_config, NEUTRAL, RELEASED, Rig, rig_in
 
-from mhri.core.arbiter import (
+from mhri.core.driving.arbiter import (
     Arbiter, DRIVING, ENABLING_TIMEOUT_S, READY, STOPPED, WAIT_NEUTRAL)
-from mhri.core.limits import Velocity, ZERO
-from mhri.core.profile import Axis, JoyRefused, Profile
+from mhri.core.driving.limits import Velocity, ZERO
+from mhri.core.driving.profile import Axis, JoyRefused, Profile
 
 
 def test_stop_all_is_released_only_with_the_active_source_at_neutral():

@@ -9,7 +9,8 @@ import pytest
 import rosbag
 from std_msgs.msg import Int32, String
 
-from mhri.core.bag_format import Chunk, Connection, file_header, FrameSplitter, VERSION_LINE
+from mhri.core.recording.bag_format import (
+    Chunk, Connection, file_header, FrameSplitter, VERSION_LINE)
 
 S = 10 ** 9
 

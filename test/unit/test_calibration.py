@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-from mhri.core.calibration import Calibration, DONE, FORWARD, LEFT, REST
-from mhri.core.profile import parse_profile
+from mhri.core.devices.calibration import Calibration, DONE, FORWARD, LEFT, REST
+from mhri.core.driving.profile import parse_profile
 from mhri.inputs.pad_calibration import name_for
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))

@@ -9,11 +9,11 @@ import cv2
 import numpy as np
 import pytest
 
-from mhri.core.depth_codec import decode_depth, encode_depth, parse_format
-from mhri.core.depth_colour import DepthColour, colour_at
-from mhri.core.frames import FrameError
-from mhri.core.picture import RawImage
-from mhri.core.raw_image import decode_raw_depth
+from mhri.core.camera.depth_codec import decode_depth, encode_depth, parse_format
+from mhri.core.camera.depth_colour import DepthColour, colour_at
+from mhri.core.camera.images import FrameError
+from mhri.core.camera.image_message import RawImage
+from mhri.core.camera.raw_image import decode_raw_depth
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 

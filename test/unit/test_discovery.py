@@ -7,9 +7,9 @@ import os
 import pytest
 
 from mhri.core.config import ConfigError
-from mhri.core.discovery import (
+from mhri.core.robots.discovery import (
     Candidate, find_candidates, IgnoreList, nodes_of, parameters_of, parse_ignore_list, TWIST)
-from mhri.core.robot_types import load_robot_types, Seen
+from mhri.core.robots.robot_types import load_robot_types, Seen
 
 IGNORE = IgnoreList(('/rosout', '/*/rosout', '/bot*/helper'), ('mux', 'rqt_*'))
 RESOURCE = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'discovery.yaml')

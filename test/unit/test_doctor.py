@@ -7,10 +7,10 @@ import sys
 
 import pytest
 
-from mhri.core.doctor import as_dict, as_lines, diagnose, exit_status, odd_ones
-from mhri.core.doctor_facts import (
+from mhri.core.doctor.judgement import as_dict, as_lines, diagnose, exit_status, odd_ones
+from mhri.core.doctor.facts import (
     Connection, FAULT, FINE, REFUSED, SILENT, STRANGER, Stream, UNRESOLVED, WARNING)
-from mhri.core.doctor_robots import clock_offset, robots_of
+from mhri.core.doctor.robots import clock_offset, robots_of
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 

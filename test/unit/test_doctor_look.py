@@ -5,10 +5,10 @@ import time
 
 import pytest
 
-from mhri.core.doctor_facts import Connection, Facts, Node
-from mhri.ros import doctor
-from mhri.ros.doctor_probe import _connections
-from mhri.ros.master_api import MasterError
+from mhri.core.doctor.facts import Connection, Facts, Node
+from mhri.ros.doctor import examination as doctor
+from mhri.ros.doctor.probe import _connections
+from mhri.ros.graph.master_api import MasterError
 
 TO = 'TCPROS connection on port 41374 to [{} on socket 6]'
 

@@ -8,8 +8,8 @@ import time
 
 import pytest
 
-from mhri.core.doctor_facts import Computer
-from mhri.ros.doctor_masters import look_elsewhere, MOST, parse_uri, uris_in_use
+from mhri.core.doctor.facts import Computer
+from mhri.ros.doctor.masters import look_elsewhere, MOST, parse_uri, uris_in_use
 from mhri.ros.started import BELIEVED_S, started_s
 
 COMPUTER = Computer(name='desk', addresses=('127.0.0.1', '192.0.2.1'),
@@ -45,7 +45,7 @@ def asked(monkeypatch, uri, uris):
     def api(_, __, other):
         calls.append(other)
         raise ValueError('none there')
-    monkeypatch.setattr('mhri.ros.doctor_masters.MasterApi', api)
+    monkeypatch.setattr('mhri.ros.doctor.masters.MasterApi', api)
     assert look_elsewhere(parse_uri(uri), COMPUTER, '/x', uris=uris) == ()
     return sorted(calls)
 
@@ -78,9 +78,9 @@ def master(muxes):
 
 def test_those_with_a_mux_that_runs_come_first(monkeypatch):
     one, two, three = (URI.format(port) for port in (1, 2, 3))
-    monkeypatch.setattr('mhri.ros.doctor_masters.MasterApi',
+    monkeypatch.setattr('mhri.ros.doctor.masters.MasterApi',
                         master({two: ['dead'], three: ['/mux']}))
-    monkeypatch.setattr('mhri.ros.doctor_masters.knock', lambda uris, _: {'/mux'} & set(uris))
+    monkeypatch.setattr('mhri.ros.doctor.masters.knock', lambda uris, _: {'/mux'} & set(uris))
     wrong = parse_uri(URI.format(11311))
     assert look_elsewhere(wrong, COMPUTER, '/x', uris=[one, two, three]) == (three, one, two)
     assert look_elsewhere(wrong, COMPUTER, '/x', True, [one, two, three]) == (three,)

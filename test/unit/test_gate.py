@@ -5,9 +5,9 @@ import random
 
 import pytest
 
-from mhri.core.gate import common_limits, GateRule, JOIN_S, STALE_S
-from mhri.core.limits import Velocity, ZERO
-from mhri.core.robot_types import Limits
+from mhri.core.driving.gate import common_limits, GateRule, JOIN_S, STALE_S
+from mhri.core.driving.limits import Velocity, ZERO
+from mhri.core.robots.robot_types import Limits
 
 LIMITS = Limits(0.5, 1.0)
 GO = Velocity(0.4, 0.2)

@@ -19,8 +19,8 @@ CLOCKS_AND_IO = {'threading', 'time', 'asyncio', 'concurrent', 'multiprocessing'
                  'http', 'urllib', 'xmlrpc', 'select', 'signal', 'random', 'sys', 'logging'}
 MESSAGES = {'mhri.msg', 'mhri.srv', 'cv_bridge', 'genpy', 'rosbag'}
 # The files that join ROS and Qt; every other file keeps to its room.
-JOINING = {'doctor_host.py', 'mhri_plugin.py', 'standalone.py', 'panel_host.py',
-           'requests_host.py', 'window_host.py'}
+JOINING = {'mhri_plugin.py', 'standalone.py'}
+JOINING_ROOMS = {'nodes', 'presenters'}
 # What Python says of itself from 3.10 on; before that, what core/ may want.
 STDLIB = getattr(sys, 'stdlib_module_names', frozenset(
     CLOCKS_AND_IO | {'array', 'bisect', 'collections', 'copy', 'dataclasses', 'datetime', 'enum',
@@ -74,16 +74,17 @@ def sim_node_may(module):
 
 
 # Files whose rule is not that of the folder they are in.
-LODGERS = {'sim/node.py': sim_node_may, 'sim/camera_node.py': sim_node_may, 'demo.py': gui_may}
+LODGERS = {'sim/node.py': sim_node_may, 'sim/camera_node.py': sim_node_may,
+           'presenters/demo.py': gui_may}
 ROOMS = {'core': core_may, 'inputs': inputs_may, 'ros': ros_may, 'gui': gui_may, 'sim': sim_may}
 
 
 def rule_for(relative):
     """Return the rule of imports for a file (path below src/mhri); None for the joining files."""
-    room = relative.parts[0]
-    if relative.as_posix() in JOINING or room == 'nodes':
-        return None
-    return LODGERS.get(relative.as_posix()) or ROOMS.get(room, core_may)
+    room, path = relative.parts[0], relative.as_posix()
+    if path in LODGERS:
+        return LODGERS[path]
+    return None if path in JOINING or room in JOINING_ROOMS else ROOMS.get(room, core_may)
 
 
 def imports(tree):
@@ -272,16 +273,19 @@ GOOD = '{}x\n{}\n"""Text."""\n'.format(*SPDX)
     ('inputs/a.py', 'from mhri.ros.convert import x\n', 'may not import mhri.ros.convert'),
     ('ros/a.py', 'from python_qt_binding.QtCore import QTimer\n', 'python_qt_binding.QtCore'),
     ('ros/a.py', 'import pyqtgraph\n', 'may not import pyqtgraph'),
-    ('ros/a.py', 'from mhri.gui.panel import Panel\n', 'may not import mhri.gui.panel'),
+    ('ros/a.py',
+     'from mhri.gui.screen.panel import Panel\n', 'may not import mhri.gui.screen.panel'),
     ('gui/a.py', 'import rospy\n', 'may not import rospy'),
     ('gui/a.py', 'from geometry_msgs.msg import Twist\n', 'may not import geometry_msgs.msg'),
-    ('gui/a.py', 'from mhri.msg import ControlMode\n', 'may not import mhri.msg'),
-    ('gui/a.py', 'from mhri.ros.fleet import Fleet\n', 'may not import mhri.ros.fleet'),
+    ('gui/a.py',
+     'from mhri.msg import ControlMode\n', 'may not import mhri.msg'),
+    ('gui/a.py', 'from mhri.ros.robots.fleet import Fleet\n',
+     'may not import mhri.ros.robots.fleet'),
     ('sim/body.py', 'import rospy\n', 'may not import rospy'),
     ('sim/body.py', 'from std_msgs.msg import Bool\n', 'may not import std_msgs.msg'),
     ('sim/node.py', 'from python_qt_binding import QtCore\n', 'may not import python_qt_binding'),
     ('sim/body.py', 'from mhri.gui import theme\n', 'may not import mhri.gui.theme'),
-    ('demo.py', 'import rospy\n', 'may not import rospy'),
+    ('presenters/demo.py', 'import rospy\n', 'may not import rospy'),
     ('other.py', 'import rospy\n', 'may not import rospy'),
     ('core/a.py', '#\n' * 398, '401 lines, more than 400'),
     ('core/a.py', 'def f():\n' + '    f()\n' * 60, 'f() has 61 lines'),
@@ -303,15 +307,16 @@ def test_wrong_sample_is_refused(relative, text, said):
 
 @pytest.mark.parametrize('relative, text', [
     ('core/a.py', 'import math\nimport numpy as np\nimport cv2, yaml\nfrom mhri.core import b\n'),
-    ('inputs/a.py', 'import pygame\nimport threading\nfrom mhri.core.profile import Profile\n'),
+    ('inputs/a.py', 'import pygame\nimport threading\n'
+     'from mhri.core.driving.profile import Profile\n'),
     ('ros/a.py', 'import rospy, threading\nfrom nav_msgs.msg import Odometry\n'
      'from mhri.msg import RobotSelect\nfrom mhri.core import link\n'),
     ('gui/a.py', 'import time\nimport pyqtgraph\nfrom python_qt_binding.QtCore import Qt\n'
-     'from mhri.core.views import LIVE\nfrom mhri.gui import theme\n'),
+     'from mhri.core.screen.views import LIVE\nfrom mhri.gui import theme\n'),
     ('sim/body.py', 'import random\nimport numpy\nfrom mhri.core import limits\n'),
     ('sim/node.py', 'import rospy\nfrom sensor_msgs.msg import Imu\nfrom mhri.sim.body import B\n'
      'from mhri.ros import convert\n'),
-    ('nodes/panel.py', 'import rospy\nfrom mhri.gui.panel import Panel\n'),
+    ('nodes/panel.py', 'import rospy\nfrom mhri.gui.screen.panel import Panel\n'),
     ('mhri_plugin.py', 'import rospy\nfrom rqt_gui_py.plugin import Plugin\n'),
     ('core/a.py', 'def f(x):\n' + '    if x:\n        x()\n' * 9),
     ('core/a.py', 'def f():\n' + '    f()\n' * 59),

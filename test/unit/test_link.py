@@ -3,8 +3,8 @@
 """The link of a robot: how it moves, whether it is heard, and in which words."""
 import pytest
 
-from mhri.core.link import link_note, link_state, Motion
-from mhri.core.views import GONE, LIVE, SILENT, WAITING
+from mhri.core.robots.link import link_note, link_state, Motion
+from mhri.core.screen.views import GONE, LIVE, SILENT, WAITING
 
 
 @pytest.mark.parametrize('linear, angular, still', [

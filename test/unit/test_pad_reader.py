@@ -6,8 +6,8 @@ import types
 
 import pytest
 
-from mhri.core.pads import PadInfo
-from mhri.core.profile import parse_profile
+from mhri.core.devices.pads import PadInfo
+from mhri.core.driving.profile import parse_profile
 from mhri.inputs import sdl
 from mhri.inputs.pad import PadReader
 from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reading

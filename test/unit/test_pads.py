@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from mhri.core.pads import (
+from mhri.core.devices.pads import (
     choose_pad, choose_profile, describe, is_guid, load_profiles, PadInfo, same_guid)
 
 PADS = Path(__file__).resolve().parents[2] / 'resource' / 'pads'

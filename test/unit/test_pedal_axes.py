@@ -9,8 +9,8 @@ import sys
 
 import pytest
 
-from mhri.core.pads import PadInfo
-from mhri.core.pedals import AXES, DRIVE, ENABLE
+from mhri.core.devices.pads import PadInfo
+from mhri.core.devices.pedals import AXES, DRIVE, ENABLE
 from mhri.inputs.pedal import PedalReader
 from mhri.inputs.pedal_axes import PedalAxes
 from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reading

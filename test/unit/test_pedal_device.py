@@ -9,7 +9,7 @@ import time
 from evdev import ecodes
 import pytest
 
-from mhri.core.pedals import load_pedal_profiles
+from mhri.core.devices.pedals import load_pedal_profiles
 from mhri.inputs.event_nodes import find_switches
 from mhri.inputs.reader import DeviceAbsent, DeviceLost
 

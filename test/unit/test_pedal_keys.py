@@ -8,7 +8,7 @@ import time
 from evdev import ecodes
 import pytest
 
-from mhri.core.pedals import ENABLE
+from mhri.core.devices.pedals import ENABLE
 from mhri.inputs.reader import Reading
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))

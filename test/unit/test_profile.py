@@ -6,7 +6,7 @@ import math
 import pytest
 
 from mhri.core.config import ConfigError
-from mhri.core.profile import (
+from mhri.core.driving.profile import (
     ACTIONS, Axis, JoyRefused, Match, parse_profile, Profile, Stick)
 
 PAD = Profile('pad', Axis(1, -1.0), Axis(0, -1.0), dead_zone=0.1, neutral=0.15, dead_man=2)

@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip('rospy')
 
-from mhri.ros.prompt import CUT_S, Flow, PromptConnection  # noqa: E402
+from mhri.ros.graph.prompt import CUT_S, Flow, PromptConnection  # noqa: E402
 from rospy.exceptions import TransportTerminated  # noqa: E402
 
 

@@ -5,12 +5,12 @@ from datetime import datetime
 
 import pytest
 
-from mhri.core.recording import (
+from mhri.core.recording.recording import (
     CHOICES, default_name, expand, fallback_note, MB, numbered, PathRefused, RateMeter,
     read_fallback, RecordingLimits, RecordingStatus, ros_home, size_text, split_path, system_folder,
     topics_of,
     warning_of)
-from mhri.core.robot_types import parse_robot_type
+from mhri.core.robots.robot_types import parse_robot_type
 
 ENV = {'HOME': '/home/op', 'ROS_HOME': '/ros', 'LAB': '/data/lab 1', 'EMPTY': ''}
 FOLDERS = {'/data', '/data/old.bag', '/ros', '/home/op', '/home/op/bags', '/'}

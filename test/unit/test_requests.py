@@ -3,8 +3,8 @@
 """Requests to the panel: every action from every kind of selection."""
 import pytest
 
-from mhri.core import requests
-from mhri.core.requests import check_request, RequestRefused, selection_after
+from mhri.core.screen import requests
+from mhri.core.screen.requests import check_request, RequestRefused, selection_after
 
 ROBOTS = ('bot1', 'bot2', 'bot3')
 AFTER = [

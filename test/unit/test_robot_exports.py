@@ -6,7 +6,7 @@ import os
 import pytest
 import rospkg
 
-from mhri.core.robot_types import load_robot_types
+from mhri.core.robots.robot_types import load_robot_types
 from mhri.ros.resources import exported_types
 
 TEMPLATE = 'name: {}\nlimits: {{linear_mps: 0.3, angular_rad_s: 1.0}}\ncommand: cmd_vel\n'

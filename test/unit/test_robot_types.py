@@ -7,7 +7,7 @@ import os
 import pytest
 
 from mhri.core.config import ConfigError
-from mhri.core.robot_types import (
+from mhri.core.robots.robot_types import (
     Export, Limits, load_robot_types, parse_robot_type, resolve_robot_type, Seen)
 
 RESOURCE = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'robots')

@@ -8,7 +8,7 @@ import wave
 import pyaudio  # noqa: F401 (what the microphone needs; without it these tests are worth nothing)
 import pytest
 
-from mhri.core.sound import BLOCK_BYTES, BLOCK_S, RATE_HZ
+from mhri.core.voice.sound import BLOCK_BYTES, BLOCK_S, RATE_HZ
 from mhri.inputs.audio import Microphone, open_source, RawStream, WavFile
 from mhri.inputs.reader import DeviceAbsent, DeviceLost
 

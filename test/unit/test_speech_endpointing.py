@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mhri.core.endpointing import (
+from mhri.core.voice.endpointing import (
     BEGIN, END, Endpointer, GO_ON, LEAD_S, LONGEST_S, loudness_db, PAUSE_S, QUIET)
-from mhri.core.sound import BLOCK_BYTES, BLOCK_S
+from mhri.core.voice.sound import BLOCK_BYTES, BLOCK_S
 from mhri.inputs.listener import Began, Ended, Listener, Spotted
 from mhri.inputs.recogniser import compare, Fit, Hypothesis, Tuning
 

@@ -3,7 +3,7 @@
 """How robots are called: names into phrases, numbers into words, and names that cannot be used."""
 import pytest
 
-from mhri.core.speech_names import call_robots, MOST_ROBOTS, number_words, spoken_names
+from mhri.core.voice.names import call_robots, MOST_ROBOTS, number_words, spoken_names
 
 WORDS = set('bot rover turtle turtlebot robot big blue t b r x one tb left stop'.split())
 

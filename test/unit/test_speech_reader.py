@@ -10,9 +10,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from mhri.core.speech import STOP_RECORDING_S
-from mhri.core.speech_grammar import STOP
-from mhri.core.speech_language import parse_language
+from mhri.core.voice.speech import STOP_RECORDING_S
+from mhri.core.voice.grammar import STOP
+from mhri.core.voice.language import parse_language
 from mhri.inputs import listening
 from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reading
 from mhri.inputs.voice import VoiceReader

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from mhri.core.speech import REST, STOP_RECORDING_S, SURE, SURE_OF_STOP, VoiceRules
-from mhri.core.speech_grammar import Grammar, STOP
-from mhri.core.speech_language import parse_language
+from mhri.core.voice.speech import REST, STOP_RECORDING_S, SURE, SURE_OF_STOP, VoiceRules
+from mhri.core.voice.grammar import Grammar, STOP
+from mhri.core.voice.language import parse_language
 
 PATH = Path(__file__).resolve().parents[2] / 'resource' / 'voice' / 'english.yaml'
 LANGUAGE = parse_language(PATH.read_text(), str(PATH))

@@ -6,8 +6,8 @@ from itertools import product
 
 import pytest
 
-from mhri.core.status import ATTENTION, CALM, status_line, STOPPED
-from mhri.core.views import (
+from mhri.core.screen.status import ATTENTION, CALM, status_line, STOPPED
+from mhri.core.screen.views import (
     GONE, LINK_STATES, LIVE, PanelView, PROOF_NOT_CONFIRMED, PROOF_STOPPED, ProofView,
     ROS_CONNECTED, ROS_NO_MASTER, ROS_STARTING, RobotView, SILENT)
 

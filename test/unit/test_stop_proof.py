@@ -3,9 +3,9 @@
 """The proof of a stop: every transition, and no proof that is none."""
 import pytest
 
-from mhri.core.link import Motion
-from mhri.core.stop_proof import HEARING_S, PATIENCE_S, StopProof
-from mhri.core.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED, PROOF_WAITING
+from mhri.core.robots.link import Motion
+from mhri.core.robots.stop_proof import HEARING_S, PATIENCE_S, StopProof
+from mhri.core.screen.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED, PROOF_WAITING
 
 REST, MOVES, NAN = Motion(0.0, 0.0), Motion(0.3, 0.0), Motion(float('nan'), 0.0)
 

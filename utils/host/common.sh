@@ -23,6 +23,7 @@ DEBIAN_RUN=(
   catkin cmake g++ make python3-catkin-pkg ros-message-generation ros-message-runtime
   python3-roslaunch python3-rosgraph python3-rospkg python3-rospy
   python3-rosbag python3-rosnode python3-rosparam python3-rosservice python3-rostopic rosbash
+  ros-std-msgs ros-geometry-msgs
   python3-std-msgs python3-geometry-msgs python3-sensor-msgs python3-nav-msgs python3-std-srvs
   python3-tf2-msgs python3-rosgraph-msgs python3-diagnostic-msgs python3-diagnostic-updater
   python3-cv-bridge python3-python-qt-binding python3-pyqt5 python3-pyqtgraph python3-pygame

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Sound in blocks of 20 ms: from a microphone, a WAV file, or a raw stream.
 
-All of it has the form of :mod:`mhri.core.sound`; a microphone that has another rate is resampled by
+All of it has the form of :mod:`mhri.core.voice.sound`; a microphone that has another rate is
+resampled by
 PortAudio's ALSA plug, a WAV file has to be converted (``sox in.wav -r 16000 -c 1 -b 16 out.wav``).
 """
 import fcntl
@@ -15,7 +16,7 @@ import sys
 import time
 import wave
 
-from mhri.core.sound import BLOCK_BYTES, BLOCK_S, RATE_HZ
+from mhri.core.voice.sound import BLOCK_BYTES, BLOCK_S, RATE_HZ
 from mhri.inputs.reader import DeviceAbsent, DeviceLost
 
 # A microphone that gives nothing for so long is gone; ALSA does not always say so.

@@ -4,8 +4,8 @@
 from dataclasses import dataclass
 from typing import Optional
 
-from mhri.core.endpointing import BEGIN, Endpointer, GO_ON
-from mhri.core.sound import BLOCK_S
+from mhri.core.voice.endpointing import BEGIN, Endpointer, GO_ON
+from mhri.core.voice.sound import BLOCK_S
 from mhri.inputs.recogniser import Hypothesis
 
 

@@ -22,8 +22,8 @@ import select
 import sys
 
 from mhri.core.config import ConfigError
-from mhri.core.sound import MODEL
-from mhri.core.speech_language import parse_language
+from mhri.core.voice.sound import MODEL
+from mhri.core.voice.language import parse_language
 from mhri.inputs.audio import open_source
 from mhri.inputs.reader import DeviceAbsent, DeviceLost
 

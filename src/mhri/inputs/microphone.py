@@ -3,7 +3,8 @@
 """The process that hears a microphone: ``python3 -m mhri.inputs.microphone <part of its name>``.
 
 It writes a line of JSON, ``{"device": name}`` or ``{"absent": reason}``, and then raw sound in the
-form of :mod:`mhri.core.sound`, until the microphone is gone or nobody reads any longer. It is a
+form of :mod:`mhri.core.voice.sound`, until the microphone is gone or nobody reads any longer. It
+is a
 process of its own since the one that recognises reads nothing for tenths of a second, and PortAudio
 would throw away what is said then: a stop, perhaps.
 """
@@ -11,7 +12,7 @@ import json
 import os
 import sys
 
-from mhri.core.sound import BLOCK_BYTES, RATE_HZ
+from mhri.core.voice.sound import BLOCK_BYTES, RATE_HZ
 from mhri.inputs.reader import DeviceAbsent
 
 

@@ -9,7 +9,7 @@ import logging
 import threading
 import time
 
-from mhri.core.pads import choose_pad, choose_profile, is_wanted
+from mhri.core.devices.pads import choose_pad, choose_profile, is_wanted
 from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader, Reading
 from mhri.inputs.sdl import Joysticks
 
@@ -22,7 +22,7 @@ RUMBLE_S = 0.5
 class PadReader(Reader):
     """Opens the pad that is wanted and reads it; :meth:`want` and :meth:`rumble` on any thread.
 
-    :param profiles: function returning every :class:`mhri.core.profile.Profile` in the order of
+    :param profiles: function returning every :class:`Profile` in the order of
         preference; called whenever a pad is opened, so that a new profile needs no restart
     :param joysticks: stands in for :class:`mhri.inputs.sdl.Joysticks`
     :param clock: function returning seconds that never go back

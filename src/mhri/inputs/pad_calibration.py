@@ -1,17 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""``mhri_joy --calibrate``: the dialogue of :mod:`mhri.core.calibration` in a terminal."""
+"""``mhri_joy --calibrate``: the dialogue of :mod:`mhri.core.devices.calibration` in a terminal."""
 import argparse
 import os
 import re
 import select
 import sys
 
-from mhri.core.calibration import Calibration, DONE
+from mhri.core.devices.calibration import Calibration, DONE
 from mhri.core.config import ConfigError
-from mhri.core.names import is_base_name
-from mhri.core.pads import choose_pad
-from mhri.core.profile import parse_profile
+from mhri.core.robots.names import is_base_name
+from mhri.core.devices.pads import choose_pad
+from mhri.core.driving.profile import parse_profile
 from mhri.inputs.reader import DeviceAbsent, DeviceLost
 from mhri.inputs.sdl import Joysticks
 

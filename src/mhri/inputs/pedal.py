@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The foot pedal as an input device: which one, of whichever kind, and its readings.
 
-Axes and buttons are those of the contract (see :mod:`mhri.core.pedals`), whatever the device, so
+Axes and buttons are those of the contract (see :mod:`mhri.core.devices.pedals`), whatever the
+device, so
 that no profile has to go with them.
 """
 import os
 
-from mhri.core.pedal_choice import choose, NoPedal, Wish
-from mhri.core.pedals import AXES, DRIVE, KEYS
+from mhri.core.devices.pedal_choice import choose, NoPedal, Wish
+from mhri.core.devices.pedals import AXES, DRIVE, KEYS
 from mhri.inputs.pedal_axes import PedalAxes
 from mhri.inputs.pedal_keys import PedalKeys
 from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader
@@ -32,7 +33,7 @@ class PedalReader(Reader):
         self._open = None
 
     def want_device(self, device):
-        """Choose the pedal: see :class:`mhri.core.pedal_choice.Wish`; '' leaves it to the profiles.
+        """Choose the pedal: see :class:`Wish`; '' leaves it to the profiles.
 
         One that is open already is given up within 50 ms like a lost one.
         """

@@ -3,8 +3,8 @@
 """Pedals that are joysticks to the system, such as rudder pedals; read through pygame."""
 import time
 
-from mhri.core.pedal_choice import Candidate, usb_of_guid
-from mhri.core.pedals import AXES, DRIVE, PedalState
+from mhri.core.devices.pedal_choice import Candidate, usb_of_guid
+from mhri.core.devices.pedals import AXES, DRIVE, PedalState
 from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reading
 from mhri.inputs.sdl import Joysticks
 

@@ -3,7 +3,7 @@
 """Foot switches, which are keyboards to the system; read through evdev.
 
 The device is grabbed, so that the pedals do not type into whatever window is open, and given back
-on close. Only the chosen one is: see :func:`mhri.core.pedal_choice.choose`.
+on close. Only the chosen one is: see :func:`mhri.core.devices.pedal_choice.choose`.
 """
 import errno
 import math
@@ -14,8 +14,8 @@ import time
 import evdev
 from evdev import ecodes
 
-from mhri.core.pedal_choice import Candidate
-from mhri.core.pedals import DRIVE, KEYS, PedalState
+from mhri.core.devices.pedal_choice import Candidate
+from mhri.core.devices.pedals import DRIVE, KEYS, PedalState
 from mhri.inputs.event_nodes import find_switches
 from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reading
 

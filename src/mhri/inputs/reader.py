@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What every input device looks like to :class:`mhri.ros.input_node.InputNode`."""
+"""What every input device looks like to :class:`mhri.ros.devices.input_node.InputNode`."""
 from dataclasses import dataclass
 from typing import Tuple
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mhri.core.sound import MODEL
+from mhri.core.voice.sound import MODEL
 
 try:
     import pocketsphinx
@@ -223,7 +223,7 @@ def _decoder(folder, rows, **settings):
 class Recogniser:
     """Hears the phrases of one grammar.
 
-    :param grammar: :class:`mhri.core.speech_grammar.Grammar`
+    :param grammar: :class:`mhri.core.voice.grammar.Grammar`
     :param dictionary: :class:`Dictionary`
     :raises RecogniserError: pocketsphinx or its model is missing
     """

@@ -12,7 +12,7 @@ import re
 import select
 import time
 
-from mhri.core.pads import PadInfo
+from mhri.core.devices.pads import PadInfo
 from mhri.inputs.reader import DeviceAbsent, DeviceLost
 
 # A pad without a file that can be waited for (a virtual one) is looked at so often.

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Listening to one source: its sound through the recogniser, as events for the node."""
-from mhri.core.speech import SURE_OF_STOP
-from mhri.core.speech_grammar import Grammar, STOP
+from mhri.core.voice.speech import SURE_OF_STOP
+from mhri.core.voice.grammar import Grammar, STOP
 from mhri.inputs.listener import Began, Ended, Listener, Spotted
 from mhri.inputs.recogniser import Dictionary, Recogniser
 
@@ -12,7 +12,7 @@ _WAIT_S = 0.2
 class Session:
     """Listens to one source for the robots that are there.
 
-    :param language: :class:`mhri.core.speech_language.Language`
+    :param language: :class:`mhri.core.voice.language.Language`
     :param source: of :mod:`mhri.inputs.audio`, open
     :param device: its name
     :param robots: names in the panel's order

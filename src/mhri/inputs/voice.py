@@ -9,8 +9,8 @@ import sys
 import threading
 import time
 
-from mhri.core.speech import Heard, VoiceRules
-from mhri.core.speech_grammar import Command, Grammar, STOP
+from mhri.core.voice.speech import Heard, VoiceRules
+from mhri.core.voice.grammar import Command, Grammar, STOP
 from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader, Reading
 
 # Loading the model takes a second, on a busy computer several.
@@ -21,9 +21,9 @@ _END_S = 0.5
 class VoiceReader(Reader):
     """Speech read into axes: axes[0] left, axes[1] forward, as fractions of the speed limit.
 
-    :param language: :class:`mhri.core.speech_language.Language`
+    :param language: :class:`mhri.core.voice.language.Language`
     :param path: the file it came from
-    :param on_heard: called with :class:`mhri.core.speech.Heard` for each utterance
+    :param on_heard: called with :class:`mhri.core.voice.speech.Heard` for each utterance
     :param on_act: called with each :class:`Command` that others carry out (PANEL, MODE, STOP)
 
     The callbacks are called on the thread of :meth:`read`, and must return at once.

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``gate_keeper``, started by the panel: see :mod:`mhri.ros.keeper`."""
+"""The executable ``gate_keeper``, started by the panel: see :mod:`mhri.ros.driving.keeper`."""
 import gc
 import os
 import signal
@@ -8,9 +8,9 @@ import sys
 
 import rospy
 
-from mhri.ros.gates import GateBank
-from mhri.ros.keeper import Keeper, Words
-from mhri.ros.master_watch import MasterWatch
+from mhri.ros.driving.gates import GateBank
+from mhri.ros.driving.keeper import Keeper, Words
+from mhri.ros.graph.master_watch import MasterWatch
 
 
 def main():

@@ -3,7 +3,8 @@
 """The executable ``mhri_doctor``: examines the ROS system and says what is wrong and what mends it.
 
 ``rosrun mhri mhri_doctor [robot ...] [--json] [--watchdog [--yes]]``; exit status 0: nothing
-wrong, 1: findings, 2: wrong use. See :mod:`mhri.ros.doctor`. It is no node, but for ``--watchdog``
+wrong, 1: findings, 2: wrong use. See :mod:`mhri.ros.doctor.examination`. It is no node, but for
+``--watchdog``
 (``mhri_doctor_*``, which publishes ``/<robot>/<command>``, ``geometry_msgs/Twist``, for a moment).
 """
 import argparse
@@ -14,7 +15,7 @@ import time
 
 import rosgraph
 
-from mhri.core.names import name_problem, tidy_name
+from mhri.core.robots.names import name_problem, tidy_name
 from mhri.ros.started import started_s
 
 _WARNING = """
@@ -70,7 +71,7 @@ def _watchdogs(options):
     """Return the findings of the trials."""
     # rospy and its messages take their time to import: only who drives needs them.
     import rospy
-    from mhri.ros.doctor_watchdog import measure_watchdog
+    from mhri.ros.doctor.watchdog import measure_watchdog
     # A signal must end the trial through its zeros, and rospy's own handlers would end the node.
     rospy.init_node('mhri_doctor', anonymous=True, disable_signals=True)
     for number in (signal.SIGTERM, signal.SIGHUP):
@@ -91,8 +92,8 @@ def main():
     if options.watchdog:
         begun = time.monotonic()  # the question may have stood there for long
     # Wrong use and --help are answered without what this takes to import.
-    from mhri.core.doctor import as_dict, as_lines, exit_status
-    from mhri.ros.doctor import examine
+    from mhri.core.doctor.judgement import as_dict, as_lines, exit_status
+    from mhri.ros.doctor.examination import examine
     findings = examine(options.robot, begun=begun)
     took_s = time.monotonic() - begun
     if options.watchdog:

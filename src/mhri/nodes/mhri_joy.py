@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``mhri_joy``: the pad, through :class:`mhri.ros.input_node.InputNode`.
+"""The executable ``mhri_joy``: the pad, through :class:`mhri.ros.devices.input_node.InputNode`.
 
 Publishes ``/mux_in/ps3joy`` (``sensor_msgs/Joy``), serves ``/mhri_joy/set_suspended``
 (``mhri/SetSuspended``), shakes the pad at a rising ``/robot_controller/stop_all``
@@ -17,10 +17,10 @@ import sys
 import rospy
 
 from mhri.inputs.pad import PadReader
-from mhri.ros.input_node import InputNode
-from mhri.ros.live_parameter import LiveParameter
-from mhri.ros.pad_profiles import own_folder, pad_profiles, shipped_names
-from mhri.ros.rumble import Rumble
+from mhri.ros.devices.input_node import InputNode
+from mhri.ros.graph.live_parameter import LiveParameter
+from mhri.ros.devices.pad_profiles import own_folder, pad_profiles, shipped_names
+from mhri.ros.devices.rumble import Rumble
 
 
 def main():

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``mhri_pedal``: the foot pedal, through :class:`mhri.ros.input_node.InputNode`.
+"""The executable ``mhri_pedal``: the foot pedal, through :class:`InputNode`.
 
-Publishes ``/mux_in/pedal`` (``sensor_msgs/Joy``; see :mod:`mhri.core.pedals`), serves
+Publishes ``/mux_in/pedal`` (``sensor_msgs/Joy``; see :mod:`mhri.core.devices.pedals`), serves
 ``/mhri_pedal/set_suspended`` (``mhri/SetSuspended``). Parameters:
 
 - ``~device``: ``vendor:product``, path or part of the name of the pedal; '' (default) is the one
@@ -10,7 +10,7 @@ Publishes ``/mux_in/pedal`` (``sensor_msgs/Joy``; see :mod:`mhri.core.pedals`), 
 - ``~profile``: name of a file in ``$ROS_HOME/mhri/pedals`` or ``resource/pedals``, without its
   ending; '' (default) is the one that is for the device
 - ``~role``: ``drive`` (default), or ``enable``: the pedal only allows the active source to drive,
-  see :mod:`mhri.ros.enabling_node`
+  see :mod:`mhri.ros.devices.enabling_node`
 
 The first two take effect within two seconds while the node is resumed.
 """
@@ -19,12 +19,12 @@ import sys
 
 import rospy
 
-from mhri.core.pedals import DRIVE, ENABLE, ROLES
+from mhri.core.devices.pedals import DRIVE, ENABLE, ROLES
 from mhri.inputs.pedal import PedalReader
-from mhri.ros.enabling_node import EnablingNode
-from mhri.ros.input_node import InputNode
-from mhri.ros.live_parameter import LiveParameter
-from mhri.ros.pedal_profiles import PedalProfiles
+from mhri.ros.devices.enabling_node import EnablingNode
+from mhri.ros.devices.input_node import InputNode
+from mhri.ros.graph.live_parameter import LiveParameter
+from mhri.ros.devices.pedal_profiles import PedalProfiles
 
 
 def main():

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``mhri_voice``: spoken commands, through :class:`mhri.ros.input_node.InputNode`.
+"""The executable ``mhri_voice``: spoken commands, through :class:`InputNode`.
 
 Publishes ``/mux_in/voice`` (``sensor_msgs/Joy``: axes[0] left, axes[1] forward, fractions of the
 speed limit), serves ``/mhri_voice/set_suspended`` (``mhri/SetSuspended``); the other interfaces are
-those of :mod:`mhri.ros.voice`. Parameters:
+those of :mod:`mhri.ros.voice.voice`. Parameters:
 
 - ``~source``: what to listen to: '' (default) the default microphone, ``microphone:<part of its
   name>``, ``<path>.wav``, the path of a FIFO with raw sound (16 kHz, mono, 16 bit little endian),
@@ -17,12 +17,12 @@ import sys
 import rospy
 
 from mhri.core.config import ConfigError
-from mhri.core.speech_language import parse_language
+from mhri.core.voice.language import parse_language
 from mhri.inputs.voice import VoiceReader
-from mhri.ros.input_node import InputNode
-from mhri.ros.live_parameter import LiveParameter
+from mhri.ros.devices.input_node import InputNode
+from mhri.ros.graph.live_parameter import LiveParameter
 from mhri.ros.resources import read_text, resource_path
-from mhri.ros.voice import VoiceLink
+from mhri.ros.voice.voice import VoiceLink
 
 
 def main():

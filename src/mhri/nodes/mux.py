@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``mux``: reads its parameters and runs :class:`mhri.ros.mux.Mux`."""
+"""The executable ``mux``: reads its parameters and runs :class:`mhri.ros.driving.mux.Mux`."""
 from dataclasses import replace
 import gc
 import signal
@@ -10,10 +10,10 @@ import rosgraph
 import rospy
 
 from mhri.core.config import ConfigError
-from mhri.core.sources import parse_mux_config
-from mhri.ros.master_api import MasterApi, MasterError
-from mhri.ros.mux import Mux, STOP_PARAMETER
-from mhri.ros.mux_takeover import end_other_muxes
+from mhri.core.driving.sources import parse_mux_config
+from mhri.ros.graph.master_api import MasterApi, MasterError
+from mhri.ros.driving.mux import Mux, STOP_PARAMETER
+from mhri.ros.driving.mux_takeover import end_other_muxes
 from mhri.ros.resources import profile_reader, read_text, resource_path
 
 

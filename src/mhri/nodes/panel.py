@@ -59,7 +59,7 @@ def main():
 
 def start_demo(program, options):
     """Begin the scripted drive in a program that is running."""
-    from mhri.demo import Demo
+    from mhri.presenters.demo import Demo
     demo = Demo(program, options.screenshot, options.demo_result)
     demo.start()
     return demo

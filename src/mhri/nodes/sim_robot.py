@@ -21,8 +21,8 @@ import rosgraph.network
 import rospy
 
 from mhri.core.config import ConfigError
-from mhri.core.robot_types import resolve_robot_type
-from mhri.ros.master_watch import MasterWatch
+from mhri.core.robots.robot_types import resolve_robot_type
+from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.resources import read_resource, read_text, resource_path, robot_types
 from mhri.sim.body import Body, Bumper, parse_bodies
 from mhri.sim.camera_node import SimCamera

@@ -7,8 +7,8 @@ import struct
 from geometry_msgs.msg import Twist
 import rospy
 
-from mhri.core.limits import Velocity
-from mhri.core.link import Motion
+from mhri.core.driving.limits import Velocity
+from mhri.core.robots.link import Motion
 
 
 def header_of(message, message_class):

@@ -9,7 +9,7 @@ from catkin_pkg.package import InvalidPackage, parse_package
 import rospkg
 
 from mhri.core.config import ConfigError
-from mhri.core.robot_types import Export, load_robot_types
+from mhri.core.robots.robot_types import Export, load_robot_types
 
 # The element of a package.xml with which a package exports a robot type, and its attributes.
 EXPORT_TAG = 'mhri'

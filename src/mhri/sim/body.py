@@ -89,7 +89,7 @@ class Body:
     ``v, w`` the speeds [m/s, rad/s]. At rest the wheel noise is exactly zero: encoders do not tick.
 
     :param body_type: :class:`BodyType`
-    :param limits: :class:`mhri.core.robot_types.Limits`, the most the motors do
+    :param limits: :class:`mhri.core.robots.robot_types.Limits`, the most the motors do
     :param bumper: :class:`Bumper`
     :param random: :class:`random.Random`
     """

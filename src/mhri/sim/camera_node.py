@@ -19,8 +19,8 @@ import cv2
 import rospy
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
-from mhri.core.depth_codec import encode_depth
-from mhri.core.jpeg import encode_jpeg
+from mhri.core.camera.depth_codec import encode_depth
+from mhri.core.camera.jpeg import encode_jpeg
 from mhri.sim.camera import Camera, CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, WIDTH
 
 RGB_HZ = 30
@@ -85,7 +85,7 @@ class SimCamera:
     """Publishes what the camera of one robot sees, on a thread of its own.
 
     :param name: the robot; also the prefix of its frame
-    :param template: :class:`mhri.core.robot_types.RobotType`; a kind without topic is not published
+    :param template: :class:`RobotType`; a kind without topic is not published
     :param plan: :class:`mhri.sim.plan.Plan`
     :param pose_source: function () -> (x, y, yaw) of the robot [m, m, rad], called on the thread
     :param others_source: function () -> the other robots, as :meth:`mhri.sim.world.World.others`

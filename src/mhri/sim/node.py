@@ -33,7 +33,7 @@ class SimRobot:
     """Publishes what a body and its sensors say, and hands it the commands.
 
     :param name: the robot; also the prefix of its frames
-    :param template: :class:`mhri.core.robot_types.RobotType`
+    :param template: :class:`mhri.core.robots.robot_types.RobotType`
     :param body: :class:`mhri.sim.body.Body`
     :param laser: :class:`mhri.sim.sensors.Laser`
     :param world: :class:`mhri.sim.world.World`

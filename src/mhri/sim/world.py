@@ -15,7 +15,7 @@ import tempfile
 
 import numpy as np
 
-from mhri.core.names import MAX_LENGTH
+from mhri.core.robots.names import MAX_LENGTH
 
 SLOTS = 64
 GHOST_S = 20.0

@@ -5,7 +5,7 @@ import math
 
 from python_qt_binding.QtWidgets import QLabel
 
-from mhri.gui.windows import TurtleBotWindow
+from mhri.gui.screen.windows import TurtleBotWindow
 
 
 class CrawlerWindow(TurtleBotWindow):

@@ -1,0 +1,125 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A camera's message, as it came over the wire, turned into a :class:`Frame`.
+
+The wire is ROS's: little-endian; ``sensor_msgs/CompressedImage`` is (header, string format, uint8[]
+data), ``sensor_msgs/Image`` is (header, height, width, string encoding, is_bigendian, step, uint8[]
+data), the header (seq, stamp, string frame_id). It is read where it lies: no picture is copied.
+"""
+import struct
+from typing import Any, NamedTuple
+
+from mhri.core.camera.depth_codec import decode_depth
+from mhri.core.camera.images import DEPTH, RGB, Frame, FrameError
+from mhri.core.camera.image_codec import decode_compressed
+from mhri.core.camera.raw_image import decode_raw, decode_raw_depth
+
+COMPRESSED_TYPE = 'sensor_msgs/CompressedImage'
+RAW_TYPE = 'sensor_msgs/Image'
+_LONGEST_NAME = 4096
+
+
+class RawImage(NamedTuple):
+    """The fields of a ``sensor_msgs/Image`` that say how to read it; ``data`` is not a copy."""
+
+    height: int
+    width: int
+    encoding: str
+    is_bigendian: int
+    step: int
+    data: Any
+
+
+class _Wire:
+    """Reads the fields of a serialised message in order."""
+
+    def __init__(self, what, data):
+        self._what = what
+        self._data = memoryview(data)
+        self._place = 0
+
+    def numbers(self, form):
+        """Return the tuple of a struct format."""
+        try:
+            values = struct.unpack_from(form, self._data, self._place)
+        except struct.error:
+            raise FrameError('{}: truncated message of {} bytes'.format(
+                self._what, len(self._data)))
+        self._place += struct.calcsize(form)
+        return values
+
+    def array(self):
+        """Return a uint8[] as a view."""
+        (length,) = self.numbers('<I')
+        if self._place + length > len(self._data):
+            raise FrameError('{}: truncated, {} of {} bytes'.format(
+                self._what, len(self._data) - self._place, length))
+        self._place += length
+        return self._data[self._place - length:self._place]
+
+    def text(self):
+        """Return a string."""
+        value = self.array()
+        if len(value) > _LONGEST_NAME:
+            raise FrameError('{}: corrupted, a name of {} bytes'.format(self._what, len(value)))
+        return bytes(value).decode('utf-8', 'replace')
+
+
+def read_compressed(data):
+    """Return (format, data) of a serialised ``sensor_msgs/CompressedImage``.
+
+    :raises FrameError: it ends early
+    """
+    wire = _Wire(COMPRESSED_TYPE, data)
+    wire.numbers('<III')
+    wire.text()
+    return wire.text(), wire.array()
+
+
+def read_raw(data):
+    """Return the :class:`RawImage` of a serialised ``sensor_msgs/Image``.
+
+    :raises FrameError: it ends early
+    """
+    wire = _Wire(RAW_TYPE, data)
+    wire.numbers('<III')
+    wire.text()
+    height, width = wire.numbers('<II')
+    encoding = wire.text()
+    is_bigendian, step = wire.numbers('<BI')
+    return RawImage(height, width, encoding, is_bigendian, step, wire.array())
+
+
+def read_picture(kind, message_type, data, view, colour, received_s):
+    """Return (:class:`Frame`, transport in words) of a serialised message.
+
+    :param kind: 'rgb' or 'depth'
+    :param message_type: e.g. 'sensor_msgs/CompressedImage'
+    :param view: room for the picture (width, height) [pixels], None for the full size
+    :param colour: :class:`mhri.core.camera.depth_colour.DepthColour` of the stream
+    :raises FrameError: another type, or a picture that cannot be decoded
+    """
+    if message_type not in (COMPRESSED_TYPE, RAW_TYPE):
+        raise FrameError('{} is not a picture'.format(message_type))
+    if kind == RGB:
+        return _read_rgb(message_type, data, view, received_s)
+    return _read_depth(message_type, data, view, colour, received_s)
+
+
+def _read_rgb(message_type, data, view, received_s):
+    if message_type == RAW_TYPE:
+        rgb, full = decode_raw(read_raw(data), view)
+        transport = 'raw'
+    else:
+        rgb, full, transport = decode_compressed(*read_compressed(data), view)
+    return Frame(RGB, rgb, None, full, None, received_s), transport
+
+
+def _read_depth(message_type, data, view, colour, received_s):
+    if message_type == RAW_TYPE:
+        depth, full = decode_raw_depth(read_raw(data), view)
+        transport = 'raw'
+    else:
+        depth, full, transport = decode_depth(*read_compressed(data), view)
+    rgb, depth_range = colour.colour(depth, received_s)
+    return Frame(DEPTH, rgb, depth, full, depth_range, received_s), transport

@@ -1,0 +1,50 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which of a camera's topics to listen to: compressed first, raw where there is nothing else."""
+from typing import NamedTuple
+
+from mhri.core.camera.images import DEPTH, RGB
+from mhri.core.camera.image_message import COMPRESSED_TYPE, RAW_TYPE
+
+AUTO = 'auto'
+# For each kind of picture: (name, what image_transport adds to the topic, type), best first.
+_TRANSPORTS = {
+    RGB: (('compressed', '/compressed', COMPRESSED_TYPE), ('raw', '', RAW_TYPE)),
+    DEPTH: (('compressedDepth', '/compressedDepth', COMPRESSED_TYPE), ('raw', '', RAW_TYPE)),
+}
+
+
+class Offer(NamedTuple):
+    """One way to get a camera's picture: the transport's name and the full topic."""
+
+    transport: str
+    topic: str
+
+
+def find_offers(kind, topics, published):
+    """Return the :class:`Offer` list of a camera, best first.
+
+    A topic of another type than its name promises is no offer.
+
+    :param kind: 'rgb' or 'depth'
+    :param topics: the camera's full topics in order of preference, without transport
+    :param published: {topic: type} of what is published now
+    """
+    return [Offer(transport, topic + ending) for topic in topics
+            for transport, ending, message_type in _TRANSPORTS[kind]
+            if published.get(topic + ending) == message_type]
+
+
+def choose_offer(offers, transport):
+    """Return the best offer of a transport ('auto': of any), or None."""
+    return next((offer for offer in offers if transport in (AUTO, offer.transport)), None)
+
+
+def may_carry(kind, transport, topic):
+    """Tell whether a full topic is one of a transport ('auto': of any)."""
+    if transport == AUTO:
+        return True
+    endings = {name: ending for name, ending, _ in _TRANSPORTS[kind]}
+    if endings.get(transport):
+        return topic.endswith(endings[transport])
+    return not topic.endswith(tuple(ending for ending in endings.values() if ending))

@@ -1,0 +1,126 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which pad is used where there are several, and which profile says what its axes mean."""
+from dataclasses import dataclass
+
+from mhri.core.config import ConfigError
+from mhri.core.driving.profile import parse_profile
+
+GENERIC = 'generic'
+_HEXADECIMAL = set('0123456789abcdef')
+# What kernel drivers show beside the pad that it belongs to, and what is for the feet.
+_NO_PADS = ('motion sensors', 'touchpad', 'accelerometer', 'pedal', 'rudder', 'footswitch')
+
+
+@dataclass(frozen=True)
+class PadInfo:
+    """A pad that is connected: its place in SDL's list, its name, its GUID ('' where not known)."""
+
+    index: int
+    name: str
+    guid: str = ''
+
+
+def same_guid(guid):
+    """Return a GUID as it is compared: lower case, without the check sum of the device's name.
+
+    SDL 2.26 and later put that into the third and fourth byte; older ones have zeros there.
+    """
+    guid = guid.lower()
+    return guid[:4] + '0000' + guid[8:]
+
+
+def is_guid(text):
+    """Tell whether a text is a GUID of SDL: 32 hexadecimal digits."""
+    return len(text) == 32 and set(text.lower()) <= _HEXADECIMAL
+
+
+def load_profiles(files):
+    """Parse the profiles of all pads; a bad file does not hide the good ones.
+
+    :param files: [(name, path, text)] in the order of preference; the name is that of the file
+        without ending, and the profile has to say the same
+    :returns: ([Profile], [ConfigError])
+    """
+    profiles, errors = [], []
+    for name, path, text in files:
+        try:
+            profile = parse_profile(text, path)
+            if profile.name != name:
+                raise ConfigError(path, 'name', 'expected {!r} as the file is called, got '
+                                  '{!r}'.format(name, profile.name))
+        except ConfigError as error:
+            errors.append(error)
+        else:
+            profiles.append(profile)
+    return profiles, errors
+
+
+def choose_profile(profiles, name, guid=''):
+    """Return the profile for a pad, and what the operator has to know about the choice ('').
+
+    First the one that names its GUID; then the one that names the longest part of its name, since
+    'Wireless Controller' is many pads and 'Xbox Wireless Controller' is one; then ``generic``.
+
+    :param profiles: in the order of preference
+    :raises LookupError: nothing fits, and there is no profile ``generic``
+    """
+    if guid:
+        for profile in profiles:
+            if same_guid(guid) in [same_guid(own) for own in profile.match.guids]:
+                return profile, ''
+    best, length = None, 0
+    for profile in profiles:
+        for part in profile.match.names:
+            if part.lower() in name.lower() and len(part) > length:
+                best, length = profile, len(part)
+    if best is not None:
+        return best, ''
+    for profile in profiles:
+        if profile.name == GENERIC:
+            return profile, ('no profile knows this pad: the generic one is used; if it does not '
+                             'fit, run mhri_joy --calibrate')
+    raise LookupError('no profile knows {!r}, and there is no profile {!r}'.format(name, GENERIC))
+
+
+def is_known(profiles, pad):
+    """Tell whether some profile names a pad by its GUID or its name."""
+    try:
+        return not choose_profile(profiles, pad.name, pad.guid)[1]
+    except LookupError:
+        return False
+
+
+def choose_pad(wanted, pads, profiles):
+    """Return the :class:`PadInfo` to open.
+
+    :param wanted: '' (any: the first that a profile knows, else the first), a whole number (its
+        place in the list, from 0), a GUID, or a part of its name in any case
+    :raises LookupError: there is none; the text says what was looked for and the remedy
+    """
+    wanted = str(wanted).strip()
+    pads = [pad for pad in pads if not any(word in pad.name.lower() for word in _NO_PADS)]
+    if not pads:
+        raise LookupError('none is connected; plug one in, or press its PS button')
+    if not wanted:
+        return next((pad for pad in pads if is_known(profiles, pad)), pads[0])
+    for pad in pads:
+        if is_wanted(wanted, pad):
+            return pad
+    raise LookupError('no {!r} among {}; set ~device to the name, GUID or index of one of them, '
+                      'or to nothing'.format(wanted, describe(pads)))
+
+
+def is_wanted(wanted, pad):
+    """Tell whether a pad is the one that is asked for; '' asks for any."""
+    wanted = str(wanted).strip()
+    if wanted.isdigit() and len(wanted) < 4:
+        return pad.index == int(wanted)
+    if is_guid(wanted):
+        return bool(pad.guid) and same_guid(wanted) == same_guid(pad.guid)
+    return wanted.lower() in pad.name.lower()
+
+
+def describe(pads):
+    """Return a list of pads in words, each with its index."""
+    return ', '.join('{}: {}'.format(pad.index, pad.name) for pad in pads) or 'none'

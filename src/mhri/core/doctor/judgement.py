@@ -1,0 +1,75 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The doctor's judgement: from what was seen (:mod:`mhri.core.doctor.facts`) to findings."""
+from mhri.core.doctor.facts import ANSWERS, FAULT, FINE, SEVERITIES, WARNING
+from mhri.core.doctor.host import find_on_host, find_on_master
+from mhri.core.doctor.links import find_on_links, missing_links
+from mhri.core.doctor.nodes import find_on_nodes, odd_nodes, robot_of
+from mhri.core.doctor.robots import find_on_robots, hidden_listeners, robots_of
+from mhri.core.doctor.system import find_on_system
+
+_MARKS = {FAULT: '[X] fault', WARNING: '/!\\ warning', FINE: '(o) fine'}
+
+
+def diagnose(facts, types, ignore):
+    """Return the :class:`Finding` list of an examination: faults first, then warnings, then fine.
+
+    :param facts: :class:`mhri.core.doctor.facts.Facts`
+    :param types: {name: :class:`mhri.core.robots.robot_types.RobotType`} with at least ``generic``
+    :param ignore: :class:`mhri.core.robots.discovery.IgnoreList`
+    """
+    found = find_on_host(facts) + find_on_master(facts)
+    if facts.master.state == ANSWERS and not facts.master.uri_problem:
+        found += (find_on_system(facts) + find_on_nodes(facts) + find_on_links(facts)
+                  + find_on_robots(facts, types, robots_of(facts.graph, types, ignore)))
+    return sorted(_of_wanted(facts, found), key=lambda item: SEVERITIES.index(item.severity))
+
+
+def _of_wanted(facts, found):
+    """Leave out what is about robots that were not asked for."""
+    if not facts.wanted:
+        return found
+    others = {robot_of(node) for node in facts.nodes} - set(facts.wanted) - {''}
+    return [item for item in found if item.about.lstrip('/').split('/')[0] not in others]
+
+
+def odd_ones(facts, robots):
+    """Return the names of the nodes to ask a second time, before anything is said about them.
+
+    What is just coming or going looks wrong for a moment.
+
+    :param robots: list of :class:`mhri.core.doctor.robots.Robot`
+    """
+    topics = [topic for robot in robots for topic in robot.topics('command')]
+    odd = odd_nodes(facts) | hidden_listeners(facts, topics)
+    for _, publisher, subscriber in missing_links(facts, facts.nodes, facts.graph):
+        odd |= {publisher, subscriber}
+    return odd
+
+
+def exit_status(findings):
+    """Return 1 where something is wrong, else 0."""
+    return int(any(item.severity != FINE for item in findings))
+
+
+def as_lines(findings, took_s):
+    """Return the report as lines of text for a person."""
+    lines = []
+    for item in findings:
+        lines.append('{}  {}: {}'.format(_MARKS[item.severity], item.about, item.problem))
+        lines += ['      {:<9} {}'.format(key, text) for key, text in (
+            ('shows as:', item.shows), ('mend:', item.remedy), ('sure:', item.sure)) if text]
+    counts = {severity: sum(1 for item in findings if item.severity == severity)
+              for severity in SEVERITIES}
+    lines.append('{} faults, {} warnings, {} fine; examined in {:.1f} s'.format(
+        counts[FAULT], counts[WARNING], counts[FINE], took_s))
+    return lines
+
+
+def as_dict(findings, took_s):
+    """Return the report for scripts: ``faults``, ``warnings``, ``took_s`` and ``findings``."""
+    return {
+        'faults': sum(1 for item in findings if item.severity == FAULT),
+        'warnings': sum(1 for item in findings if item.severity == WARNING),
+        'took_s': round(took_s, 3),
+        'findings': [dict(vars(item)) for item in findings]}

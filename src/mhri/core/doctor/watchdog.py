@@ -1,0 +1,123 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Does a robot stop by itself when commands cease? The trial, step by step, and its verdict."""
+from mhri.core.doctor.facts import FAULT, FINE, Finding, WARNING
+
+WAITING, DRIVING, LISTENING, DONE = 'waiting', 'driving', 'listening', 'done'
+# Outcomes of a trial.
+STOPS, RUNS_ON, NOT_MOVED, MOVED_BEFORE, MUTE, LOST = (
+    'stops', 'runs on', 'not moved', 'moved before', 'mute', 'lost')
+
+TURN_RAD_S = 0.3
+PATIENCE_S = 3.0
+START_S = 2.0
+TURNING_S = 0.7
+REST_READINGS = 3
+FRESH_S = 0.5
+SLOW_S = 1.0
+_GUARD = 'on the robot: utils/remote/mhri_guard in its namespace (turtle_remote.sh starts it), ' \
+    'and set the timeout of its base driver'
+
+
+class WatchdogTrial:
+    """Turns a robot in place slowly, falls silent, and waits for it to stop by itself.
+
+    Turning leaves the robot where it is should it stand on the floor after all. ``phase`` is one of
+    WAITING (for odometry at rest), DRIVING, LISTENING (nothing is sent) and DONE; ``outcome`` is
+    set when DONE, ``stopped_s`` the time from the last command to standstill [s].
+    """
+
+    def __init__(self, now, turn_rad_s=TURN_RAD_S):
+        self.phase = WAITING
+        self.outcome = None
+        self.stopped_s = None
+        self._turn_rad_s = turn_rad_s
+        self._begun = now
+        self._moved_at = None
+        self._last_sent = None
+        self._rest = []
+
+    def step(self, now, motion, heard_at):
+        """Take the newest motion; return the turn to send now [rad/s], None for silence.
+
+        :param motion: :class:`mhri.core.robots.link.Motion`, None where nothing was heard yet
+        :param heard_at: when it was heard [s]
+        """
+        fresh = motion is not None and now - heard_at <= FRESH_S
+        if self.phase == WAITING:
+            self._wait(now, motion, fresh)
+        elif self.phase == DRIVING:
+            self._drive(now, motion, fresh)
+        elif self.phase == LISTENING:
+            self._listen(now, motion, fresh, heard_at)
+        if self.phase == DRIVING:
+            self._last_sent = now
+            return self._turn_rad_s
+        return None
+
+    def _end(self, outcome):
+        self.phase, self.outcome = DONE, outcome
+
+    def _enter(self, phase, now):
+        self.phase, self._begun, self._rest = phase, now, []
+
+    def _wait(self, now, motion, fresh):
+        if fresh and not motion.is_standstill():
+            self._end(MOVED_BEFORE)
+        elif fresh:
+            self._enter(DRIVING, now)
+        elif now - self._begun > START_S:
+            self._end(MUTE)
+
+    def _drive(self, now, motion, fresh):
+        if not fresh:
+            self._end(LOST)
+        elif self._moved_at is None and not motion.is_standstill():
+            self._moved_at = now
+        elif self._moved_at is not None and now - self._moved_at >= TURNING_S:
+            self._enter(LISTENING, now)
+        elif self._moved_at is None and now - self._begun > START_S:
+            self._end(NOT_MOVED)
+
+    def _listen(self, now, motion, fresh, heard_at):
+        if not fresh:
+            self._end(LOST)
+        elif not motion.is_standstill():
+            self._rest = []
+        elif not self._rest or heard_at > self._rest[-1]:
+            self._rest.append(heard_at)
+        if self.phase == LISTENING and len(self._rest) >= REST_READINGS:
+            self.stopped_s = max(0.0, self._rest[0] - self._last_sent)
+            self._end(STOPS)
+        elif self.phase == LISTENING and now - self._begun > PATIENCE_S:
+            self._end(RUNS_ON)
+
+
+def verdict(robot, outcome, stopped_s=None):
+    """Return the :class:`Finding` of a trial."""
+    if outcome == STOPS:
+        words = 'stood still {:.2f} s after the last command'.format(stopped_s)
+        sure = 'measured once, by its own odometry'
+        if stopped_s <= SLOW_S:
+            return Finding(FINE, 'watchdog', robot, words, sure=sure)
+        return Finding(WARNING, 'watchdog_slow', robot, words, 'when the network is lost, it goes '
+                       'on for that long', _GUARD, sure)
+    if outcome == RUNS_ON:
+        return Finding(
+            FAULT, 'watchdog_none', robot, 'it went on turning for {:.0f} s without any command, '
+            'until it was sent zero'.format(PATIENCE_S),
+            'when the network is lost or the panel\'s computer dies, it drives on for ever', _GUARD,
+            'measured once, by its own odometry')
+    words = {
+        NOT_MOVED: 'it did not move, so nothing could be measured',
+        MOVED_BEFORE: 'it moved already before the trial, so nothing was tried',
+        MUTE: 'its odometry says nothing, so nothing was tried',
+        LOST: 'its odometry ceased during the trial, so nothing could be measured'}[outcome]
+    return unknown(robot, words, 'rosrun mhri mhri_doctor {}   # mend what it says first'.format(
+        robot))
+
+
+def unknown(robot, words, remedy):
+    """Return the :class:`Finding` that nothing is known of a robot's watchdog."""
+    return Finding(WARNING, 'watchdog_unknown', robot, words,
+                   'nobody knows whether it stops when the network is lost', remedy)

@@ -1,0 +1,343 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Who drives, and what makes everything stop: the rules of the mux, without ROS or a clock.
+
+One :class:`Arbiter` owns the control mode. Time is passed in as seconds of a clock that never goes
+back. Every method that may change what the robots should do returns the :class:`Velocity` to send
+at once, or None where nothing is to be said; :meth:`Arbiter.tick` does the same for the passing of
+time, and :meth:`Arbiter.next_tick` says when it wants to be called.
+
+States and what leads out of them::
+
+    STOPPED        stop-all is in force                 release -> WAIT_NEUTRAL
+    WAIT_NEUTRAL   nothing moves until the active       neutral seen -> READY
+                   source has been seen at neutral
+    READY          fresh source at neutral              deflected -> DRIVING
+    DRIVING        a command other than zero            neutral or dead-man released -> READY
+
+A silent, suspended, lost or exchanged source, a change of mode, a robot that joins the selection,
+an enabling pedal that is released and the loss of the master lead from READY and DRIVING to
+WAIT_NEUTRAL; stop-all leads from anywhere to STOPPED. Each of them starts the zeros (but for
+silence at rest, where they have been sent): one at once, more at :data:`REPEAT_HZ` for
+:data:`ZEROS_S`, then silence, since endless zeros would block a robot's own navigation behind its
+``cmd_vel_mux`` (rqt_common_plugins#180).
+"""
+from collections import Counter
+
+from mhri.core.driving.limits import Velocity, ZERO, speed_limit_problem
+from mhri.core.driving.profile import JoyRefused
+
+STOPPED = 'stopped'
+WAIT_NEUTRAL = 'wait_neutral'
+READY = 'ready'
+DRIVING = 'driving'
+
+REPEAT_HZ = 20.0
+ZEROS_S = 0.5
+# An enabling pedal that has not been heard for so long counts as released.
+ENABLING_TIMEOUT_S = 0.25
+_PERIOD_S = 1.0 / REPEAT_HZ
+
+
+class Arbiter:
+    """Decides which source drives and what velocity the robots are sent.
+
+    :param config: :class:`mhri.core.driving.sources.MuxConfig`
+    :param now: the time of creation [s]; the first zeros start here, so that whatever an earlier
+        mux left moving stops
+    """
+
+    def __init__(self, config, now):
+        self._sources = {source.name: source for source in config.sources}
+        self._mode = config.default
+        self._limits = (config.linear_mps, config.angular_rad_s)
+        self._state = WAIT_NEUTRAL
+        self._cause = 'start'
+        self._stick = None
+        self._stick_at = None
+        self._device = None
+        self._selected = frozenset()
+        self._enabling = config.enabling
+        self._enabled_at = None
+        self._automatic = config.automatic_switching
+        self._rested = {}
+        self._zeros_until = now + ZEROS_S
+        self._next_repeat = now
+        self.refused = Counter()
+        self.ignored = Counter()
+
+    @property
+    def mode(self):
+        """Name of the active source."""
+        return self._mode
+
+    @property
+    def source(self):
+        """Active :class:`mhri.core.driving.sources.Source`."""
+        return self._sources[self._mode]
+
+    @property
+    def limits(self):
+        """Speed limits of the operator in force (m/s, rad/s)."""
+        return self._limits
+
+    @property
+    def state(self):
+        """One of STOPPED, WAIT_NEUTRAL, READY, DRIVING."""
+        return self._state
+
+    @property
+    def stop_all(self):
+        """Whether stop-all is in force."""
+        return self._state == STOPPED
+
+    def waits_for(self, now):
+        """Say what stands between the operator and moving robots.
+
+        :returns: '' (nothing: ready or driving), 'release' (stop-all), 'source' (nothing fresh is
+            heard from the active source), 'neutral' (the stick is not centred), 'enabling' (the
+            enabling pedal is not pressed) or 'dead_man'
+        """
+        if self._state == STOPPED:
+            return 'release'
+        if not self._fresh(now):
+            return 'source'
+        if self._state == WAIT_NEUTRAL:
+            return 'neutral'
+        if not self._enabled(now):
+            return 'enabling'
+        return '' if self._stick.held else 'dead_man'
+
+    @property
+    def cause(self):
+        """Event that last led to WAIT_NEUTRAL or STOPPED, e.g. 'stale', 'mode', 'start'."""
+        return self._cause
+
+    def on_joy(self, name, axes, buttons, device, now, profile=None):
+        """Take in one Joy message of a source.
+
+        :param name: the source it came from
+        :param device: whatever tells one publisher from another (its ROS name); another publisher
+            is a newly connected device
+        :param profile: :class:`Profile` of the device, default that of the source
+        :returns: the velocity to send now, or None
+        :raises JoyRefused: the message cannot be used; it changes nothing but the counters
+        :raises KeyError: no such source
+        """
+        source = self._sources[name]
+        if name == self._enabling:
+            return self._on_enabling(bool(buttons and buttons[0]), now)
+        if name != self._mode and not self._automatic:
+            self.ignored[name] += 1
+            return None
+        try:
+            stick = (profile or source.profile).read(axes, buttons)
+        except JoyRefused as refusal:
+            self.refused[refusal.kind] += 1
+            raise
+        if name != self._mode:
+            return self._on_other(name, stick, device, now)
+        exchanged = self._device not in (None, device) and self._state in (READY, DRIVING)
+        was_fresh = self._fresh(now)
+        self._stick, self._stick_at, self._device = stick, now, device
+        if self._state == STOPPED:
+            return None
+        if self._state != WAIT_NEUTRAL and (exchanged or not was_fresh):
+            zero = self._interlock('device' if exchanged else 'stale', now)
+            return self._follow(stick, now) or zero
+        return self._follow(stick, now)
+
+    def _follow(self, stick, now):
+        """Apply an accepted stick in WAIT_NEUTRAL, READY or DRIVING."""
+        if self._state == WAIT_NEUTRAL:
+            if not stick.neutral:
+                return None
+            idle = self._cause == 'idle'
+            self._enter(READY)
+            return self._later_zero(now) if idle else self._zeros(now)
+        if stick.is_zero() or not self._enabled(now):
+            if self._state == DRIVING:
+                self._enter(READY)
+                return self._zeros(now)
+            return self._later_zero(now)
+        self._enter(DRIVING)
+        return self._drive(now)
+
+    def _on_enabling(self, pressed, now):
+        """Take in the enabling pedal.
+
+        Released, everything stops; pressed while the stick is deflected, nothing moves before that
+        has been centred: a foot that comes back must not set robots in motion.
+        """
+        was, self._enabled_at = self._enabled(now), now if pressed else None
+        if was and not pressed and self._state == DRIVING:
+            return self._interlock('enabling', now)
+        if pressed and not was and self._state == READY and not self._stick.neutral:
+            self._enter(WAIT_NEUTRAL, 'enabling')
+        return None
+
+    def _enabled(self, now):
+        """Tell whether the enabling pedal allows motion; without one, it is always allowed."""
+        return self._enabling is None or (
+            self._enabled_at is not None and now - self._enabled_at < ENABLING_TIMEOUT_S)
+
+    def _on_other(self, name, stick, device, now):
+        """Change over to a source that is touched while everything stands still.
+
+        It has to be seen at neutral first, and once more before it moves anything. One that is
+        deflected while another drives has to be let go before it counts.
+        """
+        still = self._state in (READY, WAIT_NEUTRAL) and now >= self._zeros_until
+        if stick.neutral:
+            self._rested[name] = device
+        elif self._rested.pop(name, None) == device and still:
+            return self.on_mode(name, now)
+        self.ignored[name] += 1
+        return None
+
+    def on_selection(self, names, now):
+        """Take note of the robots that are selected.
+
+        One that joins while others are driven must not leap: all wait until the stick was centred.
+
+        :returns: the velocity to send now, or None
+        """
+        joined, self._selected = frozenset(names) - self._selected, frozenset(names)
+        if joined and self._state == DRIVING:
+            return self._interlock('selection', now)
+        return None
+
+    def on_mode(self, name, now):
+        """Change the active source; the one already active is no change.
+
+        :returns: the velocity to send now, or None
+        :raises KeyError: no such source; the mode stays as it was
+        """
+        if name not in self._sources:
+            self.refused['unknown_mode'] += 1
+            raise KeyError(name)
+        if name == self._mode:
+            return None
+        self._mode = name
+        self._rested.clear()
+        self._stick = self._stick_at = self._device = None
+        return self._interlock('mode', now)
+
+    def on_lost(self, name, cause, now):
+        """Take note that a source was suspended or its device was lost ('suspended', 'lost').
+
+        :returns: the velocity to send now, or None where the source is not the active one
+        """
+        if name != self._mode:
+            return None
+        self._stick = self._stick_at = self._device = None
+        return self._interlock(cause, now)
+
+    def on_hold(self, cause, now):
+        """Hold everything until the stick is centred, for a cause outside the sources.
+
+        :returns: the velocity to send now
+        """
+        return self._interlock(cause, now)
+
+    def engage_stop_all(self, now):
+        """Stop everything until :meth:`release_stop_all`; may be repeated.
+
+        :returns: the zero to send now
+        """
+        self._enter(STOPPED, 'stop_all')
+        return self._zeros(now)
+
+    def release_stop_all(self, now):
+        """Give up stop-all; nothing moves before the stick has been seen at neutral once more.
+
+        :returns: None on success, else the reason why not, as a sentence
+        """
+        if self._state != STOPPED:
+            return None
+        if self._stick is None:
+            return 'nothing has been heard from {}: centre it once, or drive with another ' \
+                   'source'.format(self.source.label)
+        if not self._stick.neutral:
+            return 'centre the stick first ({})'.format(self.source.label)
+        self._enter(WAIT_NEUTRAL, 'released')
+        return None
+
+    def set_limits(self, linear_mps, angular_rad_s, now):
+        """Change the operator's speed limits; a robot that moves follows at once.
+
+        :returns: the velocity to send now, or None
+        :raises ValueError: not finite, negative or absurdly large; the old limits stay
+        """
+        problem = speed_limit_problem(linear_mps, angular_rad_s)
+        if problem:
+            self.refused['speed_limit'] += 1
+            raise ValueError(problem)
+        self._limits = (linear_mps, angular_rad_s)
+        if self._state == DRIVING and self._fresh(now) and self._enabled(now):
+            return self._drive(now)
+        return None
+
+    def tick(self, now):
+        """Let time pass.
+
+        :returns: the velocity to send now, or None
+        """
+        if self._state == DRIVING and not self._fresh(now):
+            return self._interlock('stale', now)
+        if self._state == DRIVING and not self._enabled(now):
+            return self._interlock('enabling', now)
+        if self._state == READY and not self._fresh(now):
+            # At rest already, and said so: a device that speaks now and then must not cause
+            # zeros without end.
+            self._enter(WAIT_NEUTRAL, 'idle')
+        if now < self._next_repeat:
+            return None
+        if self._state == DRIVING:
+            return self._drive(now)
+        if now < self._zeros_until:
+            self._next_repeat = now + _PERIOD_S
+            return ZERO
+        return None
+
+    def next_tick(self, now):
+        """Return the time [s] at which :meth:`tick` has to be called next."""
+        times = [now + 1.0]
+        if self._state in (READY, DRIVING):
+            times.append(self._stick_at + self.source.timeout_s)
+        if self._state == DRIVING and self._enabling is not None:
+            times.append(self._enabled_at + ENABLING_TIMEOUT_S)
+        if self._state == DRIVING or now < self._zeros_until:
+            times.append(self._next_repeat)
+        return min(times)
+
+    def _fresh(self, now):
+        """Tell whether the active source has been heard recently enough to drive."""
+        return self._stick_at is not None and now - self._stick_at < self.source.timeout_s
+
+    def _enter(self, state, cause=None):
+        """Change the state; the only place that does."""
+        self._state = state
+        if cause:
+            self._cause = cause
+
+    def _interlock(self, cause, now):
+        """Demand neutral before anything moves, and stop what moves."""
+        if self._state != STOPPED:
+            self._enter(WAIT_NEUTRAL, cause)
+        return self._zeros(now)
+
+    def _zeros(self, now):
+        """Begin the zeros."""
+        self._zeros_until = now + ZEROS_S
+        self._next_repeat = now + _PERIOD_S
+        return ZERO
+
+    def _later_zero(self, now):
+        """Return a zero while the zeros last, then None."""
+        return ZERO if now < self._zeros_until else None
+
+    def _drive(self, now):
+        """Return the command of the present stick, and plan its repetition."""
+        self._next_repeat = now + _PERIOD_S
+        return Velocity(self._stick.forward * self._limits[0], self._stick.turn * self._limits[1])

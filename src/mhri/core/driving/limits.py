@@ -1,0 +1,53 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Speeds: a command in SI units, the operator's limits on it, and a robot's own limits."""
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Velocity:
+    """A planar velocity command: linear along x [m/s], angular about z [rad/s] (REP-103)."""
+
+    linear_mps: float = 0.0
+    angular_rad_s: float = 0.0
+
+    def is_zero(self):
+        """Tell whether this asks for standstill, exactly."""
+        return self.linear_mps == 0.0 and self.angular_rad_s == 0.0
+
+    def is_finite(self):
+        """Tell whether both components are numbers that a robot can be given."""
+        return math.isfinite(self.linear_mps) and math.isfinite(self.angular_rad_s)
+
+
+ZERO = Velocity()
+
+
+def clamp_keeping_curvature(velocity, limits):
+    """Scale both components by one factor, so that neither is over a robot's limit.
+
+    The path (curvature = angular / linear) stays the one the operator steered; only the pace along
+    it falls. A velocity that is not finite becomes standstill.
+
+    :param velocity: :class:`Velocity`
+    :param limits: :class:`mhri.core.robots.robot_types.Limits`
+    """
+    if not velocity.is_finite():
+        return ZERO
+    excess = max(1.0, abs(velocity.linear_mps) / limits.linear_mps,
+                 abs(velocity.angular_rad_s) / limits.angular_rad_s)
+    return Velocity(velocity.linear_mps / excess, velocity.angular_rad_s / excess)
+
+
+def speed_limit_problem(linear_mps, angular_rad_s, ceiling=(5.0, 10.0)):
+    """Say why a pair cannot be the operator's speed limit; return None where it can.
+
+    :param ceiling: the largest limits accepted, [m/s, rad/s]: far above every robot here, so that
+        only a slip of units or a garbled message is refused
+    """
+    for value, most, unit in ((linear_mps, ceiling[0], 'm/s'),
+                              (angular_rad_s, ceiling[1], 'rad/s')):
+        if not math.isfinite(value) or not 0.0 <= value <= most:
+            return 'speed limit {!r}: expected 0 to {:g} {}'.format(value, most, unit)
+    return None

@@ -1,0 +1,236 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is recorded, under which name, and what is said about it."""
+from collections import deque
+from dataclasses import dataclass
+import re
+from typing import Tuple
+
+from mhri.core.robots.names import topic_of
+
+# States of a recording; each is reached from the one before, the last two end it.
+OFF = 'off'              # not started
+RECORDING = 'recording'  # a file is open (also while the last messages are being written)
+ENDED = 'ended'          # stopped by the operator, the file is closed whole
+FAILED = 'failed'        # never began, or stopped by itself; the note says why and what there is
+
+MB = 10 ** 6
+ACTIVE = '.active'
+_VARIABLE = re.compile(r'\$(?:([A-Za-z_]\w*)|\{([A-Za-z_]\w*)\})', re.ASCII)
+# Folders of the system that take no files, whoever asks.
+_NO_FILES_IN = ('/dev', '/proc', '/sys')
+
+#: what an operator may choose: (key, label); IMU is always recorded
+CHOICES = (('odometry', 'Odometry'), ('commands', 'Commands'), ('scan', 'Laser scan'),
+           ('rgb', 'RGB camera (compressed)'), ('depth', 'Depth camera (compressed)'))
+_COMMAND_TOPICS = ('/robot_controller/twist', '/robot_controller/robot_select',
+                   '/robot_controller/stop_all', '/mux/mode')
+
+
+class PathRefused(Exception):
+    """A path under which no recording can be kept; the text says why, for a person."""
+
+
+@dataclass(frozen=True)
+class RecordingStatus:
+    """A recording as its row shows it.
+
+    ``path`` is that of the file as it is or will be called when it ends ('' before the start),
+    ``duration_s`` counts from the opening of the file, ``messages`` and ``bytes`` are received
+    (written or about to be), ``rate_hz`` is that of the last second or so. ``note`` is for a
+    person, '' where there is nothing to say; ``attention`` is true where it is a warning.
+    """
+
+    state: str = OFF
+    path: str = ''
+    duration_s: float = 0.0
+    messages: int = 0
+    bytes: int = 0
+    rate_hz: float = 0.0
+    note: str = ''
+    attention: bool = False
+
+
+@dataclass(frozen=True)
+class RecordingLimits:
+    """When a recording warns and stops, and how much a killed program may lose.
+
+    Free space of the disk and memory of the queue in bytes, times in seconds.
+    """
+
+    warn_free_bytes: int = 1000 * MB
+    stop_free_bytes: int = 256 * MB
+    warn_queue_bytes: int = 32 * MB
+    stop_queue_bytes: int = 512 * MB
+    chunk_bytes: int = 768 * 1024
+    chunk_s: float = 0.5
+    sync_s: float = 5.0
+
+
+class RateMeter:
+    """Messages per second over the last second or two, from a count that is looked at often."""
+
+    def __init__(self):
+        self._seen = deque(maxlen=40)
+
+    def rate_hz(self, now_s, count):
+        """Return the rate, 0 until there are two looks at least 0.2 s apart."""
+        if not self._seen or now_s - self._seen[-1][0] >= 0.05:
+            self._seen.append((now_s, count))
+        while len(self._seen) > 2 and now_s - self._seen[1][0] >= 1.0:
+            self._seen.popleft()
+        span_s = now_s - self._seen[0][0]
+        return (count - self._seen[0][1]) / span_s if span_s >= 0.2 else 0.0
+
+
+def topics_of(robot, robot_type, choices=()):
+    """Return the topics to record of a robot, absolute, without repetition.
+
+    Of each list of a template every candidate is taken: one that does not exist brings nothing.
+    Cameras are recorded compressed, with their ``camera_info``; what has no compressed topic can be
+    added by name. Of the commands those on the host are recorded. The robot's own velocity topic is
+    not: a recorder that subscribes it would be taken for the robot, and driven in its place.
+
+    :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
+    :param choices: keys of ``CHOICES``
+    :raises KeyError: a choice that does not exist
+    """
+    unknown = set(choices) - {key for key, _ in CHOICES}
+    if unknown:
+        raise KeyError('nothing to record is called {}'.format(', '.join(sorted(unknown))))
+    names = list(robot_type.imu)
+    for key in ('odometry', 'scan'):
+        if key in choices:
+            names += getattr(robot_type, key)
+    for key, suffix in (('rgb', '/compressed'), ('depth', '/compressedDepth')):
+        for topic in getattr(robot_type, key) if key in choices else ():
+            names += [topic + suffix, topic.rpartition('/')[0] + '/camera_info']
+    topics = [topic_of(robot, name) for name in names]
+    if 'commands' in choices:
+        topics += _COMMAND_TOPICS
+    return tuple(dict.fromkeys(topics))
+
+
+def ros_home(env):
+    """Return the folder of ROS: ``$ROS_HOME``, by default ``~/.ros``."""
+    return env.get('ROS_HOME') or '{}/.ros'.format(env.get('HOME', '').rstrip('/'))
+
+
+def default_name(robot, when):
+    """Return ``<robot>_<date-time>.bag``.
+
+    :param when: a :class:`datetime.datetime` in local time
+    """
+    return '{}_{:%Y-%m-%d-%H-%M-%S}.bag'.format(robot, when)
+
+
+def expand(text, env):
+    """Return a path with ``~``, ``$NAME`` and ``${NAME}`` replaced.
+
+    :param env: {name: value} of the environment
+    :raises PathRefused: a variable that is not set; a home folder of somebody else
+    """
+    def value(match):
+        name = match.group(1) or match.group(2)
+        if name not in env:
+            raise PathRefused('${} is not set'.format(name))
+        return env[name]
+
+    text = _VARIABLE.sub(value, text)
+    if text == '~' or text.startswith('~/'):
+        return env.get('HOME', '') + text[1:]
+    if text.startswith('~'):
+        raise PathRefused('~name is not known here: write the whole path')
+    return text
+
+
+def split_path(text, env, is_folder):
+    """Return (folder, name) of what the operator typed; the name is '' where only a folder is.
+
+    A path that is a folder, or ends in a slash, is a folder; anything else is a file, and gets
+    ``.bag`` where it has it not. Relative paths are seen from the folder of ROS. Nothing typed is
+    the folder of ROS.
+
+    :param is_folder: function from a path to True where a folder of this name exists
+    :raises PathRefused: there cannot be such a file
+    """
+    text = text.strip()
+    if '\0' in text:
+        raise PathRefused('it contains a character that no name may have')
+    home = ros_home(env)
+    if not text:
+        return home, ''
+    path = expand(text, env)
+    if not path.startswith('/'):
+        path = '{}/{}'.format(home, path)
+    if is_folder(path) and not (path.endswith('.bag') or path.endswith('.bag/')):
+        return path, ''
+    folder, _, name = path.rpartition('/')
+    if not name and not folder.endswith('.bag'):
+        return folder or '/', ''
+    if not name or name in ('.', '..'):
+        raise PathRefused('that is a folder, not a file')
+    if not name.endswith('.bag'):
+        name += '.bag'
+    if is_folder('{}/{}'.format(folder, name)):
+        raise PathRefused('{} is a folder, not a file'.format(name))
+    return folder or '/', name
+
+
+def system_folder(real_folder):
+    """Return the folder of the system that a (real) folder is in, or None where files may be."""
+    for top in _NO_FILES_IN:
+        if real_folder == top or real_folder.startswith(top + '/'):
+            return top
+    return None
+
+
+def numbered(name, number):
+    """Return the name, or for 1, 2, ... with ``-1``, ``-2``, ... before its ending."""
+    return name if not number else '{}-{}.bag'.format(name[:-len('.bag')], number)
+
+
+def fallback_note(text, reason, path):
+    """Say that a path could not be used, and what is used instead."""
+    shown = ''.join(char if char.isprintable() else '?' for char in text.strip())
+    if len(shown) > 80:
+        shown = shown[:77] + '...'
+    return 'cannot write to "{}": {}; saving to {} instead'.format(shown, reason, path)
+
+
+_FALLBACK = re.compile(r'cannot write to ".*": (.*); saving to /.* instead(?:; )?', re.DOTALL)
+
+
+def read_fallback(note):
+    """Return (why the path could not be used, the rest of a note); ('', note) where it could.
+
+    The opposite of :func:`fallback_note`, for who shows the path elsewhere.
+    """
+    found = _FALLBACK.search(note)
+    if found is None:
+        return '', note
+    return found.group(1), note[:found.start()] + note[found.end():]
+
+
+def size_text(count):
+    """Return a number of bytes in words, e.g. ``0.8 MB``, ``12 kB``."""
+    if count < 99500:
+        return '{:.0f} kB'.format(count / 1e3)
+    return '{:.1f} GB'.format(count / 1e9) if count >= 1e9 else '{:.1f} MB'.format(count / 1e6)
+
+
+def warning_of(limits, free_bytes, queue_bytes) -> Tuple[str, bool]:
+    """Return (words about the disk, whether to stop); ('', False) while all is well.
+
+    :param free_bytes: space left on the disk, None where unknown
+    :param queue_bytes: received and not yet written
+    """
+    if queue_bytes >= limits.stop_queue_bytes:
+        return 'the disk is too slow: {} wait to be written'.format(size_text(queue_bytes)), True
+    if free_bytes is not None and free_bytes < limits.stop_free_bytes:
+        return 'the disk is full: {} free'.format(size_text(free_bytes)), True
+    if queue_bytes >= limits.warn_queue_bytes:
+        return 'the disk is slow: {} wait in memory'.format(size_text(queue_bytes)), False
+    if free_bytes is not None and free_bytes < limits.warn_free_bytes:
+        return 'the disk is nearly full: {} free'.format(size_text(free_bytes)), False
+    return '', False

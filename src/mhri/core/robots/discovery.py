@@ -1,0 +1,266 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which parts of a ROS graph are robots: the rules of "Look for Connected Bots"."""
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from typing import Optional, Tuple
+
+from mhri.core.config import parse_yaml
+from mhri.core.robots.names import name_problem
+from mhri.core.robots.robot_types import Seen
+
+TWIST = 'geometry_msgs/Twist'
+ROOT = ''
+# Without a namespace there is at most one robot: it is called so unless /robot_name says otherwise.
+ROOT_NAME = 'robot'
+NAME_PARAMETER = 'robot_name'
+# What a robot without a namespace may have among the parameters at the root.
+ROOT_PARAMETERS = ('robot_type', 'robot_model')
+
+
+@dataclass(frozen=True)
+class IgnoreList:
+    """What is never a robot: shell patterns (``*``, ``?``) of node names and of namespaces."""
+
+    nodes: Tuple[str, ...] = ()
+    namespaces: Tuple[str, ...] = ()
+
+    def covers(self, node, namespace):
+        """Tell whether a node (with leading slash) or its namespace (without) is ignored."""
+        return (any(fnmatchcase(node, pattern) for pattern in self.nodes)
+                or any(fnmatchcase(namespace, pattern) for pattern in self.namespaces))
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """What looks like a robot.
+
+    ``robot_type`` is its parameter, None where it has none; ``nodes`` are the nodes registered
+    under it, none where only its parameters are left; ``problem`` says why it cannot be added.
+    ``seen`` is what the graph tells of it besides.
+    """
+
+    name: str
+    robot_type: Optional[str] = None
+    nodes: Tuple[str, ...] = ()
+    problem: Optional[str] = None
+    seen: Seen = Seen()
+
+
+def parse_ignore_list(text, origin):
+    """Return the :class:`IgnoreList` of a YAML text.
+
+    :raises ConfigError: names the file and the key that is wrong
+    """
+    section = parse_yaml(text, origin)
+    ignore = IgnoreList(section.texts('nodes', ()), section.texts('namespaces', ()))
+    section.close()
+    return ignore
+
+
+def nodes_of(system_state):
+    """Return the names of all nodes in the answer of the master's ``getSystemState``, sorted."""
+    return sorted({node for group in system_state for _, nodes in group for node in nodes})
+
+
+def split(name):
+    """Return (first segment, rest) of an absolute name; the first is :data:`ROOT` of ``/name``."""
+    first, _, rest = name.lstrip('/').partition('/')
+    return (first, rest) if rest else (ROOT, first)
+
+
+def root_name(parameters):
+    """Return how the robot without a namespace is called, given the parameters at the root."""
+    return str(parameters.get(NAME_PARAMETER, ROOT_NAME))
+
+
+def parameters_of(name, parameters, at_root=False):
+    """Return the parameters of a robot as a nested dict.
+
+    A robot without a namespace has ``/robot_type`` and ``/robot_model``; what overrides its
+    template is below its name all the same, since ``/mhri`` is the panel's own.
+
+    :param parameters: all parameters as one nested dict
+    """
+    own = parameters.get(name)
+    own = own if isinstance(own, dict) else {}
+    if not at_root:
+        return own
+    found = {key: parameters[key] for key in ROOT_PARAMETERS if key in parameters}
+    return dict(found, mhri=own['mhri']) if 'mhri' in own else found
+
+
+def find_candidates(system_state, parameters, ignore, known=(), topic_types=(), types=None):
+    """Return the robots of a graph, sorted by name.
+
+    A namespace is a robot if it has a ``robot_type``, or nodes under it that are neither ignored
+    nor under a known robot, or velocity topics that a node outside of it reads (a simulator). The
+    root is a robot, of the name :func:`root_name`, if it has a ``robot_type`` or velocity topics;
+    namespaces without either are then taken for its parts.
+
+    :param system_state: publishers, subscribers, services as the master lists them
+    :param parameters: all parameters as one nested dict
+    :param ignore: :class:`IgnoreList`
+    :param known: names of the robots that are in the list already; they are left out
+    :param topic_types: pairs (topic, ROS type) as the master lists them
+    :param types: {name: RobotType}, to recognise robots and their velocity topics by
+    """
+    survey = Survey(system_state, parameters, ignore, topic_types, types or {})
+    return [item for item in survey.candidates() if item.name not in known]
+
+
+class Survey:
+    """One look at a whole graph; parameters as for :func:`find_candidates`."""
+
+    def __init__(self, system_state, parameters, ignore, topic_types, types):
+        self._parameters = parameters
+        self._ignore = ignore
+        self._types = types
+        self._topic_types = {topic: kind for topic, kind in topic_types}
+        self._publishers, self._subscribers = (
+            {topic: nodes for topic, nodes in group} for group in (*system_state, (), ())[:2])
+        self._nested = sorted(set(self._typed_below()) - {
+            node.lstrip('/') for node in nodes_of(system_state)})
+        self._typed = {name: str(value['robot_type']) for name, value in parameters.items()
+                       if isinstance(value, dict) and 'robot_type' in value}
+        self._members = {}
+        for node in nodes_of(system_state):
+            namespace, _ = split(node)
+            if not self._ignored(node) and not self._is_nested(node):
+                self._members.setdefault(namespace, []).append(node)
+        self._root_nodes = set(self._members.pop(ROOT, ()))
+        self._commands = {}
+        self._listeners = {}
+        self._share_out_commands()
+
+    def _ignored(self, name):
+        """Tell whether a node or a topic is ignored, by its name or its namespace.
+
+        A robot that says of itself that it is one may be called what else is ignored: of its nodes
+        only those are which a pattern of two segments names.
+        """
+        namespace, _ = split(name)
+        if namespace in self._typed:
+            return any(fnmatchcase(name, pattern) for pattern in self._ignore.nodes
+                       if pattern.count('/') > 1)
+        return self._ignore.covers(name, namespace)
+
+    def _typed_below(self):
+        """Yield ``lab/bot1`` where a robot was started two namespaces deep."""
+        for name, value in self._parameters.items():
+            if not isinstance(value, dict) or 'robot_type' in value \
+                    or self._ignore.covers('/' + name, name):
+                continue
+            for inner, below in value.items():
+                if isinstance(below, dict) and 'robot_type' in below:
+                    yield '{}/{}'.format(name, inner)
+
+    def _is_nested(self, name):
+        return any(name.startswith('/{}/'.format(robot)) for robot in self._nested)
+
+    def _share_out_commands(self):
+        """Find the robot of each velocity topic that somebody reads."""
+        for topic, nodes in self._subscribers.items():
+            if self._topic_types.get(topic) != TWIST or self._ignored(topic) \
+                    or self._is_nested(topic):
+                continue
+            nodes = [node for node in nodes if not self._ignored(node)]
+            owner, name = self._owner(topic, nodes) if nodes else (None, '')
+            if owner is not None:
+                self._commands.setdefault(owner, []).append(name)
+                self._listeners.setdefault(owner, set()).update(nodes)
+
+    def _owner(self, topic, nodes):
+        """Return (namespace of the robot, name of the topic in its template), (None, '') of none.
+
+        A topic at the root which the nodes of several robots read belongs to none of them: with it
+        they would all be driven at once.
+        """
+        namespace, rest = split(topic)
+        if namespace and (namespace in self._members or namespace in self._typed):
+            return namespace, rest
+        readers = {split(node)[0] for node in nodes}
+        if ROOT not in readers:
+            return (readers.pop(), topic) if len(readers) == 1 else (None, '')
+        name = topic.lstrip('/')
+        if namespace == ROOT or any(name in kind.command for kind in self._types.values()):
+            return ROOT, name
+        return namespace, rest
+
+    def candidates(self):
+        """Return every :class:`Candidate`, sorted by name."""
+        root = self._root()
+        names = set(self._typed) | set(self._commands) | set(self._members)
+        names.discard(ROOT)
+        if root and root.nodes:
+            names = {name for name in names if name in self._typed
+                     or name in self._members and name in self._commands}
+        found = [self._in_namespace(name) for name in names
+                 if name in self._typed or not self._ignore.covers('/' + name, name)]
+        found += [Candidate(name, problem=name_problem(name)) for name in self._nested]
+        if root:
+            taken = any(item.name == root.name for item in found)
+            found.append(self._renamed(root) if taken else root)
+        return sorted(found, key=lambda item: (item.name, item.seen.at_root))
+
+    @staticmethod
+    def _renamed(root):
+        """Return the robot at the root as one that cannot be told from another one."""
+        return Candidate(
+            '/', root.robot_type, root.nodes, 'there is a robot /{0} as well; give the one without '
+            'a namespace another name: rosparam set /{1} <name>'.format(root.name, NAME_PARAMETER),
+            root.seen)
+
+    def _in_namespace(self, name):
+        nodes = self._members.get(name) or sorted(self._listeners.get(name, ()))
+        return Candidate(name, self._typed.get(name), tuple(nodes), name_problem(name),
+                         self._seen(name, '/{}/'.format(name)))
+
+    def _root(self):
+        """Return the robot without a namespace, None where there is none."""
+        robot_type = self._parameters.get('robot_type')
+        if not (isinstance(robot_type, str) or ROOT in self._commands):
+            return None
+        name = root_name(self._parameters)
+        seen = self._seen(ROOT, '/')
+        kind = self._types.get(robot_type if isinstance(robot_type, str) else seen.kind)
+        topics = ['/' + topic for topic in self._commands.get(ROOT, ())]
+        for key in ('command', 'odometry', 'imu') if kind else ():
+            topics += ['/' + topic for topic in getattr(kind, key)]
+        nodes = {node for topic in topics for group in (self._subscribers, self._publishers)
+                 for node in group.get(topic, ())}
+        return Candidate(name, robot_type if isinstance(robot_type, str) else None,
+                         tuple(sorted(nodes & self._root_nodes)), name_problem(name), seen)
+
+    def _seen(self, namespace, prefix):
+        """Return the :class:`Seen` of a robot, whose topics begin with a prefix."""
+        kind = next((name for name, item in sorted(self._types.items())
+                     if item.known_by and all(self._published(prefix + topic, sign)
+                                              for topic, sign in item.known_by.items())), None)
+        return Seen(namespace == ROOT, kind, self._likeliest(namespace, prefix))
+
+    def _published(self, topic, kind):
+        return topic in self._publishers and self._topic_types.get(topic) == kind
+
+    def _likeliest(self, namespace, prefix):
+        """Return the velocity topic of a robot; None where two are equally likely.
+
+        One that is written from inside the robot (behind its own multiplexer) is the last choice;
+        the names of the templates are the first, then those that end in ``cmd_vel``, then the
+        shortest.
+        """
+        usual = [topic for kind in self._types.values() for topic in kind.command]
+
+        def rank(topic):
+            """Return a tuple: the smaller, the likelier."""
+            full = topic if topic.startswith('/') else prefix + topic
+            inside = namespace != ROOT and any(
+                split(node)[0] == namespace and not self._ignored(node)
+                for node in self._publishers.get(full, ()))
+            return (inside, usual.index(topic) if topic in usual else len(usual),
+                    not topic.endswith('cmd_vel'), topic.count('/'))
+
+        ranked = sorted(self._commands.get(namespace, ()), key=rank)
+        if len(ranked) > 1 and rank(ranked[0]) == rank(ranked[1]):
+            return None
+        return ranked[0] if ranked else None

@@ -1,0 +1,61 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is known of a robot's link: how it moves, and whether it can still be heard."""
+import math
+from dataclasses import dataclass
+
+from mhri.core.screen.views import GONE, LIVE, SILENT, WAITING
+
+SILENT_AFTER_S = 1.0
+STANDSTILL_MPS = 0.01
+STANDSTILL_RAD_S = 0.03
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A robot's own word on how it moves (odometry): m/s, rad/s, m, m, rad in its odom frame."""
+
+    linear_mps: float
+    angular_rad_s: float
+    x_m: float = 0.0
+    y_m: float = 0.0
+    heading_rad: float = 0.0
+
+    def is_standstill(self):
+        """Tell whether the speeds are those of a robot at rest.
+
+        The thresholds are above the noise of wheel odometry at rest (which is none, encoders do
+        not tick) and far below the slowest speed an operator can see.
+        """
+        return (math.isfinite(self.linear_mps) and math.isfinite(self.angular_rad_s)
+                and abs(self.linear_mps) <= STANDSTILL_MPS
+                and abs(self.angular_rad_s) <= STANDSTILL_RAD_S)
+
+
+def link_state(age_s, connections):
+    """Say how a robot's link is.
+
+    :param age_s: age of its newest message [s], None where there never was one
+    :param connections: number of open connections to its streams
+    :returns: WAITING, LIVE, SILENT or GONE
+    """
+    if age_s is not None and age_s <= SILENT_AFTER_S:
+        return LIVE
+    if connections:
+        return SILENT if age_s is not None else WAITING
+    return GONE if age_s is not None else WAITING
+
+
+def link_note(state, age_s, heard_at, waited_s):
+    """Say in words what an operator should know about a link; '' where all is well.
+
+    :param heard_at: local time of the newest message as text, e.g. '14:02:11'
+    :param waited_s: for how long the robot has been in the list [s]
+    """
+    if state == SILENT:
+        return 'nothing for {:.1f} s'.format(age_s)
+    if state == GONE:
+        return 'switched off or out of reach; last heard {}'.format(heard_at)
+    if state == WAITING and waited_s > 3.0:
+        return 'nothing heard yet: is it switched on, and is this its name?'
+    return ''

@@ -1,0 +1,108 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""How good the link to a robot is: round trip, clock offset and loss. No ROS, no clock."""
+import collections
+import statistics
+
+from mhri.core.screen.views import LinkFigures
+
+ROUND_TRIPS = 5
+# Over this long the least delay is looked for, and the losses are counted.
+OFFSET_WINDOW_S = 10.0
+LOSS_WINDOW_S = 5.0
+MOST_LOST = 500
+# Past these a row warns. Driving by camera gets worse from 170 ms on (MacKenzie & Ware, CHI '93:
+# 225 ms of lag cost 64 % of the time); two clocks 0.1 s apart upset tf and motion capture.
+WARN_ROUND_TRIP_S = 0.2
+WARN_LOSS = 0.05
+WARN_OFFSET_S = 0.1
+# A group slows down from here on; half the pace at twice the round trip.
+SLOW_ROUND_TRIP_S = 0.15
+LEAST_SHARE = 0.2
+SHARE_STEP = 0.1
+
+
+class LinkQuality:
+    """Collects what is measured of one robot's link; not thread-safe, times are passed in."""
+
+    def __init__(self):
+        self._round_trips = collections.deque(maxlen=ROUND_TRIPS)
+        self._unanswered = 0
+        self._delays = collections.deque()
+        self._counts = collections.deque()
+        self._seq = None
+
+    def on_round_trip(self, round_trip_s):
+        """Take in the time of a question and its answer [s]; None where none came."""
+        if round_trip_s is None:
+            self._unanswered += 1
+            if self._unanswered >= 2:
+                self._round_trips.clear()
+        else:
+            self._unanswered = 0
+            self._round_trips.append(round_trip_s)
+
+    def on_message(self, seq, delay_s, now):
+        """Take in one message of a stream.
+
+        :param seq: its number; the publisher counts up by one
+        :param delay_s: local time of receipt less its stamp [s]; None without a stamp
+        :param now: [s], of a clock that never goes back
+        """
+        if delay_s is not None:
+            # Of the delays within the window only those count that no later one is below.
+            while self._delays and self._delays[-1][1] >= delay_s:
+                self._delays.pop()
+            self._delays.append((now, delay_s))
+        gap = seq - self._seq - 1 if self._seq is not None else 0
+        self._seq = seq
+        # Neither a publisher that was restarted nor two of them are a loss.
+        gap = gap if 0 <= gap <= MOST_LOST else 0
+        self._counts.append((now, gap))
+        self._forget(now)
+
+    def _forget(self, now):
+        while self._delays and self._delays[0][0] < now - OFFSET_WINDOW_S:
+            self._delays.popleft()
+        while self._counts and self._counts[0][0] < now - LOSS_WINDOW_S:
+            self._counts.popleft()
+
+    def read(self, now):
+        """Return the :class:`mhri.core.screen.views.LinkFigures` of this moment."""
+        self._forget(now)
+        trips = self._round_trips
+        lost = sum(gap for _, gap in self._counts)
+        offset = None
+        if self._delays and trips:
+            # The quickest message took about half of the quickest round trip.
+            offset = min(trips) / 2.0 - self._delays[0][1]
+        return LinkFigures(
+            round_trip_s=statistics.median(trips) if trips else None, offset_s=offset,
+            loss=lost / (lost + len(self._counts)) if self._counts else None)
+
+
+def link_warning(figures, dropped=False):
+    """Say what is wrong with a link that is live; '' where all is well.
+
+    :param dropped: whether the robot's guard drops commands now
+    """
+    words = ['its guard drops late commands'] if dropped else []
+    if figures.round_trip_s is not None and figures.round_trip_s > WARN_ROUND_TRIP_S:
+        words.append('slow link: {:.0f} ms round trip'.format(1e3 * figures.round_trip_s))
+    if figures.loss is not None and figures.loss > WARN_LOSS:
+        words.append('{:.0f} % of its messages lost'.format(100.0 * figures.loss))
+    if figures.offset_s is not None and abs(figures.offset_s) > WARN_OFFSET_S:
+        words.append('its clock is {:.1f} s {}: set both by chrony'.format(
+            abs(figures.offset_s), 'ahead' if figures.offset_s > 0.0 else 'behind'))
+    return '; '.join(words)
+
+
+def link_share(round_trip_s):
+    """Return how much of a command a group should get whose slowest link takes so long, in tenths.
+
+    :param round_trip_s: None where it is not known
+    """
+    if round_trip_s is None or round_trip_s <= SLOW_ROUND_TRIP_S:
+        return 1.0
+    steps = int(SLOW_ROUND_TRIP_S / round_trip_s / SHARE_STEP + 1e-9)
+    return max(LEAST_SHARE, round(steps * SHARE_STEP, 1))

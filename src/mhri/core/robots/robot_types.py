@@ -1,0 +1,243 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Robot types: the topics, limits and window of each kind of robot, as validated data."""
+from dataclasses import dataclass, field, replace
+from typing import Dict, Optional, Tuple
+
+from mhri.core.config import ConfigError, Section, parse_yaml
+
+ODOMETRY_TYPES = ('nav_msgs/Odometry', 'turtlesim/Pose')
+_TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'scan', 'battery')
+
+
+@dataclass(frozen=True)
+class Limits:
+    """The most a robot may be asked for: linear [m/s] and angular [rad/s], both > 0."""
+
+    linear_mps: float
+    angular_rad_s: float
+
+
+@dataclass(frozen=True)
+class Export:
+    """A template that another package exports in its package.xml.
+
+    :param package: its name
+    :param origin: the file of the template
+    :param text: what is in it
+    :param window: the class of its window as ``package.module.Class``, '' where it names none
+    """
+
+    package: str
+    origin: str
+    text: str
+    window: str = ''
+
+    def error(self, key, problem):
+        """Return (not raise) a :class:`ConfigError` that names package, file and remedy."""
+        return ConfigError('package {}: {}'.format(self.package, self.origin), key,
+                           problem + '; mend it there and start mhri again')
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What the graph tells of a robot, beside its parameters.
+
+    :param at_root: it has no namespace of its own: its topics begin at ``/``
+    :param kind: the type that it was recognised as by its topics, None where it was not
+    :param command: its velocity topic, as in a template; None where there is none, or where of
+        several none is the likeliest
+    """
+
+    at_root: bool = False
+    kind: Optional[str] = None
+    command: Optional[str] = None
+
+    def anything(self):
+        """Tell whether there is more to it than a name."""
+        return bool(self.at_root or self.kind or self.command)
+
+
+@dataclass(frozen=True)
+class RobotType:
+    """A template: what a robot of this type offers below its namespace.
+
+    Every topic list is relative to the robot's namespace (:func:`mhri.core.robots.names.topic_of`)
+    and ordered: the first that exists (for ``command``: the first that has a subscriber) is used.
+    An empty list means the robot has none. ``window`` is a key of ``mhri.gui.screen.windows`` or,
+    in a lab's own package, a class as ``package.module.Class``. ``known_by`` is {topic: ROS type}
+    of what only robots of this type publish: by it one is recognised that has no ``robot_type``.
+    """
+
+    name: str
+    label: str
+    window: str
+    limits: Limits
+    models: Dict[str, Limits] = field(default_factory=dict)
+    model: Optional[str] = None
+    command: Tuple[str, ...] = ()
+    imu: Tuple[str, ...] = ()
+    odometry: Tuple[str, ...] = ()
+    odometry_type: str = 'nav_msgs/Odometry'
+    rgb: Tuple[str, ...] = ()
+    depth: Tuple[str, ...] = ()
+    scan: Tuple[str, ...] = ()
+    battery: Tuple[str, ...] = ()
+    known_by: Dict[str, str] = field(default_factory=dict)
+
+    def at_root(self):
+        """Return this type with absolute topics: for a robot without a namespace."""
+        return replace(self, **{
+            key: tuple('/' + topic.lstrip('/') for topic in getattr(self, key))
+            for key in _TOPIC_KEYS})
+
+    def with_model(self, model):
+        """Return this type with the limits of one of its models, e.g. ``waffle``.
+
+        Without a model (None), the type keeps the limits of its file, which for a type with models
+        are those of the slowest: an unknown robot is never driven faster than it can.
+
+        :raises ConfigError: the type has no such model
+        """
+        if model is None:
+            return self
+        if not isinstance(model, str) or model not in self.models:
+            raise ConfigError(self.name, 'robot_model', 'no model {!r}; known: {}'.format(
+                model, ', '.join(sorted(self.models)) or 'none'))
+        return replace(self, model=model, limits=self.models[model],
+                       label='{} {}'.format(self.label, model.replace('_', ' ').title()))
+
+
+def _limits(section):
+    """Read ``linear_mps`` and ``angular_rad_s`` of a section."""
+    limits = Limits(section.number('linear_mps', 0.001, 50.0),
+                    section.number('angular_rad_s', 0.001, 50.0))
+    section.close()
+    return limits
+
+
+def parse_robot_type(text, origin):
+    """Return the :class:`RobotType` that a YAML text describes.
+
+    :raises ConfigError: names the file and the key that is wrong
+    """
+    section = parse_yaml(text, origin)
+    name = section.text('name')
+    odometry_type = _odometry_type(section)
+    robot_type = RobotType(
+        name=name, label=section.text('label', name), window=section.text('window', 'turtlebot'),
+        limits=_limits(section.section('limits')),
+        models={key: _limits(item) for key, item in section.named_sections('models').items()},
+        odometry_type=odometry_type, known_by=_known_by(section),
+        **{key: _topics(section, key) for key in _TOPIC_KEYS})
+    section.close()
+    return robot_type
+
+
+def _odometry_type(section):
+    """Read the ROS type of the odometry."""
+    kind = section.text('odometry_type', 'nav_msgs/Odometry')
+    if kind not in ODOMETRY_TYPES:
+        raise section.error('odometry_type', 'expected one of {}, got {!r}'.format(
+            ', '.join(ODOMETRY_TYPES), kind))
+    return kind
+
+
+def _topics(section, key):
+    """Read a list of topics; only ``command`` may not be empty."""
+    topics = section.texts(key, ())
+    if key == 'command' and not topics:
+        raise section.error('command', 'name at least one velocity topic')
+    return topics
+
+
+def _known_by(section):
+    """Read {topic: ROS type} of what only robots of this type publish."""
+    signs = section.take('known_by', {})
+    if not isinstance(signs, dict) or not all(
+            isinstance(word, str) for item in signs.items() for word in item):
+        raise section.error('known_by', 'expected {{topic: type}}, got {!r}'.format(signs))
+    return dict(signs)
+
+
+def load_robot_types(files, exports=()):
+    """Parse many templates; one bad file never hides the good ones.
+
+    :param files: pairs (origin, text)
+    :param exports: :class:`Export` of other packages; they replace none that exists already
+    :returns: ({name: RobotType}, [ConfigError]); of two files with one name the first stays
+    """
+    types, errors = {}, []
+    for origin, text in files:
+        try:
+            robot_type = parse_robot_type(text, origin)
+            if robot_type.name in types:
+                raise ConfigError(origin, 'name', 'a type {!r} exists already'.format(
+                    robot_type.name))
+            types[robot_type.name] = robot_type
+        except ConfigError as error:
+            errors.append(error)
+    for export in exports:
+        try:
+            robot_type = parse_robot_type(export.text, export.origin)
+            if robot_type.name in types:
+                raise ConfigError(export.origin, 'name', 'there is a type {!r} already, choose '
+                                  'another name'.format(robot_type.name))
+            types[robot_type.name] = replace(robot_type,
+                                             window=export.window or robot_type.window)
+        except ConfigError as error:
+            errors.append(export.error(error.key, error.problem))
+    return types, errors
+
+
+def resolve_robot_type(types, robot, params, seen=Seen()):
+    """Choose and adjust the template of one robot.
+
+    :param types: {name: RobotType} with at least ``generic``
+    :param robot: the robot's name
+    :param params: the parameters below its namespace as a nested dict: ``robot_type``,
+        ``robot_model`` and, under ``mhri``, any key of a template file to override
+    :param seen: :class:`Seen`; a robot driven as generic gets the velocity topic it really has
+    :returns: (RobotType, [ConfigError]); a parameter that cannot be used is reported and left out,
+        an unknown type becomes ``generic``
+    """
+    errors = []
+    origin = '/' + robot
+    wanted = params.get('robot_type', seen.kind or 'generic')
+    chosen = types.get(wanted) if isinstance(wanted, str) else None
+    if chosen is None:
+        chosen = types['generic']
+        errors.append(ConfigError(origin, 'robot_type', 'no template {!r} (known: {}); driven as '
+                                  'generic'.format(wanted, ', '.join(sorted(types)))))
+    try:
+        chosen = chosen.with_model(params.get('robot_model'))
+    except ConfigError as error:
+        errors.append(ConfigError(origin, 'robot_model', error.problem + '; driven at the slowest'))
+    if chosen.name == 'generic' and seen.command and seen.command not in chosen.command:
+        chosen = replace(chosen, command=(seen.command,) + chosen.command)
+    overrides = params.get('mhri')
+    if overrides:
+        try:
+            chosen = _overridden(chosen, overrides, origin)
+        except ConfigError as error:
+            errors.append(error)
+    return chosen.at_root() if seen.at_root else chosen, errors
+
+
+def _overridden(robot_type, overrides, origin):
+    """Return the type with the values of a robot's ``mhri`` parameters."""
+    section = Section(overrides, origin, 'mhri')
+    changes = {key: _topics(section, key) for key in _TOPIC_KEYS if key in section}
+    if 'odometry_type' in section:
+        changes['odometry_type'] = _odometry_type(section)
+    for key in ('label', 'window'):
+        if key in section:
+            changes[key] = section.text(key)
+    if 'limits' in section:
+        limits = section.section('limits')
+        changes['limits'] = Limits(
+            limits.number('linear_mps', 0.001, 50.0, robot_type.limits.linear_mps),
+            limits.number('angular_rad_s', 0.001, 50.0, robot_type.limits.angular_rad_s))
+        limits.close()
+    section.close()
+    return replace(robot_type, **changes)

@@ -1,0 +1,79 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a lab sets of the panel with parameters: the camera budget and the disk's reserves."""
+from dataclasses import dataclass
+
+from mhri.core.config import ConfigError, Section
+from mhri.core.recording.recording import MB, RecordingLimits
+
+NAMESPACE = '/mhri/panel'
+
+
+@dataclass(frozen=True)
+class PanelSettings:
+    """The parameters below :data:`NAMESPACE`, each with its default.
+
+    ``thumbnail_hz`` and ``thumbnail_width_px`` are the rate and the width of the pictures in the
+    windows of robots that are not highlighted; ``record_warn_free_mb`` and ``record_stop_free_mb``
+    the free space [MB] at which a recording warns and at which it stops and closes its file.
+    ``slow_with_link`` lets the pace of all fall with the slowest link among the selected robots.
+    """
+
+    thumbnail_hz: float = 5.0
+    thumbnail_width_px: int = 320
+    record_warn_free_mb: float = 1000.0
+    record_stop_free_mb: float = 256.0
+    slow_with_link: bool = False
+
+    def recording_limits(self):
+        """Return the :class:`RecordingLimits` that these settings ask for."""
+        return RecordingLimits(warn_free_bytes=round(self.record_warn_free_mb * MB),
+                               stop_free_bytes=round(self.record_stop_free_mb * MB))
+
+
+# Key: least and greatest value.
+_RANGES = {'thumbnail_hz': (0.1, 60.0), 'thumbnail_width_px': (32.0, 4096.0),
+           'record_warn_free_mb': (1.0, 1e9), 'record_stop_free_mb': (1.0, 1e9)}
+
+_FLAGS = ('slow_with_link',)
+
+
+def _read(section, key):
+    """Return one setting, its default where it is not given.
+
+    :raises ConfigError: it cannot be used
+    """
+    default = getattr(PanelSettings, key)
+    if key in _FLAGS:
+        return section.flag(key, default)
+    return type(default)(section.number(key, *_RANGES[key], default))
+
+
+def parse_settings(parameters, before=PanelSettings()):
+    """Return (PanelSettings, [ConfigError]); what cannot be used stays as it was.
+
+    :param parameters: what the parameter server has below the namespace: a dict, or None
+    :param before: the settings in force
+    """
+    errors = []
+    try:
+        section = Section({} if parameters is None else parameters, NAMESPACE)
+    except ConfigError as error:
+        return before, [error]
+    values = {}
+    for key in (*_RANGES, *_FLAGS):
+        try:
+            values[key] = _read(section, key)
+        except ConfigError as error:
+            errors.append(error)
+            values[key] = getattr(before, key)
+    if values['record_warn_free_mb'] < values['record_stop_free_mb']:
+        errors.append(section.error('record_warn_free_mb', 'must not be less than '
+                                    'record_stop_free_mb: the warning would come too late'))
+        values.update(record_warn_free_mb=before.record_warn_free_mb,
+                      record_stop_free_mb=before.record_stop_free_mb)
+    try:
+        section.close()
+    except ConfigError as error:
+        errors.append(error)
+    return PanelSettings(**values), errors

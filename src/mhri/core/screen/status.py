@@ -1,0 +1,82 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The one line at the bottom of the panel: the one thing that matters now."""
+from mhri.core.screen.stop_words import stop_words
+from mhri.core.screen.views import GONE, ROS_CONNECTED, ROS_STARTING, SILENT
+
+CALM = 'calm'
+ATTENTION = 'attention'
+STOPPED = 'stopped'
+
+
+def status_line(view, waits_for, master_uri=''):
+    """Say who is driven, by what, and what it waits for; or what keeps it all from working.
+
+    :param view: :class:`mhri.core.screen.views.PanelView`, its status not yet filled
+    :param waits_for: the last word of ``/mux/waits_for``; None where the mux has not been heard
+    :returns: (sentence, level), never empty
+    """
+    for rule in (_no_ros, _stopped, _no_mux, _no_robots, _lost_robot):
+        line = rule(view, waits_for, master_uri)
+        if line:
+            return line
+    return _driving(view, waits_for)
+
+
+def _no_ros(view, _, master_uri):
+    if view.ros == ROS_STARTING:
+        return 'connecting to ROS', CALM
+    if view.ros != ROS_CONNECTED:
+        return ('no ROS master at {}: start roscore there, or set ROS_MASTER_URI; looking again '
+                'every second'.format(master_uri), ATTENTION)
+    return None
+
+
+def _stopped(view, _, __):
+    if view.stop_all:
+        return stop_words(view.robots).sentence, STOPPED
+    return None
+
+
+def _no_mux(view, _, __):
+    if view.mode is None:
+        return 'the mux is not running: nothing can be driven until it is (rosrun mhri mux)', \
+            ATTENTION
+    return None
+
+
+def _no_robots(view, _, __):
+    if not view.robots:
+        return 'no robots yet: look for connected bots, or add one by its name', CALM
+    if not any(robot.selected for robot in view.robots):
+        return 'no robot selected: check the ones to drive', CALM
+    return None
+
+
+def _lost_robot(view, _, __):
+    for robot in view.robots:
+        if robot.selected and robot.link == SILENT:
+            return '{} has sent {}'.format(robot.name, robot.note), ATTENTION
+        if robot.selected and robot.link == GONE:
+            return '{}: {}'.format(robot.name, robot.note), ATTENTION
+    return None
+
+
+def _driving(view, waits_for):
+    """Say who is driven, by what, and what it waits for."""
+    label = dict(view.sources).get(view.mode, view.mode)
+    count = sum(robot.selected for robot in view.robots)
+    who = '{} of {} robots'.format(count, len(view.robots))
+    words = {'neutral': 'centre the stick to drive',
+             'source': 'nothing is heard from it yet',
+             'enabling': 'press the enabling pedal to drive',
+             'dead_man': 'hold the dead-man button to drive'}.get(waits_for)
+    if words:
+        return '{}  \u2013  {}  \u2013  {}'.format(who, label, words), \
+            ATTENTION if waits_for in ('source', 'neutral') else CALM
+    waiting = [robot.name for robot in view.robots if robot.selected and robot.waits]
+    if waiting:
+        return '{}  \u2013  {}  \u2013  {}: centre the stick to drive'.format(
+            who, label, ', '.join(waiting)), ATTENTION
+    driven = any(robot.driven for robot in view.robots)
+    return '{}  \u2013  {}  \u2013  {}'.format(who, label, 'driving' if driven else 'ready'), CALM

@@ -1,0 +1,78 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What may be said of a stop that is in force: never more than is proved."""
+from typing import NamedTuple, Tuple
+
+from mhri.core.screen.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED
+
+IN_FORCE = 'STOP ALL in force'
+# More names than this are a number.
+_MOST_NAMES = 3
+
+
+class StopWords(NamedTuple):
+    """``headlines`` say the same in fewer and fewer words, for where there is less and less room;
+    ``note`` is what follows from it, ``sentence`` is for the bottom line.
+    """
+
+    headlines: Tuple[str, ...]
+    note: str
+    sentence: str
+
+
+NOBODY_HEARD = StopWords((IN_FORCE,), 'no command goes out until you release it',
+                         'stop all is in force; release it to drive again')
+
+
+def stop_words(robots):
+    """Say how far the stop of some robots is proved.
+
+    A robot that has never been heard, and is not being proved, has no part in it.
+
+    :param robots: :class:`mhri.core.screen.views.RobotView` of all
+    :returns: :class:`StopWords`
+    """
+    robots = [robot for robot in robots if robot.proof is not None or robot.age_s is not None]
+    if not robots:
+        return NOBODY_HEARD
+    states = [robot.proof.state if robot.proof else None for robot in robots]
+    doubtful = [robot.name for robot, state in zip(robots, states) if state == PROOF_NOT_CONFIRMED]
+    if doubtful:
+        return _not_confirmed(doubtful)
+    pending = [robot.name for robot, state in zip(robots, states) if state != PROOF_STOPPED]
+    if pending:
+        return _stopping(pending, len(robots))
+    return StopWords(('STOPPED - all robots', 'STOPPED'), 'nothing moves until you release it',
+                     'everything is stopped; release stop all to drive again')
+
+
+def _not_confirmed(names):
+    """Name those that are not proved to stand still."""
+    who = _listed(names)
+    shortest = min(who, _counted(names), key=len)
+    return StopWords(
+        tuple(form.format(name) for form, name in (
+            (IN_FORCE + ' \u2013 {} NOT CONFIRMED', who), ('STOP ALL \u2013 {} NOT CONFIRMED', who),
+            ('{} NOT CONFIRMED', who), ('{} NOT CONFIRMED', shortest), ('NOT CONFIRMED', ''))),
+        '{} may still move: go and look'.format('it' if len(names) == 1 else 'they'),
+        'stop all is in force; {} NOT CONFIRMED: go and look'.format(who))
+
+
+def _stopping(names, count):
+    """Name those whose proof is still to come."""
+    who = _listed(names)
+    return StopWords(
+        ('{} \u2013 stopping {}'.format(IN_FORCE, who),
+         'STOPPING {} of {} robots'.format(len(names), count), 'STOPPING'),
+        'waiting until {} seen to stand still'.format('it is' if len(names) == 1 else 'they are'),
+        'stop all is in force; still stopping {}'.format(who))
+
+
+def _listed(names):
+    """Return the names, or how many there are."""
+    return ', '.join(names) if len(names) <= _MOST_NAMES else _counted(names)
+
+
+def _counted(names):
+    """Return how many robots there are."""
+    return '{} robot{}'.format(len(names), '' if len(names) == 1 else 's')

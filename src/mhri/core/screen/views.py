@@ -1,0 +1,144 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the screen shows, as plain values: the one language between ros/ and gui/.
+
+The host of the panel takes a :class:`PanelView` from the ROS side a few times a second on the GUI
+thread and hands it to the widgets, which draw it and know nothing else.
+"""
+from dataclasses import dataclass
+from typing import Optional, Tuple
+
+from mhri.core.robots.mocap import Drift, Pose
+
+# Link states of a robot.
+WAITING = 'waiting'   # added, nothing heard yet
+LIVE = 'live'         # its odometry arrives
+SILENT = 'silent'     # connected, but nothing has arrived for more than a second
+GONE = 'gone'         # no connection: switched off, crashed or out of reach
+LINK_STATES = (WAITING, LIVE, SILENT, GONE)
+
+# States of the proof of a stop.
+PROOF_WAITING = 'waiting'            # zero sent, standstill not read yet
+PROOF_STOPPED = 'stopped'            # its own odometry reads standstill
+PROOF_NOT_CONFIRMED = 'not_confirmed'  # it moves on, moved again, or cannot be heard
+
+# States of the ROS connection.
+ROS_STARTING = 'starting'
+ROS_NO_MASTER = 'no_master'
+ROS_CONNECTED = 'connected'
+
+
+@dataclass(frozen=True)
+class ProofView:
+    """The proof that one robot stands still after stop-all: state and words."""
+
+    state: str
+    text: str
+
+
+@dataclass(frozen=True)
+class LinkFigures:
+    """What was measured of a robot's link; None where it is not known.
+
+    ``round_trip_s`` is the time there and back [s], ``offset_s`` by how much the robot's clock is
+    ahead of the one here [s], ``loss`` the part of its odometry that did not arrive, in [0, 1].
+    """
+
+    round_trip_s: Optional[float] = None
+    offset_s: Optional[float] = None
+    loss: Optional[float] = None
+
+
+@dataclass(frozen=True)
+class RobotView:
+    """One robot as its row and its window show it.
+
+    ``age_s`` is the age of the newest odometry [s]; speeds are the robot's own odometry [m/s,
+    rad/s], ``heading_rad`` its yaw in (-pi, pi], x and y in metres in its ``odom`` frame; None
+    where nothing has been heard. ``battery`` is a fraction in [0, 1]. ``driven`` is true while
+    commands other than zero are being forwarded to it, ``recording`` while a bag of it is open,
+    ``guarded`` while its commands go through a guard on the robot. ``note`` is what is worth saying
+    in words about the link, e.g. "nothing for 3.2 s"; '' while all is well. ``figures`` are what
+    was measured of the link, ``slow`` is true where they are past what driving needs, ``waits``
+    while it is left out until the stick has been centred, since its link was lost.
+    """
+
+    name: str
+    type_label: str = ''
+    window: str = 'turtlebot'
+    link: str = WAITING
+    age_s: Optional[float] = None
+    note: str = ''
+    linear_mps: Optional[float] = None
+    angular_rad_s: Optional[float] = None
+    heading_rad: Optional[float] = None
+    x_m: Optional[float] = None
+    y_m: Optional[float] = None
+    battery: Optional[float] = None
+    selected: bool = False
+    driven: bool = False
+    moving: bool = False
+    proof: Optional[ProofView] = None
+    max_linear_mps: Optional[float] = None
+    max_angular_rad_s: Optional[float] = None
+    recording: bool = False
+    guarded: bool = False
+    figures: LinkFigures = LinkFigures()
+    slow: bool = False
+    waits: bool = False
+
+
+@dataclass(frozen=True)
+class StateView:
+    """What else is known of a robot while its window is open.
+
+    ``ages`` are (name of a stream that is shown, age of its newest message [s], None where nothing
+    has come yet). ``figures`` are those of the link. ``captured`` is where motion capture sees the
+    robot, ``drift`` how far its odometry is off since the window was opened; None where nobody
+    tracks it.
+    """
+
+    ages: Tuple[Tuple[str, Optional[float]], ...] = ()
+    figures: LinkFigures = LinkFigures()
+    captured: Optional[Pose] = None
+    drift: Optional[Drift] = None
+
+
+@dataclass(frozen=True)
+class HeardView:
+    """What the voice node heard last, the command it made of it ('' for none), and why not."""
+
+    text: str
+    command: str = ''
+    accepted: bool = False
+    reason: str = ''
+
+
+@dataclass(frozen=True)
+class PanelView:
+    """Everything the panel shows at one instant.
+
+    ``mode`` is the source in force as the mux last said (None: the mux has not been heard);
+    ``sources`` are (name, label) of the drop-down in order. ``stop_all`` is true while everything
+    is stopped. ``limits`` are the operator's speed limits in force [m/s, rad/s]. ``status`` is the
+    one line at the bottom, never empty; ``status_level`` one of 'calm', 'attention', 'stopped'.
+    ``together`` is true while all selected robots are held to the pace of the slowest, ``pace``
+    says in words what that is, ``slowed`` is true while a slow link holds them back.
+    ``camera_bits_per_s`` is what all pictures on show take of the network. ``heard`` is what the
+    voice node heard last, None before that.
+    """
+
+    ros: str = ROS_STARTING
+    sources: Tuple[Tuple[str, str], ...] = ()
+    mode: Optional[str] = None
+    stop_all: bool = False
+    stop_note: str = ''
+    limits: Tuple[float, float] = (0.5, 1.5)
+    together: bool = False
+    pace: str = ''
+    slowed: bool = False
+    status: str = 'starting'
+    status_level: str = 'calm'
+    robots: Tuple[RobotView, ...] = ()
+    camera_bits_per_s: float = 0.0
+    heard: Optional[HeardView] = None

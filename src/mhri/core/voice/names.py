@@ -1,0 +1,117 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""How robots are called: by a name that can be spoken, and by their number in the panel."""
+import re
+
+from mhri.core.robots.names import name_problem
+
+# More robots than this are not told apart by voice.
+MOST_ROBOTS = 30
+# A word that the dictionary does not have is spelled, up to this length: "tb" is "t b".
+_SPELLED = 4
+_VOWELS = frozenset('aeiouy')
+_ONES = ('zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen '
+         'fifteen sixteen seventeen eighteen nineteen').split()
+_TENS = 'twenty thirty forty fifty sixty seventy eighty ninety'.split()
+_PARTS = re.compile(r'[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+')
+
+
+def number_words(number):
+    """Return how a whole number from 0 to 99 is spoken, e.g. 'twenty one'.
+
+    :raises ValueError: it is outside
+    """
+    if not 0 <= number <= 99:
+        raise ValueError('numbers from 0 to 99 are spoken, not {}'.format(number))
+    if number < 20:
+        return _ONES[number]
+    tens, ones = divmod(number, 10)
+    return ' '.join([_TENS[tens - 2]] + ([_ONES[ones]] if ones else []))
+
+
+def _split(letters, knows):
+    """Return dictionary words that make up a text, as few and as even as can be, or None."""
+    if knows(letters):
+        return [letters]
+    cuts = [(letters[:at], letters[at:]) for at in range(3, len(letters) - 2)]
+    both = [cut for cut in cuts if knows(cut[0]) and knows(cut[1])]
+    if both:
+        return list(max(both, key=lambda cut: min(len(cut[0]), len(cut[1]))))
+    return None
+
+
+def _word_or_letters(part, knows):
+    """Return the words or letters that one part of a name is spoken as, or None."""
+    spelled = list(part) if len(part) <= _SPELLED and all(map(knows, part)) else None
+    if spelled and not _VOWELS.intersection(part):
+        # The dictionary has "tb" and the like, but nobody says them as a word.
+        return spelled
+    return _split(part, knows) or spelled
+
+
+def _digits(text):
+    """Return the ways in which digits are spoken, the usual one first."""
+    one_by_one = ' '.join(_ONES[int(digit)] for digit in text)
+    if len(text) > 2 or text[0] == '0':
+        return [one_by_one]
+    whole = number_words(int(text))
+    return [whole] if whole == one_by_one else [whole, one_by_one]
+
+
+def spoken_names(name, knows):
+    """Return the phrases that one robot's name is spoken as; () where it cannot be.
+
+    Words of the dictionary stay words (``bot1``: "bot one", ``turtlebot_2``: "turtle bot two"),
+    short ones that are not in it are spelled (``tb3``: "t b three").
+
+    :param knows: function that tells whether the dictionary has a word
+    """
+    ways = [[]]
+    for part in _PARTS.findall(name):
+        if part.isdigit():
+            spoken = _digits(part)
+        else:
+            words = _word_or_letters(part.lower(), knows)
+            spoken = [' '.join(words)] if words else []
+        ways = [way + [more] for way in ways for more in spoken][:4]
+    return tuple(' '.join(way) for way in ways if way)
+
+
+def call_robots(robots, knows, taken, wake_words=()):
+    """Return how the robots of the panel's list can be called.
+
+    :param robots: names in the panel's order; what is no robot's name is left out
+    :param taken: words that mean something else: a name with one of them goes by its number alone
+    :param wake_words: a name may have these in it ("robot one"), but not be one
+    :returns: ({name: phrases}, [sentence about a robot that goes by its number alone])
+    """
+    called, notes = {}, []
+    listed = [name for name in robots if isinstance(name, str) and not name_problem(name)]
+    listed = list(dict.fromkeys(listed))[:MOST_ROBOTS]
+    phrases = {name: spoken_names(name, knows) for name in listed}
+    for number, name in enumerate(listed, 1):
+        problem = _problem(name, phrases, taken, wake_words)
+        called[name] = () if problem else phrases[name]
+        if problem:
+            notes.append('{} {}: say its number, "{}"'.format(name, problem, number_words(number)))
+    return called, notes
+
+
+def _problem(name, phrases, taken, wake_words):
+    """Say why a robot's name cannot be used, or return None."""
+    own = phrases[name]
+    if not own:
+        return 'has no words that can be spoken'
+    for phrase in own:
+        words = phrase.split()
+        if all(word in _ONES or word in _TENS for word in words):
+            return 'sounds like a number'
+        clash = [word for word in words if word in taken]
+        if clash:
+            return 'has the word "{}", which means something else'.format(clash[0])
+        if phrase in wake_words:
+            return 'sounds like the wake word'
+        rivals = [other for other in phrases if other != name and phrase in phrases[other]]
+        if rivals:
+            return 'sounds like {}'.format(rivals[0])
+    return None

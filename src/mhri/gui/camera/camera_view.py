@@ -1,0 +1,225 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A robot's camera: the picture, how its stream does, which transport, and a still."""
+from python_qt_binding.QtCore import QTimer, Qt, Signal
+from python_qt_binding.QtWidgets import (
+    QComboBox, QHBoxLayout, QPushButton, QSizePolicy, QVBoxLayout, QWidget)
+
+from mhri.core.camera.images import DEPTH
+from mhri.gui.screen import theme, words
+from mhri.gui.screen.labels import Sign, TextLine
+from mhri.gui.screen.pending import Pace
+from mhri.gui.camera.picture import PictureView
+
+AUTO = 'auto'
+STATUS_PERIOD_S = 0.25
+NOTE_MS = 6000
+OLD_S = 1.0
+WAITING = 'waiting for the first picture'
+
+
+def still_name(robot, kind, when):
+    """Return the file name of a still, e.g. "bot1_rgb_2026-11-21-14-02-11-250.png".
+
+    :param kind: 'rgb' or 'depth'
+    :param when: ``datetime`` of the picture; to the millisecond, so that two are never one
+    """
+    return '{}_{}_{}-{:03d}.png'.format(robot, kind, when.strftime('%Y-%m-%d-%H-%M-%S'),
+                                        when.microsecond // 1000)
+
+
+def bandwidth_text(bits_per_s):
+    """Return a bandwidth in megabytes (10^6) a second, e.g. "0.8 MB/s", "0.04 MB/s"."""
+    megabytes = bits_per_s / 8e6
+    return '{:.{}f} MB/s'.format(megabytes, 1 if megabytes >= 0.0995 else 2)
+
+
+def rate_text(status, slowed=None):
+    """Return how often a new picture shows, and why not as often as it comes.
+
+    :param slowed: (rate at most [Hz], robot that is in front instead); None: as often as it comes
+    """
+    if slowed is None or status.rate_hz <= slowed[0]:
+        return '{:.1f} Hz'.format(status.rate_hz)
+    return '{:g} Hz: {} is in front'.format(*slowed)
+
+
+def stream_text(status, slowed=None):
+    """Return a :class:`StreamStatus` as a line of figures; '' before a picture.
+
+    :param slowed: see :func:`rate_text`
+    """
+    if status.age_s is None:
+        return ''
+    parts = [rate_text(status, slowed), words.age_text(status.age_s) + ' old',
+             bandwidth_text(status.bits_per_s), status.transport]
+    if status.bad:
+        parts.append('{:,} bad: {}'.format(status.bad, status.problem).rstrip(': '))
+    return '  '.join(parts)
+
+
+def stream_warning(status):
+    """Return what is said across a picture that is not live any more; '' while it is.
+
+    The first line is the warning itself, a second one the reason where it is known.
+    """
+    if status.age_s is None or not (status.stale or status.age_s > OLD_S):
+        return ''
+    warning = 'OLD PICTURE, {}'.format(words.age_text(status.age_s))
+    return '{}\n{}'.format(warning, status.problem) if status.problem else warning
+
+
+class CameraView(QWidget):
+    """Shows what it is given, marks what is old; decides nothing about topics.
+
+    Child widgets: ``picture``, ``status_label``, ``transport_combo``, ``still_button``.
+    """
+
+    #: the picture on show shall be kept as a file: its Frame
+    still_requested = Signal(object)
+    #: name of a transport, or 'auto'
+    transport_chosen = Signal(str)
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self._kind = None
+        self._chosen = {}
+        self._status_pace = Pace(STATUS_PERIOD_S)
+        self._old = False
+        self._build()
+        self._connect()
+        self._restore()
+
+    def _build(self):
+        """Make and place the parts."""
+        self.setObjectName('camera_view')
+        self.picture = PictureView(self)
+        self.status_sign = Sign(self)
+        self.status_label = TextLine(self)
+        self.status_label.setObjectName('status_label')
+        self.status_label.setFont(theme.number_font(self.font()))
+        self.transport_combo = QComboBox(self)
+        self.still_button = QPushButton('Save still', self)
+        self.still_button.setAutoDefault(False)
+        for widget, name, spoken in (
+                (self.transport_combo, 'transport_combo', 'how the picture is sent'),
+                (self.still_button, 'still_button', 'save this picture as a PNG file')):
+            widget.setObjectName(name)
+            widget.setAccessibleName(spoken)
+            widget.setToolTip(spoken)
+            widget.setFocusPolicy(Qt.TabFocus)
+            widget.setMinimumHeight(theme.touch_size(self))
+        self.transport_combo.setSizeAdjustPolicy(QComboBox.AdjustToMinimumContentsLengthWithIcon)
+        self.transport_combo.setMinimumContentsLength(8)
+        self.transport_combo.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
+        self._note_timer = QTimer(self)
+        self._note_timer.setSingleShot(True)
+        self._note_timer.setInterval(NOTE_MS)
+        line, controls = QHBoxLayout(), QHBoxLayout()
+        line.setSpacing(6)
+        line.addWidget(self.status_label, 1)
+        line.addWidget(self.status_sign)
+        controls.setSpacing(6)
+        controls.addWidget(self.transport_combo, 1)
+        controls.addWidget(self.still_button)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(4)
+        column.addWidget(self.picture, 1)
+        column.addLayout(line)
+        column.addLayout(controls)
+
+    def _connect(self):
+        """Wire the controls."""
+        self.still_button.clicked.connect(self._on_still)
+        self.transport_combo.activated[int].connect(self._on_transport)
+
+    def _restore(self):
+        """Begin without a picture."""
+        self.show_kind(None)
+
+    @property
+    def kind(self):
+        """What is to be seen: 'rgb', 'depth' or None."""
+        return self._kind
+
+    def show_kind(self, kind, text=WAITING):
+        """Change to another kind of picture ('rgb', 'depth', None); the old one goes at once."""
+        self._kind = kind
+        self._old = False
+        self.show_transports(())
+        self.picture.show_warning('')
+        self.picture.clear(text if kind else '', kind == DEPTH)
+        self.still_button.setEnabled(False)
+        if not self._note_timer.isActive():
+            self._say(None, '')
+
+    def show_placeholder(self, text):
+        """Say why there is no picture, e.g. "bot1 has no topic camera/rgb/image_raw"."""
+        if self.picture.frame is None:
+            self.picture.clear(text, self._kind == DEPTH)
+
+    def show_frame(self, frame):
+        """Show a :class:`Frame`; one of another kind than is wanted comes late."""
+        if frame.kind == self._kind:
+            self.picture.show_frame(frame)
+            self.still_button.setEnabled(True)
+
+    def show_status(self, status, slowed=None):
+        """Show a :class:`StreamStatus`; numbers four times a second at most.
+
+        :param slowed: see :func:`rate_text`
+
+        Call it at every drawing, with or without a new frame: it is what tells old from live.
+        """
+        warning = stream_warning(status)
+        old = bool(warning)
+        if not self._status_pace.due() and old == self._old:
+            return
+        self._old = old
+        self.picture.show_warning(warning if self.picture.frame is not None else '')
+        if self.picture.frame is None and status.problem:
+            self.show_placeholder(status.problem)
+        if not self._note_timer.isActive():
+            trouble = old or (status.bad and status.problem)
+            text = stream_text(status, slowed)
+            self._say((theme.TRIANGLE, theme.ATTENTION) if trouble else None, text,
+                      (rate_text(status, slowed),) if slowed and text else ())
+
+    def show_note(self, text, good=True):
+        """Show a sentence in the status line for a while, e.g. where a still went."""
+        self._note_timer.start()
+        self._say((theme.TICK, theme.LIVE) if good else (theme.TRIANGLE, theme.ATTENTION), text)
+
+    def _say(self, sign, text, shorter=()):
+        """Show a line with its sign."""
+        self.status_sign.show_sign(sign)
+        self.status_label.show_text(text, shorter=shorter)
+
+    def show_transports(self, names):
+        """Offer what there is now; 'auto' comes first, and what was chosen stays, there or not."""
+        chosen = self._chosen.get(self._kind, AUTO)
+        offered = list(dict.fromkeys((AUTO, *names, chosen)))
+        combo = self.transport_combo
+        if offered != [combo.itemText(index) for index in range(combo.count())]:
+            if combo.view().isVisible():
+                return
+            combo.clear()
+            combo.addItems(offered)
+        if not combo.view().isVisible():
+            combo.setCurrentIndex(offered.index(chosen))
+
+    def camera_size(self):
+        """Return (width, height) that a picture has room for, in pixels of the screen."""
+        size = self.picture.room().size() * self.devicePixelRatioF()
+        return size.width(), size.height()
+
+    def _on_still(self):
+        """Hand on the picture on show."""
+        if self.picture.frame is not None:
+            self.still_requested.emit(self.picture.frame)
+
+    def _on_transport(self, index):
+        """Keep a choice for this kind of picture, and tell of it."""
+        self._chosen[self._kind] = self.transport_combo.itemText(index)
+        self.transport_chosen.emit(self._chosen[self._kind])

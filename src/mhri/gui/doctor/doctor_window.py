@@ -1,0 +1,126 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the doctor found, each with the command that mends it."""
+from html import escape
+
+from python_qt_binding.QtCore import QSize, Qt, Signal
+from python_qt_binding.QtGui import QGuiApplication
+from python_qt_binding.QtWidgets import (
+    QDialog, QHBoxLayout, QPushButton, QTextBrowser, QVBoxLayout)
+
+from mhri.core.doctor.judgement import as_lines
+from mhri.core.doctor.facts import FAULT, FINE, WARNING
+from mhri.gui.screen import theme
+from mhri.gui.screen.labels import TextLine
+
+# Shapes as well as colours, those of the states of a robot.
+_MARKS = {FAULT: ('\u2612', theme.STOP), WARNING: ('\u25b2', theme.ATTENTION),
+          FINE: ('\u25cf', theme.LIVE)}
+
+
+class DoctorWindow(QDialog):
+    """A window that is never modal: robots may move while it is read."""
+
+    #: "Examine again"
+    examine_requested = Signal()
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self._findings = None
+        self._took_s = 0.0
+        self._build()
+        self._connect()
+
+    def _build(self):
+        """Make and place the parts."""
+        self.setObjectName('doctor_window')
+        self.setWindowTitle('mhri doctor')
+        self.setFont(theme.base_font(self.font()))
+        self.summary = TextLine(self)
+        self.summary.setFont(theme.larger(self.font(), 1.2, bold=True))
+        self.again_button = QPushButton('Examine again', self)
+        self.copy_button = QPushButton('Copy', self)
+        for button in (self.again_button, self.copy_button):
+            button.setMinimumHeight(theme.touch_size(self))
+            button.setFocusPolicy(Qt.TabFocus)
+            button.setAutoDefault(False)
+        self.text = QTextBrowser(self)
+        self.text.setOpenLinks(False)
+        head = QHBoxLayout()
+        head.addWidget(self.summary, 1)
+        head.addWidget(self.again_button)
+        head.addWidget(self.copy_button)
+        column = QVBoxLayout(self)
+        column.addLayout(head)
+        column.addWidget(self.text, 1)
+
+    def _connect(self):
+        """Wire the buttons."""
+        self.again_button.clicked.connect(self.examine_requested)
+        self.copy_button.clicked.connect(self._copy)
+
+    def sizeHint(self):  # noqa: N802
+        """Return a size at which a few findings can be read."""
+        return QSize(720, 440)
+
+    def minimumSizeHint(self):  # noqa: N802
+        """Return the least at which findings and their remedies can be read."""
+        return super().minimumSizeHint().expandedTo(QSize(600, 340))
+
+    def show_busy(self):
+        """Say that the examination is under way; what was found before stays to be read."""
+        self.summary.show_text('examining, 3 s at most ...', theme.MUTED)
+        self.again_button.setEnabled(False)
+        self.copy_button.setEnabled(self._findings is not None)
+
+    def show_findings(self, findings, took_s):
+        """Show what was found.
+
+        :param findings: list of :class:`mhri.core.doctor.facts.Finding`, the worst first
+        :param took_s: how long it took [s]
+        """
+        self._findings, self._took_s = findings, took_s
+        bad = [item for item in findings if item.severity != FINE]
+        faults = sum(item.severity == FAULT for item in bad)
+        self.summary.show_text(
+            '{}, {}'.format(_count(faults, 'fault'), _count(len(bad) - faults, 'warning'))
+            if bad else 'nothing is wrong')
+        fine = [item for item in findings if item.severity == FINE]
+        self.text.setHtml(''.join(self._entry(item) for item in bad) + ''.join(
+            '<p>{} {}: {}</p>'.format(self._mark(FINE), escape(item.about), escape(item.problem))
+            for item in fine))
+        self._allow()
+
+    def show_failure(self, sentence):
+        """Say why nothing could be examined."""
+        self.summary.show_text(sentence)
+        self._allow()
+
+    def _allow(self):
+        """Let the operator ask again."""
+        self.again_button.setEnabled(True)
+        self.copy_button.setEnabled(self._findings is not None)
+
+    def _entry(self, item):
+        """Return one finding as HTML."""
+        rows = ''.join('<br>{}: {}'.format(key, text) for key, text in (
+            ('shows as', escape(item.shows)),
+            ('mend', '<b>{}</b>'.format(escape(item.remedy)) if item.remedy else ''),
+            ('sure', escape(item.sure))) if text)
+        return '<p>{} <b>{}</b>: {}{}</p>'.format(
+            self._mark(item.severity), escape(item.about), escape(item.problem), rows)
+
+    def _mark(self, severity):
+        """Return the shape of a severity in its colour."""
+        shape, tone = _MARKS[severity]
+        return '<span style="color:{}">{}</span>'.format(
+            theme.colour(tone, self.palette()).name(), shape)
+
+    def _copy(self):
+        """Put the report on the clipboard, as ``mhri_doctor`` prints it."""
+        QGuiApplication.clipboard().setText('\n'.join(as_lines(self._findings, self._took_s)))
+
+
+def _count(number, word):
+    """Return a number with its word, e.g. "1 fault", "no warnings"."""
+    return '{} {}{}'.format(number or 'no', word, '' if number == 1 else 's')

@@ -1,0 +1,274 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The keyboard as a stick and as switches, in every window of the program.
+
+One object watches the key events of the whole application, because drive keys have to work
+whatever widget has the focus, and stop-all from anywhere at all. It acts in the *drive areas*
+alone: widgets marked by :func:`mark_drive_area` (panel, bot windows) and what is in them; another
+rqt plugin beside the panel keeps its keys. Stop-all knows no such bounds.
+"""
+from python_qt_binding.QtCore import QEvent, QObject, Qt, Signal
+from python_qt_binding.QtWidgets import (
+    QAbstractButton, QAbstractItemView, QAbstractSlider, QAbstractSpinBox, QApplication, QComboBox,
+    QLineEdit, QPlainTextEdit, QTextEdit, QWidget)
+
+from mhri.gui.driving.key_state import KeyState
+
+_AHEAD, _BACK, _LEFT, _RIGHT = (1, 0), (-1, 0), (0, 1), (0, -1)
+
+_ARROWS = {int(Qt.Key_Up): _AHEAD, int(Qt.Key_Down): _BACK, int(Qt.Key_Left): _LEFT,
+           int(Qt.Key_Right): _RIGHT}
+_LETTERS = {int(Qt.Key_W): _AHEAD, int(Qt.Key_S): _BACK, int(Qt.Key_A): _LEFT,
+            int(Qt.Key_D): _RIGHT}
+# Where W, A, S, D are on a keyboard of any language: evdev key code + 8, as X11 and Wayland count.
+_POSITIONS = {25: _AHEAD, 39: _BACK, 38: _LEFT, 40: _RIGHT}
+_DIGIT_POSITIONS = {code: (code - 9) % 10 for code in range(10, 20)}
+_DIGITS = {int(Qt.Key_0) + digit: digit for digit in range(10)}
+_ENTER = (int(Qt.Key_Return), int(Qt.Key_Enter))
+_SPACE = int(Qt.Key_Space)
+_TALK = int(Qt.Key_T)
+
+_KEYS = frozenset((QEvent.KeyPress, QEvent.KeyRelease, QEvent.ShortcutOverride))
+# After one of these the releases of held keys may go to somebody else.
+_LOSSES = frozenset((QEvent.WindowDeactivate, QEvent.WindowBlocked, QEvent.ApplicationDeactivate))
+# Before one of these somebody else may have had the releases of keys that were held.
+_ARRIVALS = frozenset((QEvent.WindowActivate, QEvent.WindowUnblocked, QEvent.ApplicationActivate,
+                       QEvent.FocusIn))
+
+_TEXT_FIELDS = (QLineEdit, QAbstractSpinBox, QTextEdit, QPlainTextEdit)
+_ARROW_USERS = (QAbstractSlider, QComboBox, QAbstractItemView)
+_AREA = 'mhri_drive_area'
+_KEEPS_ARROWS = 'mhri_keeps_arrows'
+
+
+def mark_drive_area(widget):
+    """Let the drive keys work in a widget and everything in it."""
+    widget.setProperty(_AREA, True)
+
+
+def keep_arrows(widget):
+    """Leave the arrow keys to a widget while it has the focus; sliders need not ask."""
+    widget.setProperty(_KEEPS_ARROWS, True)
+
+
+def _direction(event):
+    """Return the (forward, turn) that a key stands for, or None."""
+    arrow = _ARROWS.get(event.key())
+    if arrow is not None:
+        return arrow
+    code = event.nativeScanCode()
+    return _POSITIONS.get(code) if code else _LETTERS.get(event.key())
+
+
+def _digit(event):
+    """Return the digit that a key stands for, by its place or on the number pad, or None."""
+    code = event.nativeScanCode()
+    if code in _DIGIT_POSITIONS:
+        return _DIGIT_POSITIONS[code]
+    if code and not event.modifiers() & Qt.KeypadModifier:
+        return None
+    return _DIGITS.get(event.key())
+
+
+def _identity(event):
+    """Return what a press and its release have in common, even if a modifier changed between."""
+    return event.nativeScanCode() or event.key()
+
+
+def _is_text_field(widget):
+    """Tell whether typing into a widget is writing."""
+    return isinstance(widget, _TEXT_FIELDS) or (
+        isinstance(widget, QComboBox) and widget.isEditable())
+
+
+class DriveKeys(QObject):
+    """Event filter for the application: ``QApplication.instance().installEventFilter(keys)``.
+
+    Arrows, and W A S D by their place, hold the stick; several at once add up. Space centres it:
+    the keys held then are dead until released. T held is push-to-talk. Digits are the switches of
+    the robots. Return activates the focused button, since space never does. Without effect while a
+    text field has the focus or a list is open, and with Ctrl, Alt or Meta; but Shift+Space stops
+    everything, always. A key acts once, however long it is held, and counts as let go when it is
+    (:mod:`mhri.gui.driving.key_state`).
+
+    :param panel: the panel; a key that no widget has the focus for is its own
+    :param keys: :class:`mhri.gui.driving.key_state.KeyState`
+    """
+
+    #: forward and turn, each -1, 0 or 1; on every change, at once
+    moved = Signal(float, float)
+    #: space: the stick has to be centred, whoever holds it
+    centre_pressed = Signal()
+    #: Shift+Space
+    stop_pressed = Signal()
+    #: a digit 1..9
+    robot_pressed = Signal(int)
+    #: the digit 0
+    all_pressed = Signal()
+    #: T was pressed or let go (push-to-talk)
+    talk_changed = Signal(bool)
+
+    def __init__(self, panel, keys=None):
+        super().__init__(panel)
+        self._panel = panel
+        self._keys = keys or KeyState()
+        # Identities of the keys that are down, as far as they are known here.
+        self._down = set()
+        self._held = {}
+        self._dead = set()
+        self._deflection = (0.0, 0.0)
+        self._talk = None
+
+    @property
+    def talking(self):
+        """Whether T is held."""
+        return self._talk is not None
+
+    def deflection(self):
+        """Return (forward, turn) as held by the keys now."""
+        return self._deflection
+
+    def release(self):
+        """Count every key as released; one that is still down has to be pressed again."""
+        self._held.clear()
+        self._dead.clear()
+        self._down = set(self._keys.down() or ())
+        self._set_talk(None)
+        self._update()
+
+    def centre(self):
+        """Count every held key as released until it has been."""
+        self._dead.update(self._held)
+        self._held.clear()
+        self._update()
+
+    def eventFilter(self, watched, event):  # noqa: N802
+        """Take the keys that drive; everything else goes its way."""
+        kind = event.type()
+        if kind in _LOSSES:
+            self.release()
+        elif kind in _ARRIVALS:
+            self._down.intersection_update(self._keys.down() or ())
+        elif kind in _KEYS and isinstance(watched, QWidget):
+            return self._on_key(watched, event, kind)
+        return False
+
+    def _on_key(self, watched, event, kind):
+        """Return whether a key event is used up."""
+        stops = event.key() == _SPACE and event.modifiers() & Qt.ShiftModifier
+        if kind == QEvent.KeyRelease:
+            return self._on_release(event) or bool(stops)
+        if stops:
+            return self._on_stop(event, kind)
+        focus = QApplication.focusWidget() or watched
+        if not self._listens(watched, focus) or event.modifiers() & (
+                Qt.ControlModifier | Qt.AltModifier | Qt.MetaModifier):
+            return False
+        action = self._action(event, focus)
+        if action is None:
+            return False
+        if kind == QEvent.ShortcutOverride:
+            event.accept()
+        elif self._is_new(event):
+            action()
+        return True
+
+    def _is_new(self, event):
+        """Tell whether a press is one, and not the repeat of one."""
+        identity = _identity(event)
+        if event.isAutoRepeat() or identity in self._down:
+            return False
+        self._down.add(identity)
+        return True
+
+    def _on_stop(self, event, kind):
+        """Stop everything; accepted as override, the key is not taken by a shortcut of the host."""
+        if kind == QEvent.ShortcutOverride:
+            event.accept()
+        elif not event.isAutoRepeat():
+            # Whatever else was pressed: to stop once more than needed does no harm.
+            self.centre()
+            self.stop_pressed.emit()
+        return True
+
+    def _on_release(self, event):
+        """Take a release wherever it arrives, so that no key is held for ever."""
+        identity = _identity(event)
+        ours = identity == self._talk or identity in self._held or identity in self._dead
+        if event.isAutoRepeat() or event.nativeScanCode() in (self._keys.down() or ()):
+            return ours
+        self._down.discard(identity)
+        if identity == self._talk:
+            self._set_talk(None)
+        elif ours:
+            self._held.pop(identity, None)
+            self._dead.discard(identity)
+            self._update()
+        return ours
+
+    def _listens(self, watched, focus):
+        """Tell whether keys drive, going by where they are typed."""
+        if QApplication.activePopupWidget() is not None:
+            return False
+        if _is_text_field(focus) or _is_text_field(watched):
+            return False
+        if focus.isAncestorOf(self._panel):
+            return True
+        widget = focus
+        while widget is not None:
+            if widget.property(_AREA):
+                return True
+            widget = widget.parentWidget()
+        return False
+
+    def _action(self, event, focus):
+        """Return what a press has to do, or None where the key is not ours."""
+        key = event.key()
+        if key == _SPACE:
+            return self.centre_pressed.emit
+        if key in _ENTER:
+            return self._enter_action(focus)
+        if key == _TALK:
+            return lambda: self._set_talk(_identity(event))
+        direction = _direction(event)
+        if direction is not None:
+            if key in _ARROWS and self._keeps_arrows(focus):
+                return None
+            return lambda: self._press(_identity(event), direction)
+        digit = _digit(event)
+        if digit is None:
+            return None
+        return self.all_pressed.emit if digit == 0 else lambda: self.robot_pressed.emit(digit)
+
+    @staticmethod
+    def _keeps_arrows(focus):
+        """Tell whether a widget needs the arrow keys itself."""
+        return isinstance(focus, _ARROW_USERS) or bool(focus.property(_KEEPS_ARROWS))
+
+    @staticmethod
+    def _enter_action(focus):
+        """Return what Return does to the focused widget, or None."""
+        if isinstance(focus, QAbstractButton) and focus.isEnabled():
+            return focus.click
+        return focus.showPopup if isinstance(focus, QComboBox) else None
+
+    def _set_talk(self, identity):
+        """Hold the key of push-to-talk, or let it go (None)."""
+        changed = (identity is None) != (self._talk is None)
+        self._talk = identity
+        if changed:
+            self.talk_changed.emit(identity is not None)
+
+    def _press(self, identity, direction):
+        """Hold a key."""
+        self._dead.discard(identity)
+        self._held[identity] = direction
+        self._update()
+
+    def _update(self):
+        """Tell of a changed deflection."""
+        held = set(self._held.values())
+        deflection = tuple(float(sum(part[axis] for part in held)) for axis in (0, 1))
+        if deflection != self._deflection:
+            self._deflection = deflection
+            self.moved.emit(*deflection)

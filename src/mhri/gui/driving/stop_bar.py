@@ -1,0 +1,183 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Stop all, across the whole panel: one press to stop, two steps to release."""
+from python_qt_binding.QtCore import Qt, QTimer, Signal
+from python_qt_binding.QtGui import QPainter
+from python_qt_binding.QtWidgets import (
+    QHBoxLayout, QPushButton, QSizePolicy, QStackedLayout, QVBoxLayout, QWidget)
+
+from mhri.core.screen.stop_words import NOBODY_HEARD
+from mhri.gui.screen import theme
+from mhri.gui.screen.labels import Sign, TextLine
+from mhri.gui.screen.pending import Pending
+from mhri.gui.driving.stop_button import StopButton
+
+CONFIRM_WITHIN_S = 5.0
+ANSWER_WITHIN_S = 2.0
+
+
+class StopBar(QWidget):
+    """The stop button or, once stopped, what is stopped and how to release it.
+
+    "Release..." asks for a second step beside it; where it was, there is "Cancel" then, so that a
+    double click never releases. What is on show follows the view, not the clicks.
+    """
+
+    stop_requested = Signal()
+    release_requested = Signal()
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self._stopped = False
+        self._note = ''
+        self._words = NOBODY_HEARD
+        self._asked = Pending(ANSWER_WITHIN_S)
+        self._build()
+        self._connect()
+
+    def _build(self):
+        """Make the two pages."""
+        font = theme.base_font(self.font())
+        self.stop_button = StopButton(self)
+        self.stop_button.setObjectName('stop_button')
+        self.stop_button.setFont(theme.larger(font, 1.9, bold=True))
+        self.stop_button.set_look('Shift+Space', 2.4)
+        self.stop_button.setAccessibleName('Stop all robots')
+        self._stopped_page = QWidget(self)
+        self._sign = Sign(self._stopped_page)
+        self._headline = TextLine(self._stopped_page)
+        self._headline.setObjectName('stopped_label')
+        self._note_line = TextLine(self._stopped_page)
+        self._note_line.setObjectName('stop_note_label')
+        for widget, factor, bold in ((self._sign, 2.0, True), (self._headline, 1.5, True),
+                                     (self._note_line, 1.0, False)):
+            widget.setFont(theme.larger(font, factor, bold))
+        self._sign.show_sign((theme.OCTAGON, theme.STOP))
+        self.release_button = self._button('release_button', 'Release...')
+        self.confirm_button = self._button('confirm_button', 'Confirm release')
+        self.cancel_button = self._button('cancel_button', 'Cancel')
+        self._pages = QStackedLayout(self)
+        self._pages.addWidget(self.stop_button)
+        self._pages.addWidget(self._stopped_page)
+        self._lay_out_stopped()
+        self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
+        self._countdown = QTimer(self)
+        self._countdown.setSingleShot(True)
+        self._countdown.setInterval(round(CONFIRM_WITHIN_S * 1000))
+        self._answer = QTimer(self)
+        self._answer.setSingleShot(True)
+        # A coarse one may come too early to find the request too old.
+        self._answer.setTimerType(Qt.PreciseTimer)
+        self._answer.setInterval(round(ANSWER_WITHIN_S * 1000) + 20)
+        self._show()
+
+    def _lay_out_stopped(self):
+        """Place the parts of the second page."""
+        words = QVBoxLayout()
+        words.setSpacing(0)
+        words.addStretch()
+        words.addWidget(self._headline)
+        words.addWidget(self._note_line)
+        words.addStretch()
+        keep = self.confirm_button.sizePolicy()
+        keep.setRetainSizeWhenHidden(True)
+        self.confirm_button.setSizePolicy(keep)
+        second = QWidget(self._stopped_page)
+        second.setSizePolicy(QSizePolicy.Fixed, QSizePolicy.Fixed)
+        self._second = QStackedLayout(second)
+        self._second.addWidget(self.release_button)
+        self._second.addWidget(self.cancel_button)
+        row = QHBoxLayout(self._stopped_page)
+        unit = self.fontMetrics().height()
+        row.setContentsMargins(unit, 6, unit, 6)
+        row.setSpacing(unit // 2)
+        row.addWidget(self._sign)
+        row.addLayout(words, 1)
+        row.addWidget(self.confirm_button)
+        row.addWidget(second)
+
+    def _button(self, name, text):
+        """Make one of the buttons of the second page, wide enough for any of its words."""
+        button = QPushButton(text, self._stopped_page)
+        button.setObjectName(name)
+        button.setFocusPolicy(Qt.TabFocus)
+        button.setMinimumSize(round(1.3 * theme.text_width(button.font(), text)) + 16,
+                              theme.touch_size(self) + 8)
+        return button
+
+    def _connect(self):
+        """Wire buttons and timers."""
+        self.stop_button.pressed.connect(self.request_stop)
+        self.release_button.clicked.connect(self._ask)
+        self.cancel_button.clicked.connect(self._cancel)
+        self.confirm_button.clicked.connect(self._confirm)
+        self._countdown.timeout.connect(self._cancel)
+        self._answer.timeout.connect(self._show)
+
+    def show_stop(self, stopped, note='', said=NOBODY_HEARD):
+        """Show whether stop-all is in force, and what is worth saying about it.
+
+        :param note: e.g. why a release was refused; '' for nothing
+        :param said: :class:`mhri.core.screen.stop_words.StopWords`, how far it is proved
+        """
+        if not stopped or not self._stopped:
+            self._countdown.stop()
+        if stopped and note != self._note:
+            # Why it stays stopped is an answer, too.
+            self._asked.drop()
+        changed = (stopped, note, said) != (self._stopped, self._note, self._words)
+        self._stopped, self._note, self._words = stopped, note, said
+        if changed:
+            self._show()
+
+    def request_stop(self):
+        """Ask for stop-all, as the button does; may be repeated."""
+        self._countdown.stop()
+        self._asked.ask(True)
+        self._answer.start()
+        self._show()
+        self.stop_requested.emit()
+
+    def _ask(self):
+        """First step of a release."""
+        self._countdown.start()
+        self._show()
+        if self.release_button.hasFocus():
+            self.cancel_button.setFocus()
+
+    def _cancel(self):
+        """Back to the first step."""
+        self._countdown.stop()
+        self._show()
+
+    def _confirm(self):
+        """Second step of a release."""
+        self._countdown.stop()
+        self._asked.ask(False)
+        self._answer.start()
+        self._show()
+        self.release_requested.emit()
+
+    def _show(self):
+        """Show the state as it is known."""
+        asked = self._asked.settle(self._stopped)
+        self._pages.setCurrentIndex(1 if self._stopped else 0)
+        stopping = asked and not self._stopped
+        self.stop_button.setText('STOPPING ...' if stopping else 'STOP ALL')
+        releasing = self._stopped and not asked
+        headline, *shorter = ('RELEASING ...',) if releasing else self._words.headlines
+        self._headline.show_text(headline, shorter=shorter)
+        self._note_line.show_text(self._note or self._words.note)
+        confirming = self._countdown.isActive()
+        self.confirm_button.setVisible(confirming)
+        self._second.setCurrentIndex(1 if confirming else 0)
+        self.release_button.setEnabled(not releasing)
+        self.update()
+
+    def paintEvent(self, event):  # noqa: N802
+        """Paint the frame of the stopped state."""
+        if not self._stopped:
+            return
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.Antialiasing)
+        theme.paint_stopped_frame(painter, self.rect(), self.palette())

@@ -1,0 +1,88 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The stop button: acts when it is pressed, not when it is let go, by mouse and by any finger."""
+from python_qt_binding.QtCore import QEvent, QRectF, QSize, Qt
+from python_qt_binding.QtGui import QPainter, QPen
+from python_qt_binding.QtWidgets import QAbstractButton, QSizePolicy
+
+from mhri.gui.screen import theme
+
+# How much darker than the colour of the palette the button is [%].
+_AT_REST, _UNDER_POINTER, _DOWN = 112, 120, 140
+
+
+class StopButton(QAbstractButton):
+    """A large vermillion button; connect to ``pressed``.
+
+    It takes touches itself: while one finger holds the virtual joystick, Qt turns no other finger
+    into a mouse, and stopping has to work just then.
+    """
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self._hint = ''
+        self._lines = 2.0
+        self._engaged = False
+        self.setAttribute(Qt.WA_AcceptTouchEvents)
+        self.setFocusPolicy(Qt.TabFocus)
+        self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
+
+    def set_look(self, hint='', lines=2.0):
+        """Choose the small text at the right end, and the height in lines of text."""
+        self._hint, self._lines = hint, lines
+        self.updateGeometry()
+
+    def show_engaged(self, engaged):
+        """Show whether everything is stopped already; pressing still stops once more."""
+        if engaged != self._engaged:
+            self._engaged = engaged
+            self.update()
+
+    def sizeHint(self):  # noqa: N802
+        """Return room for the text and for a gloved finger."""
+        metrics = self.fontMetrics()
+        return QSize(metrics.horizontalAdvance(self.text()) + 4 * metrics.height(),
+                     max(theme.touch_size(self), round(self._lines * metrics.height())))
+
+    minimumSizeHint = sizeHint
+
+    def event(self, event):
+        """Act on the first contact of a finger."""
+        kind = event.type()
+        if kind == QEvent.TouchBegin and self.isEnabled():
+            self.setDown(True)
+            self.pressed.emit()
+        elif kind in (QEvent.TouchEnd, QEvent.TouchCancel):
+            self.setDown(False)
+        elif kind != QEvent.TouchUpdate:
+            return super().event(event)
+        event.accept()
+        return True
+
+    def paintEvent(self, event):  # noqa: N802
+        """Paint the button; darker under the pointer, and more so while it is down."""
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.Antialiasing)
+        ink = theme.colour(theme.STOP, self.palette())
+        unit = self.fontMetrics().height()
+        text = Qt.white
+        if self._engaged:
+            text = theme.colour(theme.TEXT, self.palette())
+            theme.paint_stopped_frame(painter, self.rect(), self.palette())
+        else:
+            # Darker than the palette's: white small print on it has a contrast of 4.5 at least.
+            ground = ink.darker(
+                _DOWN if self.isDown() else _UNDER_POINTER if self.underMouse() else _AT_REST)
+            painter.setPen(QPen(ground.darker(125), 2))
+            painter.setBrush(ground)
+            painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), 6, 6)
+        if self.hasFocus():
+            painter.setPen(QPen(text, 2, Qt.DashLine))
+            painter.setBrush(Qt.NoBrush)
+            painter.drawRoundedRect(QRectF(self.rect()).adjusted(7, 7, -7, -7), 4, 4)
+        painter.setPen(text)
+        painter.drawText(self.rect(), int(Qt.AlignCenter), self.text())
+        if self._hint and not self._engaged:
+            painter.setFont(theme.larger(theme.base_font(self.window().font()), 1.0))
+            painter.drawText(self.rect().adjusted(0, 0, -unit, 0),
+                             int(Qt.AlignRight | Qt.AlignVCenter), self._hint)

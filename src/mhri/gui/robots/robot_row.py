@@ -1,0 +1,254 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""One robot in the list: who it is, how its link is, what it does."""
+from python_qt_binding.QtCore import QRectF, QSize, Qt, Signal
+from python_qt_binding.QtGui import QPainter, QPalette, QPen
+from python_qt_binding.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QSizePolicy, QWidget
+
+from mhri.core.screen import views
+from mhri.gui.screen import theme, words
+from mhri.gui.screen.labels import BatteryLine, Pill, Sign, TextLine
+
+DRIVING = 'DRIVING'
+MOVING = 'moving'
+RECORDING = 'rec'
+# What a name asks for before it gives way, in average characters; longer ones end in "...".
+_NAME_CHARACTERS = 12
+_EDGE_PX = 6
+
+
+class BigCheckBox(QCheckBox):
+    """A check box for fingers; the whole square of it is the target."""
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self.setFocusPolicy(Qt.TabFocus)
+        self.setSizePolicy(QSizePolicy.Fixed, QSizePolicy.Fixed)
+
+    def sizeHint(self):  # noqa: N802
+        """Return the least square that a finger hits."""
+        side = theme.touch_size(self)
+        return QSize(side, side)
+
+    def hitButton(self, pos):  # noqa: N802
+        """Tell whether a place is on the box: everywhere is."""
+        return self.rect().contains(pos)
+
+    def paintEvent(self, event):  # noqa: N802
+        """Paint box and tick."""
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.Antialiasing)
+        palette = self.palette()
+        side = self.fontMetrics().height() * 1.35
+        box = QRectF((self.width() - side) / 2.0, (self.height() - side) / 2.0, side, side)
+        ink = theme.colour(theme.DRIVE, palette)
+        checked = self.isChecked()
+        border = ink if checked or self.underMouse() else theme.colour(theme.MUTED, palette)
+        painter.setPen(QPen(border, 2))
+        painter.setBrush(ink if checked else palette.color(QPalette.Base))
+        painter.drawRoundedRect(box, 4, 4)
+        if checked:
+            inner = box.adjusted(3, 3, -3, -3)
+            theme.paint_sign(painter, inner, theme.TICK, theme.readable_on(ink), ink)
+        if self.hasFocus():
+            painter.setPen(QPen(palette.color(QPalette.WindowText), 1, Qt.DotLine))
+            painter.setBrush(Qt.NoBrush)
+            painter.drawRect(self.rect().adjusted(0, 0, -1, -1))
+
+
+class RobotRow(QWidget):
+    """Two lines of fixed height: identity and link; below it motion, or what is wrong instead."""
+
+    #: the check box was clicked: name, checked
+    checked = Signal(str, bool)
+    #: the row was clicked
+    clicked = Signal(str)
+    #: the row was double-clicked
+    opened = Signal(str)
+
+    def __init__(self, name, parent=None):
+        super().__init__(parent)
+        self.name = name
+        self._driven = False
+        self._current = False
+        self._link = None
+        self._trouble_shown = None
+        self._build()
+        self._connect()
+
+    def _build(self):
+        """Make and place the parts."""
+        self.setObjectName('row_' + self.name)
+        font = theme.base_font(self.font())
+        numbers = theme.number_font(font)
+        self.number = TextLine(self)
+        self.number.setFont(theme.larger(numbers, 1.15))
+        self.number.fix_width('88')
+        self.number.setAlignment(Qt.AlignRight | Qt.AlignVCenter)
+        self.box = BigCheckBox(self)
+        self.box.setObjectName('check_' + self.name)
+        self.box.setAccessibleName('drive {}'.format(self.name))
+        self.title = TextLine(self)
+        self.title.setFont(theme.larger(font, 1.25, bold=True))
+        self.title.show_text(self.name)
+        # The name is the last to give way in a narrow dock: the type goes first, then the age.
+        metrics = self.title.fontMetrics()
+        self.title.setMinimumWidth(min(
+            theme.text_width(self.title.font(), self.name),
+            _NAME_CHARACTERS * metrics.averageCharWidth()))
+        self.kind = TextLine(self)
+        self.sign = Sign(self)
+        self.link = self._fixed_line(numbers, 'waiting')
+        self.recording = Pill(self)
+        self.recording.set_words((RECORDING,))
+        self.age = self._fixed_line(numbers, '000 ms', Qt.AlignRight)
+        self.linear = self._fixed_line(numbers, 'back 0.00 m/s')
+        self.turn = self._fixed_line(numbers, 'right 0.00 rad/s')
+        self.trouble_sign = Sign(self)
+        self.trouble = TextLine(self)
+        self.filler = TextLine(self)
+        self.pill = Pill(self)
+        self.pill.set_words((DRIVING, MOVING))
+        self.battery = self._fixed_line(numbers, '100 %', Qt.AlignRight, BatteryLine)
+        self._lay_out()
+
+    def _fixed_line(self, font, sample, align=Qt.AlignLeft, kind=TextLine):
+        """Make a line for a number: its width is that of the sample."""
+        line = kind(self)
+        line.setFont(font)
+        line.fix_width(sample)
+        line.setAlignment(align | Qt.AlignVCenter)
+        return line
+
+    def _lay_out(self):
+        """Place the parts on two lines."""
+        unit = self.fontMetrics().height()
+        grid = QGridLayout(self)
+        grid.setContentsMargins(_EDGE_PX + 4, unit // 4, unit // 2, unit // 4)
+        grid.setHorizontalSpacing(unit // 3)
+        grid.setVerticalSpacing(0)
+        first, second = QHBoxLayout(), QHBoxLayout()
+        for widget, stretch in ((self.title, 3), (self.kind, 8), (self.recording, 0),
+                                (self.sign, 0), (self.link, 0), (self.age, 0)):
+            first.addWidget(widget, stretch)
+        for widget, stretch in ((self.trouble_sign, 0), (self.trouble, 1), (self.linear, 0),
+                                (self.turn, 0), (self.filler, 1), (self.pill, 0),
+                                (self.battery, 0)):
+            second.addWidget(widget, stretch)
+        for line in (first, second):
+            line.setSpacing(unit // 3)
+        grid.addWidget(self.number, 0, 0, 2, 1)
+        grid.addWidget(self.box, 0, 1, 2, 1)
+        grid.addLayout(first, 0, 2)
+        grid.addLayout(second, 1, 2)
+        grid.setColumnStretch(2, 1)
+        self._show_trouble(None, '')
+        self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
+        self.setFixedHeight(max(theme.touch_size(self) + unit // 2, round(unit * 3.1)))
+
+    def _connect(self):
+        """Wire the check box; only clicks count, not what the view sets."""
+        self.box.clicked.connect(self._on_box)
+
+    def _on_box(self, on):
+        """Tell of a click on the box."""
+        self.checked.emit(self.name, on)
+
+    def show_view(self, view, number, checked, numbers=True):
+        """Show a robot.
+
+        :param view: :class:`mhri.core.screen.views.RobotView`
+        :param number: its place in the list, from 1
+        :param checked: whether the box is ticked
+        :param numbers: whether numbers may change now; a changed state always shows at once
+        """
+        numbers = numbers or view.link != self._link
+        self._link = view.link
+        self.number.show_text(str(number))
+        self.box.setChecked(checked)
+        self.kind.show_text(words.type_text(view), theme.MUTED)
+        self.sign.show_sign(theme.LINK_SIGNS[view.link])
+        self.link.show_text(words.LINK_WORDS[view.link])
+        if numbers:
+            self._show_numbers(view)
+        self._show_second_line(view)
+        self.recording.say(RECORDING if view.recording else '', filled=False)
+        if view.driven != self._driven:
+            self._driven = view.driven
+            self.update()
+
+    def _show_numbers(self, view):
+        """Show what changes all the time."""
+        self.age.show_text(words.link_age(view), theme.MUTED)
+        self.setToolTip(words.figures_text(view.figures))
+        self.linear.show_text(words.linear_text(view.linear_mps))
+        self.turn.show_text(words.turn_text(view.angular_rad_s))
+        self.battery.show_charge(view.battery)
+
+    def _show_second_line(self, view):
+        """Show the proof of a stop, or what is wrong with the link, or how the robot moves."""
+        if view.proof is not None:
+            self._show_trouble(theme.PROOF_SIGNS[view.proof.state], view.proof.text,
+                               view.proof.state == views.PROOF_NOT_CONFIRMED)
+        elif view.link != views.LIVE:
+            self._show_trouble(None, view.note or words.LINK_WORDS[view.link])
+        else:
+            sign = (theme.TRIANGLE, theme.ATTENTION) if view.slow else None
+            self._show_trouble(sign, view.note, with_state=True)
+        if view.driven:
+            self.pill.say(DRIVING)
+        else:
+            self.pill.say(MOVING if view.moving else '', theme.ATTENTION, filled=False)
+
+    def _show_trouble(self, sign, text, loud=False, with_state=False):
+        """Show a sentence in place of the motion; '' brings the motion back.
+
+        :param with_state: leave the robot's state and battery beside the sentence
+        """
+        speaking = bool(text)
+        state = with_state or not speaking
+        self.trouble_sign.show_sign(sign)
+        font = self.trouble.font()
+        if font.bold() != loud:
+            font.setBold(loud)
+            self.trouble.setFont(font)
+        self.trouble.show_text(text, shorter=words.beginnings(text))
+        if (speaking, state, sign is None) == self._trouble_shown:
+            return
+        self._trouble_shown = (speaking, state, sign is None)
+        for widget, visible in ((self.trouble_sign, sign is not None), (self.trouble, speaking),
+                                (self.linear, not speaking), (self.turn, not speaking),
+                                (self.filler, not speaking), (self.pill, state),
+                                (self.battery, state)):
+            widget.setVisible(visible)
+
+    def show_current(self, current):
+        """Show whether this is the highlighted row."""
+        if current != self._current:
+            self._current = current
+            self.update()
+
+    def mousePressEvent(self, event):  # noqa: N802
+        """Highlight."""
+        if event.button() == Qt.LeftButton:
+            self.clicked.emit(self.name)
+
+    def mouseDoubleClickEvent(self, event):  # noqa: N802
+        """Open."""
+        if event.button() == Qt.LeftButton:
+            self.opened.emit(self.name)
+
+    def paintEvent(self, event):  # noqa: N802
+        """Paint ground, edge and divider."""
+        painter = QPainter(self)
+        palette = self.palette()
+        rect = self.rect()
+        base = palette.color(QPalette.Base)
+        drive = theme.colour(theme.DRIVE, palette)
+        if self._current:
+            painter.fillRect(rect, theme.blend(base, palette.color(QPalette.WindowText), 0.12))
+        if self._driven:
+            painter.fillRect(rect, theme.blend(base, drive, 0.30 if self._current else 0.16))
+            painter.fillRect(0, 0, _EDGE_PX, rect.height(), drive)
+        painter.setPen(theme.line_colour(palette))
+        painter.drawLine(rect.bottomLeft(), rect.bottomRight())

@@ -1,0 +1,336 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The panel: robots on the left, driving on the right, stop-all and one sentence below."""
+import base64
+
+from python_qt_binding.QtCore import QByteArray, QPoint, QRect, Qt, QTimer, Signal
+from python_qt_binding.QtWidgets import QPushButton, QWidget
+
+from mhri.core.screen.stop_words import stop_words
+from mhri.core.screen.views import PanelView
+from mhri.gui.screen import theme, words
+from mhri.gui.driving.drive_keys import DriveKeys, mark_drive_area
+from mhri.gui.screen.forms import load_form
+from mhri.gui.screen.labels import Sign, TextLine
+from mhri.gui.driving.mode_combo import ModeCombo
+from mhri.gui.screen.pending import Pace
+from mhri.gui.robots.robot_list import RobotList
+from mhri.gui.driving.speed_limits import SpeedLimits
+from mhri.gui.screen.status_line import StatusLine
+from mhri.gui.driving.stop_bar import StopBar
+from mhri.gui.driving.virtual_joystick import VirtualJoystick
+
+VIRTUAL_JOYSTICK, VOICE = 'joy', 'voice'
+NUMBERS_PERIOD_S = 0.25
+RECORD = 'Record selected'
+STOP_RECORDING = 'Stop recording ({})'
+# What came of looking or recording is news for so long.
+RESULT_MS = 20000
+
+_WIDGETS = (
+    ModeCombo, RobotList, Sign, SpeedLimits, StatusLine, StopBar, TextLine, VirtualJoystick)
+
+
+class PanelWidget(QWidget):
+    """Everything an operator needs, in one widget for rqt and for a window of its own.
+
+    Values in (:meth:`show_view`), signals out; it decides nothing and knows no ROS. The host
+    installs :attr:`drive_keys` as an event filter of the application.
+
+    :param ui_dir: folder of ``panel.ui``
+    """
+
+    #: "Look for Connected Bots"
+    look_requested = Signal()
+    #: "Doctor": examine network, master and robots
+    doctor_requested = Signal()
+    #: text of the name field
+    add_requested = Signal(str)
+    #: the robots to record, or to stop recording: names in list order
+    record_requested = Signal(list)
+    stop_record_requested = Signal(list)
+    #: robot to take off the list
+    remove_requested = Signal(str)
+    #: every name that should be selected now, in list order
+    selection_requested = Signal(list)
+    #: a row was highlighted: its window comes to the front
+    activated = Signal(str)
+    #: double click or Return on a row: its window opens, without selecting
+    open_requested = Signal(str)
+    #: name of a source
+    mode_requested = Signal(str)
+    #: forward (ahead +) and turn (left +), each in [-1, 1]; at once on every change
+    stick_moved = Signal(float, float)
+    #: push-to-talk: held or let go
+    talk_requested = Signal(bool)
+    #: m/s, rad/s
+    limits_requested = Signal(float, float)
+    #: whether all selected robots are to keep to the slowest
+    together_requested = Signal(bool)
+    stop_requested = Signal()
+    release_requested = Signal()
+
+    def __init__(self, ui_dir, parent=None):
+        super().__init__(parent)
+        self._view = PanelView()
+        self._stick = (0.0, 0.0)
+        self._talk_pressed = False
+        self._numbers = Pace(NUMBERS_PERIOD_S)
+        self._build(ui_dir)
+        self._connect()
+        self._restore()
+
+    def _build(self, ui_dir):
+        """Load the form and set what a form cannot say."""
+        self.setFont(theme.base_font(self.font()))
+        load_form(ui_dir, 'panel.ui', self, _WIDGETS)
+        self.drive_keys = DriveKeys(self)
+        mark_drive_area(self)
+        # A click beside a text field ends the typing, so that the keys drive again.
+        self.setFocusPolicy(Qt.ClickFocus)
+        touch = theme.touch_size(self)
+        for button in (self.look_button, self.doctor_button, self.add_button, self.all_button,
+                       self.none_button, self.record_button, self.remove_button, self.name_edit,
+                       self.mode_combo, self.talk_button):
+            button.setMinimumHeight(touch)
+            if isinstance(button, QPushButton):
+                button.setFocusPolicy(Qt.TabFocus)
+                button.setMinimumWidth(button.sizeHint().width() + touch // 2)
+        for label, side in ((self.linear_label, Qt.AlignRight), (self.turn_label, Qt.AlignLeft)):
+            label.setFont(theme.number_font(theme.larger(self.font(), 1.1)))
+            label.setAlignment(side | Qt.AlignVCenter)
+        self.drive_note.setAlignment(Qt.AlignCenter)
+        self.record_button.setMinimumWidth(touch // 2 + max(
+            theme.text_width(self.font(), text) for text in (RECORD, STOP_RECORDING.format(88))))
+        self.cameras_label.setFont(theme.number_font(self.font()))
+        self.cameras_label.fix_width('cameras 000.0 Mbit/s')
+        self.cameras_label.setAlignment(Qt.AlignRight | Qt.AlignVCenter)
+        self.name_edit.setTextMargins(touch // 6, 0, touch // 6, 0)
+        self._result_timer = QTimer(self)
+        self._result_timer.setSingleShot(True)
+        self._result_timer.setInterval(RESULT_MS)
+        self.splitter.setCollapsible(0, False)
+        self.splitter.setCollapsible(1, False)
+
+    def _connect(self):
+        """Wire widgets to signals."""
+        self.look_button.clicked.connect(self._look)
+        self._result_timer.timeout.connect(lambda: self.look_label.show_text('', theme.MUTED))
+        self.doctor_button.clicked.connect(self.doctor_requested)
+        self.add_button.clicked.connect(self._add)
+        self.name_edit.returnPressed.connect(self._add)
+        self.name_edit.textEdited.connect(self._on_name_edited)
+        self.remove_button.clicked.connect(self._remove)
+        self.record_button.clicked.connect(self._record)
+        self.all_button.clicked.connect(self.robot_list.select_all)
+        self.none_button.clicked.connect(self.robot_list.select_none)
+        for name in ('selection_requested', 'activated', 'open_requested'):
+            getattr(self.robot_list, name).connect(getattr(self, name))
+        self.robot_list.activated.connect(lambda *_: self._show_buttons())
+        self.robot_list.cleared.connect(self._show_buttons)
+        self.mode_combo.mode_requested.connect(self.mode_requested)
+        self.speed_limits.limits_requested.connect(self.limits_requested)
+        self.speed_limits.together_requested.connect(self.together_requested)
+        self.stop_bar.stop_requested.connect(self._on_stop)
+        self.stop_bar.release_requested.connect(self.release_requested)
+        self.talk_button.pressed.connect(self._press_talk)
+        self.talk_button.released.connect(self._let_talk_go)
+        self.drive_keys.talk_changed.connect(self._tell_talk)
+        self.joystick.moved.connect(self._on_stick)
+        self.drive_keys.moved.connect(self._on_stick)
+        self.drive_keys.centre_pressed.connect(self.centre_stick)
+        self.drive_keys.stop_pressed.connect(self.stop_bar.request_stop)
+        self.drive_keys.robot_pressed.connect(self.robot_list.toggle)
+        self.drive_keys.all_pressed.connect(self.robot_list.toggle_all)
+
+    def _restore(self):
+        """Begin with an empty view, and with nothing said."""
+        self.show_name_problem('')
+        self.show_look_result('')
+        self.show_view(self._view)
+
+    def show_view(self, view):
+        """Show a :class:`mhri.core.screen.views.PanelView`; cheap enough for 20 times a second.
+
+        States show at once, numbers at most four times a second.
+        """
+        self._view = view
+        numbers = self._numbers.due()
+        self.robot_list.show_robots(view.robots, numbers)
+        self.mode_combo.show_mode(view.sources, view.mode)
+        self.speed_limits.show_limits(view.limits)
+        self.speed_limits.show_pace(view.together, view.pace, view.slowed)
+        self.stop_bar.show_stop(view.stop_all, view.stop_note, stop_words(view.robots))
+        self.status_line.show_status(view.status, view.status_level)
+        self._show_buttons()
+        self._show_stick(numbers)
+        if numbers:
+            cameras = words.bandwidth_text(view.camera_bits_per_s)
+            self.cameras_label.show_text(cameras, theme.MUTED)
+            self.cameras_label.setVisible(bool(cameras))
+
+    def show_name_problem(self, text):
+        """Say below the name field why a name was refused; '' clears it."""
+        self.name_problem_label.show_text(text)
+        self.name_problem_sign.show_sign((theme.TRIANGLE, theme.ATTENTION) if text else None)
+
+    def show_look_result(self, text, busy=False, shorter=()):
+        """Say beside the button for a while what came of looking; ``busy`` while it looks.
+
+        :param shorter: what to say where there is no room, the longest first
+        """
+        self.look_label.show_text(text, theme.MUTED, shorter)
+        self.look_button.setEnabled(not busy)
+        if busy:
+            self._result_timer.stop()
+        else:
+            self._result_timer.start()
+
+    def clear_name(self):
+        """Empty the name field, after its robot was added, and let the keys drive again."""
+        self.name_edit.clear()
+        if self.name_edit.hasFocus():
+            self.setFocus()
+        self.show_name_problem('')
+
+    def keep_in_sight(self):
+        """Return the rectangle on the screen (``QRect``) of stop bar and bottom line."""
+        top = self.stop_bar.mapToGlobal(QPoint(0, 0)).y()
+        area = QRect(self.mapToGlobal(QPoint(0, 0)), self.size())
+        area.setTop(top)
+        return area
+
+    def stick(self):
+        """Return (forward, turn), each in [-1, 1], as held by pointer or keys now."""
+        return self._stick
+
+    def centre_stick(self):
+        """Let the stick go: pointer and keys have to take it again."""
+        self.drive_keys.centre()
+        self.joystick.centre()
+
+    def keyPressEvent(self, event):  # noqa: N802
+        """Take the highlight away with Escape: a click on a row leaves the keyboard here."""
+        if event.key() == Qt.Key_Escape and self.robot_list.current is not None:
+            self.robot_list.clear()
+        else:
+            super().keyPressEvent(event)
+
+    def hideEvent(self, event):  # noqa: N802
+        """Let the stick go: nobody drives by a panel that cannot be seen."""
+        self.centre_stick()
+        super().hideEvent(event)
+
+    def save_settings(self):
+        """Return what only concerns the looks as a plain dict of JSON values."""
+        settings = {'splitter': self.splitter.sizes()}
+        if self.isWindow():
+            geometry = bytes(self.saveGeometry())
+            settings['geometry'] = base64.b64encode(geometry).decode('ascii')
+        return settings
+
+    def restore_settings(self, settings):
+        """Take back what :meth:`save_settings` returned; what cannot be used is left out."""
+        sizes = settings.get('splitter')
+        if isinstance(sizes, (list, tuple)) and len(sizes) == 2:
+            try:
+                self.splitter.setSizes([int(size) for size in sizes])
+            except (TypeError, ValueError):
+                pass
+        geometry = settings.get('geometry')
+        if isinstance(geometry, str) and self.isWindow():
+            self.restoreGeometry(QByteArray.fromBase64(geometry.encode('ascii', 'ignore')))
+
+    def _look(self):
+        """Ask to look for robots."""
+        self.look_requested.emit()
+
+    def _on_name_edited(self, text):
+        """Take back what was said about another name."""
+        self.show_name_problem('')
+
+    def _add(self):
+        """Ask for the robot in the name field."""
+        self.add_requested.emit(self.name_edit.text())
+
+    def _remove(self):
+        """Ask to take the highlighted robot off the list."""
+        if self.robot_list.current is not None:
+            self.remove_requested.emit(self.robot_list.current)
+
+    def _record(self):
+        """Ask for recordings of all selected robots, or for the end of every recording."""
+        running = [robot.name for robot in self._view.robots if robot.recording]
+        if running:
+            self.stop_record_requested.emit(running)
+        else:
+            self.record_requested.emit(
+                [robot.name for robot in self._view.robots if robot.selected])
+
+    def _press_talk(self):
+        """Begin to talk by the button."""
+        self._talk_pressed = True
+        self._tell_talk()
+
+    def _let_talk_go(self):
+        """End talking by the button."""
+        self._talk_pressed = False
+        self._tell_talk()
+
+    def _tell_talk(self, *_):
+        """Tell whether button or key are held; the key shows as a pressed button."""
+        talking = self._talk_pressed or self.drive_keys.talking
+        self.talk_button.setDown(talking)
+        self.talk_requested.emit(talking and self.talk_button.isVisible())
+
+    def _on_stop(self):
+        """Stop: the stick goes to neutral first, then everything else is told."""
+        self.centre_stick()
+        self.stop_requested.emit()
+
+    def _on_stick(self):
+        """Put pointer and keys together: the pointer wins while it holds the knob."""
+        keys = self.drive_keys.deflection()
+        self.joystick.show_keys(*keys)
+        stick = self.joystick.deflection() if self.joystick.dragging else keys
+        if stick != self._stick:
+            neutral = stick == (0.0, 0.0)
+            self._stick = stick
+            self.stick_moved.emit(*stick)
+            self._show_stick(neutral or self._numbers.due())
+
+    def _show_buttons(self):
+        """Enable what has something to act on."""
+        self.remove_button.setEnabled(self.robot_list.current is not None)
+        running = sum(robot.recording for robot in self._view.robots)
+        text = STOP_RECORDING.format(running) if running else RECORD
+        if text != self.record_button.text():
+            self.record_button.setText(text)
+        self.record_button.setEnabled(
+            bool(running) or any(robot.selected for robot in self._view.robots))
+        self.all_button.setEnabled(bool(self._view.robots))
+        self.none_button.setEnabled(bool(self._view.robots))
+
+    def _show_stick(self, numbers):
+        """Show what the stick asks for, and whether anybody listens to it."""
+        view = self._view
+        in_force = view.mode == VIRTUAL_JOYSTICK and not view.stop_all
+        self.joystick.show_active(in_force)
+        self.talk_button.setVisible(view.mode == VOICE)
+        shorter = ()
+        if view.stop_all:
+            note = 'no effect: stop all is in force'
+        elif view.mode is None:
+            note = 'no effect: the mode is not known yet'
+        elif view.mode == VOICE:
+            note, shorter = words.heard_text(view.heard), words.heard_shorter(view.heard)
+        elif not in_force:
+            note = 'no effect: {} drives'.format(self.mode_combo.label_of(view.mode))
+        else:
+            note = 'drag, arrow keys or W A S D; space centres'
+        self.drive_note.show_text(note, theme.MUTED, shorter)
+        if numbers:
+            tone = theme.TEXT if in_force else theme.MUTED
+            linear, turn = words.command_texts(*self._stick, limits=view.limits)
+            self.linear_label.show_text(linear, tone)
+            self.turn_label.show_text(turn, tone)

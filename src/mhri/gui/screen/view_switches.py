@@ -1,0 +1,135 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The row that chooses what a bot window shows: graph, camera, laser scan."""
+from python_qt_binding.QtCore import Qt, Signal
+from python_qt_binding.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QSizePolicy, QWidget
+
+from mhri.gui.driving.drive_keys import keep_arrows
+from mhri.gui.screen.switches import SwitchBox, SwitchRadio
+
+IMU = 'imu'
+RGB = 'rgb'
+DEPTH = 'depth'
+SCAN = 'scan'
+RECORD = 'record'
+OFF = 'off'
+
+# Label of each switch; a view that a robot cannot have is not offered. A further view is a row.
+CHECKS = ((IMU, 'IMU graph'), (SCAN, 'Laser scan'))
+CAMERAS = ((OFF, 'off'), (RGB, 'RGB'), (DEPTH, 'depth'))
+_AT_FIRST = frozenset((IMU, RGB))
+
+
+class ViewSwitches(QWidget):
+    """Check boxes and radio buttons; what the operator wants is kept while it is not on offer.
+
+    Child widgets: ``view_imu``, ``view_scan``, ``camera_off``, ``camera_rgb``, ``camera_depth``.
+    """
+
+    #: another set of views is wanted
+    changed = Signal()
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self._offered = frozenset()
+        self._chosen = frozenset(_AT_FIRST)
+        self._build()
+        self._connect()
+        self._restore()
+
+    def _build(self):
+        """Make and place the switches."""
+        self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
+        self.checks = {key: SwitchBox(label, self) for key, label in CHECKS}
+        self.cameras = {key: SwitchRadio(label, self) for key, label in CAMERAS}
+        self.camera_caption = QLabel('Camera', self)
+        self._group = QButtonGroup(self)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        unit = self.fontMetrics().height()
+        row.setSpacing(unit // 2)
+        row.addWidget(self.checks[IMU])
+        row.addSpacing(unit)
+        row.addWidget(self.camera_caption)
+        for key, button in self.cameras.items():
+            button.setObjectName('camera_' + key)
+            button.setAccessibleName('camera ' + button.text())
+            # With the keyboard on it the arrows choose; a click does not bring the keyboard there.
+            keep_arrows(button)
+            self._group.addButton(button)
+            row.addWidget(button)
+        row.addSpacing(unit)
+        row.addWidget(self.checks[SCAN])
+        row.addStretch(1)
+        for key, box in self.checks.items():
+            box.setObjectName('view_' + key)
+        reading = [self.checks[IMU], *self.cameras.values(), self.checks[SCAN]]
+        for one, other in zip(reading, reading[1:]):
+            self.setTabOrder(one, other)
+
+    def _connect(self):
+        """Wire the switches."""
+        for button in (*self.checks.values(), *self.cameras.values()):
+            button.clicked.connect(self._on_click)
+
+    def _restore(self):
+        """Begin with nothing on offer."""
+        self.offer(())
+
+    def offer(self, keys):
+        """Offer these views of IMU, RGB, DEPTH, SCAN; what is not among them disappears."""
+        before = self.wanted()
+        self._offered = frozenset(keys) & {IMU, RGB, DEPTH, SCAN}
+        for key, box in self.checks.items():
+            box.setVisible(key in self._offered)
+        cameras = self._offered & {RGB, DEPTH}
+        self.camera_caption.setVisible(bool(cameras))
+        for key, button in self.cameras.items():
+            button.setVisible(bool(cameras) if key == OFF else key in cameras)
+        self._show()
+        if self.wanted() != before:
+            self.changed.emit()
+
+    def wanted(self):
+        """Return the set of views that are chosen and on offer; of RGB and DEPTH one at most."""
+        return set(self._chosen & self._offered)
+
+    def choose(self, keys):
+        """Choose exactly these views; of RGB and DEPTH one, the first of them."""
+        before = self.wanted()
+        keys = frozenset(keys) & {IMU, RGB, DEPTH, SCAN}
+        self._chosen = keys - {DEPTH} if {RGB, DEPTH} <= keys else keys
+        self._show()
+        if self.wanted() != before:
+            self.changed.emit()
+
+    def chosen(self):
+        """Return what is chosen, on offer or not, as a sorted list."""
+        return sorted(self._chosen)
+
+    def _show(self):
+        """Show what is chosen."""
+        wanted = self.wanted()
+        for key, box in self.checks.items():
+            box.setChecked(key in wanted)
+        camera = next(iter(wanted & {RGB, DEPTH}), OFF)
+        self.cameras[camera].setChecked(True)
+        self._let_tab_reach_checked()
+
+    def _let_tab_reach_checked(self):
+        """Make the button that is checked the one of its group that Tab comes to."""
+        for button in self.cameras.values():
+            button.setFocusPolicy(Qt.TabFocus if button.isChecked() else Qt.NoFocus)
+
+    def _on_click(self):
+        """Take over what is checked; what is not on offer stays as it was chosen."""
+        self._let_tab_reach_checked()
+        checked = {key for key, box in self.checks.items() if box.isChecked()}
+        checked |= {key for key, button in self.cameras.items() if button.isChecked()}
+        kept = self._chosen - self._offered
+        if self._offered & {RGB, DEPTH}:
+            kept -= {RGB, DEPTH}
+        chosen = frozenset(checked - {OFF}) | kept
+        if chosen != self._chosen:
+            self._chosen = chosen
+            self.changed.emit()

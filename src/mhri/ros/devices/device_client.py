@@ -1,0 +1,71 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The panel's side of the input nodes: a shake of the pad, push-to-talk, and what was heard.
+
+Publishes ``/mhri_joy/rumble`` (``std_msgs/Empty``) and ``/mhri_voice/push_to_talk``
+(``std_msgs/Bool``: on change, and at 5 Hz while it is held); subscribes ``/mhri_voice/heard``
+(``mhri/Heard``).
+"""
+import threading
+
+import rospy
+from std_msgs.msg import Bool, Empty
+
+from mhri.core.screen.views import HeardView
+from mhri.msg import Heard
+
+# Said again while it is held, so that a panel that dies does not leave the ear open.
+TALK_PERIOD_S = 0.2
+
+
+class DeviceClient:
+    """What the panel says to the input nodes and hears of them; every method returns at once."""
+
+    def __init__(self):
+        self._rumble = rospy.Publisher('/mhri_joy/rumble', Empty, queue_size=1)
+        self._talk = rospy.Publisher('/mhri_voice/push_to_talk', Bool, queue_size=1,
+                                     tcp_nodelay=True)
+        self._heard_topic = rospy.Subscriber('/mhri_voice/heard', Heard, self._hear, queue_size=10)
+        self._heard = None
+        self._changed = threading.Condition()
+        self._talking = False
+        self._closed = False
+        threading.Thread(target=self._repeat, name='push_to_talk', daemon=True).start()
+
+    def _hear(self, message):
+        self._heard = HeardView(message.text, message.command, message.accepted, message.reason)
+
+    def heard(self):
+        """Return the newest :class:`mhri.core.screen.views.HeardView`, None before the first."""
+        return self._heard
+
+    def rumble(self):
+        """Shake the pad: a robot was lost."""
+        self._rumble.publish()
+
+    def talk(self, pressed):
+        """Open (True) or close the ear of the voice node."""
+        with self._changed:
+            if pressed != self._talking:
+                self._talking = pressed
+                self._talk.publish(data=pressed)
+                self._changed.notify()
+
+    def _repeat(self):
+        with self._changed:
+            while not self._closed:
+                self._changed.wait(TALK_PERIOD_S if self._talking else None)
+                if self._talking and not self._closed:
+                    self._talk.publish(data=True)
+
+    def close(self):
+        """Close the ear."""
+        self.talk(False)
+        with self._changed:
+            self._closed = True
+            self._changed.notify()
+
+    def unregister(self):
+        """Give every topic back (blocking: it asks the master)."""
+        for topic in (self._rumble, self._talk, self._heard_topic):
+            topic.unregister()

@@ -1,0 +1,59 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The profile that a Joy message names for its device."""
+import os
+
+from mhri.core.config import ConfigError
+from mhri.core.robots.names import is_base_name
+from mhri.core.driving.profile import JoyRefused, parse_profile
+from mhri.ros.devices.pad_profiles import own_folder
+from mhri.ros.resources import read_text, resource_path
+
+PREFIX = 'profile:'
+
+
+class DeviceProfiles:
+    """Reads the profiles that devices name in ``header.frame_id`` as ``profile:<name>``.
+
+    A profile is read when its device is first heard, and again when another device was heard
+    meanwhile or :meth:`forget` was called. Shipped names come from ``resource/pads``, all others
+    from the operator's own folder.
+    """
+
+    def __init__(self):
+        self._newest = {}
+
+    def of(self, source, frame_id):
+        """Return the :class:`Profile` of a message, None for the source's own.
+
+        :param source: name of the source
+        :param frame_id: of the Joy; anything but ``profile:<name>`` asks for the source's own
+        :raises JoyRefused: there is no such profile, or it cannot be used
+        """
+        if not frame_id.startswith(PREFIX):
+            return None
+        name, profile = self._newest.get(source, ('', None))
+        if name != frame_id:
+            profile = _read(frame_id[len(PREFIX):])
+            self._newest[source] = (frame_id, profile)
+        if isinstance(profile, JoyRefused):
+            raise profile
+        return profile
+
+    def forget(self):
+        """Read every profile anew when it is asked for next."""
+        self._newest = {}
+
+
+def _read(name):
+    """Return a profile, or the reason why there is none (kept, so that it costs nothing again)."""
+    if not is_base_name(name):
+        return JoyRefused('unknown_profile', '{!r} is no name of a profile'.format(name))
+    path = resource_path('pads', name + '.yaml')
+    if not os.path.exists(path):
+        path = os.path.join(own_folder(), name + '.yaml')
+    try:
+        return parse_profile(read_text(path), path)
+    except (OSError, ConfigError) as error:
+        return JoyRefused('unknown_profile', 'the device names profile {}, which cannot be used '
+                          'here: {}'.format(name, error))

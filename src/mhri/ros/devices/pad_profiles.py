@@ -1,0 +1,47 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The files of all pad profiles: the operator's own before those that are shipped."""
+import glob
+import os
+
+import rospkg
+import rospy
+
+from mhri.core.config import ConfigError
+from mhri.core.devices.pads import load_profiles
+from mhri.ros.resources import read_text, resource_path
+
+
+def own_folder():
+    """Return the folder of the operator's own profiles, ``$ROS_HOME/mhri/pads``."""
+    return os.path.join(rospkg.get_ros_home(), 'mhri', 'pads')
+
+
+def shipped_names():
+    """Return the names that shipped profiles have; an operator's own may not be called so."""
+    return {os.path.splitext(os.path.basename(path))[0]
+            for path in glob.glob(resource_path('pads', '*.yaml'))}
+
+
+def pad_profiles():
+    """Return every :class:`mhri.core.driving.profile.Profile` in the order of preference.
+
+    A file that cannot be used is named in the log, once a minute, and left out.
+    """
+    shipped = shipped_names()
+    files, problems = [], []
+    for path in (sorted(glob.glob(os.path.join(own_folder(), '*.yaml')))
+                 + sorted(glob.glob(resource_path('pads', '*.yaml')))):
+        name = os.path.splitext(os.path.basename(path))[0]
+        if name in shipped and path.startswith(own_folder()):
+            problems.append('{}: {} is the name of a shipped profile; rename the file'.format(
+                path, name))
+            continue
+        try:
+            files.append((name, path, read_text(path)))
+        except (OSError, ConfigError) as error:
+            problems.append(error)
+    profiles, errors = load_profiles(files)
+    for problem in problems + errors:
+        rospy.logwarn_throttle(60.0, 'a pad profile is left out: {}'.format(problem))
+    return profiles

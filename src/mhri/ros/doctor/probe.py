@@ -1,0 +1,222 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The doctor asks every node at once, on a thread for each, and listens to what it publishes.
+
+Nothing is registered at the master. A topic is asked for as a subscriber does it, and hung up at
+once; pictures and point clouds are left alone, since a driver may start its sensor for them.
+"""
+import http.client
+import re
+import select
+import socket
+import struct
+import threading
+import time
+from urllib.parse import urlsplit
+import xmlrpc.client
+
+from mhri.core.doctor.facts import (
+    ANSWERS, Connection, is_ipv4, Node, REFUSED, SILENT, STRANGER, Stream, UNRESOLVED)
+from mhri.ros.doctor.host import resolve
+from mhri.ros.graph.master_api import TimedTransport
+from mhri.ros.recording.raw_link import LinkError, RawLink
+
+# Not asked for: whoever subscribes them starts a camera, or gets megabytes.
+HEAVY = ('sensor_msgs/Image', 'sensor_msgs/CompressedImage', 'sensor_msgs/CameraInfo',
+         'sensor_msgs/PointCloud2', 'sensor_msgs/PointCloud', 'stereo_msgs/DisparityImage',
+         'theora_image_transport/Packet', 'nav_msgs/OccupancyGrid')
+# Begin with a std_msgs/Header, whose stamp is read from the bytes.
+STAMPED = ('nav_msgs/Odometry', 'sensor_msgs/Imu')
+LISTEN_S = 0.6
+ENOUGH_SAMPLES = 25
+_QUESTIONS = ('getPid', 'getPublications', 'getSubscriptions', 'getBusInfo')
+_STAMP = struct.Struct('<II')
+# As rospy and roscpp say it, and rosnode reads it: "... to [192.0.2.7:40623 on socket 6]".
+_OTHER_END = re.compile(r' to \[([0-9.]+):\d+ on socket ')
+
+
+class Probe:
+    """Asks nodes, each on a thread of its own, until a deadline.
+
+    :param caller_id: the name under which to ask
+    :param deadline: when to have done [s, monotonic]
+    """
+
+    def __init__(self, caller_id, deadline):
+        self._caller_id = caller_id
+        self._deadline = deadline
+        self._lock = threading.Lock()
+        self._threads = []
+        self._nodes = {}
+        self._streams = []
+        self._resolved = {}
+        self._asked = {}
+
+    def ask(self, name, uri, topics=()):
+        """Begin to ask a node; returns at once.
+
+        :param topics: [(topic, type, listen)] to ask it for once it answers
+        """
+        host = _host_of(uri)
+        with self._lock:
+            self._nodes[name] = Node(name, uri, host, SILENT, 'no answer in time')
+            self._asked.setdefault(host, threading.Event())
+        thread = threading.Thread(target=self._run, args=(name, uri, host, topics), daemon=True)
+        self._threads.append(thread)
+        thread.start()
+
+    def result(self):
+        """Wait for all, up to the deadline.
+
+        :returns: ({name: :class:`Node`}, [:class:`Stream`], {host name: addresses or None})
+        """
+        for thread in self._threads:
+            thread.join(max(0.0, self._deadline - time.monotonic()))
+        with self._lock:
+            return dict(self._nodes), list(self._streams), dict(self._resolved)
+
+    def _left(self, least_s=0.05):
+        return max(least_s, self._deadline - time.monotonic())
+
+    def _run(self, name, uri, host, topics):
+        if not self._find(host):
+            self._note(Node(name, uri, host, UNRESOLVED, 'unknown name'))
+            return
+        node = self._question(name, uri, host)
+        self._note(node)
+        if node.state == ANSWERS:
+            for topic, kind, listen in topics:
+                stream = self._stream(topic, kind, node, listen)
+                with self._lock:
+                    self._streams.append(stream)
+
+    def _note(self, node):
+        with self._lock:
+            self._nodes[node.name] = node
+
+    def _find(self, host):
+        """Look a host up once, whoever asks first; tell whether it is known."""
+        if is_ipv4(host):
+            return True
+        with self._lock:
+            first = host not in self._resolved
+            if first:
+                self._resolved[host] = None
+        if first:
+            addresses = resolve(host)
+            with self._lock:
+                self._resolved[host] = addresses
+            self._asked[host].set()
+        else:
+            self._asked[host].wait(self._left())
+        with self._lock:
+            return bool(self._resolved[host])
+
+    def _question(self, name, uri, host):
+        """Ask a node for itself and return the :class:`Node`."""
+        begun = time.monotonic()
+        proxy = xmlrpc.client.ServerProxy(uri, transport=TimedTransport(self._left()))
+        batch = xmlrpc.client.MultiCall(proxy)
+        try:
+            for question in _QUESTIONS:
+                getattr(batch, question)(self._caller_id)
+            try:
+                answers = [_value(item) for item in batch().results]
+            except xmlrpc.client.Fault:
+                # A node of another library, without system.multicall.
+                answers = [_value([proxy.getPid(self._caller_id)]), None, None, None]
+        except ConnectionRefusedError:
+            return Node(name, uri, host, REFUSED, 'refused')
+        except socket.timeout:
+            return Node(name, uri, host, SILENT, 'no answer in time')
+        except (xmlrpc.client.Error, http.client.HTTPException, ValueError, TypeError) as error:
+            return Node(name, uri, host, STRANGER, '{}: {}'.format(type(error).__name__, error))
+        except OSError as error:
+            # A port taken by something that hangs up at once has a computer, but no node.
+            state = STRANGER if isinstance(error, ConnectionError) else SILENT
+            return Node(name, uri, host, state, error.strerror or str(error))
+        if answers[0] is None:
+            return Node(name, uri, host, STRANGER, 'it does not know getPid')
+        return Node(name, uri, host, ANSWERS, '', time.monotonic() - begun, _topics(answers[1]),
+                    _topics(answers[2]), _connections(answers[3]))
+
+    def _stream(self, topic, kind, node, listen):
+        """Connect to a topic, listen for a moment where that is wanted, and hang up."""
+        if kind in HEAVY:
+            return Stream(topic, node.name, kind)
+        try:
+            link = RawLink(topic, node.uri, self._caller_id, self._left())
+        except LinkError as error:
+            return Stream(topic, node.name, kind, problem=str(error))
+        try:
+            fields = link.fields
+            known = (topic, node.name, fields['type'], fields['md5sum'], fields['callerid'])
+            if not listen:
+                return Stream(*known)
+            begun = time.monotonic()
+            messages, samples = self._listen(link, fields['type'] in STAMPED)
+            return Stream(*known, listened_s=time.monotonic() - begun, messages=messages,
+                          samples=tuple(samples))
+        finally:
+            link.close()
+
+    def _listen(self, link, stamped):
+        """Return (number of messages, [(received, stamp)]) of the next moment."""
+        messages, samples = 0, []
+        end = min(time.monotonic() + LISTEN_S, self._deadline)
+        while len(samples) < ENOUGH_SAMPLES and not (messages and not stamped):
+            ready = select.select([link], [], [], max(0.0, end - time.monotonic()))[0]
+            received = time.time()
+            if not ready:
+                break
+            try:
+                frames = link.read()
+            except LinkError:
+                break
+            messages += len(frames)
+            # Of those that came together only the newest was not kept waiting.
+            if stamped and frames and len(frames[-1]) >= 16:
+                seconds, nanoseconds = _STAMP.unpack_from(frames[-1], 8)
+                if seconds:
+                    samples.append((received, seconds + nanoseconds * 1e-9))
+        return messages, samples
+
+
+def _host_of(uri):
+    """Return the host of a URI, '' where there is none."""
+    try:
+        return urlsplit(uri).hostname or ''
+    except ValueError:
+        return ''
+
+
+def _value(item):
+    """Return the value in one answer of a multicall, None where it is not "success"."""
+    if not isinstance(item, list) or not isinstance(item[0], (list, tuple)):
+        return None
+    answer = item[0]
+    return answer[2] if len(answer) == 3 and answer[0] == 1 else None
+
+
+def _topics(pairs):
+    """Return {topic: type} of a node's own list, None where it is none."""
+    try:
+        return {str(name): str(kind) for name, kind in pairs}
+    except (TypeError, ValueError):
+        return None
+
+
+def _address(text):
+    """Return the IPv4 address in what a node says of a connection, '' where there is none."""
+    found = _OTHER_END.search(str(text))
+    return found.group(1) if found and is_ipv4(found.group(1)) else ''
+
+
+def _connections(entries):
+    """Return the :class:`Connection` tuple of ``getBusInfo``, None where it cannot be read."""
+    try:
+        return tuple(Connection(entry[2] == 'o', str(entry[4]), str(entry[1]),
+                                _address(entry[6] if len(entry) > 6 else ''))
+                     for entry in entries if len(entry) < 6 or entry[5])
+    except (TypeError, IndexError, KeyError):
+        return None

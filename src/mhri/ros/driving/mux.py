@@ -1,0 +1,294 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The mux node: ROS around :class:`mhri.core.driving.arbiter.Arbiter`, which holds every rule.
+
+Interfaces (all global names; units SI):
+
+- subscribes to each source's topic (``sensor_msgs/Joy``), ``/mux_in/mode_select``
+  (``mhri/ControlMode``), ``/mux_in/speed_limit`` (``geometry_msgs/Twist``: ``linear.x`` m/s,
+  ``angular.z`` rad/s) and ``/robot_controller/robot_select`` (``mhri/RobotSelect``)
+- publishes ``/robot_controller/twist`` (``geometry_msgs/Twist``, on events and at 20 Hz),
+  ``/robot_controller/stop_all`` (``std_msgs/Bool``, latched), ``/mux/mode`` (``mhri/ControlMode``,
+  latched), ``/mux/speed_limit`` (``geometry_msgs/Twist``, latched), ``/mux/waits_for``
+  (``std_msgs/String``, latched: '' or one of release, source, neutral, enabling, dead_man) and
+  ``/panel_in/request`` (``mhri/PanelRequest``: what the pad's buttons ask of the panel)
+- serves ``/mux/set_stop_all`` (``std_srvs/SetBool``)
+- parameters: ``~config`` (path of the sources' YAML, default ``resource/mux.yaml``), ``~enabling``
+  and ``~automatic_switching`` (default: what that file says),
+  ``/mux/sources`` (written: list of {name, label}), ``/mux/stop_all`` (written, and read at start,
+  so that a mux that crashed while everything was stopped comes back stopped)
+"""
+import threading
+import time
+
+from geometry_msgs.msg import Twist
+import rospy
+from sensor_msgs.msg import Joy
+from std_msgs.msg import Bool, String
+from std_srvs.srv import SetBool, SetBoolResponse
+
+from mhri.core.driving.arbiter import Arbiter, DRIVING, REPEAT_HZ, ZEROS_S
+from mhri.core.driving.buttons import ButtonEdges
+from mhri.core.driving.limits import ZERO
+from mhri.core.driving.profile import JoyRefused, NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL, STOP_ALL
+from mhri.msg import ControlMode, PanelRequest, RobotSelect
+from mhri.ros.convert import to_twist
+from mhri.ros.devices.device_profiles import DeviceProfiles
+from mhri.ros.graph.master_api import MasterError
+from mhri.ros.graph.master_watch import MasterWatch
+from mhri.ros.driving.mux_diagnostics import MuxDiagnostics
+from mhri.ros.driving.mux_takeover import is_superseded
+from mhri.ros.graph.prompt import PromptPublisher
+from mhri.ros.driving.suspender import Suspender
+from mhri.ros.worker import Worker
+
+STOP_PARAMETER = '/mux/stop_all'
+SOURCES_PARAMETER = '/mux/sources'
+# What a button asks of the panel, in the words of its messages.
+_REQUESTS = {NEXT_ROBOT: PanelRequest.NEXT, PREVIOUS_ROBOT: PanelRequest.PREVIOUS,
+             SELECT_ALL: PanelRequest.SELECT_ALL}
+
+
+class Mux:
+    """The one publisher of ``/robot_controller/twist``.
+
+    :param config: :class:`mhri.core.driving.sources.MuxConfig`
+    :param clock: function returning seconds that never go back
+    """
+
+    def __init__(self, config, clock=time.monotonic):
+        self._clock = clock
+        self._arbiter = Arbiter(config, clock())
+        self._changed = threading.Condition(threading.RLock())
+        self._said_waiting = None
+        self._closing = False
+        self._service = None
+        self._twist = PromptPublisher('/robot_controller/twist', Twist)
+        self._mode = rospy.Publisher('/mux/mode', ControlMode, queue_size=10, latch=True)
+        self._stop = rospy.Publisher('/robot_controller/stop_all', Bool, queue_size=10, latch=True)
+        self._limit = rospy.Publisher('/mux/speed_limit', Twist, queue_size=10, latch=True)
+        self._waits = rospy.Publisher('/mux/waits_for', String, queue_size=10, latch=True)
+        self._ask = rospy.Publisher('/panel_in/request', PanelRequest, queue_size=10,
+                                    tcp_nodelay=True)
+        services = {source.name: source.suspend_service for source in config.sources
+                    if source.suspend_service}
+        self._suspender = Suspender(services.values(), awake=[
+            service for name, service in services.items()
+            if config.automatic_switching or name == config.enabling])
+        self._profiles = DeviceProfiles()
+        self._buttons = ButtonEdges()
+        self._memory = Worker('stop_memory')
+        self._watch = MasterWatch(
+            on_lost=lambda reason: self._hold('master'),
+            parameters={SOURCES_PARAMETER: [{'name': source.name, 'label': source.label}
+                                            for source in config.sources]})
+        self._config = config
+        self._joys = {}
+        self._own = {source.name: source.profile for source in config.sources}
+        self._remembering = threading.Lock()
+        self._diagnostics = MuxDiagnostics(self._arbiter, self._changed, self._suspender, clock,
+                                           config)
+
+    def start(self, stopped):
+        """Open for business.
+
+        :param stopped: begin with stop-all in force
+        """
+        rospy.on_shutdown(self.close)
+        if stopped:
+            self._arbiter.engage_stop_all(self._clock())
+        self._watch.start()
+        self._memory.start()
+        self._service = rospy.Service('/mux/set_stop_all', SetBool, self._on_stop_all)
+        self._listen('/mux_in/mode_select', ControlMode, self._on_mode, queue_size=10)
+        self._listen('/mux_in/speed_limit', Twist, self._on_limit, queue_size=1)
+        self._listen('/robot_controller/robot_select', RobotSelect, self._on_selection,
+                     queue_size=1, tcp_nodelay=True)
+        for source in self._config.sources:
+            self._joys[source.name] = self._listen(
+                source.topic, Joy, self._on_joy, callback_args=source.name, queue_size=1,
+                tcp_nodelay=True)
+        self._suspender.activate(self._arbiter.source.suspend_service)
+        threading.Thread(target=self._run, name='mux_timer', daemon=True).start()
+        self._diagnostics.start()
+        with self._changed:
+            self._announce()
+
+    def _listen(self, *args, **kwargs):
+        """Subscribe and return that, unless this mux has been told to end while it was starting.
+
+        A registration made after a newer mux has taken the name would end that one as well
+        (ros_comm#2018).
+        """
+        return None if self._closing else rospy.Subscriber(*args, **kwargs)
+
+    def _announce(self):
+        """Publish the latched state anew."""
+        self._mode.publish(source=self._arbiter.mode)
+        self._stop.publish(data=self._arbiter.stop_all)
+        limits = self._arbiter.limits
+        self._limit.publish(to_twist(*limits))
+
+    def _send(self, velocity):
+        """Publish what a rule returned, and say what is waited for now; call it with the lock held.
+
+        Publishing inside the lock keeps a zero behind the command that it ends.
+        """
+        if self._closing:
+            return
+        if velocity is not None:
+            publish = self._twist.publish_urgent if velocity.is_zero() else self._twist.publish
+            publish(to_twist(velocity.linear_mps, velocity.angular_rad_s))
+        waiting = self._arbiter.waits_for(self._clock())
+        if waiting != self._said_waiting:
+            self._said_waiting = waiting
+            self._waits.publish(data=waiting)
+        self._changed.notify()
+
+    def _on_joy(self, message, name):
+        """Guard of the thread of one Joy subscriber."""
+        header = message._connection_header or {}
+        device = (header.get('callerid'), message.header.frame_id)
+        switched = False
+        try:
+            profile = self._profiles.of(name, message.header.frame_id) or self._own[name]
+            with self._changed:
+                self._press(name, device, profile.pressed(message.buttons))
+                before = self._arbiter.mode
+                self._send(self._arbiter.on_joy(
+                    name, message.axes, message.buttons, device, self._clock(), profile))
+                switched = self._arbiter.mode != before
+                if switched:
+                    self._tell_mode()
+        except JoyRefused as refusal:
+            # Not while the lock is held: a log that blocks must not hold up a zero.
+            rospy.logwarn_throttle(1.0, 'refused from {}: {}'.format(name, refusal))
+        if switched:
+            rospy.loginfo('driving with %s, which was touched', name)
+
+    def _press(self, name, device, pressed):
+        """Do what newly pressed buttons ask for (with the lock held).
+
+        A stop counts from every source; all else from the one that drives.
+        """
+        newly = self._buttons.newly(name, device, pressed)
+        if STOP_ALL in newly:
+            self._send(self._arbiter.engage_stop_all(self._clock()))
+            self._stop.publish(data=True)
+            self._memory.do(self._remember_stop)
+        if name == self._arbiter.mode:
+            for action in newly - {STOP_ALL}:
+                self._ask.publish(action=_REQUESTS[action])
+
+    def _on_selection(self, message):
+        with self._changed:
+            self._send(self._arbiter.on_selection(message.robots, self._clock()))
+
+    def _tell_mode(self):
+        """Publish another mode, and wake and suspend the input nodes (with the lock held)."""
+        self._mode.publish(source=self._arbiter.mode)
+        self._suspender.activate(self._arbiter.source.suspend_service)
+        self._profiles.forget()
+
+    def _on_mode(self, message):
+        try:
+            with self._changed:
+                before = self._arbiter.mode
+                self._send(self._arbiter.on_mode(message.source, self._clock()))
+                changed = self._arbiter.mode != before
+                if changed:
+                    self._tell_mode()
+                else:
+                    self._suspender.activate(self._arbiter.source.suspend_service)
+        except KeyError:
+            rospy.logwarn_throttle(
+                1.0, 'no source {!r}: the mode stays {!r}. Sources are rows of mux.yaml'.format(
+                    message.source, before))
+            return
+        if changed:
+            rospy.loginfo('driving with %s', message.source)
+
+    def _on_limit(self, message):
+        problem = None
+        with self._changed:
+            try:
+                self._send(self._arbiter.set_limits(
+                    message.linear.x, message.angular.z, self._clock()))
+            except ValueError as error:
+                problem = error
+            self._limit.publish(to_twist(*self._arbiter.limits))
+        if problem:
+            rospy.logwarn_throttle(1.0, '{}; the old one stays'.format(problem))
+
+    def _on_stop_all(self, request):
+        """Serve ``/mux/set_stop_all``."""
+        with self._changed:
+            if request.data:
+                self._send(self._arbiter.engage_stop_all(self._clock()))
+                self._stop.publish(data=True)
+                answer = SetBoolResponse(True, 'everything is stopped')
+            else:
+                problem = self._arbiter.release_stop_all(self._clock())
+                self._send(None)
+                self._stop.publish(data=self._arbiter.stop_all)
+                answer = SetBoolResponse(problem is None, problem or 'released: centre the stick')
+        self._remember_stop()
+        return answer
+
+    def _remember_stop(self):
+        """Write stop-all down where the next mux finds it, before the answer is given."""
+        with self._remembering:
+            stopped = self._arbiter.stop_all
+            try:
+                self._watch.set_parameter(STOP_PARAMETER, stopped)
+            except MasterError as error:
+                rospy.logwarn('stop-all is %s, but the next mux will not know: %s', stopped, error)
+
+    def _hold(self, cause):
+        with self._changed:
+            self._send(self._arbiter.on_hold(cause, self._clock()))
+
+    def _run(self):
+        """Send what time demands: repetitions, the zero of a silent source, the later zeros."""
+        with self._changed:
+            while not self._closing:
+                now = self._clock()
+                self._send_due(now)
+                self._changed.wait(max(0.0, self._arbiter.next_tick(now) - self._clock()))
+
+    def _send_due(self, now):
+        """Let the arbiter's time pass; ask a silent input node once more."""
+        was_waiting = self._said_waiting
+        if self._arbiter.state == DRIVING and self._is_gone(self._arbiter.mode):
+            self._send(self._arbiter.on_lost(self._arbiter.mode, 'lost', now))
+        self._send(self._arbiter.tick(now))
+        if self._said_waiting == 'source' and was_waiting == 'source':
+            self._suspender.resume_again()
+
+    def _is_gone(self, name):
+        """Tell whether nobody publishes a source any more: its node has ended or was killed."""
+        subscriber = self._joys.get(name)
+        return subscriber is not None and not subscriber.get_num_connections()
+
+    def close(self):
+        """Stop the robots: a zero now, more for half a second, then nothing ever again.
+
+        Where a newer mux has taken over, the first zero is the last: more of them would break into
+        its commands.
+        """
+        zero = to_twist(ZERO.linear_mps, ZERO.angular_rad_s)
+        with self._changed:
+            if self._closing:
+                return
+            self._closing = True
+            self._twist.publish(zero)
+            self._changed.notify()
+        self._diagnostics.stop()
+        self._memory.stop()
+        self._watch.stop()
+        uri = self._service.uri if self._service else None
+        for _ in range(int(ZEROS_S * REPEAT_HZ)):
+            time.sleep(1.0 / REPEAT_HZ)
+            if is_superseded(uri):
+                return
+            self._twist.publish(zero)

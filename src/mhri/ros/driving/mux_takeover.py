@@ -1,0 +1,58 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A second mux does not start a fight: the newer one ends the older.
+
+Of two muxes with one name the master ends the older by itself. One that was started under another
+name would go on publishing to the same topic, so it is asked to end.
+"""
+import time
+import xmlrpc.client
+
+import rospy
+
+from mhri.ros.graph.master_api import ERRORS, MasterApi, MasterError, TimedTransport
+
+STOP_SERVICE = '/mux/set_stop_all'
+PATIENCE_S = 1.5
+
+
+def end_other_muxes():
+    """Ask every other node that serves ``/mux/set_stop_all`` to shut down.
+
+    Only a mux has that service; whoever else publishes velocities (a test, a bag) is left alone.
+    """
+    api = MasterApi(rospy.get_name(), timeout_s=2.0)
+    try:
+        services = dict(api.call('getSystemState')[2])
+        for name in services.get(STOP_SERVICE, []):
+            uri = api.node_uri(name)
+            if name != rospy.get_name() and uri:
+                rospy.logwarn('another mux is running as %s: it is asked to end', name)
+                _end(api, name, uri)
+    except (MasterError,) + ERRORS as error:
+        rospy.logwarn('an older mux may still be running: %s', error)
+
+
+def _end(api, name, uri):
+    """Ask one mux to end, and wait a little until the master has let it go."""
+    xmlrpc.client.ServerProxy(uri, transport=TimedTransport(PATIENCE_S)).shutdown(
+        rospy.get_name(), 'a newer mux has started')
+    deadline = time.monotonic() + PATIENCE_S
+    while time.monotonic() < deadline:
+        if name not in dict(api.call('getSystemState')[2]).get(STOP_SERVICE, []):
+            return
+        time.sleep(0.05)
+
+
+def is_superseded(service_uri):
+    """Tell whether another mux serves ``/mux/set_stop_all`` by now; False where nobody says so.
+
+    :param service_uri: that of this mux's own service
+    """
+    api = MasterApi(rospy.get_name(), timeout_s=0.3)
+    try:
+        current, node = api.call_many([('lookupService', STOP_SERVICE),
+                                       ('lookupNode', rospy.get_name())])
+    except MasterError:
+        return False
+    return current not in (None, service_uri) or node not in (None, rospy.get_node_uri())

@@ -1,0 +1,58 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A parameter that takes effect while the node runs."""
+import threading
+
+import rospy
+
+from mhri.ros.graph.master_api import MasterApi, MasterError
+
+PERIOD_S = 1.0
+
+
+class LiveParameter:
+    """Asks the master for a parameter once a second, on a thread of its own, while it is wanted.
+
+    :param name: e.g. ``~device``
+    :param default: its value where it is not set
+    :param apply: function called with the value, at first and whenever it has changed
+    :param wanted: ``threading.Event``; nobody is asked while it is not set
+    """
+
+    def __init__(self, name, default, apply, wanted):
+        self._name = rospy.resolve_name(name)
+        self._value = self._default = default
+        self._apply = apply
+        self._wanted = wanted
+
+    def start(self):
+        """Take the value there is now, and keep watching; call it after ``rospy.init_node``."""
+        self._value = rospy.get_param(self._name, self._default)
+        self._apply(self._value)
+        threading.Thread(target=self._run, name=self._name, daemon=True).start()
+        return self
+
+    def _run(self):
+        api = MasterApi(rospy.get_name(), timeout_s=1.0)
+        done = threading.Event()
+        rospy.on_shutdown(done.set)
+        while not done.is_set():
+            self._wanted.wait()
+            try:
+                self._look(api)
+            except MasterError as error:
+                # The last value stays; the watch of the master says that it is gone.
+                rospy.logdebug('%s: %s', self._name, error)
+            done.wait(PERIOD_S)
+
+    def _look(self, api):
+        """Ask once.
+
+        :raises MasterError: no answer
+        """
+        known, value = api.call_many([('hasParam', self._name), ('getParam', self._name)])
+        value = value if known else self._default
+        if value != self._value:
+            self._value = value
+            rospy.loginfo('%s is %r now', self._name, value)
+            self._apply(value)

@@ -1,0 +1,148 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The ROS graph asked for robots: one question to the master, then a knock at each door."""
+import socket
+import threading
+import time
+from dataclasses import dataclass, field
+from typing import Tuple
+from urllib.parse import urlsplit
+
+from mhri.core.robots.discovery import (
+    find_candidates, NAME_PARAMETER, parameters_of, parse_ignore_list, ROOT_PARAMETERS)
+from mhri.core.robots.robot_types import Seen
+from mhri.ros.graph.master_api import MasterApi
+from mhri.ros.resources import read_resource, resource_path, robot_types
+
+KNOCK_S = 0.3
+NODES_EACH = 3
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What is known of one robot before it is in the list.
+
+    :param parameters: those of the robot as a nested dict, {} where it has none
+    :param seen: :class:`Seen`, None where the graph was not looked at, or
+        has nothing of the robot
+    """
+
+    parameters: dict = field(default_factory=dict)
+    seen: Seen = None
+
+
+@dataclass(frozen=True)
+class Found:
+    """The result of looking for robots.
+
+    ``live`` are candidates of which a node answers; ``leftovers`` are registered, but nothing
+    answers (crashed, switched off, out of reach) or only parameters are left; ``refused`` have
+    names that no robot can have. ``facts`` is {name: :class:`Facts`} of all of them.
+    """
+
+    live: Tuple = ()
+    leftovers: Tuple = ()
+    refused: Tuple = ()
+    facts: dict = None
+    took_s: float = 0.0
+
+
+def knock(uris, timeout_s=KNOCK_S):
+    """Try to connect to many node URIs at once; return the set of those that accept.
+
+    Nobody is waited for beyond the time limit, not even a name server: a thread that hangs in one
+    is left behind (daemon).
+    """
+    answered, lock, threads = set(), threading.Lock(), []
+
+    def one(uri):
+        """Try one address."""
+        try:
+            parts = urlsplit(uri)
+            socket.create_connection((parts.hostname, parts.port), timeout_s).close()
+        except (OSError, ValueError):
+            return
+        with lock:
+            answered.add(uri)
+
+    for uri in set(uris):
+        thread = threading.Thread(target=one, args=(uri,), daemon=True)
+        thread.start()
+        threads.append(thread)
+    deadline = time.monotonic() + timeout_s + 0.1
+    for thread in threads:
+        thread.join(max(0.0, deadline - time.monotonic()))
+    with lock:
+        return set(answered)
+
+
+def look_for_robots(caller_id, ignore, known=(), api=None, types=None):
+    """Look for robots (blocking; never on the GUI thread).
+
+    The master is asked once for its whole state, the types of all topics and all parameters, in one
+    request, and once more for the addresses of the robots found, again in one request.
+
+    :param ignore: :class:`mhri.core.robots.discovery.IgnoreList`
+    :param known: robots that are in the list already
+    :param api: the :class:`MasterApi` to ask, default that of ``ROS_MASTER_URI``
+    :param types: {name: RobotType}, default all that are installed
+    :returns: :class:`Found`
+    :raises MasterError: the master cannot be reached
+    """
+    begun = time.monotonic()
+    api = api or MasterApi(caller_id, timeout_s=5.0)
+    state, topic_types, parameters = api.call_many(
+        [('getSystemState',), ('getTopicTypes',), ('getParam', '/')])
+    parameters = parameters or {}
+    candidates = find_candidates(state or [], parameters, ignore, known, topic_types or (),
+                                 robot_types()[0] if types is None else types)
+    asked = [(candidate, node) for candidate in candidates
+             for node in candidate.nodes[:NODES_EACH] if candidate.problem is None]
+    uris = api.call_many([('lookupNode', node) for _, node in asked]) if asked else []
+    answered = knock([uri for uri in uris if uri])
+    alive = {candidate.name for (candidate, _), uri in zip(asked, uris) if uri in answered}
+    return Found(
+        live=tuple(item for item in candidates if item.name in alive),
+        leftovers=tuple(item for item in candidates
+                        if item.problem is None and item.name not in alive),
+        refused=tuple(item for item in candidates if item.problem),
+        facts={item.name: Facts(parameters_of(item.name, parameters, item.seen.at_root), item.seen)
+               for item in candidates},
+        took_s=time.monotonic() - begun)
+
+
+def shipped_ignore_list():
+    """Return the :class:`IgnoreList` of ``resource/discovery.yaml``.
+
+    :raises ConfigError: it has a mistake
+    :raises OSError: it cannot be read
+    """
+    return parse_ignore_list(read_resource('discovery.yaml'), resource_path('discovery.yaml'))
+
+
+def robot_facts(caller_id, names, types, seen=None):
+    """Return {name: :class:`Facts`}: the parameters of robots, asked in one request.
+
+    Only where a robot has no ``robot_type`` and nothing is known of it, the graph is looked at, in
+    one more request.
+
+    :param types: {name: RobotType}
+    :param seen: {name: :class:`Seen`} of what is known already
+    :raises MasterError: the master cannot be reached
+    """
+    names, seen = list(names), dict(seen or {})
+    if not names:
+        return {}
+    api = MasterApi(caller_id, timeout_s=2.0)
+    keys = list(dict.fromkeys(names + [NAME_PARAMETER, *ROOT_PARAMETERS]))
+    values = api.call_many([('getParam', '/' + key) for key in keys])
+    parameters = {key: value for key, value in zip(keys, values) if value is not None}
+    unseen = [name for name in names if name not in seen
+              and 'robot_type' not in parameters_of(name, parameters)]
+    if unseen:
+        state, topic_types = api.call_many([('getSystemState',), ('getTopicTypes',)])
+        seen.update((item.name, item.seen) for item in find_candidates(
+            state or [], parameters, shipped_ignore_list(), (), topic_types or (), types)
+            if item.name in unseen and item.problem is None)
+    return {name: Facts(parameters_of(name, parameters, name in seen and seen[name].at_root),
+                        seen.get(name)) for name in names}

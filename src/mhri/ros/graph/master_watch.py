@@ -1,0 +1,142 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Watches the master, and registers this node again when the master has forgotten it.
+
+rospy registers once and never looks back: after a restart of the master its nodes live on, but
+nobody can find them (robot_upstart#35). Connections that exist outlive the master; new ones need
+it.
+"""
+import threading
+
+import rospy
+from rospy.impl.registration import (
+    get_registration_listeners, get_service_manager, get_topic_manager)
+from rospy.impl.paramserver import get_param_server_cache
+
+from mhri.ros.graph.master_api import MasterApi, MasterError
+
+PRESENT = 'present'
+LOST = 'lost'
+
+
+def log_without_master():
+    """Keep rospy from asking the master at every line it logs; call it after ``rospy.init_node``.
+
+    To each line for /rosout rospy adds the names of the topics, unless a parameter forbids it, and
+    while that parameter is not set it subscribes to it anew every time. A master that is out of
+    reach would hold up whoever logs; and a node whose name has been taken over would thereby take
+    it back, upon which the master ends both (ros_comm#2018).
+    """
+    name = '/rosout_disable_topics_generation'
+    get_param_server_cache().set(name, bool(rospy.get_param(name, False)))
+
+
+class MasterWatch:
+    """Asks the master twice a second whether it is there and knows this node.
+
+    ``on_lost(reason)`` is called once when two calls in a row had no answer, and
+    ``on_back(forgotten)`` once when it answers again (``forgotten``: it is another master process
+    that did not know this node; registrations and ``parameters`` have been given to it anew). A
+    master that was restarted between two calls counts as lost and back. Both run on the watch's own
+    thread.
+
+    :param parameters: {absolute name: value} which this node owns and restores
+    """
+
+    def __init__(self, on_lost=None, on_back=None, parameters=None, period_s=0.5):
+        self._on_lost = on_lost or (lambda reason: None)
+        self._on_back = on_back or (lambda forgotten: None)
+        self.parameters = dict(parameters or {})
+        self._period_s = period_s
+        self._api = MasterApi(rospy.get_name(), timeout_s=1.0)
+        self._misses = 0
+        self.state = PRESENT
+        self._done = threading.Event()
+        self._thread = threading.Thread(target=self._run, name='master_watch', daemon=True)
+
+    def start(self):
+        """Begin watching; call it after ``rospy.init_node``."""
+        log_without_master()
+        for name, value in self.parameters.items():
+            rospy.set_param(name, value)
+        self._thread.start()
+        return self
+
+    def stop(self):
+        """End the thread; returns at once."""
+        self._done.set()
+
+    def set_parameter(self, name, value):
+        """Set a parameter now (blocking, so never on the GUI thread) and after every restart."""
+        self.parameters[name] = value
+        self._api_once().call('setParam', name, value)
+
+    def _api_once(self):
+        """Return a proxy for use on another thread than the watch's own."""
+        return MasterApi(rospy.get_name(), timeout_s=1.0)
+
+    def _run(self):
+        while not self._done.wait(self._period_s) and not rospy.is_shutdown():
+            try:
+                self._look()
+            except MasterError as error:
+                self._miss(str(error))
+
+    def _look(self):
+        """Ask once; register again where needed."""
+        own = rospy.get_node_uri()
+        # In this order: a node that takes the name over between the two is seen by the second. The
+        # other way round it would look like a master that has forgotten this node.
+        service, uri = self._api.call_many([
+            ('lookupService', rospy.get_name() + '/get_loggers'),
+            ('lookupNode', rospy.get_name())])
+        self._misses = 0
+        if service is None:
+            # The name alone proves nothing: any call that mentions this node makes a new master
+            # know its name. The service that every rospy node has is registered with the rest.
+            uri = None if uri == own else uri
+        if uri is not None and uri != own:
+            rospy.logwarn('another node has taken over the name %s: this one ends',
+                          rospy.get_name())
+            rospy.signal_shutdown('name taken over')
+            return
+        if rospy.is_shutdown():
+            # What the master does not know any more, this node has taken back itself.
+            return
+        if uri is None:
+            if self.state == PRESENT:
+                self._lose('the ROS master was restarted')
+            self._register()
+            rospy.loginfo('the ROS master had forgotten %s: registered again', rospy.get_name())
+        if self.state == LOST:
+            self.state = PRESENT
+            self._on_back(uri is None)
+
+    def _miss(self, reason):
+        """Count a call without an answer; two in a row are a lost master."""
+        self._misses += 1
+        if self._misses >= 2 and self.state == PRESENT:
+            self._lose(reason)
+
+    def _lose(self, reason):
+        self.state = LOST
+        rospy.logwarn('ROS master lost: %s', reason)
+        self._on_lost(reason)
+
+    def _register(self):
+        """Give the master everything that rospy has registered in its life.
+
+        :raises MasterError: it went away again meanwhile
+        """
+        own = rospy.get_node_uri()
+        topics, services = get_topic_manager(), get_service_manager()
+        calls = [('registerPublisher', name, kind, own) for name, kind in topics.get_publications()]
+        calls += [('registerService', name, uri, own) for name, uri in services.get_services()]
+        calls += [('setParam', name, value) for name, value in self.parameters.items()]
+        subscriptions = topics.get_subscriptions()
+        calls += [('registerSubscriber', name, kind, own) for name, kind in subscriptions]
+        answers = self._api.call_many(calls)
+        manager = next(iter(get_registration_listeners().listeners), None)
+        for (name, _), publishers in zip(subscriptions, answers[len(calls) - len(subscriptions):]):
+            if manager is not None:
+                manager.publisher_update(name, publishers or [])

@@ -1,0 +1,98 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The thread that a disk may hold up: writes chunks, watches the space, closes the file."""
+import logging
+import queue
+import threading
+import time
+
+from mhri.core.recording.recording import warning_of
+from mhri.ros.recording.bag_file import words_of
+
+_LOG = logging.getLogger(__name__)
+
+
+class BagWriter:
+    """Writes chunks in the order in which they are put, none of them dropped.
+
+    ``failure`` says why nothing more can be written, ``warning`` what is wrong with the disk now
+    ('' while all is well); ``closed`` is an event: the file is closed and has its name, or cannot.
+
+    :param file: :class:`mhri.ros.recording.bag_file.BagFile`; closed by this thread
+    :param limits: :class:`mhri.core.recording.recording.RecordingLimits`
+    :param on_trouble: called once, on this thread, when the recording has to stop
+    """
+
+    def __init__(self, file, limits, on_trouble=lambda: None, clock=time.monotonic):
+        self.file = file
+        self.failure = ''
+        self.warning = ''
+        self.closed = threading.Event()
+        self._limits = limits
+        self._on_trouble = on_trouble
+        self._clock = clock
+        self._queue = queue.Queue()
+        self._put_bytes = 0
+        self._done_bytes = 0
+        self._synced_at = clock()
+
+    def start(self):
+        """Begin to write."""
+        self._judge(self.file.free_bytes())
+        threading.Thread(target=self._run, name='bag_writer', daemon=True).start()
+
+    def put(self, chunk, introduced):
+        """Queue a chunk with the connections that are new in it; returns at once."""
+        self._put_bytes += chunk.size
+        self._queue.put((chunk, introduced))
+        if self.queue_bytes >= self._limits.warn_queue_bytes:
+            # The thread that writes may be the one that the disk holds up.
+            self._judge(None)
+
+    def finish(self):
+        """Close the file when all that was put is written; returns at once."""
+        self._queue.put(None)
+
+    @property
+    def queue_bytes(self):
+        """What was put and is not written yet."""
+        return self._put_bytes - self._done_bytes
+
+    def _judge(self, free_bytes):
+        """Take note of the queue and the space left; end the recording where need be."""
+        self.warning, stop = warning_of(self._limits, free_bytes, self.queue_bytes)
+        if stop:
+            self._fail(self.warning)
+
+    def _fail(self, reason):
+        if not self.failure:
+            self.failure = reason
+            _LOG.warning('recording of %s stops: %s', self.file.path, reason)
+            self._on_trouble()
+
+    def _run(self):
+        broken = False
+        try:
+            for chunk, introduced in iter(self._queue.get, None):
+                if not broken:
+                    broken = not self._write(chunk, introduced)
+                self._done_bytes += chunk.size
+            self.file.close()
+        except Exception as error:  # the guard of this thread: said to the operator, and logged
+            _LOG.exception('%s could not be closed', self.file.path)
+            self._fail(words_of(error))
+        finally:
+            self.closed.set()
+
+    def _write(self, chunk, introduced):
+        """Write one chunk; return whether more may follow."""
+        try:
+            self.file.write(chunk, introduced)
+            if self._clock() - self._synced_at >= self._limits.sync_s:
+                self.file.sync()
+                self._synced_at = self._clock()
+        except OSError as error:
+            self._fail(words_of(error))
+            return False
+        self._judge(self.file.free_bytes())
+        return True

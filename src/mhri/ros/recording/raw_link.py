@@ -1,0 +1,125 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""One TCPROS connection to a publisher, read as bytes (http://wiki.ros.org/ROS/TCPROS)."""
+import io
+import socket
+import struct
+import xmlrpc.client
+
+import genpy.message
+from rosgraph.network import (
+    read_ros_handshake_header, ROSHandshakeException, write_ros_handshake_header)
+
+from mhri.core.recording.bag_format import FrameSplitter
+from mhri.ros.graph.master_api import ERRORS, TimedTransport
+
+_SMALL, _LARGE = 64 * 1024, 1024 * 1024
+# A robot that loses its power says no goodbye: asked after 5 s of silence, given up after 5 more.
+_KEEPALIVE = ((socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1),
+              (socket.IPPROTO_TCP, socket.TCP_KEEPIDLE, 5),
+              (socket.IPPROTO_TCP, socket.TCP_KEEPINTVL, 1),
+              (socket.IPPROTO_TCP, socket.TCP_KEEPCNT, 5),
+              (socket.IPPROTO_TCP, socket.TCP_NODELAY, 1))
+
+
+class LinkError(Exception):
+    """A publisher that cannot be connected, or not any more; the text says which and why."""
+
+
+class RawLink:
+    """A connection to one publisher of one topic.
+
+    :param topic: its absolute name
+    :param uri: the XML-RPC address of the publisher's node
+    :param caller_id: the name under which to connect
+    :param timeout_s: the most that each step may take [s]
+    ``fields`` is what the publisher says of itself; ``connection`` is for the one who records.
+
+    :raises LinkError: it does not answer, does not publish this topic, or speaks something else
+    """
+
+    def __init__(self, topic, uri, caller_id, timeout_s=3.0):
+        self.key = (topic, uri)
+        self.connection = None
+        self._splitter = FrameSplitter()
+        self._socket = None
+        self._early = b''
+        try:
+            self.fields = self._connect(topic, uri, caller_id, timeout_s)
+        except (ERRORS + (ROSHandshakeException, LookupError, ValueError, TypeError,
+                          struct.error)) as error:
+            self.close()
+            raise LinkError('{} at {}: {}'.format(topic, uri, error))
+        self._recv = self._socket.recv
+
+    def _connect(self, topic, uri, caller_id, timeout_s):
+        """Ask for the topic, connect, and return what the publisher says of it."""
+        with xmlrpc.client.ServerProxy(uri, transport=TimedTransport(timeout_s)) as proxy:
+            code, message, protocol = proxy.requestTopic(caller_id, topic, [['TCPROS']])
+        if code != 1 or not protocol:
+            raise ValueError('not to be had: {}'.format(message))
+        self._socket = socket.create_connection((protocol[1], protocol[2]), timeout_s)
+        for option in _KEEPALIVE:
+            self._socket.setsockopt(*option)
+        write_ros_handshake_header(self._socket, {
+            'topic': topic, 'callerid': caller_id, 'md5sum': '*', 'type': '*',
+            'message_definition': '', 'tcp_nodelay': '1'})
+        rest = io.BytesIO()
+        found = read_ros_handshake_header(self._socket, rest, 4096)
+        if 'error' in found:
+            raise ValueError(found['error'])
+        self._early = rest.getvalue()
+        self._socket.setblocking(False)
+        fields = {'topic': topic, 'type': found['type'], 'md5sum': found['md5sum'],
+                  'message_definition': found.get('message_definition') or _definition(found),
+                  'callerid': found.get('callerid', '')}
+        if found.get('latching') == '1':
+            fields['latching'] = '1'
+        return fields
+
+    def fileno(self):
+        """Return the descriptor to wait for."""
+        return self._socket.fileno()
+
+    def read(self):
+        """Return the frames that are whole now, () where nothing has come.
+
+        :raises LinkError: the publisher has gone
+        """
+        if self._early:
+            data, self._early = self._early, b''
+            return self._splitter.split(data)
+        wanted = self._splitter.wanted
+        try:
+            data = self._recv(_SMALL if wanted <= _SMALL else min(wanted, _LARGE))
+            if data:
+                return self._splitter.split(data)
+        except BlockingIOError:
+            return ()
+        except (OSError, ValueError) as error:
+            raise LinkError('{} at {}: {}'.format(*self.key, error))
+        raise LinkError('{} at {}: closed'.format(*self.key))
+
+    def read_all(self):
+        """Yield the frames of everything that has come by now."""
+        while True:
+            try:
+                # Bytes that are not a whole message yet are followed by more, or by nothing.
+                before = self._splitter.wanted
+                frames = self.read()
+            except LinkError:
+                return
+            yield from frames
+            if not frames and self._splitter.wanted == before:
+                return
+
+    def close(self):
+        """Hang up."""
+        if self._socket is not None:
+            self._socket.close()
+
+
+def _definition(found):
+    """Return the text of a message type that its publisher did not send, '' where unknown here."""
+    known = genpy.message.get_message_class(found['type'])
+    return known._full_text if known is not None and known._md5sum == found['md5sum'] else ''

@@ -1,0 +1,248 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Save IMU Data: one recording of one robot, from the sockets to the file.
+
+Threads: one makes the connections and one reads them, so that no display in this program and no
+disk holds a message up; one writes, so that nobody waits for the disk.
+"""
+from datetime import datetime
+import io
+import logging
+import os
+import struct
+import threading
+import time
+
+import rospy
+
+from mhri.core.recording.bag_format import Chunk, Connection
+from mhri.core.recording.recording import (
+    ENDED, FAILED, OFF, PathRefused, RateMeter, RECORDING, RecordingLimits, RecordingStatus,
+    size_text)
+from mhri.ros.recording.bag_file import open_bag, words_of
+from mhri.ros.recording.bag_writer import BagWriter
+from mhri.ros.recording.raw_reader import RawReader
+from mhri.ros.recording.tap_node import TapNode
+
+_LOG = logging.getLogger(__name__)
+
+
+def receipt_clock():
+    """Return a function to the time of now [ns]: ROS time where it is simulated.
+
+    Else the time of day at the start plus what has gone by since: a clock that is set meanwhile
+    does not bring the messages out of order.
+    """
+    if rospy.rostime.is_rostime_initialized() and not rospy.rostime.is_wallclock():
+        return lambda: max(1, rospy.get_rostime().to_nsec())
+    monotonic_ns = time.monotonic_ns
+    begun_ns = time.time_ns() - monotonic_ns()
+    return lambda: begun_ns + monotonic_ns()
+
+
+class Recorder:
+    """One recording: started once, stopped once, and then only asked for its status.
+
+    It subscribes (any type, as the node ``/mhri_recorder_<robot>_<number>``) and writes every
+    message that arrives, with its receipt time, in the order of receipt. Call ``stop(wait=True)``
+    before the program ends (also on SIGTERM): that closes the file whole. A program that is killed
+    leaves ``<file>.bag.active``, of which ``rosbag reindex`` saves all but the last half second.
+
+    :param robot: its name
+    :param topics: absolute names (:func:`mhri.core.recording.recording.topics_of`); not the
+        robot's velocity
+        topics: whoever subscribes those is taken for the robot
+    :param path: as the operator typed it, '' for the default
+    :param limits: :class:`mhri.core.recording.recording.RecordingLimits`
+    :param clock_ns: function to the receipt time [ns], default :func:`receipt_clock`
+    """
+
+    _numbers = iter(range(1, 10 ** 9))
+
+    def __init__(self, robot, topics, path='', limits=RecordingLimits(), clock_ns=None):
+        self.robot = robot
+        self.topics = tuple(dict.fromkeys(topics))
+        self._asked = path
+        self._limits = limits
+        self._clock_ns = clock_ns or receipt_clock()
+        # One lock for the beginning and the end, one for the messages: the end may come with one.
+        self._life = threading.Lock()
+        self._lock = threading.Lock()
+        self._state = OFF
+        self._note = ''
+        self._writer = None
+        self._reader = None
+        self._node = None
+        self._stop_asked = False
+        self._ended = threading.Event()
+        self._begun_s = self._ended_s = None
+        self._meter = RateMeter()
+        self._chunk = Chunk()
+        self._chunk_due_s = None
+        self._connections = {}
+        self._new = []
+        self._messages = 0
+        self._bytes = 0
+        self._complete = False
+
+    def start(self):
+        """Open the file and subscribe; returns at once, :meth:`status` says what came of it."""
+        with self._life:
+            if self._state != OFF:
+                return
+            self._state = RECORDING
+        threading.Thread(target=self._begin, name='recording', daemon=True).start()
+
+    def stop(self, wait=False, timeout_s=10.0):
+        """Write what has come by now and close the file; returns at once unless told to wait.
+
+        :param wait: return when the file is closed, or after ``timeout_s`` [s]
+        :returns: whether the recording has ended
+        """
+        with self._life:
+            self._stop_asked = True
+            reader = self._reader
+            if self._state == OFF:
+                self._state = ENDED
+                self._ended.set()
+        if reader is not None:
+            reader.stop()
+        return self._ended.wait(timeout_s) if wait else self._ended.is_set()
+
+    def put(self, topic, message):
+        """Record a message of this program itself, e.g. a command that it sends to the robot.
+
+        :param message: a ROS message
+        """
+        if self._state != RECORDING or self._reader is None:
+            return
+        buffer = io.BytesIO()
+        message.serialize(buffer)
+        data = buffer.getvalue()
+        kind = type(message)
+        fields = {'topic': topic, 'type': kind._type, 'md5sum': kind._md5sum,
+                  'message_definition': kind._full_text, 'callerid': rospy.get_name()}
+        with self._lock:
+            if not self._complete:
+                self._add(self._connection(fields), struct.pack('<I', len(data)) + data)
+        self._reader.wake()
+
+    def status(self):
+        """Return the :class:`mhri.core.recording.recording.RecordingStatus` of now; cheap."""
+        writer, state, now = self._writer, self._state, time.monotonic()
+        note, attention = self._note, bool(self._note)
+        if state == RECORDING and writer is not None and writer.warning:
+            note, attention = '; '.join(filter(None, (writer.warning, note))), True
+        if state == ENDED:
+            attention = False
+        begun = self._begun_s
+        return RecordingStatus(
+            state=state, path=writer.file.path if writer else '',
+            duration_s=0.0 if begun is None else (self._ended_s or now) - begun,
+            messages=self._messages, bytes=self._bytes,
+            rate_hz=self._meter.rate_hz(now, self._messages) if state == RECORDING else 0.0,
+            note=note, attention=attention)
+
+    def _begin(self):
+        """Open everything (on a thread of its own: a disk or a name server may be slow)."""
+        try:
+            self._open()
+        except PathRefused as error:
+            self._end(FAILED, str(error))
+        except Exception as error:  # the guard of this thread: said to the operator, and logged
+            _LOG.exception('a recording of %s could not begin', self.robot)
+            self._end(FAILED, 'cannot record: {}'.format(words_of(error)))
+
+    def _open(self):
+        file, self._note = open_bag(self._asked, self.robot, datetime.now())
+        self._writer = BagWriter(file, self._limits, on_trouble=self.stop)
+        self._begun_s = time.monotonic()
+        name = '/mhri_recorder_{}_{}_{}'.format(self.robot, os.getpid(), next(self._numbers))
+        try:
+            reader = RawReader(name, self._on_frame, self._on_turn, self._on_read)
+            self._node = TapNode(name, self.topics, reader.want)
+            self._node.start()
+        except OSError as error:
+            self._end(FAILED, 'nothing can be received: {}'.format(words_of(error)))
+            self._writer.finish()
+            self._writer.start()
+            return
+        with self._life:
+            self._reader = reader
+            stop_asked = self._stop_asked
+        self._writer.start()
+        reader.start()
+        if stop_asked:
+            reader.stop()
+
+    def _on_frame(self, link, frame):
+        with self._lock:
+            connection = link.connection
+            if connection is None:
+                connection = link.connection = self._connection(link.fields)
+            self._add(connection, frame)
+
+    def _add(self, connection, frame):
+        """Take one message into the chunk (under the lock)."""
+        chunk = self._chunk
+        chunk.add(connection, self._clock_ns(), frame)
+        self._messages += 1
+        self._bytes += len(frame)
+        if self._chunk_due_s is None:
+            self._chunk_due_s = time.monotonic() + self._limits.chunk_s
+        if chunk.size >= self._limits.chunk_bytes:
+            self._flush()
+
+    def _connection(self, fields):
+        """Return the connection of a publisher; one that comes back keeps its number."""
+        key = tuple(sorted(fields.items()))
+        connection = self._connections.get(key)
+        if connection is None:
+            connection = Connection(len(self._connections), fields)
+            self._connections[key] = connection
+            self._chunk.introduce(connection)
+            self._new.append(connection)
+        return connection
+
+    def _flush(self):
+        """Hand the chunk to the writer (under the lock)."""
+        if self._chunk.messages:
+            self._writer.put(self._chunk, self._new)
+            self._chunk = Chunk()
+            self._new = []
+        self._chunk_due_s = None
+
+    def _on_turn(self):
+        """Return after how many seconds the chunk has to go to the disk."""
+        due_s = self._chunk_due_s
+        if due_s is None:
+            return None
+        left_s = due_s - time.monotonic()
+        if left_s > 0.0:
+            return left_s
+        with self._lock:
+            self._flush()
+        return None
+
+    def _on_read(self):
+        """Everything is read: close the file and leave the graph (on the reading thread)."""
+        self._node.stop()
+        with self._lock:
+            self._complete = True
+            self._flush()
+        writer = self._writer
+        writer.finish()
+        writer.closed.wait()
+        file = writer.file
+        text = '{} messages, {}: {}'.format(file.messages, size_text(file.size), file.path)
+        if writer.failure:
+            self._end(FAILED, 'recording stopped, {}; saved {}'.format(writer.failure, text))
+        else:
+            self._end(ENDED, 'saved ' + text)
+
+    def _end(self, state, note):
+        self._ended_s = time.monotonic()
+        self._note = '; '.join(filter(None, (self._note, note)))
+        self._state = state
+        self._ended.set()
+        (_LOG.warning if state == FAILED else _LOG.info)('%s: %s', self.robot, note)

@@ -1,0 +1,86 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The recordings of all robots of one program: at most one running for each at a time."""
+import threading
+
+from mhri.core.recording.recording import RECORDING, RecordingLimits, RecordingStatus, topics_of
+from mhri.ros.recording.recorder import Recorder
+
+NOTHING = RecordingStatus()
+
+
+class Recordings:
+    """Starts, stops and closes; every method but :meth:`close` returns at once.
+
+    ``limits`` (:class:`RecordingLimits`) hold for what is started from now on.
+    """
+
+    def __init__(self):
+        self.limits = RecordingLimits()
+        self._lock = threading.Lock()
+        self._recorders = {}
+        self._with_commands = {}
+        # Told to stop while their files are still being closed, and followed by another already.
+        self._closing = []
+        self._stopped = set()
+
+    def start(self, robot, robot_type, path='', choices=()):
+        """Begin to record a robot; one that is being recorded goes on as it is.
+
+        While the last recording of it is still being closed, the new one begins beside it.
+
+        :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
+        :param path: as the operator typed it, '' for the default
+        :param choices: keys of :data:`mhri.core.recording.recording.CHOICES` besides the IMU
+        """
+        with self._lock:
+            old = self._recorders.get(robot)
+            if old is not None and old.status().state == RECORDING:
+                if robot not in self._stopped:
+                    return
+                self._closing = [recorder for recorder in self._closing
+                                 if recorder.status().state == RECORDING] + [old]
+            recorder = Recorder(robot, topics_of(robot, robot_type, choices), path, self.limits)
+            self._stopped.discard(robot)
+            self._recorders[robot] = recorder
+            self._with_commands.pop(robot, None)
+            if 'commands' in choices:
+                self._with_commands[robot] = recorder
+        recorder.start()
+
+    def stop(self, robot):
+        """End the recording of a robot; its file is closed in the background."""
+        with self._lock:
+            recorder = self._recorders.get(robot)
+            self._stopped.add(robot)
+        if recorder is not None:
+            recorder.stop()
+
+    def put_command(self, robot, topic, message):
+        """Write a command that this program has sent to a robot, where commands are recorded.
+
+        :param message: a ROS message
+        """
+        recorder = self._with_commands.get(robot)
+        if recorder is not None:
+            recorder.put(topic, message)
+
+    def running(self):
+        """Return the names of the robots that are being recorded."""
+        with self._lock:
+            items = list(self._recorders.items())
+        return tuple(robot for robot, recorder in items if recorder.status().state == RECORDING)
+
+    def status(self, robot):
+        """Return the :class:`RecordingStatus` of a robot's present or last recording."""
+        recorder = self._recorders.get(robot)
+        return recorder.status() if recorder else NOTHING
+
+    def close(self):
+        """End them all and wait until their files are closed whole."""
+        with self._lock:
+            recorders = self._closing + list(self._recorders.values())
+        for recorder in recorders:
+            recorder.stop()
+        for recorder in recorders:
+            recorder.stop(wait=True)

@@ -1,0 +1,36 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the panel tells ``/diagnostics``: the links of its robots."""
+from diagnostic_msgs.msg import DiagnosticStatus
+
+from mhri.core.screen.views import LIVE
+from mhri.ros.diagnostics import publish_diagnostics
+
+
+class PanelDiagnostics:
+    """Publishes ``diagnostic_msgs/DiagnosticArray`` on ``/diagnostics`` at 1 Hz.
+
+    :param operator: :class:`mhri.ros.screen.backend.ScreenBackend`
+    """
+
+    def __init__(self, operator):
+        self._operator = operator
+
+    def start(self):
+        """Begin publishing, on a thread of its own."""
+        publish_diagnostics({'robots': self._robots})
+
+    def _robots(self, status):
+        """Fill the status of the robots in the list."""
+        views = [self._operator.robot_view(name) for name in self._operator.selection.robots]
+        lost = [view.name for view in views if view.selected and view.link != LIVE]
+        if lost:
+            status.summary(DiagnosticStatus.WARN, 'selected but not live: ' + ', '.join(lost))
+        else:
+            status.summary(DiagnosticStatus.OK, '{} robots, {} selected'.format(
+                len(views), sum(view.selected for view in views)))
+        for view in views:
+            status.add(view.name, '{}, {}{}'.format(
+                view.type_label or 'type unknown', view.link,
+                ', ' + view.note if view.note else ''))
+        return status

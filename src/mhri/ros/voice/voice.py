@@ -1,0 +1,132 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The ROS side of the voice: what was heard goes out, and what it needs to know comes in.
+
+Interfaces beside those of :class:`mhri.ros.devices.input_node.InputNode`:
+
+- publishes ``~heard`` (``mhri/Heard``, each utterance), ``/panel_in/request``
+  (``mhri/PanelRequest``), ``/mux_in/mode_select`` (``mhri/ControlMode``)
+- calls ``/mux/set_stop_all`` (``std_srvs/SetBool``, true) when a stop is heard
+- subscribes ``~push_to_talk`` (``std_msgs/Bool``; true counts for ``push_to_talk_s`` of the
+  language, 10 s, unless it is sent again), ``/mux/mode`` (``mhri/ControlMode``),
+  ``/robot_controller/robot_select`` (``mhri/RobotSelect``)
+- reads ``/mhri/robots`` (list of names in the panel's order) once a second while it listens; where
+  the panel has not written it, the selected robots are those that can be called
+"""
+import threading
+import time
+
+import rospy
+from std_msgs.msg import Bool
+from std_srvs.srv import SetBool
+
+from mhri.core.voice.grammar import MODE, PANEL, STOP
+from mhri.msg import ControlMode, Heard, PanelRequest, RobotSelect
+from mhri.ros.graph.live_parameter import LiveParameter
+from mhri.ros.worker import Worker
+
+ROBOTS_PARAMETER = '/mhri/robots'
+STOP_SERVICE = '/mux/set_stop_all'
+VOICE_SOURCE = 'voice'
+# A stop that the mux does not take is repeated for so long; it is said aloud then.
+_INSIST_S = 3.0
+_RETRY_S = 0.2
+
+
+def robot_names(value):
+    """Return the names in a parameter that anybody may have set to anything."""
+    if not isinstance(value, (list, tuple)):
+        return ()
+    return tuple(name for name in value if isinstance(name, str))
+
+
+class VoiceLink:
+    """Hands what was heard to the graph, and what the graph says to the reader.
+
+    The methods ``on_heard`` and ``on_act`` are those that
+    :class:`mhri.inputs.voice.VoiceReader` calls; they return at once.
+    """
+
+    def __init__(self, clock=time.monotonic):
+        self._clock = clock
+        self._reader = None
+        self._lock = threading.Lock()
+        self._listed = self._selected = ()
+        self._heard = rospy.Publisher('~heard', Heard, queue_size=10)
+        self._request = rospy.Publisher('/panel_in/request', PanelRequest, queue_size=10)
+        self._mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
+        self._stop = None
+        self._stopper = Worker('stop_all').start()
+
+    def start(self, reader, wanted):
+        """Let the graph be heard.
+
+        :param reader: :class:`mhri.inputs.voice.VoiceReader`
+        :param wanted: ``threading.Event``, set while the node listens
+        """
+        self._reader = reader
+        rospy.Subscriber('~push_to_talk', Bool, self._on_push, queue_size=10, tcp_nodelay=True)
+        rospy.Subscriber('/mux/mode', ControlMode, self._on_mode, queue_size=10)
+        rospy.Subscriber('/robot_controller/robot_select', RobotSelect, self._on_selection,
+                         queue_size=1)
+        LiveParameter(ROBOTS_PARAMETER, [], self._on_robots, wanted).start()
+
+    def _on_push(self, message):
+        self._reader.push_to_talk(message.data)
+
+    def _on_mode(self, message):
+        self._reader.set_drives(message.source == VOICE_SOURCE)
+
+    def _on_robots(self, value):
+        with self._lock:
+            self._listed = robot_names(value)
+            self._reader.set_robots(self._listed or self._selected)
+
+    def _on_selection(self, message):
+        with self._lock:
+            # A robot that was seen once keeps its number.
+            self._selected = tuple(dict.fromkeys(self._selected + tuple(message.robots)))
+            self._reader.set_robots(self._listed or self._selected)
+
+    def on_heard(self, heard):
+        """Publish what was heard."""
+        message = Heard(text=heard.text, command=heard.command, accepted=heard.accepted,
+                        reason=heard.reason, confidence=heard.confidence)
+        message.stamp = rospy.Time.now()
+        self._heard.publish(message)
+
+    def on_act(self, command):
+        """Carry out a command that is not a motion."""
+        if command.kind == STOP:
+            self._stopper.do(self._stop_all)
+        elif command.kind == MODE:
+            self._mode.publish(source=command.action)
+        elif command.kind == PANEL:
+            self._request.publish(action=command.action, robots=command.robots)
+
+    def _stop_all(self):
+        """Engage stop-all, on the worker; insists for a while."""
+        deadline = self._clock() + _INSIST_S
+        wait_s = 0.0
+        while not rospy.is_shutdown():
+            time.sleep(wait_s)
+            try:
+                self._call_stop()
+                return
+            except (rospy.ServiceException, rospy.ROSException, OSError) as error:
+                if self._clock() > deadline:
+                    rospy.logerr('a stop was heard, but %s does not answer: %s', STOP_SERVICE,
+                                 error)
+                    return
+                wait_s = _RETRY_S
+
+    def _call_stop(self):
+        """Call the mux over a connection that is kept open, so that it works without a master."""
+        if self._stop is None:
+            self._stop = rospy.ServiceProxy(STOP_SERVICE, SetBool, persistent=True)
+        try:
+            self._stop(True)
+        except (rospy.ServiceException, rospy.ROSException, OSError):
+            self._stop.close()
+            self._stop = None
+            raise
