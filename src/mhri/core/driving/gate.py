@@ -165,7 +165,7 @@ class GateRule:
     def join(self, now):
         """Wait for neutral where anything is driven.
 
-        For a robot that is newly connected, has lost its guard, or whose mux or operator is another.
+        For a robot that is newly connected, has lost its guard, or has another mux or operator.
         """
         self._task_rests = False
         self._centre = self._centre or self._driven()

@@ -5,7 +5,7 @@
 States and what leads out of them::
 
     EMPTY    nobody is in control            a selection -> LEASED by its publisher
-    LEASED   the selection is repeated       not repeated for LEASE_S -> LAPSED, publisher gone -> EMPTY
+    LEASED   the selection is repeated       silent for LEASE_S -> LAPSED, publisher gone -> EMPTY
     LAPSED   its publisher is there, silent  repeated -> LEASED, publisher gone -> EMPTY
 
 Taking control is possible in every state. Nobody's robots but those of a leased seat may move.

@@ -17,7 +17,7 @@ from std_srvs.srv import SetBool
 
 from mhri.msg import ControlMode, RobotSelect
 from mhri.ros.convert import to_twist
-from mhri.ros.graph.prompt import PromptPublisher
+from mhri.ros.graph.rospy_inside import PromptPublisher
 from mhri.ros.worker import Worker
 
 STOP_SERVICE = '/mux/set_stop_all'
