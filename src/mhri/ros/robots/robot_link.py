@@ -15,6 +15,7 @@ from mhri.core.robots.link_quality import LinkQuality, link_warning
 from mhri.core.robots.names import topic_of
 from mhri.core.robots.stop_proof import StopProof
 from mhri.core.screen.views import LIVE, RobotView
+from mhri.core.sensors.plausible import BATTERY, can_be
 from mhri.ros.convert import header_of, motion_from_odometry, motion_from_turtle_pose
 from mhri.ros.robots.link_probe import LinkProbe
 
@@ -33,7 +34,7 @@ def battery_fraction(message):
     divide by a nominal voltage may say a little over 1 (turtlebot3_core does).
     """
     value = message.percentage
-    if not math.isfinite(value) or value < 0.0:
+    if not can_be(BATTERY, value):
         return None
     return min(1.0, value / 100.0 if value > 1.5 else value)
 
