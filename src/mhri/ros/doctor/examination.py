@@ -112,7 +112,17 @@ def _ask_master(api, master):
     begun = time.monotonic()
     graph = _graph(api)
     took_s = time.monotonic() - begun
-    return replace(master, took_s=took_s), graph, _uris(api, graph)
+    graph, uris = _with_uris(api, graph)
+    return replace(master, took_s=took_s), graph, uris
+
+
+def _with_uris(api, graph):
+    """Return (graph, {node: URI}) of one moment; one request.
+
+    A node that went between two requests is in the graph and has no URI: it is left out of both.
+    """
+    uris = _uris(api, graph)
+    return graph.of(uris), uris
 
 
 def _graph(api):
@@ -180,8 +190,7 @@ def _look_again(facts, robots, api, wanted):
         odd = odd_ones(facts, robots)
         if odd:
             time.sleep(0.25)  # time to connect, for what has only just begun
-        graph = _graph(api)
-        uris = _uris(api, graph)
+        graph, uris = _with_uris(api, _graph(api))
     except MasterError:
         return facts
     probe = Probe(facts.caller_id, _deadline(wanted, LEAST_AGAIN_S))
