@@ -20,7 +20,7 @@ from mhri.core.doctor.facts import (
     Facts, Graph, REFUSED, SILENT, STRANGER, UNRESOLVED)
 from mhri.core.doctor.host import find_on_host
 from mhri.core.doctor.robots import robots_of
-from mhri.core.doctor.system import muxes
+from mhri.core.doctor.system import GATES_STATE, muxes
 from mhri.ros.doctor.host import look_at_computer
 from mhri.ros.doctor.masters import look_elsewhere, parse_uri
 from mhri.ros.doctor.probe import Probe
@@ -158,11 +158,11 @@ def _why_not(master, error):
 
 
 def _ask_nodes(facts, robots, uris, deadline):
-    """Ask every node at once; listen to odometry and IMU of every robot."""
+    """Ask every node at once; listen to the gates, and to odometry and IMU of every robot."""
     probe = Probe(facts.caller_id, deadline)
     listened = {topic for robot in robots
                 if not facts.wanted or robot.candidate.name in facts.wanted
-                for topic in robot.topics('odometry', 'imu')}
+                for topic in robot.topics('odometry', 'imu')} | {GATES_STATE}
     for name, uri in sorted(uris.items()):
         published = facts.graph.topics_of(name)[0]
         # What is listened to comes last: it takes its time.
