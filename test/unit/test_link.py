@@ -24,6 +24,15 @@ def test_link_state(age_s, connections, state):
     assert link_state(age_s, connections) == state
 
 
+@pytest.mark.parametrize('age_s, connections, silent_after_s, state', [
+    (2.4, 1, 2.5, LIVE), (2.6, 1, 2.5, SILENT), (2.6, 0, 2.5, GONE), (0.6, 1, 0.5, SILENT),
+    (None, 1, 2.5, WAITING), (None, 1, 0.0, LIVE), (3600.0, 1, 0.0, LIVE), (3600.0, 0, 0.0, GONE),
+    (None, 0, 0.0, WAITING)])
+def test_each_type_has_its_own_silence(age_s, connections, silent_after_s, state):
+    """Odometry at 1 Hz, or in motion only; even then a closed connection tells."""
+    assert link_state(age_s, connections, silent_after_s) == state
+
+
 @pytest.mark.parametrize('state, age_s, waited_s, words', [
     (LIVE, 0.1, 9.0, ''), (SILENT, 3.21, 9.0, 'nothing for 3.2 s'),
     (GONE, 9.0, 9.0, 'switched off or out of reach; last heard 14:02:11'),

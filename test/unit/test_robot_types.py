@@ -80,10 +80,21 @@ def test_parameters_override_any_of_it():
     assert kind.limits == Limits(0.1, 3.14) and kind.odometry == ('odom',)
 
 
+@pytest.mark.parametrize('said, silent_after_s', [(None, 1.0), (2.5, 2.5), (0, 0.0), (60, 60.0)])
+def test_type_and_parameter_say_when_a_robot_is_silent(said, silent_after_s):
+    """Odometry at 1 Hz, or in motion only."""
+    text = GOOD if said is None else GOOD + 'silent_after_s: {}\n'.format(said)
+    assert parse_robot_type(text, 'crawler.yaml').silent_after_s == silent_after_s
+    params = {} if said is None else {'mhri': {'silent_after_s': said}}
+    kind, errors = resolve_robot_type(shipped(), 'bot1', params)
+    assert (kind.silent_after_s, errors) == (silent_after_s, [])
+
+
 OVERRIDES = {
     'mhri': 'fast', 'mhri.limits.linear_mps': {'limits': {'linear_mps': -1}},
     'mhri.limits.linear': {'limits': {'linear': 1}}, 'mhri.colour': {'colour': 'red'},
-    'mhri.command': {'command': 3}, 'mhri.limits': {'limits': 3}}
+    'mhri.command': {'command': 3}, 'mhri.limits': {'limits': 3},
+    'mhri.silent_after_s': {'silent_after_s': 0.1}}
 UNCHECKED = {
     'mhri.odometry_type': {'mhri': {'odometry_type': 'foo/Bar'}},
     'mhri.command': {'mhri': {'command': []}},
@@ -125,6 +136,7 @@ BAD = {
     'models.big.linear_mps': GOOD + 'models: {big: {angular_rad_s: 1}}\n',
     'name': GOOD.replace('crawler', '3'),
     'known_by': GOOD + 'known_by: {feet: 3}\n',
+    'silent_after_s': GOOD + 'silent_after_s: -1\n',
 }
 
 

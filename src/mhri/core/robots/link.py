@@ -4,9 +4,9 @@
 import math
 from dataclasses import dataclass
 
+from mhri.core.robots.robot_types import SILENT_AFTER_S
 from mhri.core.screen.views import GONE, LIVE, SILENT, WAITING
 
-SILENT_AFTER_S = 1.0
 STANDSTILL_MPS = 0.01
 STANDSTILL_RAD_S = 0.03
 
@@ -32,16 +32,20 @@ class Motion:
                 and abs(self.angular_rad_s) <= STANDSTILL_RAD_S)
 
 
-def link_state(age_s, connections):
+def link_state(age_s, connections, silent_after_s=SILENT_AFTER_S):
     """Say how a robot's link is.
 
     :param age_s: age of its newest message [s], None where there never was one
     :param connections: number of open connections to its streams
+    :param silent_after_s: its messages may be this far apart [s]; 0: its silence means nothing,
+        as long as a connection is open
     :returns: WAITING, LIVE, SILENT or GONE
     """
-    if age_s is not None and age_s <= SILENT_AFTER_S:
+    if age_s is not None and age_s <= (silent_after_s or SILENT_AFTER_S):
         return LIVE
     if connections:
+        if not silent_after_s:
+            return LIVE
         return SILENT if age_s is not None else WAITING
     return GONE if age_s is not None else WAITING
 

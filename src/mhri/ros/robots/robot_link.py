@@ -198,7 +198,7 @@ class RobotLink:
             self._take()
             age = None if self._heard_at is None else now - self._heard_at
             motion, limits = self._motion, self.robot_type.limits
-            state = link_state(age, connections)
+            state = link_state(age, connections, self.robot_type.silent_after_s)
             if age is not None and (age < 1.0 or not self._heard_wall):
                 self._heard_wall = time.strftime('%H:%M:%S')
             proof = self._proof.view(now) if self._proof else None
