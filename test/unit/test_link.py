@@ -16,6 +16,16 @@ def test_standstill(linear, angular, still):
     assert Motion(linear, angular).is_standstill() == still
 
 
+@pytest.mark.parametrize('motion, still', [
+    (Motion(0.0, 0.0, 5.0, -3.0, 9.0), True), (Motion(0.0, 0.0, lateral_mps=0.5), False),
+    (Motion(0.009, 0.0, lateral_mps=-0.009), False), (Motion(0.0, 0.0, lateral_mps=0.009), True),
+    (Motion(0.0, 0.0, lateral_mps=float('nan')), False), (Motion(0.0, 0.0, x_m=1e30), False),
+    (Motion(0.0, 0.0, heading_rad=float('nan')), False)])
+def test_standstill_is_of_the_whole_plane(motion, still):
+    """Sideways counts, and a reading with anything impossible in it says nothing."""
+    assert motion.is_standstill() == still
+
+
 @pytest.mark.parametrize('age_s, connections, state', [
     (None, 0, WAITING), (None, 1, WAITING), (0.0, 1, LIVE), (1.0, 1, LIVE), (1.001, 1, SILENT),
     (1.001, 0, GONE), (0.5, 0, LIVE), (3600.0, 2, SILENT)])

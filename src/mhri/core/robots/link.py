@@ -9,17 +9,37 @@ from mhri.core.screen.views import GONE, LIVE, SILENT, WAITING
 
 STANDSTILL_MPS = 0.01
 STANDSTILL_RAD_S = 0.03
+# Beyond these no robot drives, turns or is: m/s or rad/s, and m from where it was switched on.
+POSSIBLE_SPEED = 100.0
+POSSIBLE_M = 1e6
 
 
 @dataclass(frozen=True)
 class Motion:
-    """A robot's own word on how it moves (odometry): m/s, rad/s, m, m, rad in its odom frame."""
+    """A robot's own word on how it moves (odometry): m/s, rad/s, m, m, rad in its odom frame.
+
+    ``lateral_mps`` is how fast it moves to its left [m/s]: a robot that slides, or can drive so.
+    """
 
     linear_mps: float
     angular_rad_s: float
     x_m: float = 0.0
     y_m: float = 0.0
     heading_rad: float = 0.0
+    lateral_mps: float = 0.0
+
+    @property
+    def speed_mps(self):
+        """How fast it moves, whichever way [m/s, >= 0]."""
+        return math.hypot(self.linear_mps, self.lateral_mps)
+
+    def is_possible(self):
+        """Tell whether all of it are numbers that can be true of a robot."""
+        speeds = (self.linear_mps, self.lateral_mps, self.angular_rad_s)
+        # A comparison with NaN is false.
+        return (all(abs(speed) <= POSSIBLE_SPEED for speed in speeds)
+                and all(abs(place) <= POSSIBLE_M for place in (self.x_m, self.y_m))
+                and math.isfinite(self.heading_rad))
 
     def is_standstill(self):
         """Tell whether the speeds are those of a robot at rest.
@@ -27,8 +47,7 @@ class Motion:
         The thresholds are above the noise of wheel odometry at rest (which is none, encoders do
         not tick) and far below the slowest speed an operator can see.
         """
-        return (math.isfinite(self.linear_mps) and math.isfinite(self.angular_rad_s)
-                and abs(self.linear_mps) <= STANDSTILL_MPS
+        return (self.is_possible() and self.speed_mps <= STANDSTILL_MPS
                 and abs(self.angular_rad_s) <= STANDSTILL_RAD_S)
 
 

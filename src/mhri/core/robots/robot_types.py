@@ -5,10 +5,13 @@ from dataclasses import dataclass, field, replace
 from typing import Dict, Optional, Tuple
 
 from mhri.core.config import ConfigError, Section, parse_yaml
+from mhri.core.robots.robot_hardware import (
+    HardwareStopSpec, MotorPowerSpec, read_hardware_stop, read_motor_power)
 
 ODOMETRY_TYPES = ('nav_msgs/Odometry', 'turtlesim/Pose')
 # A robot whose type says nothing else is silent when its odometry has not come for so long [s].
 SILENT_AFTER_S = 1.0
+_HARDWARE = {'motor_power': read_motor_power, 'hardware_stop': read_hardware_stop}
 _TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'scan', 'battery')
 
 
@@ -70,7 +73,8 @@ class RobotType:
     in a lab's own package, a class as ``package.module.Class``. ``known_by`` is {topic: ROS type}
     of what only robots of this type publish: by it one is recognised that has no ``robot_type``.
     ``silent_after_s``: a robot is silent when its odometry has not come for so long [s]; 0 means
-    that its silence says nothing (it tells its odometry in motion only).
+    that its silence says nothing (it tells its odometry in motion only). ``motor_power`` and
+    ``hardware_stop`` are None where there is no such thing.
     """
 
     name: str
@@ -89,12 +93,16 @@ class RobotType:
     battery: Tuple[str, ...] = ()
     known_by: Dict[str, str] = field(default_factory=dict)
     silent_after_s: float = SILENT_AFTER_S
+    motor_power: Optional[MotorPowerSpec] = None
+    hardware_stop: Optional[HardwareStopSpec] = None
 
     def at_root(self):
         """Return this type with absolute topics: for a robot without a namespace."""
-        return replace(self, **{
-            key: tuple('/' + topic.lstrip('/') for topic in getattr(self, key))
-            for key in _TOPIC_KEYS})
+        changes = {key: tuple('/' + topic.lstrip('/') for topic in getattr(self, key))
+                   for key in _TOPIC_KEYS}
+        changes.update((key, getattr(self, key).at_root()) for key in _HARDWARE
+                       if getattr(self, key))
+        return replace(self, **changes)
 
     def with_model(self, model):
         """Return this type with the limits of one of its models, e.g. ``waffle``.
@@ -135,6 +143,7 @@ def parse_robot_type(text, origin):
         models={key: _limits(item) for key, item in section.named_sections('models').items()},
         odometry_type=odometry_type, known_by=_known_by(section),
         silent_after_s=_silent_after_s(section),
+        **{key: read(section) for key, read in _HARDWARE.items()},
         **{key: _topics(section, key) for key in _TOPIC_KEYS})
     section.close()
     return robot_type
@@ -248,6 +257,7 @@ def _overridden(robot_type, overrides, origin):
     changes = {key: _topics(section, key) for key in _TOPIC_KEYS if key in section}
     if 'odometry_type' in section:
         changes['odometry_type'] = _odometry_type(section)
+    changes.update((key, read(section)) for key, read in _HARDWARE.items() if key in section)
     if 'silent_after_s' in section:
         changes['silent_after_s'] = _silent_after_s(section)
     for key in ('label', 'window'):

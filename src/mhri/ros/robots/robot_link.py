@@ -13,6 +13,7 @@ from sensor_msgs.msg import BatteryState
 from mhri.core.robots.link import link_note, link_state
 from mhri.core.robots.link_quality import LinkQuality, link_warning
 from mhri.core.robots.names import topic_of
+from mhri.core.robots.stamp_age import StampAge
 from mhri.core.robots.stop_proof import StopProof
 from mhri.core.screen.views import LIVE, RobotView
 from mhri.core.sensors.plausible import BATTERY, can_be
@@ -111,6 +112,7 @@ class RobotLink:
         self._pending = None
         self._motion = None
         self._quality = LinkQuality()
+        self._ages = {}
         self._proof = None
         self._battery = None
         self._guard_feed = None
@@ -144,14 +146,16 @@ class RobotLink:
     def _on_message(self, feed, message, now):
         came_at, header = time.time(), feed.header(message)
         with self._lock:
+            late_s = 0.0
             if header is not None:
                 number, stamp_s = header
+                late_s = self._ages.setdefault(feed, StampAge()).late_s(stamp_s or None, now)
                 self._quality.on_message(number, came_at - stamp_s if stamp_s else None, now)
             self._heard_at = now
             self._pending = (feed, message)
             if self._proof is not None:
                 self._take()
-                self._proof.on_motion(self._motion, now)
+                self._proof.on_motion(self._motion, now, late_s)
 
     def listen_to_guard(self):
         """Hear what the robot's guard drops, once it has one (blocking: it asks the master)."""
@@ -175,7 +179,9 @@ class RobotLink:
     def on_stop(self, stopped, now):
         """Begin (or end) the proof of a stop."""
         with self._lock:
-            self._proof = StopProof(now) if stopped else None
+            self._proof = StopProof(
+                now, self._quality.read(now).round_trip_s,
+                self.robot_type.silent_after_s) if stopped else None
 
     def heard_since(self, when):
         """Tell whether the robot has been heard since a time; a robot that never is, always.
