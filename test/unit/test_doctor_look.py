@@ -1,7 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """How the doctor looks: what nodes say of their connections, and names that change meanwhile."""
+import threading
 import time
+from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
@@ -53,3 +55,50 @@ def test_name_is_watched_until_the_end(monkeypatch):
 
 def test_master_that_ends_meanwhile(monkeypatch):
     assert watch(monkeypatch, 'http://a:1/', None) == ('http://a:1/', 2)
+
+
+class Master:
+    """The answers of a master that a node leaves between two questions to it."""
+
+    def __init__(self, gone):
+        self._gone = gone
+        self.server = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False)
+        self.server.register_multicall_functions()
+        self.server.register_instance(self)
+        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+        self.uri = 'http://127.0.0.1:{}'.format(self.server.server_address[1])
+
+    def getSystemState(self, _):
+        return 1, '', [[['/bot1/odom', ['/bot1/base']], ['/bot1/cmd_vel', ['/panel']]],
+                       [['/bot1/cmd_vel', ['/bot1/base', '/viewer']],
+                        ['/bot1/odom', ['/panel']]], []]
+
+    def getTopicTypes(self, _):
+        return 1, '', [['/bot1/cmd_vel', 'geometry_msgs/Twist'],
+                       ['/bot1/odom', 'nav_msgs/Odometry']]
+
+    def getParam(self, _, __):
+        return 1, '', {'bot1': {'robot_type': 'generic'}}
+
+    def getPid(self, _):
+        return 1, '', 1
+
+    def lookupNode(self, _, name):
+        if name in self._gone:
+            return -1, 'unknown node', ''
+        return 1, '', 'http://127.0.0.1:9/'
+
+
+@pytest.mark.parametrize('gone', [
+    ('/viewer',), ('/bot1/base',), ('/panel',), ('/viewer', '/bot1/base', '/panel')])
+def test_a_node_that_goes_between_two_questions_to_the_master(gone):
+    """It is not there any more, and whatever else is wrong is told."""
+    master = Master(gone)
+    try:
+        found = doctor.examine(environ={'ROS_MASTER_URI': master.uri, 'ROS_IP': '127.0.0.1'})
+    finally:
+        master.server.shutdown()
+        master.server.server_close()
+    dead = [item.problem for item in found if item.check == 'node_dead']
+    for name in ('/viewer', '/bot1/base', '/panel'):
+        assert any(name in words for words in dead) == (name not in gone), found

@@ -68,8 +68,9 @@ class RobotView:
     ``guarded`` while its commands go through a guard on the robot, ``obeys`` is whom it obeys ('',
     'operator', 'task'), ``stands`` why it is kept standing ('', 'stopped', 'not_heard', 'joining'),
     ``waits`` is true while it is left out until the stick has been centred, ``stop_latched`` once
-    its guard has confirmed the stop. ``power`` says in words what is known of the power of its
-    motors, ``hardware_stop`` whether its own emergency stop is pressed, None where it has none.
+    its guard has confirmed the stop. ``hardware_stop`` is true while the robot's own emergency stop
+    holds it, None where nothing tells. ``power`` says in words what was done to the power of its
+    motors (:mod:`mhri.core.driving.motor_power`), '' where nothing was.
     """
 
     name: str

@@ -86,6 +86,10 @@ class GatesClient:
             self._told = (together, slow_with_link)
             self._group.publish(together=together, slow_with_link=slow_with_link)
 
+    def leave_group(self):
+        """Say how the robots keep to each other anew when this screen drives again."""
+        self._told = None
+
     def take_control(self, on_answer):
         """Make this node the operator in control.
 
@@ -109,7 +113,8 @@ class GatesClient:
             rospy.logwarn('%s: %s', name, error)
             on_answer('{}: the drive service does not answer'.format(failure))
             return
-        on_answer(answer.message if answer.success else '{}: {}'.format(failure, answer.message))
+        rospy.loginfo('%s: %s', name, answer.message)
+        on_answer('' if answer.success else '{}: {}'.format(failure, answer.message))
 
     def close(self):
         """Stop the worker; returns at once."""

@@ -14,8 +14,10 @@ from sensor_msgs.msg import BatteryState
 from mhri.core.robots.link import link_note, link_state
 from mhri.core.robots.link_quality import LinkQuality, link_warning
 from mhri.core.robots.names import topic_of
+from mhri.core.robots.stamp_age import StampAge
 from mhri.core.robots.stop_proof import StopProof
 from mhri.core.screen.views import LIVE, RobotView, UNANSWERED
+from mhri.core.sensors.plausible import BATTERY, can_be
 from mhri.msg import RobotGate
 from mhri.ros.convert import header_of, motion_from_odometry, motion_from_turtle_pose
 from mhri.ros.driving.gates_client import is_driven, round_trip_s, STANDS_WORDS
@@ -35,7 +37,7 @@ def battery_fraction(message):
     divide by a nominal voltage may say a little over 1 (turtlebot3_core does).
     """
     value = message.percentage
-    if not math.isfinite(value) or value < 0.0:
+    if not can_be(BATTERY, value):
         return None
     return min(1.0, value / 100.0 if value > 1.5 else value)
 
@@ -112,6 +114,7 @@ class RobotLink:
         self._pending = None
         self._motion = None
         self._quality = LinkQuality()
+        self._ages = {}
         self._proof = None
         self._battery = None
         self._guard_feed = None
@@ -141,14 +144,16 @@ class RobotLink:
     def _on_message(self, feed, message, now):
         came_at, header = time.time(), feed.header(message)
         with self._lock:
+            late_s = 0.0
             if header is not None:
                 number, stamp_s = header
+                late_s = self._ages.setdefault(feed, StampAge()).late_s(stamp_s or None, now)
                 self._quality.on_message(number, came_at - stamp_s if stamp_s else None, now)
             self._heard_at = now
             self._pending = (feed, message)
             if self._proof is not None:
                 self._take()
-                self._proof.on_motion(self._motion, now)
+                self._proof.on_motion(self._motion, now, late_s)
 
     def listen_to_guard(self):
         """Hear what the robot's guard drops, once it has one (blocking: it asks the master)."""
@@ -173,7 +178,9 @@ class RobotLink:
     def on_stop(self, stopped, now):
         """Begin (or end) the proof of a stop."""
         with self._lock:
-            self._proof = StopProof(now) if stopped else None
+            self._proof = StopProof(
+                now, self._quality.read(now).round_trip_s,
+                self.robot_type.silent_after_s) if stopped else None
 
     @property
     def stopped_ms(self):
@@ -189,7 +196,7 @@ class RobotLink:
             self._take()
             age = None if self._heard_at is None else now - self._heard_at
             motion, limits = self._motion, self.robot_type.limits
-            state = link_state(age, connections)
+            state = link_state(age, connections, self.robot_type.silent_after_s)
             if age is not None and (age < 1.0 or not self._heard_wall):
                 self._heard_wall = time.strftime('%H:%M:%S')
             proof = self._proof.view(now) if self._proof else None
@@ -209,7 +216,7 @@ class RobotLink:
         return seen_by_gates(view, self._gates.robot(self.name), self._gates.answers())
 
     def close(self):
-        """Stop listening and give the velocity topics back (blocking: it asks the master)."""
+        """Stop listening (blocking: it asks the master)."""
         self.feeds.close()
         guard_feeds = [self._guard_feed] if self._guard_feed else []
         for feed in self._feeds + self._battery_feeds + guard_feeds:
@@ -232,7 +239,8 @@ def seen_by_gates(view, gate, answers):
         view = replace(view, proof=replace(
             view.proof, text=view.proof.text + ', held by its guard'))
     return replace(
-        view, driven=is_driven(gate), guarded=gate.guarded, obeys=gate.obeys, stands=gate.stands,
+        view, driven=is_driven(gate) and bool(gate.topic), guarded=gate.guarded,
+        obeys=gate.obeys, stands=gate.stands,
         waits=gate.stands == RobotGate.JOINING, stop_latched=gate.stop_confirmed,
         note=stands if stands and view.link == LIVE else view.note,
         slow=view.slow or bool(stands))

@@ -207,6 +207,7 @@ class ScreenBackend:
             self._gates.keep_together(self._together, self.settings.slow_with_link)
         else:
             self.selection.check(())
+            self._gates.leave_group()
         self._worker.do(self._settle_wheel)
 
     def _settle_wheel(self):
