@@ -93,7 +93,7 @@ class GatesClient:
     def take_control(self, on_answer):
         """Make this node the operator in control.
 
-        :param on_answer: called with what came of it as a sentence, '' for success, on the worker
+        :param on_answer: called with (whether it was done, a sentence), on the worker
         """
         self._worker.do(self._call, TAKE_SERVICE, Trigger, 'not taken over', on_answer)
 
@@ -111,10 +111,10 @@ class GatesClient:
             answer = rospy.ServiceProxy(name, kind)(*words)
         except (rospy.ServiceException, rospy.ROSException, OSError) as error:
             rospy.logwarn('%s: %s', name, error)
-            on_answer('{}: the drive service does not answer'.format(failure))
+            on_answer(False, '{}: the drive service does not answer'.format(failure))
             return
-        rospy.loginfo('%s: %s', name, answer.message)
-        on_answer('' if answer.success else '{}: {}'.format(failure, answer.message))
+        on_answer(answer.success, answer.message if answer.success else
+                  '{}: {}'.format(failure, answer.message))
 
     def close(self):
         """Stop the worker; returns at once."""

@@ -226,11 +226,11 @@ class ScreenBackend:
         self._seat.take(self)
         self.selection.check(())
         self.repeat_selection()
-        self._gates.take_control(lambda text: self._events.put(('told', text)))
+        self._gates.take_control(lambda done, text: done or self._events.put(('told', text)))
 
     def set_motor_power(self, on):
         """Cut the power of the motors of all robots that offer it (False), or give it back."""
-        self._gates.set_motor_power(on, self._on_answer)
+        self._gates.set_motor_power(on, lambda done, text: self._on_answer(text))
 
     def add(self, name, parameters=None):
         """Add a robot to the list, unchecked.
