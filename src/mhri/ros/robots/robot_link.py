@@ -17,6 +17,7 @@ from mhri.core.robots.stamp_age import StampAge
 from mhri.core.robots.stop_proof import StopProof
 from mhri.core.screen.views import LIVE, RobotView
 from mhri.ros.convert import header_of, motion_from_odometry, motion_from_turtle_pose
+from mhri.ros.robots.hardware_stop import HardwareStop
 from mhri.ros.robots.link_probe import LinkProbe
 
 _READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
@@ -120,6 +121,7 @@ class RobotLink:
         self._battery_feeds = [
             Feed(topic_of(name, topic), BatteryState, battery_fraction, self._on_battery)
             for topic in robot_type.battery]
+        self._hardware_stop = HardwareStop(name, robot_type)
         self._probe = LinkProbe(name, self._node_uri, self._on_round_trip)
 
     def _node_uri(self):
@@ -224,11 +226,13 @@ class RobotLink:
             y_m=motion and motion.y_m, battery=self._battery, selected=self.gate.rule.selected,
             driven=self.gate.rule.driving and self.gate.reachable(), guarded=self.gate.guarded(),
             moving=motion is not None and age < 1.0 and not motion.is_standstill(), proof=proof,
-            max_linear_mps=limits.linear_mps, max_angular_rad_s=limits.angular_rad_s)
+            hardware_stop=self._hardware_stop.stopped, max_linear_mps=limits.linear_mps,
+            max_angular_rad_s=limits.angular_rad_s)
 
     def close(self):
         """Stop listening and give the velocity topics back (blocking: it asks the master)."""
         self._probe.close()
+        self._hardware_stop.close()
         self.feeds.close()
         guard_feeds = [self._guard_feed] if self._guard_feed else []
         for feed in self._feeds + self._battery_feeds + guard_feeds:
