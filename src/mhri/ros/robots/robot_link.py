@@ -21,6 +21,7 @@ from mhri.core.sensors.plausible import BATTERY, can_be
 from mhri.msg import RobotGate
 from mhri.ros.convert import header_of, motion_from_odometry, motion_from_turtle_pose
 from mhri.ros.driving.gates_client import is_driven, round_trip_s, STANDS_WORDS
+from mhri.ros.robots.hardware_stop import HardwareStop
 
 _READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
             'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
@@ -123,6 +124,7 @@ class RobotLink:
         self._battery_feeds = [
             Feed(topic_of(name, topic), BatteryState, battery_fraction, self._on_battery)
             for topic in robot_type.battery]
+        self._hardware_stop = HardwareStop(name, robot_type)
 
     def on_gate(self, gate):
         """Take in what the gates say of this robot (``mhri/RobotGate``), on a ROS thread."""
@@ -212,11 +214,13 @@ class RobotLink:
             heading_rad=motion and motion.heading_rad, x_m=motion and motion.x_m,
             y_m=motion and motion.y_m, battery=self._battery,
             moving=motion is not None and age < 1.0 and not motion.is_standstill(), proof=proof,
-            max_linear_mps=limits.linear_mps, max_angular_rad_s=limits.angular_rad_s)
+            hardware_stop=self._hardware_stop.stopped, max_linear_mps=limits.linear_mps,
+            max_angular_rad_s=limits.angular_rad_s)
         return seen_by_gates(view, self._gates.robot(self.name), self._gates.answers())
 
     def close(self):
         """Stop listening (blocking: it asks the master)."""
+        self._hardware_stop.close()
         self.feeds.close()
         guard_feeds = [self._guard_feed] if self._guard_feed else []
         for feed in self._feeds + self._battery_feeds + guard_feeds:
