@@ -8,13 +8,15 @@ by timers and never waited for.
 import gc
 import json
 
-from python_qt_binding.QtCore import QByteArray, QObject, Qt, QTimer
+from python_qt_binding.QtCore import QObject, Qt, QTimer
 from python_qt_binding.QtWidgets import QApplication
 import rospy
 
 from mhri.core.robots.names import tidy_name
+from mhri.core.screen.saved_state import usable_state
 from mhri.core.screen.views import GONE, SILENT
 from mhri.presenters.doctor_host import DoctorHost
+from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.gui.screen.panel import PanelWidget
 from mhri.gui.screen.placing import place_window
 from mhri.gui.screen.window_maker import WindowMaker
@@ -274,8 +276,7 @@ class PanelHost(QObject):
     def _place(self, name, window):
         """Put a window where it was last time, else beside the panel and the others."""
         saved = self._places.get(name)
-        if saved:
-            window.restoreGeometry(QByteArray.fromHex(saved.encode('ascii')))
+        if saved and restore_geometry(window, saved):
             return
         place_window(window, self.panel,
                      [other for other in self.windows.values() if other is not window])
@@ -304,7 +305,7 @@ class PanelHost(QObject):
 
     def _keep_look(self, name):
         window = self.windows[name]
-        self._places[name] = bytes(window.saveGeometry().toHex()).decode('ascii')
+        self._places[name] = geometry_of(window)
         try:
             look = window.save_settings()
             json.dumps(look)
@@ -319,13 +320,18 @@ class PanelHost(QObject):
         """Return what is kept between runs as a plain dict: never which robots are selected."""
         for name in self.windows:
             self._keep_look(name)
-        return {'robots': list(self.operator.selection.robots), 'mode': self._mode,
-                'limits': list(self.operator.view().limits), 'windows': self._places,
-                'together': self.operator.view().together, 'looks': self._looks,
-                'panel': self.panel.save_settings()}
+        state = {'robots': list(self.operator.selection.robots), 'mode': self._mode,
+                 'limits': list(self.operator.view().limits), 'windows': self._places,
+                 'together': self.operator.view().together, 'looks': self._looks,
+                 'panel': self.panel.save_settings()}
+        return usable_state(state)[0]
 
     def restore_state(self, state):
-        """Take over a dict of :meth:`save_state`; call it before :meth:`start`."""
+        """Take over a dict of :meth:`save_state`; call it before :meth:`start`.
+
+        :returns: what of it cannot be used and is left out, in words
+        """
+        state, problems = usable_state(state)
         for name in state.get('robots', []):
             self.operator.add(name)
         if state.get('mode'):
@@ -337,6 +343,7 @@ class PanelHost(QObject):
         self._places.update(state.get('windows', {}))
         self._looks.update(state.get('looks', {}))
         self.panel.restore_settings(state.get('panel', {}))
+        return problems
 
     def close(self, forget=False):
         """Stop the robots first, then close everything; ``forget`` as in the backend."""
