@@ -16,6 +16,7 @@ from mhri.core.robots.names import tidy_name
 from mhri.core.screen.saved_state import usable_state
 from mhri.core.screen.views import GONE, SILENT
 from mhri.presenters.doctor_host import DoctorHost
+from mhri.presenters.draw_guard import DrawGuard
 from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.gui.screen.panel import PanelWidget
 from mhri.gui.screen.placing import place_window
@@ -62,6 +63,7 @@ class PanelHost(QObject):
     def _build(self):
         self._ui_dir = resource_path()
         self.panel = PanelWidget(self._ui_dir)
+        self._guard = DrawGuard(self.panel)
         QApplication.instance().installEventFilter(self.panel.drive_keys)
         self._draw_timer = QTimer(self)
         self._draw_timer.setInterval(DRAW_MS)
@@ -87,7 +89,7 @@ class PanelHost(QObject):
         panel.talk_requested.connect(operator.talk)
         panel.stop_requested.connect(operator.stop_all)
         panel.release_requested.connect(operator.release)
-        self._draw_timer.timeout.connect(self.draw)
+        self._draw_timer.timeout.connect(lambda: self._guard.run(self.draw))
         self._slice_timer.timeout.connect(self._draw_next)
         self._stick_timer.timeout.connect(self._repeat_stick)
 
@@ -163,7 +165,8 @@ class PanelHost(QObject):
             highlighted = self.panel.robot_list.current
             self._hosts[robot.name].behind = \
                 highlighted if highlighted in self._hosts and highlighted != robot.name else ''
-            self._guarded(robot.name, self._hosts[robot.name].draw, robot, self._stopped)
+            host = self._hosts[robot.name]
+            host.guard.run(self._guarded, robot.name, host.draw, robot, self._stopped)
 
     def _repeat_stick(self):
         """Say again where the stick is: a source that is not heard for 0.5 s counts as lost."""
@@ -350,6 +353,7 @@ class PanelHost(QObject):
         if self._closed:
             return
         self._closed = True
+        self._guard.end()
         self._draw_timer.stop()
         self._slice_timer.stop()
         self._stick_timer.stop()

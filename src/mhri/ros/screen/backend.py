@@ -19,6 +19,7 @@ from mhri.core.driving.group_speed import pace_of
 from mhri.core.recording.recording import CHOICES, RECORDING
 from mhri.core.driving.selection import Selection
 from mhri.core.screen.settings import NAMESPACE, PanelSettings, parse_settings
+from mhri.core.screen.source_rows import source_rows
 from mhri.core.screen.status import status_line
 from mhri.core.screen.views import (
     PanelView, ROS_CONNECTED, ROS_NO_MASTER, ROS_STARTING, RobotView)
@@ -153,7 +154,7 @@ class ScreenBackend:
         except MasterError as error:
             rospy.logdebug('the sources cannot be read now: %s', error)
             return
-        self._sources = tuple((row['name'], row['label']) for row in rows or ())
+        self._sources = source_rows(rows)
         mode = self._mux.state()[0]
         if self._first_mode and mode:
             if self._first_mode != mode:
