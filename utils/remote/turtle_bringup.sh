@@ -132,7 +132,8 @@ prepare_launch() {
   if ! "$GUARD"; then return; fi
   [ -f "$HERE/mhri_guard" ] ||
     die "there is no $HERE/mhri_guard: send the files again, with turtlebot_deploy.sh on the host"
-  python3 -c 'import rospy' >/dev/null 2>&1 ||
+  # Not where this was started: a rospy.py may lie there.
+  (cd / && python3 -c 'import rospy') >/dev/null 2>&1 ||
     die "--guard needs rospy for Python 3, which this robot's ROS does not have: leave --guard out"
 }
 
