@@ -80,12 +80,30 @@ def test_stop_all_engaged_again_sends_zeros_again():
 
 
 def test_dead_man_released_means_zero():
-    """At once, and pressed again with the stick still out it drives on."""
+    """At once; pressed again with the stick still out nothing moves before that was centred."""
     rig = rig_in(DRIVING)
     assert rig.joy(FORWARD, RELEASED) == ZERO
     assert rig.arbiter.waits_for(rig.now) == 'dead_man'
+    assert rig.joy(FORWARD, HELD) in (None, ZERO)
+    assert (rig.arbiter.state, rig.arbiter.cause) == (WAIT_NEUTRAL, 'dead_man')
+    assert rig.arbiter.waits_for(rig.now) == 'neutral'
+    rig.joy(NEUTRAL, HELD)
     assert rig.joy(FORWARD, HELD) == DRIVE
     assert rig.arbiter.waits_for(rig.now) == ''
+
+
+@pytest.mark.parametrize('centred_with', [HELD, RELEASED])
+def test_dead_man_pressed_on_a_deflected_stick_moves_nothing(centred_with):
+    """A thumb that finds the button, whether or not it was held while the stick was centred."""
+    rig = rig_in(READY)
+    rig.joy(NEUTRAL, centred_with)
+    rig.joy(FORWARD, RELEASED)
+    for _ in range(20):
+        assert rig.joy(FORWARD, HELD) in (None, ZERO)
+        rig.run(0.05)
+    assert rig.zeros() == []
+    rig.joy(NEUTRAL, HELD)
+    assert rig.joy(FORWARD, HELD) == DRIVE
 
 
 def test_dead_man_released_does_not_stand_in_for_neutral():
@@ -164,6 +182,7 @@ class Oracle:
         self.neutral_since = {'stick': False, 'other': False}
         self.heard_at = None
         self.device = None
+        self.held = True
         self.moving = False
 
     def cause(self):
@@ -174,12 +193,13 @@ class Oracle:
         """Tell whether the active source is too old to drive."""
         return self.heard_at is None or self.rig.now - self.heard_at >= 0.5
 
-    def heard(self, axes, device):
+    def heard(self, axes, device, held):
         """Note an accepted message of the active source."""
-        if self.stale() or device != self.device:
+        neutral = max(abs(value) for value in axes) <= 0.02
+        if self.stale() or device != self.device or (held and not self.held and not neutral):
             self.cause()
-        self.heard_at, self.device = self.rig.now, device
-        if max(abs(value) for value in axes) <= 0.02 and not self.stopped:
+        self.heard_at, self.device, self.held = self.rig.now, device, held
+        if neutral and not self.stopped:
             self.neutral_since[self.rig.arbiter.mode] = True
 
     def check(self, sent, must_rest):
@@ -243,7 +263,7 @@ def _random_joy(dice, rig, oracle):
     except JoyRefused:
         return None, False
     if active:
-        oracle.heard(axes, device)
+        oracle.heard(axes, device, name != 'stick' or buttons == HELD)
     resting = active and (max(abs(value) for value in axes) == 0.0 or (
         name == 'stick' and buttons == RELEASED))
     return sent, resting

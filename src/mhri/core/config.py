@@ -141,6 +141,10 @@ class Section:
         value = self.take(name, default)
         if value is default:
             return value
+        return self.sub_section(name, value)
+
+    def sub_section(self, name, value):
+        """Return a value that was taken from a key as a sub-section."""
         return Section(value, self.origin, self.key(name))
 
     def sections(self, name):

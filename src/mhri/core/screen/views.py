@@ -61,6 +61,9 @@ class RobotView:
     in words about the link, e.g. "nothing for 3.2 s"; '' while all is well. ``figures`` are what
     was measured of the link, ``slow`` is true where they are past what driving needs, ``waits``
     while it is left out until the stick has been centred, since its link was lost.
+    ``hardware_stop`` is true while the robot's own emergency stop holds it, None where nothing
+    tells. ``power`` says in words what was done to the power of its motors
+    (:mod:`mhri.core.driving.motor_power`), '' where nothing was.
     """
 
     name: str
@@ -86,6 +89,8 @@ class RobotView:
     figures: LinkFigures = LinkFigures()
     slow: bool = False
     waits: bool = False
+    hardware_stop: Optional[bool] = None
+    power: str = ''
 
 
 @dataclass(frozen=True)

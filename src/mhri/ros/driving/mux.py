@@ -38,7 +38,7 @@ from mhri.ros.graph.master_api import MasterError
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.driving.mux_diagnostics import MuxDiagnostics
 from mhri.ros.driving.mux_takeover import is_superseded
-from mhri.ros.graph.prompt import PromptPublisher
+from mhri.ros.graph.rospy_inside import PromptPublisher
 from mhri.ros.driving.suspender import Suspender
 from mhri.ros.worker import Worker
 

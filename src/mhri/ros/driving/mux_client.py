@@ -15,9 +15,10 @@ from sensor_msgs.msg import Joy
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
+from mhri.core.screen.text import tidy_text
 from mhri.msg import ControlMode, RobotSelect
 from mhri.ros.convert import to_twist
-from mhri.ros.graph.prompt import PromptPublisher
+from mhri.ros.graph.rospy_inside import PromptPublisher
 from mhri.ros.worker import Worker
 
 STOP_SERVICE = '/mux/set_stop_all'
@@ -55,7 +56,7 @@ class MuxClient:
 
     def _hear_mode(self, message):
         with self._lock:
-            self._mode = message.source
+            self._mode = tidy_text(message.source)
         self._on_mode()
 
     def _on_limits(self, message):
@@ -64,7 +65,7 @@ class MuxClient:
 
     def _on_waits(self, message):
         with self._lock:
-            self._waits_for = message.data
+            self._waits_for = tidy_text(message.data)
 
     def state(self):
         """Return (mode, limits, waits_for) as the mux last said; all None while it is not there."""

@@ -13,8 +13,10 @@ from sensor_msgs.msg import BatteryState
 from mhri.core.robots.link import link_note, link_state
 from mhri.core.robots.link_quality import LinkQuality, link_warning
 from mhri.core.robots.names import topic_of
+from mhri.core.robots.stamp_age import StampAge
 from mhri.core.robots.stop_proof import StopProof
 from mhri.core.screen.views import LIVE, RobotView
+from mhri.core.sensors.plausible import BATTERY, can_be
 from mhri.ros.convert import header_of, motion_from_odometry, motion_from_turtle_pose
 from mhri.ros.robots.link_probe import LinkProbe
 
@@ -33,7 +35,7 @@ def battery_fraction(message):
     divide by a nominal voltage may say a little over 1 (turtlebot3_core does).
     """
     value = message.percentage
-    if not math.isfinite(value) or value < 0.0:
+    if not can_be(BATTERY, value):
         return None
     return min(1.0, value / 100.0 if value > 1.5 else value)
 
@@ -110,6 +112,7 @@ class RobotLink:
         self._pending = None
         self._motion = None
         self._quality = LinkQuality()
+        self._ages = {}
         self._proof = None
         self._battery = None
         self._guard_feed = None
@@ -143,14 +146,16 @@ class RobotLink:
     def _on_message(self, feed, message, now):
         came_at, header = time.time(), feed.header(message)
         with self._lock:
+            late_s = 0.0
             if header is not None:
                 number, stamp_s = header
+                late_s = self._ages.setdefault(feed, StampAge()).late_s(stamp_s or None, now)
                 self._quality.on_message(number, came_at - stamp_s if stamp_s else None, now)
             self._heard_at = now
             self._pending = (feed, message)
             if self._proof is not None:
                 self._take()
-                self._proof.on_motion(self._motion, now)
+                self._proof.on_motion(self._motion, now, late_s)
 
     def listen_to_guard(self):
         """Hear what the robot's guard drops, once it has one (blocking: it asks the master)."""
@@ -174,7 +179,9 @@ class RobotLink:
     def on_stop(self, stopped, now):
         """Begin (or end) the proof of a stop."""
         with self._lock:
-            self._proof = StopProof(now) if stopped else None
+            self._proof = StopProof(
+                now, self._quality.read(now).round_trip_s,
+                self.robot_type.silent_after_s) if stopped else None
 
     def heard_since(self, when):
         """Tell whether the robot has been heard since a time; a robot that never is, always.
@@ -198,7 +205,7 @@ class RobotLink:
             self._take()
             age = None if self._heard_at is None else now - self._heard_at
             motion, limits = self._motion, self.robot_type.limits
-            state = link_state(age, connections)
+            state = link_state(age, connections, self.robot_type.silent_after_s)
             if age is not None and (age < 1.0 or not self._heard_wall):
                 self._heard_wall = time.strftime('%H:%M:%S')
             proof = self._proof.view(now) if self._proof else None

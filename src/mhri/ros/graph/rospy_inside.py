@@ -1,17 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A publisher that writes on the caller's thread, and never into a link that has stalled.
+"""All that reaches beneath rospy's public interface, in one place, tested when it is imported.
 
-rospy's own, with a queue, hands every message to a thread of each connection: two changes of
-threads, several hundred microseconds where others are busy. Without a queue it writes at once, and
-waits for a robot whose link has stalled. Here nothing is ever waited for: what the socket does not
-take now goes to the connection's thread, and there the newest message wins as always.
+rospy is not developed any further (ros_comm was archived in 2025), but a distribution may patch it:
+what is relied on here is looked for at import, and an :class:`ImportError` says what is not there.
 
-And TCP keeps what it was given: a link that comes back after a second brings a second of old
-commands. So nothing is given to a connection whose peer has confirmed nothing for a while; the
-newest message follows as soon as it confirms something again. A connection that has stalled with
-commands in it can be dropped before the robot's own watchdog has stopped it
-(:meth:`PromptPublisher.drop_cut`): what is taken back moves nothing later.
+**Publishing.** rospy's own publisher, with a queue, hands every message to a thread of each
+connection: two changes of threads, several hundred microseconds where others are busy. Without a
+queue it writes at once, and waits for a robot whose link has stalled. :class:`PromptPublisher`
+writes at once and never waits: what the socket does not take now goes to the connection's thread,
+and there the newest message wins as always. And TCP keeps what it was given: a link that comes back
+after a second brings a second of old commands. So nothing but zeros is given to a connection whose
+peer has confirmed nothing for a while; the newest message follows as soon as it confirms something.
+
+**Who is there.** :func:`caller_of`, :func:`listeners`, :func:`on_publisher_gone` and
+:func:`publisher_uri` tell who is at the other end of a connection, and when it has gone.
 """
 import socket
 import struct
@@ -19,13 +22,11 @@ import threading
 import time
 
 import rospy
+from rospy.impl.tcpros_base import TCPROSTransport
 from rospy.impl.tcpros_pubsub import QueuedConnection
 
 # A peer may take 40 ms before it confirms (RFC 1122, 4.2.3.2: at most 500, Linux: 40).
 LEAST_STALL_S = 0.1
-# Of the watchdogs the quickest, TurtleBot3's, stops a robot 0.5 s after the last command it heard,
-# which is one period (0.05 s) before the first one it did not; looked at ten times a second.
-CUT_S = 0.33
 _CONFIRMS_WITHIN_S = 0.05
 _LOOK_AGAIN_S = 0.01
 # struct tcp_info of linux/tcp.h: unacked, last_ack_recv [ms], rtt [us].
@@ -46,25 +47,28 @@ class Flow:
         self._option = getattr(socket, 'TCP_INFO', None) if end.family in (
             socket.AF_INET, socket.AF_INET6) else None
 
-    def stalled(self, least_s=LEAST_STALL_S):
-        """Tell whether nothing has been confirmed for longer than two round trips take.
+    def quiet_s(self):
+        """Return for how long nothing was confirmed although something is due [s], else 0.
 
-        Never less than ``least_s``; False where the system does not tell. ``clear_at`` is when
-        everything was last seen confirmed.
+        0 where the system does not tell, and while two round trips have not passed.
         """
         if self._option is None:
-            return False
+            return 0.0
         try:
             unacked, ack_ms, rtt_us = _INFO.unpack(
                 self._end.getsockopt(socket.IPPROTO_TCP, self._option, _INFO.size))
         except (OSError, struct.error):
-            return False
+            return 0.0
         now = self.clock()
         if not unacked:
             self.clear_at = now
-            return False
+            return 0.0
         quiet_s = min(now - self.clear_at, ack_ms * 1e-3)
-        return quiet_s > max(least_s, 2e-6 * rtt_us + _CONFIRMS_WITHIN_S)
+        return quiet_s if quiet_s > 2e-6 * rtt_us + _CONFIRMS_WITHIN_S else 0.0
+
+    def stalled(self):
+        """Tell whether nothing has been confirmed for :data:`LEAST_STALL_S`, or two round trips."""
+        return self.quiet_s() > LEAST_STALL_S
 
 
 class _Call(threading.local):
@@ -89,7 +93,6 @@ class PromptConnection(QueuedConnection):
         self._call = call
         self._busy = self._urgent = False
         self._rest = b''
-        self._moves_at = None
         super().__init__(connection, queue_size)
 
     def write_data(self, data):
@@ -108,8 +111,6 @@ class PromptConnection(QueuedConnection):
             sent = 0
             if not self._busy and not self._queue and (self._urgent or not self._flow.stalled()):
                 sent = self._send(data)
-            if sent and not self._urgent:
-                self._moves_at = self._flow.clock()
             if sent == len(data):
                 return True
             if sent:
@@ -135,24 +136,9 @@ class PromptConnection(QueuedConnection):
             connection.stat_num_msg += 1
         return sent
 
-    def drop_if_cut(self):
-        """Close a connection that has stalled for :data:`CUT_S`, with all that is on its way.
-
-        Only where that may be more than the word to stop; tell whether it was closed. The peer does
-        not learn of it: it would take a new connection from another node at once, from this one
-        only when its own keepalive has found out (rospy: after a minute).
-        """
-        if not self._flow.stalled(CUT_S) or self._moves_at is None \
-                or self._moves_at < self._flow.clear_at:
-            return False
-        try:
-            # Without lingering TCP forgets what was not confirmed.
-            self._connection.socket.setsockopt(
-                socket.SOL_SOCKET, socket.SO_LINGER, struct.pack('=ii', 1, 0))
-        except (OSError, AttributeError):
-            return False
-        self._connection.close()
-        return True
+    def stalled_s(self):
+        """Return for how long the peer has confirmed nothing of what it was sent [s], 0: no."""
+        return self._flow.quiet_s()
 
     def _next(self):
         """Wait for something to send; return the list of it, [] at the end (the thread)."""
@@ -164,7 +150,6 @@ class PromptConnection(QueuedConnection):
                 if self._queue and (self._urgent or not self._flow.stalled()):
                     waiting, self._queue = self._queue, []
                     self._busy = True
-                    self._moves_at = self._flow.clock()
                     return waiting
                 self._cond_data_available.wait(_LOOK_AGAIN_S if self._queue else None)
             return []
@@ -183,7 +168,6 @@ class PromptConnection(QueuedConnection):
                 error = reason
             with self._lock:
                 self._busy = False
-                self._moves_at = self._flow.clock()
                 self._error = error or self._error
 
 
@@ -202,16 +186,27 @@ class PromptPublisher(rospy.Publisher):
         plain = type(impl).add_connection
 
         def add_connection(connection):
+            """Take the connection in, in our own wrapping."""
             return plain(impl, PromptConnection(connection, queue_size, call))
 
-        # It wraps each connection in rospy's own where the topic has a size.
+        # With a size rospy wraps each connection in its own; another publisher of this topic in the
+        # same process (a plugin beside us in rqt) would set one.
         impl.set_queue_size(None)
+        impl.set_queue_size = lambda size: None
         impl.add_connection = add_connection
 
-    def drop_cut(self):
-        """Close the connections that have stalled with commands in them; return how many."""
-        return sum(connection.drop_if_cut() for connection in list(self.impl.connections)
-                   if isinstance(connection, PromptConnection))
+    def stalled_s(self, names):
+        """Return for how long the worst connection to some nodes confirmed nothing [s]; 0: none.
+
+        :param names: their caller ids
+        """
+        return max((connection.stalled_s() for connection in self.links()
+                    if connection.endpoint_id in names), default=0.0)
+
+    def links(self):
+        """Return the open connections, a tuple that is another one after each change."""
+        impl = self.impl
+        return impl.connections if impl else ()
 
     def publish_urgent(self, message):
         """Publish what may be late but must not be left out: the word to stop.
@@ -224,3 +219,77 @@ class PromptPublisher(rospy.Publisher):
             self.publish(message)
         finally:
             self._call.urgent = False
+
+
+def caller_of(message):
+    """Return the caller id of whoever sent a message, '' where that is not known."""
+    return (message._connection_header or {}).get('callerid', '')
+
+
+def link_of(message):
+    """Return something that is the same object for all messages of one connection."""
+    return message._connection_header
+
+
+def listeners(connections):
+    """Return the caller ids at the other end of a publisher's connections."""
+    return {connection.endpoint_id for connection in connections}
+
+
+def publisher_uri(subscriber):
+    """Return the XML-RPC address of a node that publishes what is subscribed, or None."""
+    impl = subscriber.impl
+    return next((link.endpoint_id for link in (impl.connections if impl else ())
+                 if link.endpoint_id), None)
+
+
+def on_publisher_gone(subscriber, call):
+    """Have a function called whenever the connection to a publisher ends.
+
+    rospy tells that of subscribers alone. Killed, a publisher on this computer is noticed within
+    milliseconds: the kernel closes its connections.
+
+    :param call: called with the publisher's caller id on the connection's thread; quick
+    """
+    impl = subscriber.impl
+    plain = impl.remove_connection
+
+    def remove_connection(connection):
+        """Let rospy forget the connection, then tell."""
+        plain(connection)
+        caller = connection.callerid_pub
+        if not any(other.callerid_pub == caller for other in impl.connections):
+            call(caller)
+
+    impl.remove_connection = remove_connection
+
+
+def close_poller(impl):
+    """Close the epoll handle that rospy leaves in a cycle of references (ros_comm issue 2373)."""
+    if impl is not None and impl.closed:
+        impl.connection_poll.poller.close()
+
+
+def _self_test():
+    """Look for everything that this module relies on.
+
+    :raises ImportError: rospy is not the one that this was written for
+    """
+    wanted = [
+        (rospy.topics._PublisherImpl, ('add_connection', 'set_queue_size', 'publish')),
+        (rospy.topics._SubscriberImpl, ('add_connection', 'remove_connection')),
+        (TCPROSTransport, ('set_cleanup_callback', 'write_data', 'close', 'receive_loop')),
+        (QueuedConnection, ('write_data', '_run', '_closed_connection_callback'))]
+    missing = ['{}.{}'.format(owner.__name__, name) for owner, names in wanted for name in names
+               if not callable(getattr(owner, name, None))]
+    constructors = {rospy.topics._TopicImpl: ('connections', 'connection_poll', 'closed'),
+                    TCPROSTransport: ('callerid_pub', 'endpoint_id'),
+                    QueuedConnection: ('_queue', '_error', '_cond_data_available', '_thread')}
+    missing += ['{}.{}'.format(owner.__name__, name) for owner, names in constructors.items()
+                for name in names if name not in owner.__init__.__code__.co_names]
+    if missing:
+        raise ImportError('mhri cannot work with this rospy: it has no {}; install ros_comm 1.15 '
+                          'or 1.16'.format(', '.join(missing)))
+
+
+_self_test()

@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip('rospy')
 
-from mhri.ros.graph.prompt import CUT_S, Flow, PromptConnection  # noqa: E402
+from mhri.ros.graph.rospy_inside import Flow, PromptConnection  # noqa: E402
 from rospy.exceptions import TransportTerminated  # noqa: E402
 
 
@@ -212,43 +212,6 @@ def test_the_flow_of_a_real_connection_is_read():
             info = ours.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, 104)
             rtt_us = struct.unpack_from('=I', info, 68)[0]
             assert 0 < rtt_us < 1e6, 'not where the round trip is in struct tcp_info'
-
-
-LONG_S = 1.0
-
-
-# m: a command, 0: the word to stop, +: everything is confirmed
-@pytest.mark.parametrize('words, quiet_s, dropped', [
-    ('', LONG_S, False), ('m+', LONG_S, False), ('m', CUT_S - 0.1, False), ('m', CUT_S + 0.1, True),
-    ('m0', CUT_S + 0.1, True), ('0', LONG_S, False), ('m+0', LONG_S, False),
-    ('m+m', CUT_S + 0.1, True)])
-def test_commands_on_a_link_that_is_cut_are_taken_back(words, quiet_s, dropped):
-    with socket.socket() as server:
-        server.bind(('127.0.0.1', 0))
-        server.listen(1)
-        ours, theirs = socket.create_connection(server.getsockname()), server.accept()[0]
-        connection = PromptConnection(Transport(ours), 1, Call())
-        now, peer = [100.0], Peer()
-        connection._flow = Flow(peer, lambda: now[0])
-        for word in words:
-            now[0] += 0.05
-            peer.unacked = 0 if word == '+' else 1
-            if word == '+':
-                connection._flow.stalled()
-            else:
-                connection._call.urgent = word == '0'
-                connection.write_data(message(0))
-        now[0] += quiet_s
-        peer.ack_ms = int(1000 * quiet_s)
-        assert connection.drop_if_cut() == dropped
-        ours.close()
-        connection._connection.close()
-        theirs.settimeout(5.0)
-        if dropped:
-            with pytest.raises(ConnectionResetError):
-                while theirs.recv(1000):
-                    pass
-        theirs.close()
 
 
 def test_nothing_but_the_word_to_stop_is_given_to_a_stalled_link(link):
