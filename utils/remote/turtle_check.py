@@ -295,7 +295,7 @@ class Claim(object):
         return code == 1 and value == self._token
 
     def give_up(self):
-        """Take back the note, and what the robot brought: its name is no robot for the host then."""
+        """Take back the note and what the robot brought: the host knows no such robot then."""
         if not self.state():
             return
         found = answer(self._master.getParam, self._key('mhri_remote_found')) or []
