@@ -12,6 +12,7 @@ import rospy
 from mhri.core.config import ConfigError
 from mhri.core.driving.sources import enabling_problem, parse_mux_config
 from mhri.ros.graph import log
+from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.driving.mux import Mux, STOP_PARAMETER
 from mhri.ros.driving.mux_takeover import end_other_muxes
@@ -68,6 +69,7 @@ def main():
         config = parse_mux_config(read_text(path), path, profile_reader(path))
     except (ConfigError, OSError, MasterError) as error:
         sys.exit('the mux cannot start: {}'.format(error))
+    limit_handshakes()
     rospy.init_node('mux')
     log.install()
     # A terminal that is closed must not end the mux without a zero.
