@@ -213,9 +213,10 @@ def free_port():
 class Process:
     """A process of its own, with what it said; ended at the latest by :meth:`end`."""
 
-    def __init__(self, command, env=None, stdin=None):
+    def __init__(self, command, env=None, stdin=None, output=None):
         self._said = tempfile.NamedTemporaryFile('w+', suffix='.log')
-        self._popen = subprocess.Popen(command, stdout=self._said, stderr=subprocess.STDOUT,
+        self._popen = subprocess.Popen(command, stdout=output or self._said,
+                                       stderr=subprocess.STDOUT,
                                        stdin=stdin, env=dict(os.environ, **(env or {})))
         self.stdin = self._popen.stdin
 
@@ -252,10 +253,10 @@ class Process:
         self._said.close()
 
 
-def start_mux(*arguments, env=None):
-    """Start the real mux node, e.g. with '__name:=other'."""
+def start_mux(*arguments, env=None, output=None):
+    """Start the real mux node, e.g. with '__name:=other'; ``output``: where it writes instead."""
     path = roslib.packages.find_node('mhri', 'mux')[0]
-    return Process([path] + list(arguments), env)
+    return Process([path] + list(arguments), env, output=output)
 
 
 class StickProcess:
