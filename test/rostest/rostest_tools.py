@@ -144,9 +144,13 @@ def wait_until(condition, words, patience_s=PATIENCE_S):
 
 
 class Stick:
-    """A stick on a Joy topic, held at 50 Hz as a pad's driver does, by this process."""
+    """A stick on a Joy topic, held at 50 Hz as a pad's driver does, by this process.
 
-    def __init__(self, topic):
+    :param buttons: what is held with it where nothing else is said
+    """
+
+    def __init__(self, topic, buttons=()):
+        self._buttons = buttons
         self._publisher = rospy.Publisher(topic, Joy, queue_size=10, tcp_nodelay=True)
         self._held = None
         self._frame = ''
@@ -182,10 +186,10 @@ class Stick:
         finally:
             self._frame = ''
 
-    def hold(self, axes, buttons=()):
+    def hold(self, axes, buttons=None):
         """Hold the stick like this from now on; return the time of it."""
         with self._changed:
-            self._held = (axes, buttons)
+            self._held = (axes, self._buttons if buttons is None else buttons)
             self._changed.notify()
             return time.monotonic()
 
