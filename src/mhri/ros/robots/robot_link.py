@@ -26,6 +26,8 @@ _READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odomet
 # Below a robot's namespace: the late commands that its guard kept from it.
 DROPPED = 'mhri_guard/dropped'
 DROPPED_SHOWN_S = 1.0
+# Whoever has taken commands for so long and told no odometry has none.
+MUTE_AFTER_S = 3.0
 
 
 def battery_fraction(message):
@@ -108,6 +110,7 @@ class RobotLink:
         self._lock = threading.Lock()
         self.added_at = clock()
         self._heard_at = None
+        self._reached_at = None
         self._heard_wall = ''
         self._pending = None
         self._motion = None
@@ -206,7 +209,8 @@ class RobotLink:
             self._take()
             age = None if self._heard_at is None else now - self._heard_at
             motion, limits = self._motion, self.robot_type.limits
-            state = link_state(age, connections, self.robot_type.silent_after_s)
+            state = link_state(age, connections, self.robot_type.silent_after_s,
+                               self._takes_commands(now))
             if age is not None and (age < 1.0 or not self._heard_wall):
                 self._heard_wall = time.strftime('%H:%M:%S')
             proof = self._proof.view(now) if self._proof else None
@@ -228,6 +232,14 @@ class RobotLink:
             moving=motion is not None and age < 1.0 and not motion.is_standstill(), proof=proof,
             hardware_stop=self._hardware_stop.stopped, max_linear_mps=limits.linear_mps,
             max_angular_rad_s=limits.angular_rad_s)
+
+    def _takes_commands(self, now):
+        """Tell whether the robot has listened to commands for long enough to be heard, too."""
+        if not self.gate.reachable():
+            self._reached_at = None
+        elif self._reached_at is None:
+            self._reached_at = now
+        return self._reached_at is not None and now - self._reached_at > MUTE_AFTER_S
 
     def close(self):
         """Stop listening and give the velocity topics back (blocking: it asks the master)."""
