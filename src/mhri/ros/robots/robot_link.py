@@ -13,7 +13,7 @@ from sensor_msgs.msg import BatteryState
 from mhri.core.robots.link import link_note, link_state
 from mhri.core.robots.link_quality import LinkQuality, link_warning
 from mhri.core.robots.names import topic_of
-from mhri.core.robots.stamp_age import StampAge
+from mhri.core.robots.stamp_age import delay_of, StampAge
 from mhri.core.robots.stop_proof import StopProof
 from mhri.core.screen.views import LIVE, RobotView
 from mhri.ros.convert import header_of, motion_from_odometry, motion_from_turtle_pose
@@ -153,8 +153,8 @@ class RobotLink:
             late_s = 0.0
             if header is not None:
                 number, stamp_s = header
-                late_s = self._ages.setdefault(feed, StampAge()).late_s(stamp_s or None, now)
-                self._quality.on_message(number, came_at - stamp_s if stamp_s else None, now)
+                late_s = self._ages.setdefault(feed, StampAge()).late_s(stamp_s, now)
+                self._quality.on_message(number, delay_of(came_at, stamp_s), now)
             self._heard_at = now
             self._pending = (feed, message)
             if self._proof is not None:
