@@ -23,7 +23,7 @@ from python_qt_binding.QtGui import QKeyEvent, QMouseEvent  # noqa: E402
 from python_qt_binding.QtTest import QTest  # noqa: E402
 from python_qt_binding.QtWidgets import QApplication  # noqa: E402
 
-from mhri.core import views  # noqa: E402
+from mhri.core.screen import views  # noqa: E402
 
 SOURCES = (('joy', 'Virtual joystick'), ('ps3joy', 'PS3 Controller'), ('voice', 'Voice'))
 

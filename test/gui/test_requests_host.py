@@ -104,11 +104,11 @@ def test_commands_of_the_robot_itself_are_recorded_where_asked_for(session):
 def test_motion_capture_ages_and_bandwidth_show(session):
     window = session.open('bot2')
     session.switch(window, 'camera_rgb')
-    session.until(lambda: 'captured x' in window.state_line.capture_label.text(),
+    session.until(lambda: 'captured x' in str(window.state_line.texts()),
                   what='motion capture')
-    assert 'odometry off 0.0' in window.state_line.capture_label.text()
-    session.until(lambda: 'RGB' in window.state_line.ages_label.text()
-                  and 'IMU' in window.state_line.ages_label.text())
+    assert 'odometry off 0.0' in str(window.state_line.texts())
+    session.until(lambda: 'RGB' in str(window.state_line.texts())
+                  and 'IMU' in str(window.state_line.texts()))
     session.until(lambda: 'Mbit/s' in session.host.panel.cameras_label.text())
     window.hide()
     session.until(lambda: session.operator.feeds('bot2').get('mocap') is None,

@@ -20,7 +20,7 @@ VIEW = RobotView('bot1', 'TurtleBot2', link=views.LIVE, age_s=0.012, figures=FIG
 def test_the_window_tells_round_trip_clock_and_loss(operator, figures, text):
     line = operator.show(StateLine())
     line.show_state(StateView((), figures=figures))
-    assert ' '.join(line.capture_label.text().split()) == ' '.join(text.split())
+    assert ' '.join('   '.join(line.texts()).split()) == ' '.join(text.split())
 
 
 @pytest.mark.parametrize('kind', ['turtlebot', 'generic'])

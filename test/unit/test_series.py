@@ -180,3 +180,16 @@ def test_an_axis_does_not_jitter_with_noise():
     seen = {axis.follow(0.3 + 0.01 * rng.randn(), 0.5 + 0.01 * rng.randn(), 0.05 * step)
             for step in range(2000)}
     assert len(seen) <= 2
+
+
+@pytest.mark.parametrize('absurd', [1e30, -1e30, 1.6e308, math.inf, math.nan])
+def test_what_cannot_be_leaves_no_trace(absurd):
+    times = NOW - 10.0 + np.arange(1000) * 0.01
+    values = np.zeros(1000)
+    values[::2] = absurd
+    with np.errstate(all='raise'):
+        ring = ring_of(times, values)
+        x, y = ring.curve('a', NOW, 10)
+    assert len(x) and set(finite((x, y))[1]) == {0.0}
+    turned = roll_pitch_yaw(np.array([[0.0, 0.0, absurd, 1.0], [0.0, 0.0, 0.0, 1.0]]))
+    assert np.isnan(turned[0]).all() and not turned[1].any()

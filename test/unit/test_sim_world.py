@@ -14,7 +14,7 @@ import pytest
 
 from mhri.sim import world as world_module
 from mhri.sim.body import parse_bodies
-from mhri.sim.world import GHOST_S, SLOTS, World, world_path, WorldFull
+from mhri.sim.world import GHOST_S, SLOTS, World, world_path, WorldFull, WorldRefused
 
 BODY = parse_bodies((Path(__file__).resolve().parents[2] / 'resource' / 'sim'
                      / 'bodies.yaml').read_text(), 'bodies.yaml')['turtlebot2']
@@ -161,6 +161,7 @@ def test_leftovers_of_a_crash(tmp_path, clock):
     noise = np.random.default_rng(1).bytes(size)
     for content in (b'', b'x' * 100, b'\xff' * size, noise):
         path.write_bytes(content)
+        path.chmod(0o600)
         world = World(str(path), 'bot1', BODY, clock)
         world.publish(1.0, 2.0, 0.0)
         assert seen(world) == []
@@ -281,3 +282,46 @@ def test_coming_and_going_at_once(tmp_path):
         robot.join(PATIENCE_S)
         assert robot.exitcode == 0
     assert os.listdir(str(tmp_path)) == []
+
+
+def link_to_a_file(path, aside):
+    aside.write_bytes(b'precious')
+    os.symlink(str(aside), path)
+
+
+def second_name(path, aside):
+    aside.write_bytes(b'precious')
+    aside.chmod(0o600)
+    os.link(str(aside), path)
+
+
+def file_for_all(path, aside):
+    aside.write_bytes(b'precious')
+    aside.rename(path)
+    os.chmod(path, 0o666)
+
+
+@pytest.mark.parametrize('lay, reason', [
+    (link_to_a_file, 'symbolic links'), (second_name, 'another name'), (file_for_all, 'mode 666'),
+    (lambda path, aside: os.mkfifo(path, 0o600), 'no ordinary file'),
+    (lambda path, aside: os.mkdir(path), 'directory')])
+def test_what_is_no_file_of_this_user_alone_is_refused(tmp_path, clock, lay, reason):
+    path, aside = world_path('trap', str(tmp_path)), tmp_path / 'aside'
+    lay(path, aside)
+    handles = len(os.listdir('/proc/self/fd'))
+    with pytest.raises(WorldRefused, match=reason) as refused:
+        World(path, 'bot1', BODY, clock)
+    assert path in str(refused.value) and 'remove it' in str(refused.value)
+    assert len(os.listdir('/proc/self/fd')) == handles
+    for left in (aside, Path(path)):
+        assert not left.is_file() or left.read_bytes() == b'precious', 'neither written nor cut'
+
+
+def test_the_file_of_another_user_is_refused(tmp_path, clock, monkeypatch):
+    path = world_path('theirs', str(tmp_path))
+    Path(path).write_bytes(b'precious')
+    os.chmod(path, 0o600)
+    monkeypatch.setattr(world_module.os, 'getuid', lambda mine=os.getuid(): mine + 1)
+    with pytest.raises(WorldRefused, match='another user'):
+        World(path, 'bot1', BODY, clock)
+    assert Path(path).read_bytes() == b'precious'

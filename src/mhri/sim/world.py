@@ -6,10 +6,12 @@ A file in shared memory, one slot for each robot: what a laser, a bumper or a ca
 need a topic that no real robot has. A robot that is killed stays where it was, as a body, until its
 slot is taken by a robot of its name or has not been written for :data:`GHOST_S`.
 """
+import errno
 import fcntl
 import hashlib
 import mmap
 import os
+import stat
 import struct
 import tempfile
 
@@ -25,10 +27,31 @@ _SLOT = np.dtype([('name', 'S{}'.format(MAX_LENGTH)), ('owner', '<u8'), ('x', '<
 _OWNER = struct.Struct('<Q')
 _POSE = struct.Struct('<4d')
 _SIZE = SLOTS * _SLOT.itemsize
+# What opening says of a symbolic link, somebody else's file, a folder, and a socket.
+_NOT_OURS = frozenset((errno.ELOOP, errno.EACCES, errno.EPERM, errno.EISDIR, errno.ENXIO))
+
+
+class WorldRefused(OSError):
+    """What is in the place of the shared file is not a file of this user alone; says what to do."""
 
 
 class WorldFull(Exception):
     """No slot is left: more than :data:`SLOTS` robots in one building."""
+
+
+def _file_problem(status):
+    """Return why a file cannot be this user's own world, '' where it can.
+
+    :param status: its ``os.stat_result``
+    """
+    if not stat.S_ISREG(status.st_mode):
+        return 'it is no ordinary file'
+    if status.st_uid != os.getuid():
+        return 'it belongs to another user ({})'.format(status.st_uid)
+    if status.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
+        return 'others may write it (mode {:o})'.format(stat.S_IMODE(status.st_mode))
+    # None: the last robot has just removed it.
+    return 'it has another name elsewhere' if status.st_nlink > 1 else ''
 
 
 def world_path(key, folder=None):
@@ -49,6 +72,7 @@ class World:
     :param body_type: :class:`mhri.sim.body.BodyType`, which the others are to see
     :param clock: seconds since some time common to all processes (``time.monotonic`` on Linux)
     :raises WorldFull: no slot is left
+    :raises WorldRefused: the file is not one of this user alone
     :raises OSError: the file cannot be used
     """
 
@@ -69,13 +93,34 @@ class World:
             fcntl.flock(self._file, fcntl.LOCK_UN)
 
     def _open_locked(self):
-        """Return the open file, locked; one that the last robot has removed is no world."""
+        """Return the open file, locked; one that the last robot has removed is no world.
+
+        The folder is everybody's: what lies there may be a trap.
+
+        :raises WorldRefused: it is
+        """
         while True:
-            handle = os.open(self._path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
-            fcntl.flock(handle, fcntl.LOCK_EX)
-            if os.fstat(handle).st_nlink:
-                return handle
-            os.close(handle)
+            try:
+                handle = os.open(self._path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
+            except OSError as error:
+                if error.errno in _NOT_OURS:
+                    raise self._refused(error.strerror)
+                raise
+            try:
+                problem = _file_problem(os.fstat(handle))
+                if problem:
+                    raise self._refused(problem)
+                fcntl.flock(handle, fcntl.LOCK_EX)
+                if os.fstat(handle).st_nlink:
+                    kept, handle = handle, None
+                    return kept
+            finally:
+                if handle is not None:
+                    os.close(handle)
+
+    def _refused(self, reason):
+        return WorldRefused('{}: not used, {}; remove it, or ask who put it there'.format(
+            self._path, reason))
 
     def _take(self):
         """Take the slot of this name, else a free one; called with the file locked."""

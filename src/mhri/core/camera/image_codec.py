@@ -4,13 +4,15 @@
 
 The formats are those of image_transport's ``compressed`` plugin: 'jpeg' or 'png' alone, as single
 cameras write it, or '<encoding>; jpeg compressed [bgr8]'. What the data begin with decides; the
-format only tells in which order a png's colours were written where that is not the usual one.
+format only tells of a Bayer mosaic, and in which order a png's colours were written where that is
+not the usual one.
 """
 import struct
 
 import cv2
 import numpy as np
 
+from mhri.core.camera.bayer import bayer_encoding, debayered
 from mhri.core.camera.images import FrameError, check_size, fit
 from mhri.core.camera.jpeg import decode_jpeg
 
@@ -37,7 +39,29 @@ def decode_compressed(fmt, data, view=None):
     """
     kind, full = read_size(data, fmt)
     target = fit(full, view)
-    factor = _factor(full, target) if kind == 'jpeg' else 1
+    rgb = _decode_mosaic(fmt, kind, data)
+    if rgb is None:
+        rgb = _decode_colours(fmt, kind, data, full, _factor(full, target) if kind == 'jpeg' else 1)
+    if (rgb.shape[1], rgb.shape[0]) != target:
+        rgb = cv2.resize(rgb, target, interpolation=interpolation(rgb, target))
+    return rgb, full, kind
+
+
+def _decode_mosaic(fmt, kind, data):
+    """Return the RGB picture of a compressed Bayer mosaic; None where it is none.
+
+    At its full size: reduced, the colours of its pixels would be one grey.
+    """
+    encoding = bayer_encoding(fmt)
+    if encoding is None:
+        return None
+    mosaic = decode_with_opencv(kind, data, cv2.IMREAD_UNCHANGED)
+    # Some publishers make the colours themselves, and leave the sensor's encoding in the format.
+    return debayered(mosaic, encoding) if mosaic.ndim == 2 else None
+
+
+def _decode_colours(fmt, kind, data, full, factor):
+    """Return the RGB picture of a coded picture, a jpeg so many times smaller."""
     rgb = decode_jpeg(data, full, factor) if kind == 'jpeg' else None
     if rgb is None:
         # The data say how the picture lies (EXIF); a robot's camera is shown as it is mounted.
@@ -45,9 +69,7 @@ def decode_compressed(fmt, data, view=None):
         if kind == 'jpeg' or not _is_rgb_order(fmt):
             # In place: a fresh array of this size costs ten times as much, in page faults.
             cv2.cvtColor(rgb, cv2.COLOR_BGR2RGB, rgb)
-    if (rgb.shape[1], rgb.shape[0]) != target:
-        rgb = cv2.resize(rgb, target, interpolation=interpolation(rgb, target))
-    return rgb, full, kind
+    return rgb
 
 
 def _is_rgb_order(fmt):

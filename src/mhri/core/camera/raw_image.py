@@ -8,6 +8,7 @@ REP-118 for depth.
 import cv2
 import numpy as np
 
+from mhri.core.camera.bayer import BAYER
 from mhri.core.camera.images import FrameError, check_size, fit
 from mhri.core.camera.image_codec import interpolation
 
@@ -21,12 +22,8 @@ _COLOUR = {
     # In ROS yuv422 is UYVY, yuv422_yuy2 is YUYV; drivers say yuyv and uyvy too.
     'yuv422': ('u1', 2, cv2.COLOR_YUV2RGB_UYVY), 'uyvy': ('u1', 2, cv2.COLOR_YUV2RGB_UYVY),
     'yuv422_yuy2': ('u1', 2, cv2.COLOR_YUV2RGB_YUY2), 'yuyv': ('u1', 2, cv2.COLOR_YUV2RGB_YUY2),
-    # ROS names a Bayer pattern by its first two pixels, OpenCV by the second row's second and
-    # third: each is the other's opposite, and its conversion to "BGR" gives RGB.
-    'bayer_rggb8': ('u1', 1, cv2.COLOR_BayerBG2RGB),
-    'bayer_bggr8': ('u1', 1, cv2.COLOR_BayerRG2RGB),
-    'bayer_gbrg8': ('u1', 1, cv2.COLOR_BayerGR2RGB),
-    'bayer_grbg8': ('u1', 1, cv2.COLOR_BayerGB2RGB),
+    **{name: ('u2' if name.endswith('16') else 'u1', 1, conversion)
+       for name, conversion in BAYER.items()},
 }
 _DEPTH = {'16UC1': ('u2', 1), 'mono16': ('u2', 1), '32FC1': ('f4', 1)}
 MM_PER_M = 1000.0

@@ -15,6 +15,9 @@ import numpy as np
 BIN_S = 1.0 / 30.0
 LONGEST_S = 60.0
 POINTS = 300
+# What is beyond this is no value, whoever hands it over: sums of larger ones overflow, and the
+# dashes of a line that long would never all be painted.
+BIGGEST = 1e9
 # A line is not drawn across a silence longer than this.
 GAP_S = 0.5
 
@@ -50,12 +53,13 @@ class BinRing:
 
         :param times_s: array (n,), ascending, of one clock that never goes back; a sample older
             than the newest bin counts as of that bin
-        :param rows: array (n, keys); NaN and infinite values leave no trace
+        :param rows: array (n, keys); NaN and what is beyond :data:`BIGGEST` leaves no trace
         """
         times_s, rows = np.asarray(times_s, float), np.array(rows, float)
         if not len(times_s):
             return
-        rows[~np.isfinite(rows)] = np.nan
+        with np.errstate(invalid='ignore'):
+            rows[~(np.abs(rows) <= BIGGEST)] = np.nan
         bins = np.maximum.accumulate(np.maximum(
             np.floor(times_s / BIN_S).astype(np.int64), self._newest))
         starts = np.flatnonzero(np.concatenate(([True], np.diff(bins) > 0)))
@@ -154,10 +158,12 @@ def roll_pitch_yaw(quaternions):
     """Return the angles [rad] of orientations as an array (n, 3); turns about z, y, x in turn.
 
     :param quaternions: array (n, 4) of x, y, z, w; what is not of unit length is scaled, and one of
-        no length gives NaN
+        no length, or with an element beyond :data:`BIGGEST`, gives NaN
     """
-    norm = np.linalg.norm(quaternions, axis=1, keepdims=True)
-    x, y, z, w = (quaternions / np.where(norm > 1e-6, norm, np.nan)).T
+    with np.errstate(invalid='ignore'):
+        turns = np.where(np.abs(quaternions) <= BIGGEST, quaternions, np.nan)
+    norm = np.linalg.norm(turns, axis=1, keepdims=True)
+    x, y, z, w = (turns / np.where(norm > 1e-6, norm, np.nan)).T
     return np.column_stack((
         np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
         np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0)),

@@ -1,11 +1,23 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Small pieces of every view: a line of text that never asks for room, a state shape, a pill."""
+from html import escape
+
 from python_qt_binding.QtCore import QRectF, QSize, Qt
 from python_qt_binding.QtGui import QPainter, QPalette, QPen
 from python_qt_binding.QtWidgets import QLabel, QSizePolicy, QWidget
 
 from mhri.gui.screen import theme, words
+
+
+def plain_tip(text):
+    """Return a tool tip that shows a text as it is.
+
+    Qt takes one that looks like HTML for HTML, and then opens the files that it names.
+    """
+    if not Qt.mightBeRichText(text):
+        return text
+    return '<span style="white-space:pre-wrap">{}</span>'.format(escape(text))
 
 
 class TextLine(QLabel):
@@ -66,7 +78,7 @@ class TextLine(QLabel):
     def paintEvent(self, event):  # noqa: N802
         """Paint the text, shortened to the width there is."""
         shown = self.shown_text()
-        whole = self._hint() if shown == self.text() else self.text()
+        whole = self._hint() if shown == self.text() else plain_tip(self.text())
         if whole != self.toolTip():
             self.setToolTip(whole)
         painter = QPainter(self)

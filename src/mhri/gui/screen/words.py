@@ -6,6 +6,9 @@ import math
 from mhri.core.screen import views
 
 UNKNOWN = '–'
+BETWEEN_FIGURES = '   '
+# Nothing on the screen is that big: it is a fault of whoever says it, and would not fit.
+_TOO_BIG = 1e8
 
 LINK_WORDS = {
     views.WAITING: 'waiting',
@@ -16,8 +19,8 @@ LINK_WORDS = {
 
 
 def _is_number(value):
-    """Tell whether a value can be shown as a number: neither None nor NaN nor infinite."""
-    return value is not None and math.isfinite(value)
+    """Tell whether a value can be shown as a number: neither None nor NaN, and not endless."""
+    return value is not None and abs(value) < _TOO_BIG
 
 
 def age_text(age_s):
@@ -144,7 +147,7 @@ def figures_text(figures):
         words.append('clock {:+.2f} s'.format(round(figures.offset_s, 2) + 0.0))
     if _is_number(figures.loss):
         words.append('lost {:.0f} %'.format(100.0 * figures.loss))
-    return '   '.join(words)
+    return BETWEEN_FIGURES.join(words)
 
 
 def bandwidth_text(bits_per_s):

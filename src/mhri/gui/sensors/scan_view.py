@@ -8,6 +8,7 @@ from python_qt_binding.QtCore import QPointF, QRectF, QSize, Qt
 from python_qt_binding.QtGui import QPainter, QPalette, QPen, QPolygonF
 from python_qt_binding.QtWidgets import QSizePolicy, QWidget
 
+from mhri.core.sensors.plausible import BOUNDS, RANGE
 from mhri.gui.screen import theme, words
 from mhri.gui.screen.pending import Pace
 
@@ -22,16 +23,22 @@ ROBOT_RADIUS_M = 0.18
 NUMBERS_PERIOD_S = 0.25
 
 
+def _valid(ranges):
+    """Return which ranges are measurements that can be drawn."""
+    with np.errstate(invalid='ignore'):
+        return (ranges >= BOUNDS[RANGE].least) & (ranges <= BOUNDS[RANGE].greatest)
+
+
 def reach_for(ranges):
     """Return the radius [m] that shows all but the farthest 2 % of some ranges."""
-    valid = ranges[np.isfinite(ranges)]
+    valid = ranges[_valid(ranges)]
     farthest = np.percentile(valid, 98) if len(valid) else 0.0
     return next((reach for reach in _RINGS if farthest <= reach), max(_RINGS))
 
 
 def scan_points(ranges, angle_min, angle_increment):
-    """Return the valid points as arrays (x ahead, y left, range), all in m."""
-    valid = np.isfinite(ranges)
+    """Return the points that can be as arrays (x ahead, y left, range), all in m."""
+    valid = _valid(ranges)
     angles = angle_min + angle_increment * np.flatnonzero(valid)
     distances = ranges[valid]
     return distances * np.cos(angles), distances * np.sin(angles), distances

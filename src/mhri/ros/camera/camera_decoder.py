@@ -9,7 +9,10 @@ from mhri.core.camera.depth_colour import DepthColour
 from mhri.core.camera.images import FrameError, StreamStatus
 from mhri.core.camera.image_message import read_picture
 from mhri.core.camera.stream_meter import StreamMeter
+from mhri.core.screen.text import tidy_text
 
+# Room for the list of what can be read.
+_LONGEST_PROBLEM = 400
 SILENT_S = 2.0
 STALE_S = 1.0
 
@@ -62,7 +65,7 @@ class Decoder:
     def explain(self, hint):
         """Say why nothing comes; '' where something should."""
         with self._changed:
-            self._hint = hint
+            self._hint = tidy_text(hint)
 
     def hears(self, now):
         """Tell whether pictures come."""
@@ -144,7 +147,8 @@ class Decoder:
         with self._changed:
             self._bad += 1
             self._bad_at = received_s
-            self._problem = problem
+            # It names what a message says of itself, which may be any text.
+            self._problem = tidy_text(problem, _LONGEST_PROBLEM)
 
     def _note_good(self, frame, transport):
         with self._changed:

@@ -11,6 +11,7 @@ import threading
 import rospy
 from std_msgs.msg import Bool, Empty
 
+from mhri.core.screen.text import tidy_text
 from mhri.core.screen.views import HeardView
 from mhri.msg import Heard
 
@@ -33,7 +34,8 @@ class DeviceClient:
         threading.Thread(target=self._repeat, name='push_to_talk', daemon=True).start()
 
     def _hear(self, message):
-        self._heard = HeardView(message.text, message.command, message.accepted, message.reason)
+        self._heard = HeardView(tidy_text(message.text), tidy_text(message.command),
+                                message.accepted, tidy_text(message.reason))
 
     def heard(self):
         """Return the newest :class:`mhri.core.screen.views.HeardView`, None before the first."""

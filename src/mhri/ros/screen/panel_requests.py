@@ -3,6 +3,7 @@
 """The panel's ear for pad buttons, voices and labs' own nodes."""
 import rospy
 
+from mhri.core.screen.text import tidy_names, tidy_text
 from mhri.msg import PanelRequest
 
 # More than this wait only where a program has run wild; the newest are dropped then.
@@ -23,9 +24,9 @@ class PanelRequests:
     def _hear(self, message):
         if self._events.qsize() >= _MOST:
             rospy.logwarn_throttle(1.0, 'too many requests to the panel: {} is dropped'.format(
-                message.action))
+                tidy_text(message.action)))
             return
-        self._events.put(('request', (message.action, tuple(message.robots))))
+        self._events.put(('request', (tidy_text(message.action), tidy_names(message.robots))))
 
     def unregister(self):
         """Stop listening (blocking: it asks the master)."""

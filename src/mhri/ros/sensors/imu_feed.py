@@ -10,8 +10,11 @@ import numpy as np
 import rospy
 
 from mhri.core.robots.names import topic_of
+from mhri.core.sensors.plausible import (
+    ACCELERATION, ANGULAR_VELOCITY, QUATERNION, sifted, SPEED)
 from mhri.core.sensors.series import BinRing, IMU_KEYS, ODOMETRY_KEYS, roll_pitch_yaw, Series
 from mhri.ros.graph.unsubscribe import unsubscribe
+from mhri.ros.sensors.refusals import Refusals
 
 # So many samples at most wait for the next drawing; then the ROS thread sorts them in itself.
 _MOST_PENDING = 1024
@@ -47,9 +50,12 @@ def _turtle_row(message):
     return message.linear_velocity, message.angular_velocity
 
 
-_READERS = {'sensor_msgs/Imu': ('sensor_msgs.msg', 'Imu', _imu_row),
-            'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', _odometry_row),
-            'turtlesim/Pose': ('turtlesim.msg', 'Pose', _turtle_row)}
+_IMU_KINDS = (QUATERNION,) * 4 + (ANGULAR_VELOCITY,) * 3 + (ACCELERATION,) * 3
+_MOTION_KINDS = (SPEED, ANGULAR_VELOCITY)
+# Type: module and class of its messages, what makes a row of one, and what kind each value is of.
+_READERS = {'sensor_msgs/Imu': ('sensor_msgs.msg', 'Imu', _imu_row, _IMU_KINDS),
+            'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', _odometry_row, _MOTION_KINDS),
+            'turtlesim/Pose': ('turtlesim.msg', 'Pose', _turtle_row, _MOTION_KINDS)}
 
 
 class _Intake:
@@ -58,7 +64,7 @@ class _Intake:
     def __init__(self, topics, message_type, keys, prepare, clock):
         self.topics = topics
         self.ring = BinRing(keys)
-        module, name, self._read = _READERS[message_type]
+        module, name, self._read, self._kinds = _READERS[message_type]
         self._message_class = getattr(importlib.import_module(module), name)
         self._prepare = prepare
         self._clock = clock
@@ -66,6 +72,7 @@ class _Intake:
         self._times, self._rows = [], []
         self._rank, self._heard_at = 0, -math.inf
         self._subscribers = []
+        self._refusals = [Refusals(topic, clock) for topic in topics]
 
     def subscribe(self):
         # No queue_size: it would hold for every subscriber of the topic in this program, and a
@@ -81,9 +88,12 @@ class _Intake:
 
     def _hear(self, message, rank):
         now = self._clock()
-        if isinstance(message, rospy.AnyMsg):
-            message = self._message_class().deserialize(message._buff)
-        row = self._read(message)
+        message = self._refusals[rank].read(message, self._message_class)
+        if message is None:
+            return
+        row, problem = sifted(self._kinds, self._read(message))
+        if problem:
+            self._refusals[rank].note(problem)
         with self._lock:
             if rank > self._rank and now - self._heard_at < _SILENT_S:
                 return
@@ -106,6 +116,9 @@ class _Intake:
     def age_s(self):
         with self._lock:
             return None if self._heard_at == -math.inf else self._clock() - self._heard_at
+
+    def refused(self):
+        return sum(refusals.count for refusals in self._refusals)
 
 
 def _with_angles(rows):
@@ -160,3 +173,7 @@ class ImuFeed:
         """Return the age of the newest IMU message [s]; None before the first, or without IMU."""
         intake = self._intakes.get(IMU_KEYS)
         return intake.age_s() if intake and intake.topics else None
+
+    def refused(self):
+        """Return the number of messages of which something could not be, and was left out."""
+        return sum(intake.refused() for intake in self._intakes.values())

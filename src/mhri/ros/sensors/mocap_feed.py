@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """A robot's pose by motion capture, where a vrpn_client_node tracks it."""
+import math
 import threading
 import time
 
@@ -8,10 +9,13 @@ from geometry_msgs.msg import PoseStamped
 import rospy
 
 from mhri.core.robots.mocap import Pose
+from mhri.core.sensors.plausible import PLACE, QUATERNION, sifted
 from mhri.ros.convert import yaw_of
 from mhri.ros.graph.unsubscribe import unsubscribe
+from mhri.ros.sensors.refusals import Refusals
 
 TOPIC = '/vrpn_client_node/{}/pose'
+_KINDS = (PLACE,) * 2 + (QUATERNION,) * 4
 
 
 class MocapFeed:
@@ -30,6 +34,7 @@ class MocapFeed:
         self._message = None
         self._pose = None
         self._heard_at = None
+        self._refusals = Refusals(self._topic, clock)
 
     def open(self):
         """Begin to listen (blocking: it asks the master)."""
@@ -52,11 +57,24 @@ class MocapFeed:
         with self._lock:
             message, self._message = self._message, None
             if message is not None:
-                if isinstance(message, rospy.AnyMsg):
-                    message = PoseStamped().deserialize(message._buff)
-                place = message.pose.position
-                self._pose = Pose(place.x, place.y, yaw_of(message.pose.orientation))
+                self._pose = self._read(message) or self._pose
             return self._pose
+
+    def _read(self, message):
+        """Return the :class:`Pose` in a message, NaN where it cannot be; None for mere bytes."""
+        message = self._refusals.read(message, PoseStamped)
+        if message is None:
+            return None
+        place, turn = message.pose.position, message.pose.orientation
+        (x, y, *turn_values), problem = sifted(
+            _KINDS, (place.x, place.y, turn.x, turn.y, turn.z, turn.w))
+        if problem:
+            self._refusals.note(problem)
+        return Pose(x, y, math.nan if any(map(math.isnan, turn_values)) else yaw_of(turn))
+
+    def refused(self):
+        """Return the number of poses that could not be, and were left out."""
+        return self._refusals.count
 
     def age_s(self):
         """Return the age of the newest pose [s], None before the first."""

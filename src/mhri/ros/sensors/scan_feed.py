@@ -4,12 +4,16 @@
 import threading
 import time
 
-import numpy as np
 import rospy
 from sensor_msgs.msg import LaserScan
 
 from mhri.core.robots.names import topic_of
+from mhri.core.sensors.plausible import beams_problem, measured_ranges, thinned
 from mhri.ros.graph.unsubscribe import unsubscribe
+from mhri.ros.sensors.refusals import Refusals
+
+# More than one for each pixel around the view; a scan with more is thinned out to this.
+MOST_POINTS = 4000
 
 
 class ScanFeed:
@@ -26,12 +30,14 @@ class ScanFeed:
         self._subscribers = []
         self._message = None
         self._heard_at = None
+        self._refusals = [Refusals(topic, clock) for topic in self._topics]
 
     def open(self):
         """Begin to listen (blocking: it asks the master)."""
         # No queue_size, for the sake of a recorder of the same topic in this program.
-        self._subscribers = [rospy.Subscriber(topic, LaserScan, self._hear, tcp_nodelay=True)
-                             for topic in self._topics]
+        self._subscribers = [rospy.Subscriber(topic, LaserScan, self._hear, refusals,
+                                              tcp_nodelay=True)
+                             for topic, refusals in zip(self._topics, self._refusals)]
 
     def close(self):
         """Stop listening and forget (blocking: it asks the master)."""
@@ -41,26 +47,38 @@ class ScanFeed:
         with self._lock:
             self._message = self._heard_at = None
 
-    def _hear(self, message):
+    def _hear(self, message, refusals):
+        message = refusals.read(message, LaserScan)
+        if message is None:
+            return
+        problem = beams_problem(len(message.ranges), message.angle_min, message.angle_increment)
+        if problem:
+            refusals.note(problem)
+            return
         with self._lock:
             self._message, self._heard_at = message, self._clock()
+
+    def refused(self):
+        """Return the number of scans that could not be, and were left out."""
+        return sum(refusals.count for refusals in self._refusals)
 
     def take(self):
         """Return (ranges, angle_min, angle_increment, range_max), or None where nothing is new.
 
         ``ranges`` is an array [m] in which NaN stands for no measurement: nothing within reach, too
-        near, or outside what the sensor says it can. Angles [rad] begin ahead and grow to the left.
+        near, outside what the sensor says it can, or beyond what any can. There are
+        :data:`MOST_POINTS` at most, each the nearest of the beams around it. Angles [rad] begin
+        ahead and grow to the left.
         """
         with self._lock:
             message, self._message = self._message, None
         if message is None:
             return None
-        if isinstance(message, rospy.AnyMsg):
-            message = LaserScan().deserialize(message._buff)
-        ranges = np.array(message.ranges, dtype=float)
-        with np.errstate(invalid='ignore'):
-            ranges[~((ranges >= message.range_min) & (ranges <= message.range_max))] = np.nan
-        return ranges, message.angle_min, message.angle_increment, message.range_max
+        ranges, together = thinned(measured_ranges(
+            message.ranges, message.range_min, message.range_max), MOST_POINTS)
+        step = message.angle_increment
+        return (ranges, message.angle_min + 0.5 * (together - 1) * step, together * step,
+                message.range_max)
 
     def age_s(self):
         """Return the age of the newest scan [s], None before the first."""
