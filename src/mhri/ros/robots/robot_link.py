@@ -224,7 +224,8 @@ class RobotLink:
 
     def _takes_commands(self, now):
         """Tell whether the robot has listened to commands for long enough to be heard, too."""
-        if not self.gate.reachable():
+        gate = self._gates.robot(self.name)
+        if gate is None or not gate.topic or not self._gates.answers():
             self._reached_at = None
         elif self._reached_at is None:
             self._reached_at = now
