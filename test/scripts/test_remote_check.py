@@ -264,8 +264,10 @@ def test_release_takes_what_the_robot_brought_and_nothing_else(master, before):
         claim.make()
         master.params.update(brought)
         if ends:
+            master.params['/bot1/mhri/command'] = 'said while it ran'
             claim.give_up()
-    assert master.params == dict(before, **{'/run_id': 'x'})
+    assert master.params == dict(before, **{'/run_id': 'x',
+                                            '/bot1/mhri/command': 'said while it ran'})
 
 
 def test_wrong_things_are_one_line_and_status_1(master):

@@ -271,10 +271,7 @@ def check_host(host, port, own, name):
 
 
 def outermost(name, kept):
-    """Return the shortest beginning of a parameter's name that has nothing in it that is kept.
-
-    None where the parameter itself is.
-    """
+    """Return the shortest beginning of a name under which nothing is kept, None if it is itself."""
     parts = name.split('/')
     for length in range(2, len(parts) + 1):
         whole = '/'.join(parts[:length])
@@ -301,7 +298,7 @@ class Claim(object):
     def make(self):
         """Note it, and which parameters the robot has there already: those stay behind it.
 
-        What a run left that was killed is not the host's: the list of that run holds on.
+        Of a run that was killed the list is there still, and holds on.
 
         :raises Problem: the master does not answer
         """
@@ -328,7 +325,10 @@ class Claim(object):
         if not self.state():
             return
         found = answer(self._master.getParam, self._key('mhri_remote_found')) or []
-        for name in set(outermost(name, found) for name in self._parameters()) - {None}:
+        names = self._parameters()
+        # What an operator says of the robot, while it runs, too.
+        found += [name for name in names if name.startswith(self._key('mhri/'))]
+        for name in set(outermost(name, found) for name in names) - {None}:
             answer(self._master.deleteParam, name)
 
     def watch(self):
