@@ -47,11 +47,11 @@ UBUNTU_TEST=(
   shellcheck xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server openssl iproute2
 )
 
-say() { printf 'mhri: %s\n' "$*"; }
-warn() { printf 'mhri: %s\n' "$*" >&2; }
+say() { printf 'mhri: %s\n' "$(unarmed "$*")"; }
+warn() { printf 'mhri: %s\n' "$(unarmed "$*")" >&2; }
 die() { warn "$*"; exit 1; }
 # A wrong command line: exit status 2, and nothing has been started.
-usage_error() { warn "$* (--help lists every option)"; exit 2; }
+usage_error() { warn "$(brief "$*") (--help lists every option)"; exit 2; }
 
 # Prints debian or ubuntu, or ends with what is supported.
 os_family() {
