@@ -89,7 +89,10 @@ CASES = {
         [stream('/gates/state', samples=((100.0, 9.0),)), parameter(use_sim_time=True),
          add('/gazebo', ['/clock'])], []),
     'gates refuse somebody': (
-        [stream('/gates/state', refused=('/rogue: stop_all, 3 times',))], ['gates_refused']),
+        [stream('/gates/state', refused=('/rogue: stop_all, 3 times', '/gone: twist, 1 times')),
+         add('/rogue', ['/x'])], ['gates_refused']),
+    'gates refused somebody who has gone': (
+        [stream('/gates/state', refused=('/rogue: stop_all, 3 times',))], []),
     'gates bypassed': ([add('/rogue', ['/gates/state'])], ['gates_bypassed']),
     'two sticks': ([add('/script', ['/mux_in/joy']), add('/mhri_panel', ['/mux_in/joy'])],
                    ['stick_several']),
