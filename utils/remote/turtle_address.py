@@ -75,7 +75,8 @@ def choose_address(target, own, lengths, out, option):
             near.append(address)
     if len(near) == 1:
         return near[0]
-    if out in (near or own):
+    # The system speaks to its own addresses, 127.0.0.1 among them, from the same one.
+    if out == target or out in (near or own):
         return out
     if len(own) == 1:
         return own[0]
