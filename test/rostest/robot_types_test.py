@@ -36,6 +36,7 @@ from support.ros_system import wait_for  # noqa: E402
 PATIENCE_S = 30.0
 PLAIN_ROBOT = os.path.join(HERE, '..', 'support', 'plain_robot.py')
 TB3_SIGN = ('--sign', 'sensor_state', 'turtlebot3_msgs/SensorState')
+TURTLES = os.path.join(HERE, '..', 'support', 'turtles.py')
 GUARD = os.path.join(HERE, '..', '..', 'utils', 'remote', 'mhri_guard')
 PARAMETERS = ('/robot_type', '/robot_model', '/robot_name')
 
@@ -202,6 +203,23 @@ class RobotTypesTest(unittest.TestCase):
             kind = self.add(name, facts[name])
             self.assertEqual((kind.name, kind.command), ('turtlesim', (topic,)))
             self.drives(name, 2.0)
+
+    def test_two_turtles_of_one_turtlesim(self):
+        process = Process([sys.executable, TURTLES, 'turtle1', 'turtle2'])
+        self.addCleanup(self.gone, process, '/turtlesim')
+        facts = self.found('robot', 'turtle2')
+        for name in ('robot', 'turtle2'):
+            self.add(name, facts[name])
+        for name, other in (('robot', 'turtle2'), ('turtle2', 'robot')):
+            self.drives(name, 2.0)
+            self.assertEqual(self.view(other).linear_mps, 0.0)
+
+    def test_a_robot_without_odometry_is_not_said_to_be_waited_for(self):
+        """It is driven."""
+        self.start('cmd_vel', 'elsewhere', namespace='/mute')
+        self.add('mute', self.found('mute')['mute'])
+        wait_for(lambda: self.view('mute').link == 'live', PATIENCE_S, 'mute to be reached')
+        self.assertIn('no odometry', self.view('mute').note)
 
     def test_a_robot_started_with_ros_namespace(self):
         rospy.set_param('/bot7/robot_type', 'turtlebot3')

@@ -142,7 +142,10 @@ prepare_launch() {
 # find_guard_python: one that has what the guard imports. ROS up to Melodic has it for Python 2.
 find_guard_python() {
   for GUARD_PYTHON in "$PYTHON" python3 python; do
-    if "$GUARD_PYTHON" -c 'import rospy, geometry_msgs.msg' >/dev/null 2>&1; then return; fi
+    # Not where this was started: a rospy.py may lie there.
+    if (cd / && "$GUARD_PYTHON" -c 'import rospy, geometry_msgs.msg') >/dev/null 2>&1; then
+      return
+    fi
   done
   return 1
 }

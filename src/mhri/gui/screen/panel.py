@@ -1,15 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The panel: robots on the left, driving on the right, stop-all and one sentence below."""
-import base64
-
-from python_qt_binding.QtCore import QByteArray, QPoint, QRect, Qt, QTimer, Signal
+from python_qt_binding.QtCore import QPoint, QRect, Qt, QTimer, Signal
 from python_qt_binding.QtWidgets import QPushButton, QWidget
 
 from mhri.core.screen.stop_words import stop_words
 from mhri.core.screen.views import PanelView, ROS_CUT_OFF
 from mhri.gui.screen import theme, words
 from mhri.gui.driving.control_bar import ControlBar
+from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.gui.driving.drive_keys import DriveKeys, mark_drive_area
 from mhri.gui.screen.forms import load_form
 from mhri.gui.screen.labels import Sign, TextLine
@@ -236,21 +235,15 @@ class PanelWidget(QWidget):
         """Return what only concerns the looks as a plain dict of JSON values."""
         settings = {'splitter': self.splitter.sizes()}
         if self.isWindow():
-            geometry = bytes(self.saveGeometry())
-            settings['geometry'] = base64.b64encode(geometry).decode('ascii')
+            settings['geometry'] = geometry_of(self)
         return settings
 
     def restore_settings(self, settings):
-        """Take back what :meth:`save_settings` returned; what cannot be used is left out."""
-        sizes = settings.get('splitter')
-        if isinstance(sizes, (list, tuple)) and len(sizes) == 2:
-            try:
-                self.splitter.setSizes([int(size) for size in sizes])
-            except (TypeError, ValueError):
-                pass
-        geometry = settings.get('geometry')
-        if isinstance(geometry, str) and self.isWindow():
-            self.restoreGeometry(QByteArray.fromBase64(geometry.encode('ascii', 'ignore')))
+        """Take back what :meth:`save_settings` returned; :func:`usable_state` has looked at it."""
+        if len(settings.get('splitter', ())) == self.splitter.count():
+            self.splitter.setSizes(settings['splitter'])
+        if 'geometry' in settings and self.isWindow():
+            restore_geometry(self, settings['geometry'])
 
     def _look(self):
         """Ask to look for robots."""

@@ -16,6 +16,7 @@ from sensor_msgs.msg import Joy
 from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
 
+from mhri.core.driving.limits import speed_limit_problem
 from mhri.core.screen.text import tidy_text
 from mhri.msg import ControlMode, RobotSelect
 from mhri.ros.convert import to_twist
@@ -83,6 +84,10 @@ class MuxClient:
         self._on_mode()
 
     def _on_limits(self, message):
+        problem = speed_limit_problem(message.linear.x, message.angular.z)
+        if problem:
+            rospy.logwarn_throttle(1.0, '/mux/speed_limit: refused, {}'.format(problem))
+            return
         with self._lock:
             self._limits = (message.linear.x, message.angular.z)
 

@@ -18,6 +18,7 @@ from mhri.core.driving.control import Claim
 from mhri.core.driving.group_speed import pace_words
 from mhri.core.recording.recording import CHOICES, RECORDING
 from mhri.core.driving.selection import Selection
+from mhri.core.screen.source_rows import source_rows
 from mhri.core.screen.status import status_line
 from mhri.core.screen.views import (
     ControlView, PanelView, ROS_CONNECTED, ROS_CUT_OFF, ROS_NO_MASTER, ROS_STARTING, RobotView)
@@ -137,7 +138,7 @@ class ScreenBackend:
         except MasterError as error:
             rospy.logdebug('the sources cannot be read now: %s', error)
             return
-        self._sources = tuple((row['name'], row['label']) for row in rows or ())
+        self._sources = source_rows(rows)
         mode = self._mux.state()[0]
         if self._first_mode and mode:
             if self._first_mode != mode:
