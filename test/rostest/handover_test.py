@@ -40,7 +40,10 @@ class Handover(unittest.TestCase):
 
     def mux(self, *arguments):
         """Start a mux and wait until it hears and is heard."""
-        rospy.set_param('/mux/stop_all', False)
+        # What an argument has set stays at the master.
+        for name in filter(rospy.has_param, ('/mux/' + key for key in (
+                'stop_all', 'config', 'enabling', 'automatic_switching', 'dead_man'))):
+            rospy.delete_param(name)
         self.process = start_mux('__name:=mux', *arguments)
         self.addCleanup(self.end)
         self.twists = twist_recorder()
@@ -147,7 +150,8 @@ class Handover(unittest.TestCase):
         self.waits.wait(lambda _: self.waits.last() == '')
         for frame in ('', 'profile:xbox'):
             with self.pad.frame(frame):
-                self.pad.hold(NEUTRAL, held())
+                begun = self.pad.hold(NEUTRAL, held())
+                wait_until(lambda start=begun: self.pad.last_sent > start + 0.1, 'nothing sent')
                 self.waits.wait(lambda _: self.waits.last() == '')
                 begun = self.pad.hold(PS3_UP, held())
                 self.twists.wait(moves, begun)
@@ -164,8 +168,10 @@ class Handover(unittest.TestCase):
         self.twists.wait(rests, begun)
         self.waits.wait(lambda _: self.waits.last() == 'neutral')
         wait_until(lambda: time.monotonic() - begun > 1.1, 'no time passes')
-        begun = self.pad.hold(PS3_UP)
-        self.assert_held_until_neutral(begun, self.pad, PS3_UP)
+        back = self.pad.hold(PS3_UP)
+        wait_until(lambda: self.pad.last_sent > back + 0.7, 'nothing sent')
+        self.assertFalse([item for item in self.twists.since(back) if moves(item.value)])
+        self.drive(self.pad, PS3_UP)
 
     def test_buttons(self):
         """Stop counts from every source, all else from the one that drives; once each press."""
