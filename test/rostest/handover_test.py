@@ -88,7 +88,7 @@ class Handover(unittest.TestCase):
         self.mux()
         self.select.publish(robots=['bot1'])
         self.drive()
-        begun = self.joy.last_sent
+        begun = time.monotonic()
         self.select.publish(robots=['bot1', 'bot2'])
         first = self.twists.wait(rests, begun)
         self.assertLess(measured('zero after a robot joined', first.at - begun), 0.2)
@@ -221,7 +221,11 @@ class Handover(unittest.TestCase):
             self.joy.hold(NEUTRAL)
             self.pedal.hold(NEUTRAL, (1,))
             self.drive()
-            begun = self.pedal.hold(NEUTRAL, (0,)) if end == 'released' else self.pedal.silence()
+            if end == 'released':
+                self.pedal.hold(NEUTRAL, (0,))
+            else:
+                self.pedal.silence()
+            begun = time.monotonic()
             first = self.twists.wait(rests, begun)
             self.assertLess(measured('zero after the enabling pedal was ' + end, first.at - begun),
                             0.2 if end == 'released' else 0.45)
