@@ -18,6 +18,7 @@ from mhri.core.screen.views import LIVE, RobotView
 from mhri.core.sensors.plausible import BATTERY, can_be
 from mhri.ros.convert import header_of, motion_from_odometry, motion_from_turtle_pose
 from mhri.ros.robots.link_probe import LinkProbe
+from mhri.ros.sensors.refusals import Refusals
 
 _READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
             'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
@@ -55,6 +56,7 @@ class Feed:
         self._class = message_class
         self._read = read
         self._on_message = on_message
+        self._refusals = Refusals(topic, time.monotonic)
         # Not a queue of one: what is left out here must not look like a loss of the link.
         self._subscriber = rospy.Subscriber(topic, message_class, self._hear, queue_size=20,
                                             tcp_nodelay=True)
@@ -63,10 +65,9 @@ class Feed:
         self._on_message(self, message, time.monotonic())
 
     def value(self, message):
-        """Return the value in a message."""
-        if isinstance(message, rospy.AnyMsg):
-            message = self._class().deserialize(message._buff)
-        return self._read(message)
+        """Return the value in a message, None where its bytes are none."""
+        message = self._refusals.read(message, self._class)
+        return None if message is None else self._read(message)
 
     def header(self, message):
         """Return (number, stamp [s]) of a message, or None where it has no header."""
@@ -170,7 +171,7 @@ class RobotLink:
         if self._pending is not None:
             feed, message = self._pending
             self._pending = None
-            self._motion = feed.value(message)
+            self._motion = feed.value(message) or self._motion
 
     def on_stop(self, stopped, now):
         """Begin (or end) the proof of a stop."""
