@@ -215,6 +215,43 @@ class DoctorTest(unittest.TestCase):
                                 'mhri/RobotSelect')
         self.found('panel_several', remedy='rosnode kill /mhri_panel_2')
 
+    def test_gates_that_hang(self):
+        self.clinic.patient('/lab_gates', '--gates').send_signal(signal.SIGSTOP)
+        self.found('gates_silent', remedy="pkill -KILL -f '__name:=lab_gates( |$)'")
+
+    def test_mux_that_hangs(self):
+        self.clinic.patient('/mux_2', '--publish', '/mux/mode', 'mhri/ControlMode').send_signal(
+            signal.SIGSTOP)
+        self.found('mux_silent', remedy="pkill -KILL -f '__name:=mux_2( |$)'")
+
+    def test_several_gates(self):
+        self.clinic.patient('/lab_gates', '--gates')
+        self.found('gates_several', remedy='rosnode kill /lab_gates')
+
+    def test_gates_that_answer_and_say_nothing(self):
+        self.clinic.patient('/lab_gates', '--publish', '/gates/state', 'mhri/GatesState',
+                            '--subscribe', '/robot_controller/twist', TWIST)
+        self.found('gates_silent', 'gates_several', remedy='rosnode kill /lab_gates')
+
+    def test_gates_that_refused_somebody(self):
+        self.clinic.patient('/lab_gates', '--gates', '/rogue: stop_all, 3 times')
+        item = self.found('gates_refused', 'gates_several', remedy='rosnode info /rogue')
+        self.assertIn('/rogue: stop_all, 3 times', item['gates_refused']['problem'])
+
+    def test_state_of_the_gates_from_somebody_else(self):
+        self.clinic.patient('/rogue', '--publish', '/gates/state', 'mhri/GatesState')
+        self.found('gates_bypassed', remedy='rosnode kill /rogue')
+
+    def test_velocities_of_tasks_beside_the_mux(self):
+        self.clinic.patient('/rogue', '--publish', '/robot_controller/task_twist',
+                            'mhri/TeamTwist')
+        self.found('mux_bypassed', remedy='rosnode kill /rogue')
+
+    def test_several_sticks(self):
+        for name in ('/script_1', '/script_2'):
+            self.clinic.patient(name, '--publish', '/mux_in/joy', 'sensor_msgs/Joy')
+        self.found('stick_several', remedy='rosnode kill /script_')
+
     def test_several_muxes(self):
         # A real second mux ends the first one; one of a lab's own, or of an old release, does not.
         self.clinic.patient('/mux_2', '--publish', '/mux/mode', 'mhri/ControlMode')

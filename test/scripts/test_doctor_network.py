@@ -37,7 +37,8 @@ class Ward:
         self._system = system
         self._patients = {}
         machines.run('ip', 'addr', 'add', INNER_IP + '/24', 'dev', 'lan')
-        self.patient('/mhri_mux', HOST_IP, '--publish', '/mux/mode', 'mhri/ControlMode')
+        self.patient('/mhri_mux', HOST_IP, '--publish', '/mux/mode', 'mhri/ControlMode',
+                     '--gates')
         self.patient('/bot1/base', self.robot.ip, '--odometry', 'odom', '--subscribe', 'cmd_vel',
                      TWIST)
         self.param('set', '/bot1/robot_type', 'generic')

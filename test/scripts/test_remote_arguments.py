@@ -138,7 +138,7 @@ def test_nothing_strange_is_passed_on_to_the_robot(run, option, text):
     ('connect', RIGHT['connect'] + ['more'], 'connect_turtlebot.sh USER IP NAME'),
     ('connect', RIGHT['connect'] + ['--frobnicate'], 'there is no option --frobnicate'),
     ('connect', RIGHT['connect'] + ['--type'], '--type needs a value'),
-    ('connect', RIGHT['connect'] + ['--host-ip', '--guard'], '--host-ip needs a value'),
+    ('connect', RIGHT['connect'] + ['--host-ip', '--no-guard'], '--host-ip needs a value'),
     ('deploy', [], 'turtlebot_deploy.sh USER@IP'),
     ('deploy', ['192.0.2.7'], 'turtlebot_deploy.sh USER@IP'),
     ('deploy', ['@192.0.2.7'], "USER: ''"),
@@ -194,12 +194,12 @@ def test_help_is_the_manual(run, script, flag):
 
 def test_what_goes_to_ssh(run):
     status, output = run('connect', *RIGHT['connect'], '--host-ip', '192.0.2.1', '--ssh-port',
-                         '222', '--type', 'crawler', '--launch', 'a/b.launch', '--guard')
+                         '222', '--type', 'crawler', '--launch', 'a/b.launch', '--no-guard')
     assert status == 0, output
     call = '\n'.join(run.calls())
     assert call.startswith('ssh -tt ') and ' -p 222 -l turtle -- 192.0.2.7 exec sh -c ' in call
     assert call.endswith(' turtle@192.0.2.7 mhri 192.0.2.1 bot1 --type crawler '
-                         '--launch a/b.launch --guard')
+                         '--launch a/b.launch --no-guard')
     assert 'StrictHostKeyChecking' not in call and 'UserKnownHostsFile' not in call
 
 

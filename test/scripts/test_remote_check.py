@@ -36,8 +36,8 @@ class FakeMaster:
                                          allow_none=True)
         self.server.ended = False
         self.port = self.server.server_address[1]
-        for name in ('getPid', 'getParam', 'setParam', 'deleteParam', 'subscribeParam',
-                     'unsubscribeParam', 'lookupNode', 'getSystemState'):
+        for name in ('getPid', 'getParam', 'getParamNames', 'setParam', 'deleteParam',
+                     'subscribeParam', 'unsubscribeParam', 'lookupNode', 'getSystemState'):
             self.server.register_function(getattr(self, name))
         self.thread = threading.Thread(target=self.server.serve_forever, daemon=True)
         self.thread.start()
@@ -66,8 +66,13 @@ class FakeMaster:
             ServerProxy(self.subscribers[key]).paramUpdate('/master', key, value)
         return 1, '', 0
 
+    def getParamNames(self, _):  # noqa: N802
+        return 1, '', list(self.params)
+
     def deleteParam(self, _, key):  # noqa: N802
-        self.params.pop(key, None)
+        for name in list(self.params):
+            if (name + '/').startswith(key + '/'):
+                del self.params[name]
         return 1, '', 0
 
     def subscribeParam(self, _, api, key):  # noqa: N802
@@ -243,12 +248,24 @@ def test_a_silent_master_is_not_a_new_one(master, monkeypatch, capsys):
 
 def test_release_leaves_another_runs_note(master):
     master.params.update({'/bot1/mhri_remote': 'other', '/bot1/robot_type': 'turtlebot2'})
-    claim = turtle_check.Claim(HOST, master.port, 'bot1', 'me')
-    claim.give_up()
-    assert '/bot1/robot_type' in master.params
-    claim.make()
-    claim.give_up()
-    assert set(master.params) == {'/run_id'}
+    turtle_check.Claim(HOST, master.port, 'bot1', 'me').give_up()
+    assert set(master.params) == {'/run_id', '/bot1/mhri_remote', '/bot1/robot_type'}
+
+
+@pytest.mark.parametrize('before', [
+    {}, {'/bot1/label': 'x'}, {'/bot1/limits/linear_mps': 0.1}, {'/bot11/robot_type': 'generic'}])
+def test_release_takes_what_the_robot_brought_and_nothing_else(master, before):
+    master.params.update(before)
+    brought = {'/bot1/robot_type': 'turtlebot2', '/bot1/tf_prefix': 'bot1',
+               '/bot1/mobile_base/odom_frame': 'bot1/odom', '/bot1/limits/angular_rad_s': 1.0}
+    # The first run is killed, and its leftovers are none of the host's.
+    for token, ends in (('killed', False), ('me', True)):
+        claim = turtle_check.Claim(HOST, master.port, 'bot1', token)
+        claim.make()
+        master.params.update(brought)
+        if ends:
+            claim.give_up()
+    assert master.params == dict(before, **{'/run_id': 'x'})
 
 
 def test_wrong_things_are_one_line_and_status_1(master):

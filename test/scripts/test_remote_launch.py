@@ -103,7 +103,8 @@ def test_frames_of_two_turtlebot2_do_not_mix():
         assert base['/{}/tf_prefix'.format(name)].value == name
         frames.append({param.value for config in (base, camera) for key, param in config.items()
                        if key.endswith(('_frame', '_frame_id'))})
-    assert frames[0] == {'bot1/odom', 'bot1/base_footprint', 'bot1/camera_rgb_optical_frame',
+    assert frames[0] == {'bot1/odom', 'bot1/base_footprint', 'bot1/base_link',
+                         'bot1/camera_rgb_optical_frame',
                          'bot1/camera_depth_optical_frame', 'bot1/camera_depth_frame'}
     assert not frames[0] & frames[1]
 

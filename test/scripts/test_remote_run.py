@@ -106,7 +106,8 @@ def await_topics(process, master, *topics):
 
 
 def test_turtlebot2_with_all_that_belongs_to_it(remote, master):
-    process = remote.start('bot1', '--type', 'turtlebot2', '--guard')
+    master.setParam('/test', '/bot1/label', 'of the host')
+    process = remote.start('bot1', '--type', 'turtlebot2')
     await_topics(process, master, '/bot1/odom', '/bot1/camera/rgb/image_raw',
                  '/bot1/cmd_vel_mux/input/teleop', '/bot1/mobile_base/commands/velocity')
     wait_for(lambda: publishers(master, '/bot1/teleop/input') == ['/bot1/mhri_guard'], START_S,
@@ -116,6 +117,7 @@ def test_turtlebot2_with_all_that_belongs_to_it(remote, master):
     assert subscribers(master, '/bot1/mobile_base/commands/velocity') == ['/bot1/mobile_base']
     assert parameter(master, '/bot1/robot_type') == 'turtlebot2'
     assert parameter(master, '/bot1/mobile_base/odom_frame') == 'bot1/odom'
+    assert parameter(master, '/bot1/mhri_guard/max_linear_mps') == 0.65
     assert parameter(master, '/bot1/camera/driver/rgb_frame_id') == 'bot1/camera_rgb_optical_frame'
     assert 'ROS_MASTER_URI=http://127.0.0.1:{}'.format(remote.system.port) in process.output()
     assert 'TurtleBot7' not in str(master.getSystemState('/test')), 'ROS_NAMESPACE is taken away'
@@ -123,13 +125,15 @@ def test_turtlebot2_with_all_that_belongs_to_it(remote, master):
     assert process.wait(timeout=LONG_S) == 130, process.output()
     assert remote.running() == []
     assert 'left running' not in process.output()
-    assert parameter(master, '/bot1/robot_type') is None, 'the host does not take it for a robot'
+    assert [name for name in master.getParamNames('/test')[2] if name.startswith('/bot1/')] == [
+        '/bot1/label'], 'what the robot brought goes with it'
 
 
 def test_turtlebot3(remote, master):
     (remote.folder / '.bashrc').write_text('export TURTLEBOT3_MODEL=waffle_pi  # as guides say\n')
-    process = remote.start('bot3', '--type', 'turtlebot3')
+    process = remote.start('bot3', '--type', 'turtlebot3', '--no-guard')
     await_topics(process, master, '/bot3/odom')
+    assert not publishers(master, '/bot3/mhri_guard/echo')
     assert parameter(master, '/bot3/robot_model') == 'waffle_pi'
     assert parameter(master, '/bot3/turtlebot3_core/tf_prefix') == 'bot3'
     process.send_signal(signal.SIGTERM)
@@ -167,7 +171,7 @@ def test_robot_with_a_launch_file_of_its_own(remote, master):
 
 @pytest.mark.parametrize('number, status', [(signal.SIGHUP, 129), (signal.SIGKILL, -9)])
 def test_end_of_the_terminal_takes_everything_down(remote, master, number, status):
-    process = remote.start('bot1', '--type', 'turtlebot2', '--guard')
+    process = remote.start('bot1', '--type', 'turtlebot2')
     await_topics(process, master, '/bot1/odom', '/bot1/camera/rgb/image_raw',
                  '/bot1/teleop/input')
     process.send_signal(number)
@@ -250,6 +254,16 @@ def test_what_is_missing_on_the_robot_is_said(remote, arguments, environment, sa
     status, output = remote.run('bot1', *arguments, **environment)
     assert status == 1 and said in output
     assert 'process[' not in output and remote.running() == []
+
+
+def test_a_robot_that_cannot_run_the_guard_is_told_how_to_do_without(remote):
+    (remote.folder / 'rospy.py').write_text('raise ImportError("there is none here")')
+    paths = '{}:{}'.format(remote.folder, remote.env.get('PYTHONPATH', ''))
+    status, output = remote.run('bot1', '--type', 'turtlebot2', PYTHONPATH=paths)
+    assert status == 1 and 'mhri_guard needs rospy' in output and '--no-guard' in output
+    status, output = remote.run('bot1', '--type', 'turtlebot2', '--no-guard', '--port',
+                                str(free_port()), PYTHONPATH=paths)
+    assert status == 1 and 'no ROS master runs on its port' in output, 'it went on to the network'
 
 
 def test_no_master_is_said(remote):

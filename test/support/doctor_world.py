@@ -12,7 +12,7 @@ from mhri.core.robots.robot_types import load_robot_types
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'robots')
 TYPES = load_robot_types([(name, open(os.path.join(FOLDER, name), encoding='utf-8').read())
                           for name in sorted(os.listdir(FOLDER))])[0]
-IGNORE = IgnoreList(('/rosout',), ('mux', 'robot_controller', 'mhri_*'))
+IGNORE = IgnoreList(('/rosout',), ('mux', 'gates', 'robot_controller', 'mhri_*'))
 TWIST, ODOMETRY, BOOL = 'geometry_msgs/Twist', 'nav_msgs/Odometry', 'std_msgs/Bool'
 HOST_IP, BOT_IP = '192.0.2.1', '192.0.2.7'
 COMPUTER = Computer(
@@ -20,19 +20,22 @@ COMPUTER = Computer(
     addresses=('127.0.0.1', HOST_IP), package_path='/ws/src/mhri',
     python_paths=('/ws/src/mhri/src/mhri',))
 KINDS = {'/bot1/cmd_vel': TWIST, '/bot1/odom': ODOMETRY, '/robot_controller/twist': TWIST,
-         '/mux/mode': 'mhri/ControlMode', '/robot_controller/robot_select': 'mhri/RobotSelect'}
+         '/mux/mode': 'mhri/ControlMode', '/robot_controller/robot_select': 'mhri/RobotSelect',
+         '/gates/state': 'mhri/GatesState'}
 
 
 class World:
-    """A healthy system of a mux, a panel and one robot on another computer; to be spoilt."""
+    """A healthy system: mux, gates, a panel, and one robot on another computer; to be spoilt."""
 
     def __init__(self):
-        self.hosts = {'/mux': HOST_IP, '/mhri_panel': HOST_IP, '/bot1/base': BOT_IP}
+        self.hosts = {'/mux': HOST_IP, '/mhri_gates': HOST_IP, '/mhri_panel': HOST_IP,
+                      '/bot1/base': BOT_IP}
         self.publish = {'/mux/mode': ['/mux'], '/robot_controller/twist': ['/mux'],
                         '/robot_controller/robot_select': ['/mhri_panel'],
-                        '/bot1/cmd_vel': ['/mhri_panel'], '/bot1/odom': ['/bot1/base']}
+                        '/gates/state': ['/mhri_gates'],
+                        '/bot1/cmd_vel': ['/mhri_gates'], '/bot1/odom': ['/bot1/base']}
         self.subscribe = {'/bot1/cmd_vel': ['/bot1/base'], '/bot1/odom': ['/mhri_panel'],
-                          '/robot_controller/twist': ['/mhri_panel']}
+                          '/robot_controller/twist': ['/mhri_gates']}
         self.kinds = dict(KINDS)
         self.parameters = {'bot1': {'robot_type': 'generic'}}
         self.changed = {}
@@ -85,10 +88,22 @@ class World:
         return [item for item in findings if item.severity != FINE]
 
 
+def change(name, **changes):
+    """Return an ailment: a node answers otherwise."""
+    def spoil(world):
+        world.changed[name] = changes
+    return spoil
+
+
 def answer(**changes):
     """Return an ailment: the robot's node answers otherwise."""
+    return change('/bot1/base', **changes)
+
+
+def at(name, host):
+    """Return an ailment: a node runs on another computer."""
     def spoil(world):
-        world.changed['/bot1/base'] = changes
+        world.hosts[name] = host
     return spoil
 
 

@@ -11,7 +11,7 @@ from nav_msgs.msg import Odometry
 import roslib.message
 import rospy
 
-from mhri.msg import RobotSelect
+from mhri.msg import GatesState, RobotSelect
 
 TICK_S = 0.05
 
@@ -43,6 +43,22 @@ class Mover:
         return self._turn
 
 
+class Gates:
+    """Hears the velocity command and says a state at 2 Hz, as the gates do."""
+
+    def __init__(self, refused):
+        self._refused = refused
+        self._publisher = rospy.Publisher('/gates/state', GatesState, queue_size=1, latch=True)
+        rospy.Subscriber('/robot_controller/twist', Twist, lambda message: None)
+        self._say()
+        self._timer = rospy.Timer(rospy.Duration(0.5), self._say)
+
+    def _say(self, _=None):
+        state = GatesState(refused=self._refused)
+        state.header.stamp = rospy.Time.now()
+        self._publisher.publish(state)
+
+
 def parse(arguments):
     parser = argparse.ArgumentParser()
     parser.add_argument('--publish', nargs=2, action='append', default=[], help='topic type')
@@ -52,6 +68,7 @@ def parse(arguments):
     parser.add_argument('--changed', action='store_true', help='odometry of another definition')
     parser.add_argument('--obey', help='topic of the velocity that its odometry follows')
     parser.add_argument('--select', help='select this robot, as a panel does')
+    parser.add_argument('--gates', nargs='*', help='speak as the gates do, which refused this')
     parser.add_argument('--watchdog', type=float, default=0.0)
     return parser.parse_args(arguments)
 
@@ -64,6 +81,8 @@ def main():
     for topic, kind in options.subscribe:
         rospy.Subscriber(topic, roslib.message.get_message_class(kind), lambda message: None)
     mover = Mover(options.obey, options.watchdog) if options.obey else None
+    if options.gates is not None:
+        Gates(options.gates)
     if options.select:
         panel = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1,
                                 latch=True)

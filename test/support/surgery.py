@@ -59,8 +59,9 @@ class Clinic:
         self._parameters = []
 
     def start_healthy(self):
-        """Start a mux and two simulated robots, and wait until they are there."""
+        """Start a mux, gates and two simulated robots, and wait until they are there."""
         self.system.node('mux', '__name:=mux')
+        self._patients.remove(self.patient('/mhri_gates', '--gates'))
         for name, kind in (('bot1', 'turtlebot2'), ('bot2', 'turtlebot3_burger')):
             self.system.launch('turtlebot.launch', 'name:=' + name, 'type:=' + kind)
         wait_for(lambda: self.topics() >= {
@@ -78,9 +79,9 @@ class Clinic:
                 for node in nodes}
 
     def start_light(self):
-        """Start a stand-in for the mux, which is all that a host needs to look healthy."""
+        """Start a stand-in for mux and gates, which is all that a host needs to look healthy."""
         self.base = set()
-        process = self.patient('/mhri_mux', '--publish', '/mux/mode', 'mhri/ControlMode')
+        process = self.patient('/mhri_mux', '--publish', '/mux/mode', 'mhri/ControlMode', '--gates')
         self._patients.remove(process)
         self._mux = process
         self.base = self.nodes()

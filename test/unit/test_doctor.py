@@ -15,8 +15,8 @@ from mhri.core.doctor.robots import clock_offset, robots_of
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
 from support.doctor_world import (  # noqa: E402
-    add, answer, apart, BOOL, BOT_IP, IGNORE, links, ODOMETRY, parameter, seen_as, seen_at, stream,
-    TYPES, without, World)
+    add, answer, apart, at, BOOL, BOT_IP, change, IGNORE, links, ODOMETRY, parameter, seen_as,
+    seen_at, stream, TYPES, without, World)
 
 
 def samples(ahead_s, count=20):
@@ -51,27 +51,51 @@ CASES = {
                  ['node_loopback']),
     'forgotten topic': ([answer(publications={})], ['registration_stale']),
     'moved': ([answer(uri_later='http://192.0.2.8:4000/')], ['name_fought']),
-    'same name twice': ([links('/mhri_panel', Connection(True, '/bot1/cmd_vel', '/bot1/base'))],
+    'same name twice': ([links('/mhri_gates', Connection(True, '/bot1/cmd_vel', '/bot1/base'))],
                         ['name_twice']),
     'forgotten node': ([links('/mux', Connection(True, '/mux/mode', '/lost'))],
                        ['node_forgotten']),
     'a doctor is no forgotten node': (
         [links('/mux', Connection(True, '/mux/mode', '/mhri_doctor_77'))], []),
-    'does not reach back': ([apart(('/bot1/cmd_vel', '/mhri_panel', '/bot1/base'))], ['one_way']),
+    'does not reach back': ([apart(('/bot1/cmd_vel', '/mhri_gates', '/bot1/base'))], ['one_way']),
     'not reached': ([apart(('/bot1/odom', '/bot1/base', '/mhri_panel'))], ['one_way']),
     'definitions differ': (
-        [apart(('/robot_controller/twist', '/mux', '/mhri_panel'))], ['definition_differs']),
+        [apart(('/robot_controller/twist', '/mux', '/mhri_gates'))], ['definition_differs']),
     'names of types differ': (
-        [apart(('/bot1/cmd_vel', '/mhri_panel', '/bot1/base')),
+        [apart(('/bot1/cmd_vel', '/mhri_gates', '/bot1/base')),
          seen_as('/bot1/cmd_vel', BOOL, '/bot1/base')], ['type_differs']),
     'md5 differs': ([stream('/bot1/odom', md5sum='other')], ['md5_differs']),
     'message unknown': ([add('/x', ['/x/y'], kind='turtlesim/Odd')], ['message_unknown']),
     'message that mhri does not read': ([add('/x', ['/x/y'], kind='kobuki_msgs/Odd')], []),
     'no mux': ([without('/mux')], ['mux_missing']),
+    'neither mux nor gates': ([without('/mux'), without('/mhri_gates')], ['mux_missing']),
     'no panel': ([without('/mhri_panel')], []),
     'two muxes': ([add('/mux_2', ['/mux/mode'])], ['mux_several']),
     'mux bypassed': ([add('/rogue', ['/robot_controller/twist'])], ['mux_bypassed']),
     'stop bypassed': ([add('/rogue', ['/robot_controller/stop_all'])], ['mux_bypassed']),
+    'tasks bypass the mux': ([add('/rogue', ['/robot_controller/task_twist'])], ['mux_bypassed']),
+    'mux hangs': ([change('/mux', state=SILENT)], ['mux_silent']),
+    'no gates': ([without('/mhri_gates')], ['gates_missing']),
+    'gates dead': ([change('/mhri_gates', state=REFUSED)], ['gates_missing', 'node_dead']),
+    'two gates': ([add('/mhri_gates_2', ['/gates/state'], ['/robot_controller/twist'])],
+                  ['gates_several']),
+    'gates hang': ([change('/mhri_gates', state=SILENT)], ['gates_silent']),
+    'gates answer, but say nothing': ([stream('/gates/state', messages=0)], ['gates_silent']),
+    'gates repeat an old state': (
+        [stream('/gates/state', samples=((100.0, 98.0),))], ['gates_silent']),
+    'gates of another computer': (
+        [stream('/gates/state', samples=((100.0, 98.0),)), at('/mhri_gates', BOT_IP)], []),
+    'gates in simulated time': (
+        [stream('/gates/state', samples=((100.0, 9.0),)), parameter(use_sim_time=True),
+         add('/gazebo', ['/clock'])], []),
+    'gates refuse somebody': (
+        [stream('/gates/state', refused=('/rogue: stop_all, 3 times',))], ['gates_refused']),
+    'gates bypassed': ([add('/rogue', ['/gates/state'])], ['gates_bypassed']),
+    'two sticks': ([add('/script', ['/mux_in/joy']), add('/mhri_panel', ['/mux_in/joy'])],
+                   ['stick_several']),
+    'two panels, two sticks': (
+        [add('/panel_2', ['/robot_controller/robot_select', '/mux_in/joy']),
+         add('/mhri_panel', ['/mux_in/joy'])], ['panel_several']),
     'two panels': ([add('/panel_2', ['/robot_controller/robot_select'])], ['panel_several']),
     'no clock': ([parameter(use_sim_time=True)], ['sim_time']),
     'clock': ([parameter(use_sim_time=True), add('/gazebo', ['/clock'])], []),
@@ -88,7 +112,19 @@ CASES = {
     'its own navigation': ([add('/bot1/move_base', ['/bot1/cmd_vel'], host=BOT_IP)],
                            ['velocity_foreign']),
     'its guard': ([add('/bot1/mhri_guard', ['/bot1/cmd_vel'], host=BOT_IP)], []),
-    'its keeper': ([add('/mhri_gate_keeper_1', ['/bot1/cmd_vel'])], []),
+    'the guard of another robot': (
+        [add('/bot2/mhri_guard', ['/bot1/cmd_vel'], host=BOT_IP)],
+        ['odometry_missing', 'robot_untyped', 'velocity_foreign', 'velocity_unheard']),
+    'a panel that drives': ([add('/mhri_panel_2', ['/bot1/cmd_vel'])], ['velocity_foreign']),
+    'a gate keeper of an old release': (
+        [add('/mhri_gate_keeper_1', ['/bot1/cmd_vel'])], ['velocity_foreign']),
+    'gates of another name': (
+        [without('/mhri_gates'), add('/lab_gates', ['/gates/state', '/bot1/cmd_vel'],
+                                     ['/robot_controller/twist'])], []),
+    'its watchdog tried': ([add('/mhri_doctor_77', ['/bot1/cmd_vel'])], []),
+    'past the guard': ([add('/rogue', ['/bot1/mhri_guard/command']),
+                        add('/bot1/mhri_guard', (), ['/bot1/mhri_guard/command'], host=BOT_IP)],
+                       ['velocity_foreign']),
     'hidden velocity': (
         [links('/bot1/base', Connection(False, '/bot1/cmd_vel', 'http://192.0.2.9:1/'))],
         ['velocity_hidden']),
@@ -125,7 +161,7 @@ def test_what_heals_by_itself_is_not_told():
 
 
 def test_nodes_that_look_odd_are_asked_again():
-    for spoil, node in (('forgotten topic', '/bot1/base'), ('same name twice', '/mhri_panel'),
+    for spoil, node in (('forgotten topic', '/bot1/base'), ('same name twice', '/mhri_gates'),
                         ('hidden velocity', '/bot1/base'), ('does not reach back', '/bot1/base')):
         world = World()
         CASES[spoil][0][0](world)
@@ -166,7 +202,7 @@ def test_a_robot_that_reaches_back_is_said_so():
     found = {item.check: item for item in diagnose(World().facts(), TYPES, IGNORE)}
     assert found['reaches_back'].severity == FINE and 'connections' in found['reaches_back'].problem
     world = World()
-    without('/mhri_panel')(world)
+    without('/mhri_gates')(world)
     found = {item.check: item for item in diagnose(world.facts(), TYPES, IGNORE)}
     assert found['reaches_back'].sure == 'unknown'
 

@@ -107,6 +107,7 @@ def test_remedies_for_the_robot_without_a_namespace(case):
     elif check == 'robot_leftover':
         without('/base')(world)
         without('/mhri_panel')(world)
+        del world.publish['/cmd_vel']
     finding, = [item for item in world.wrong() if item.severity != FINE]
     assert finding.check == check
     assert finding.remedy.startswith(remedy)
@@ -120,7 +121,7 @@ def test_real_robots_are_started_by_their_script():
     """The name is not all: their frames need a prefix, too, which turtle_remote.sh sees to."""
     words = 'on the robot: turtle_remote.sh {} '.format(HOST_IP)
     for spoil in (answer(uri_later='http://192.0.2.8:4000/'), add('/_bot/base', ['/_bot/x']),
-                  links('/mhri_panel', Connection(True, '/bot1/cmd_vel', '/bot1/base'))):
+                  links('/mhri_gates', Connection(True, '/bot1/cmd_vel', '/bot1/base'))):
         world = World()
         spoil(world)
         assert words in world.wrong()[0].remedy

@@ -5,65 +5,106 @@ import random
 
 import pytest
 
-from mhri.core.driving.gate import common_limits, GateRule, JOIN_S, STALE_S
+from mhri.core.driving.gate import (
+    CLOSED, common_limits, GateRule, HELD, IDLE, JOINING, OPERATOR, STALE_S, STATES, STOPPED, TASK)
 from mhri.core.driving.limits import Velocity, ZERO
 from mhri.core.robots.robot_types import Limits
 
 LIMITS = Limits(0.5, 1.0)
 GO = Velocity(0.4, 0.2)
-
-STATES = {
-    'deselected': lambda gate: None,
-    'selected': lambda gate: gate.select(True, 0.0),
-    'driving': lambda gate: (gate.select(True, 0.0), gate.on_command(GO, 1.0)),
-    'stopped': lambda gate: (gate.select(True, 0.0), gate.stop('mux', True, 0.5)),
-    'stopped_deselected': lambda gate: gate.stop('mux', True, 0.5),
-    'closed': lambda gate: (gate.select(True, 0.0), gate.close(0.5)),
-}
-EVENTS = {
-    'command': lambda gate: gate.on_command(GO, 1.0),
-    'zero': lambda gate: gate.on_command(ZERO, 1.0),
-    'nan': lambda gate: gate.on_command(Velocity(float('nan'), 0.0), 1.0),
-    'too_fast': lambda gate: gate.on_command(Velocity(1.0, 0.6), 1.0),
-    'select': lambda gate: gate.select(True, 1.0),
-    'deselect': lambda gate: gate.select(False, 1.0),
-    'stop': lambda gate: gate.stop('panel', True, 1.0),
-    'stop_withdrawn': lambda gate: gate.stop('mux', False, 1.0),
-    'fresh_tick': lambda gate: gate.tick(1.0 + STALE_S - 0.001),
-    'stale_tick': lambda gate: gate.tick(1.0 + STALE_S),
-    'close': lambda gate: gate.close(1.0),
-}
+WORK = Velocity(0.1, 0.0)
 HALVED = Velocity(0.5, 0.3)
-# What each event sends; events left out send nothing.
-TABLE = {
-    'deselected': {'stop': ZERO, 'close': ZERO},
-    'selected': {'command': GO, 'zero': ZERO, 'nan': ZERO, 'too_fast': HALVED, 'deselect': ZERO,
-                 'stop': ZERO, 'close': ZERO},
-    'driving': {'command': GO, 'zero': ZERO, 'nan': ZERO, 'too_fast': HALVED, 'deselect': ZERO,
-                'stop': ZERO, 'stale_tick': ZERO, 'close': ZERO},
-    'stopped': {'close': ZERO},
-    'stopped_deselected': {'close': ZERO},
-    'closed': {},
+
+
+def gate_in(state, moving=False):
+    """Return a gate that has come to a state by the shortest way, at 1 s."""
+    gate = GateRule(LIMITS, ZERO)
+    {IDLE: lambda: None,
+     JOINING: lambda: (gate.on_command(GO, 1.0), gate.check(True, 1.0)),
+     OPERATOR: lambda: gate.check(True, 1.0),
+     TASK: lambda: (gate.on_task(WORK, 1.0)),
+     HELD: lambda: (gate.check(True, 1.0), gate.hold(True, 1.0)),
+     STOPPED: lambda: (gate.check(True, 1.0), gate.stop(True, 1.0)),
+     CLOSED: lambda: gate.close(1.0)}[state]()
+    if moving:
+        gate.on_command(GO, 1.0)
+    return gate
+
+
+EVENTS = {
+    'command': lambda gate: gate.on_command(GO, 1.1),
+    'zero': lambda gate: gate.on_command(ZERO, 1.1),
+    'too_fast': lambda gate: gate.on_command(Velocity(1.0, 0.6), 1.1),
+    'nan': lambda gate: gate.on_command(Velocity(float('nan'), 0.0), 1.1),
+    'task': lambda gate: gate.on_task(WORK, 1.1),
+    'task_zero': lambda gate: gate.on_task(ZERO, 1.1),
+    'check': lambda gate: gate.check(True, 1.1),
+    'uncheck': lambda gate: gate.check(False, 1.1),
+    'stop': lambda gate: gate.stop(True, 1.1),
+    'release': lambda gate: gate.stop(False, 1.1),
+    'hold': lambda gate: gate.hold(True, 1.1),
+    'hear': lambda gate: gate.hold(False, 1.1),
+    'join': lambda gate: gate.join(1.1),
+    'early_tick': lambda gate: gate.tick(1.0 + STALE_S - 0.001),
+    'stale_tick': lambda gate: gate.tick(1.0 + STALE_S),
+    'close': lambda gate: gate.close(1.1),
 }
+# (state, moving) -> {event: (what is sent, the state after it)}; what is left out changes nothing.
+TABLE = {
+    (IDLE, False): {
+        'task': (WORK, TASK), 'task_zero': (ZERO, TASK), 'check': (ZERO, OPERATOR),
+        'stop': (ZERO, STOPPED), 'hold': (None, HELD), 'close': (ZERO, CLOSED)},
+    (JOINING, False): {
+        'zero': (ZERO, OPERATOR), 'uncheck': (ZERO, IDLE), 'stop': (ZERO, STOPPED),
+        'hold': (None, HELD), 'close': (ZERO, CLOSED)},
+    (OPERATOR, False): {
+        'command': (GO, OPERATOR), 'zero': (ZERO, OPERATOR), 'too_fast': (HALVED, OPERATOR),
+        'nan': (ZERO, OPERATOR), 'uncheck': (ZERO, IDLE), 'stop': (ZERO, STOPPED),
+        'hold': (None, HELD), 'close': (ZERO, CLOSED)},
+    (OPERATOR, True): {
+        'command': (GO, OPERATOR), 'zero': (ZERO, OPERATOR), 'too_fast': (HALVED, OPERATOR),
+        'nan': (ZERO, OPERATOR), 'uncheck': (ZERO, IDLE), 'stop': (ZERO, STOPPED),
+        'hold': (ZERO, HELD), 'join': (ZERO, JOINING), 'stale_tick': (ZERO, JOINING),
+        'close': (ZERO, CLOSED)},
+    (TASK, False): {
+        'task': (WORK, TASK), 'task_zero': (ZERO, TASK), 'check': (ZERO, OPERATOR),
+        'stop': (ZERO, STOPPED), 'hold': (ZERO, HELD), 'join': (ZERO, IDLE),
+        'stale_tick': (ZERO, IDLE), 'close': (ZERO, CLOSED)},
+    (HELD, False): {
+        'uncheck': (None, HELD), 'stop': (ZERO, STOPPED), 'hear': (None, OPERATOR),
+        'close': (ZERO, CLOSED)},
+    (STOPPED, False): {
+        'uncheck': (None, STOPPED), 'release': (None, JOINING), 'close': (ZERO, CLOSED)},
+    (CLOSED, False): {},
+}
+
+
+def test_the_table_is_whole():
+    assert {state for state, _ in TABLE} == set(STATES)
 
 
 @pytest.mark.parametrize('event', sorted(EVENTS))
-@pytest.mark.parametrize('state', sorted(TABLE))
-def test_every_event_in_every_state(state, event):
+@pytest.mark.parametrize('state, moving', sorted(TABLE))
+def test_every_event_in_every_state(state, moving, event):
     """The table is the gate."""
-    gate = GateRule(LIMITS)
-    STATES[state](gate)
-    sent = EVENTS[event](gate)
-    assert sent == TABLE[state].get(event)
-    assert gate.driving == (sent is not None and not sent.is_zero()
-                            or sent is None and state == 'driving')
+    gate = gate_in(state, moving)
+    assert gate.state == state
+    sent, after = TABLE[state, moving].get(event, (None, state))
+    assert (EVENTS[event](gate), gate.state) == (sent, after)
 
 
-@pytest.mark.parametrize('end', ['deselect', 'stop', 'stale_tick', 'close', 'zero'])
+@pytest.mark.parametrize('state, moving', sorted(TABLE))
+def test_nothing_but_operator_and_task_lets_a_velocity_through(state, moving):
+    gate = gate_in(state, moving)
+    for now in (1.1, 1.2, 1.3):
+        for sent in (gate.on_command(GO, now), gate.on_task(WORK, now)):
+            assert sent is None or sent.is_zero() or gate.state in (OPERATOR, TASK)
+
+
+@pytest.mark.parametrize('end', ['uncheck', 'stop', 'stale_tick', 'close', 'zero', 'hold', 'join'])
 def test_one_zero_then_silence(end):
     """Endless zeros would block a robot's own navigation."""
-    gate = GateRule(LIMITS)
-    STATES['driving'](gate)
+    gate = gate_in(OPERATOR, moving=True)
     assert EVENTS[end](gate) == ZERO
     assert gate.next_tick() is None
     assert [gate.tick(2.0 + count) for count in range(10)] == [None] * 10
@@ -71,117 +112,126 @@ def test_one_zero_then_silence(end):
 
 def test_stale_to_the_millisecond():
     """Each command renews the lease; next_tick says when it ends."""
-    gate = GateRule(LIMITS)
-    gate.select(True, 0.0)
+    gate = gate_in(OPERATOR)
     gate.on_command(GO, 10.0)
     gate.on_command(GO, 10.25)
     assert gate.next_tick() == 10.75
     assert gate.tick(10.749) is None and gate.tick(10.75) == ZERO
 
 
-def test_the_stop_ends_only_when_every_reason_is_withdrawn():
-    """The panel's own press outlives the mux's word, and the other way round."""
-    gate = GateRule(LIMITS)
-    STATES['driving'](gate)
-    assert gate.stop('panel', True, 2.0) == ZERO
-    assert gate.stop('mux', True, 2.1) is None
-    gate.stop('panel', False, 2.2)
-    assert gate.stopped and gate.on_command(GO, 2.3) is None
-    gate.stop('mux', False, 2.4)
-    assert not gate.stopped and gate.on_command(GO, 2.5) == GO
+@pytest.mark.parametrize('spoil', [
+    lambda gate: (gate.hold(True, 1.2), gate.hold(False, 4.0)),
+    lambda gate: (gate.stop(True, 1.2), gate.stop(False, 4.0)),
+    lambda gate: gate.join(4.0),
+    lambda gate: gate.tick(1.0 + STALE_S),
+    lambda gate: (gate.check(False, 1.2), gate.check(True, 4.0)),
+], ids=['lost link', 'stop', 'new connection', 'silent mux', 'unchecked'])
+def test_a_held_stick_moves_nothing_after(spoil):
+    """Whatever interrupts a drive: the stick has to be centred before the robot moves again."""
+    gate = gate_in(OPERATOR, moving=True)
+    spoil(gate)
+    assert [gate.on_command(GO, 4.0 + 0.05 * count) for count in range(40)] == [None] * 40
+    assert gate.stands == JOINING
+    assert gate.on_command(ZERO, 6.1) == ZERO and gate.stands == ''
+    assert gate.on_command(GO, 6.2) == GO
 
 
-def test_selection_made_while_stopped_counts_after_it():
-    """And needs no second zero."""
+@pytest.mark.parametrize('spoil', [
+    lambda gate: (gate.hold(True, 1.2), gate.hold(False, 4.0)),
+    lambda gate: gate.join(4.0),
+    lambda gate: (gate.check(False, 1.2), gate.check(True, 4.0)),
+], ids=['lost link', 'new connection', 'unchecked'])
+def test_with_the_stick_centred_nothing_is_waited_for(spoil):
+    gate = gate_in(OPERATOR, moving=True)
+    gate.on_command(ZERO, 1.1)
+    spoil(gate)
+    assert gate.on_command(GO, 4.1) == GO
+
+
+def test_zeros_of_the_stop_itself_are_no_centred_stick():
+    gate = gate_in(OPERATOR, moving=True)
+    gate.stop(True, 1.1)
+    assert gate.on_command(ZERO, 1.15) is None
+    gate.stop(False, 1.2)
+    assert gate.on_command(GO, 1.3) is None and gate.stands == JOINING
+
+
+def test_a_gate_that_knows_nothing_assumes_that_everybody_waits():
+    """After a restart: whether the stick is held is not known."""
     gate = GateRule(LIMITS)
-    gate.stop('mux', True, 0.0)
-    gate.select(True, 0.1)
-    gate.stop('mux', False, 0.2)
-    assert gate.on_command(GO, 0.3) == GO
-    gate.stop('mux', True, 0.4)
-    assert gate.select(False, 0.5) is None
-    gate.stop('mux', False, 0.6)
-    assert gate.on_command(GO, 0.7) is None
+    gate.check(True, 0.0)
+    assert gate.on_command(GO, 0.1) is None
+    assert gate.on_command(ZERO, 0.2) == ZERO and gate.on_command(GO, 0.3) == GO
+
+
+def test_a_robot_that_comes_up_in_the_middle_of_a_drive_waits():
+    gate = GateRule(LIMITS, GO)
+    gate.check(True, 0.0)
+    assert gate.on_command(GO, 0.1) is None and gate.stands == JOINING
+
+
+@pytest.mark.parametrize('take_away', [
+    lambda gate: (gate.check(True, 2.0), gate.check(False, 2.1)),
+    lambda gate: (gate.stop(True, 2.0), gate.stop(False, 2.1)),
+    lambda gate: (gate.hold(True, 2.0), gate.hold(False, 2.1)),
+])
+def test_a_task_goes_on_by_itself_after_nothing(take_away):
+    gate = GateRule(LIMITS, ZERO)
+    assert gate.on_task(WORK, 1.9) == WORK
+    take_away(gate)
+    assert gate.on_task(WORK, 2.15) is None, 'it just went on talking'
+    assert gate.on_task(ZERO, 2.2) == ZERO, 'begun anew'
+    assert gate.on_task(WORK, 2.25) == WORK
+
+
+def test_whom_a_robot_obeys():
+    gate = GateRule(LIMITS, ZERO)
+    assert gate.obeys == ''
+    gate.on_task(WORK, 1.0)
+    assert gate.obeys == TASK
+    gate.check(True, 1.1)
+    assert gate.obeys == OPERATOR and gate.on_task(WORK, 1.2) is None
+    gate.stop(True, 1.3)
+    assert (gate.obeys, gate.stands) == (OPERATOR, STOPPED)
 
 
 @pytest.mark.parametrize('seed', range(20))
-def test_motion_never_ends_without_a_zero_and_never_begins_unselected(seed):
-    """Random sequences; whoever ends motion says so at once, silence within a tick."""
+def test_motion_never_ends_without_a_zero_and_never_begins_uncentred(seed):
+    """Random events beside a plain model of when a robot may move."""
     dice = random.Random(seed)
-    gate, now, selected, stops, moving = GateRule(LIMITS), 0.0, False, set(), False
-    for _ in range(1000):
+    gate, now = GateRule(LIMITS, ZERO), 0.0
+    checked = stopped = held = moving = False
+    centred, heard = True, ZERO
+    for _ in range(2000):
         now += dice.choice((0.01, 0.05, 0.3))
-        kind = dice.choice(('command', 'command', 'command', 'select', 'stop', 'tick'))
-        if kind == 'command':
-            sent = gate.on_command(Velocity(dice.uniform(-3, 3), dice.uniform(-3, 3)), now)
-        elif kind == 'select':
-            selected = dice.random() < 0.7
-            sent = gate.select(selected, now)
+        kind = dice.choice(('command', 'command', 'command', 'zero', 'check', 'stop', 'hold',
+                            'join', 'tick'))
+        if kind in ('command', 'zero'):
+            heard = ZERO if kind == 'zero' else Velocity(dice.uniform(-3, 3), dice.uniform(-3, 3))
+            centred = centred or kind == 'zero' and not stopped
+            sent = gate.on_command(heard, now)
+        elif kind == 'check':
+            was, checked = checked, dice.random() < 0.7
+            centred = centred and (not checked or was == checked or heard.is_zero())
+            sent = gate.check(checked, now)
         elif kind == 'stop':
-            reason, stopped = dice.choice(('mux', 'panel')), dice.random() < 0.3
-            (stops.add if stopped else stops.discard)(reason)
-            sent = gate.stop(reason, stopped, now)
+            was, stopped = stopped, dice.random() < 0.3
+            centred = centred and (was or not stopped)
+            sent = gate.stop(stopped, now)
+        elif kind == 'hold':
+            was, held = held, dice.random() < 0.3
+            centred = centred and (was == held or heard.is_zero())
+            sent = gate.hold(held, now)
+        elif kind == 'join':
+            centred = centred and heard.is_zero()
+            sent = gate.join(now)
         else:
             sent = gate.tick(now)
         if sent is not None:
             moving = not sent.is_zero()
             assert abs(sent.linear_mps) <= 0.5 + 1e-9 and abs(sent.angular_rad_s) <= 1.0 + 1e-9
-        assert not moving or (selected and not stops), 'moves though {}'.format(kind)
-        assert moving == gate.driving
-
-
-def joining():
-    """A gate whose robot is selected while others are driven."""
-    gate = GateRule(LIMITS)
-    assert gate.on_command(GO, 1.0) is None
-    assert gate.select(True, 1.02) is None
-    return gate
-
-
-def test_who_joins_a_drive_waits_for_the_zero_of_the_mux():
-    gate = joining()
-    assert gate.on_command(GO, 1.05) is None, 'nobody leaps'
-    assert gate.on_command(ZERO, 1.06) == ZERO
-    assert gate.on_command(GO, 1.5) == GO, 'after neutral, the mux lets all drive'
-
-
-def test_who_joins_a_drive_of_something_that_is_no_mux_joins_a_little_later():
-    """The newest command comes through then, even if it was the last one."""
-    gate = joining()
-    assert gate.on_command(GO, 1.1) is None
-    assert gate.next_tick() == pytest.approx(1.02 + JOIN_S)
-    assert gate.tick(1.02 + JOIN_S - 0.001) is None
-    assert gate.tick(1.02 + JOIN_S) == GO
-    late = joining()
-    assert late.on_command(GO, 1.02 + JOIN_S) == GO
-
-
-def test_a_wait_that_ends_in_silence_starts_nothing():
-    gate = joining()
-    assert gate.tick(1.0 + STALE_S) is None and not gate.driving
-    assert gate.next_tick() is None
-
-
-@pytest.mark.parametrize('end', [lambda gate: gate.select(False, 1.1),
-                                 lambda gate: gate.stop('mux', True, 1.1),
-                                 lambda gate: gate.close(1.1)])
-def test_who_waits_can_still_be_deselected_stopped_and_closed(end):
-    gate = joining()
-    end(gate)
-    assert gate.tick(1.02 + JOIN_S) is None and not gate.driving
-    assert gate.on_command(GO, 1.4) is None
-
-
-def test_who_is_selected_while_nothing_moves_is_driven_at_once():
-    gate = GateRule(LIMITS)
-    gate.on_command(GO, 1.0)
-    gate.on_command(ZERO, 1.1)
-    gate.select(True, 1.2)
-    assert gate.on_command(GO, 1.21) == GO
-    late = GateRule(LIMITS)
-    late.on_command(GO, 1.0)
-    late.select(True, 1.0 + STALE_S)
-    assert late.on_command(GO, 1.6) == GO, 'that drive was over'
+        assert not moving or (checked and not stopped and not held and centred), kind
+        assert moving == (not gate.sent.is_zero())
 
 
 def test_a_group_keeps_to_its_slowest_along_the_same_curve():
@@ -190,8 +240,8 @@ def test_a_group_keeps_to_its_slowest_along_the_same_curve():
     assert group == Limits(0.22, 2.84)
     said = []
     for limits in (quick, slow):
-        gate = GateRule(limits)
-        gate.select(True, 0.0)
+        gate = GateRule(limits, ZERO)
+        gate.check(True, 0.0)
         gate.hold_to(group, 1.0)
         said.append(gate.on_command(Velocity(0.5, 1.0), 1.0))
     for velocity in said:
@@ -201,36 +251,3 @@ def test_a_group_keeps_to_its_slowest_along_the_same_curve():
     gate.hold_to(Limits(9.0, 9.0), 1.0)
     velocity = gate.on_command(Velocity(0.5, 1.0), 1.2)
     assert velocity.linear_mps == pytest.approx(0.22), 'its own limits hold'
-
-
-def test_a_robot_that_is_not_heard_gets_one_zero_and_then_nothing():
-    gate = GateRule(LIMITS)
-    gate.select(True, 0.0)
-    gate.on_command(GO, 1.0)
-    assert gate.hold(True, 1.1) == ZERO and not gate.driving
-    assert gate.hold(True, 1.2) is None, 'once'
-    assert gate.on_command(GO, 1.3) is None
-    assert gate.hold(False, 1.35) is None and gate.waits
-    assert gate.on_command(GO, 1.4) is None and gate.next_tick() is None, 'not in the middle of it'
-    assert gate.tick(9.0) is None
-    assert gate.on_command(ZERO, 9.1) == ZERO and not gate.waits
-    assert gate.on_command(GO, 9.2) == GO
-
-
-def test_a_robot_heard_again_while_nothing_drives_is_driven_at_once():
-    gate = GateRule(LIMITS)
-    gate.select(True, 0.0)
-    assert gate.hold(True, 0.5) is None, 'it was not driven: no zero'
-    assert gate.hold(False, 2.0) is None and not gate.waits
-    assert gate.on_command(GO, 2.1) == GO
-    gate.hold(True, 2.2)
-    assert gate.on_command(GO, 2.3) is None
-    assert gate.hold(False, 2.3 + STALE_S) is None and not gate.waits, 'the commands went stale'
-
-
-def test_held_changes_nothing_about_stops():
-    gate = GateRule(LIMITS)
-    gate.select(True, 0.0)
-    gate.hold(True, 0.1)
-    assert gate.stop('mux', True, 0.2) == ZERO and gate.select(False, 0.3) is None
-    assert gate.close(0.4) == ZERO

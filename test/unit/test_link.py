@@ -16,12 +16,31 @@ def test_standstill(linear, angular, still):
     assert Motion(linear, angular).is_standstill() == still
 
 
+@pytest.mark.parametrize('motion, still', [
+    (Motion(0.0, 0.0, 5.0, -3.0, 9.0), True), (Motion(0.0, 0.0, lateral_mps=0.5), False),
+    (Motion(0.009, 0.0, lateral_mps=-0.009), False), (Motion(0.0, 0.0, lateral_mps=0.009), True),
+    (Motion(0.0, 0.0, lateral_mps=float('nan')), False), (Motion(0.0, 0.0, x_m=1e30), False),
+    (Motion(0.0, 0.0, heading_rad=float('nan')), False)])
+def test_standstill_is_of_the_whole_plane(motion, still):
+    """Sideways counts, and a reading with anything impossible in it says nothing."""
+    assert motion.is_standstill() == still
+
+
 @pytest.mark.parametrize('age_s, connections, state', [
     (None, 0, WAITING), (None, 1, WAITING), (0.0, 1, LIVE), (1.0, 1, LIVE), (1.001, 1, SILENT),
     (1.001, 0, GONE), (0.5, 0, LIVE), (3600.0, 2, SILENT)])
 def test_link_state(age_s, connections, state):
     """Gone is without a connection, silent with one."""
     assert link_state(age_s, connections) == state
+
+
+@pytest.mark.parametrize('age_s, connections, silent_after_s, state', [
+    (2.4, 1, 2.5, LIVE), (2.6, 1, 2.5, SILENT), (2.6, 0, 2.5, GONE), (0.6, 1, 0.5, SILENT),
+    (None, 1, 2.5, WAITING), (None, 1, 0.0, LIVE), (3600.0, 1, 0.0, LIVE), (3600.0, 0, 0.0, GONE),
+    (None, 0, 0.0, WAITING)])
+def test_each_type_has_its_own_silence(age_s, connections, silent_after_s, state):
+    """Odometry at 1 Hz, or in motion only; even then a closed connection tells."""
+    assert link_state(age_s, connections, silent_after_s) == state
 
 
 @pytest.mark.parametrize('state, age_s, waited_s, words', [

@@ -8,6 +8,7 @@ import pytest
 
 from mhri.core.devices.pads import (
     choose_pad, choose_profile, describe, is_guid, load_profiles, PadInfo, same_guid)
+from mhri.core.driving.profile import ANY, JoyRefused
 
 PADS = Path(__file__).resolve().parents[2] / 'resource' / 'pads'
 FILES = [(path.stem, str(path), path.read_text(encoding='utf-8'))
@@ -67,26 +68,52 @@ def test_left_stick_drives_forward_and_left(name):
     profile = BY_NAME[name]
     axes = [0.0] * 6
     axes[profile.forward.index] = -1.0  # every kernel driver: forward is less
-    assert profile.read(axes, [0] * 17).forward == 1.0
+    assert profile.read(axes, [1] * 17).forward == 1.0
     axes = [0.0] * 6
     axes[profile.turn.index] = -1.0  # left is less
-    assert profile.read(axes, [0] * 17).turn == 1.0
+    assert profile.read(axes, [1] * 17).turn == 1.0
 
 
 def test_buttons_are_those_that_the_comment_of_the_file_names():
     for name, path, text in FILES:
-        drawn = dict(re.findall(r'\b(\d+) (circle|B|R1|RB|L1|LB|triangle|Y)\b', text))
-        for key, number, label in re.findall(r'^(\w+)_button: +(\d+) +# (\w+)$', text, re.M):
+        drawn = dict(re.findall(
+            r'\b(\d+) (circle|B|R1|RB|L1|LB|triangle|Y|square|X)\b', text))
+        for key, number, label in re.findall(
+                r'^(\w+)_button: +(\d+) +# (\w+)(?:, held)?$', text, re.M):
             assert drawn.get(number) == label, '{}: {}'.format(path, key)
         actions = {action for _, action in BY_NAME[name].actions}
         assert actions == (set() if name in ('generic', 'virtual') else {
             'stop_all', 'next_robot', 'previous_robot', 'select_all'}), name
 
 
-def test_ps3_drives_at_full_speed_without_a_button():
+def test_ps3_drives_at_full_speed_with_no_more_than_the_dead_man_button():
     assert BY_NAME['ps3'].turbo is None
-    assert BY_NAME['ps3'].dead_man is None
     assert BY_NAME['ps3'].dead_zone == 0.08
+
+
+PAD_PROFILES = [profile for profile in PROFILES if profile.name != 'virtual']
+
+
+@pytest.mark.parametrize('profile', PAD_PROFILES, ids=lambda profile: profile.name)
+def test_every_pad_has_a_dead_man_button_with_no_other_meaning(profile):
+    assert profile.dead_man is not None
+    assert profile.dead_man not in [button for button, _ in profile.actions]
+    axes, buttons = [0.0] * 6, [0] * 17
+    axes[profile.forward.index] = -1.0
+    assert profile.read(axes, buttons).is_zero()
+    buttons[9 if profile.dead_man == ANY else profile.dead_man] = 1
+    assert profile.read(axes, buttons).forward == 1.0
+
+
+def test_a_pad_that_nobody_knows_drives_with_any_button_and_never_without_one():
+    generic = BY_NAME['generic']
+    for number in range(3):
+        buttons = [int(number == index) for index in range(3)]
+        assert generic.read((0.0, -1.0), buttons).forward == 1.0
+    assert generic.read((0.0, -1.0), (0, 0, 0)).is_zero()
+    with pytest.raises(JoyRefused, match='dead-man'):
+        generic.read((0.0, -1.0), ())
+    assert generic.without_dead_man().read((0.0, -1.0), ()).forward == 1.0
 
 
 def test_a_bad_file_does_not_hide_the_good_ones():

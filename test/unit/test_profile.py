@@ -92,6 +92,9 @@ BAD = {
     'dead_zone': GOOD + 'dead_zone: 1.0\n',
     'neutral': GOOD + 'neutral: -0.1\n',
     'dead_man_button': GOOD + 'dead_man_button: -1\n',
+    'dead_man_button: expected': GOOD + 'dead_man_button: every\n',
+    'dead_man_button: button 4': GOOD + 'dead_man_button: 4\nnext_robot_button: 4\n',
+    'dead_man_button: button 5': GOOD + 'dead_man_button: 5\nturbo_button: 5\n',
     'dead_mann': GOOD + 'dead_mann: 4\n',
     'forward': 'name: pad\nturn: {axis: 0}\n',
     'forward.axis': 'name: pad\nforward: {axis: 1.5}\nturn: {axis: 0}\n',
@@ -113,7 +116,8 @@ def test_parse_names_file_and_key(key):
     """What is wrong and where, in the error."""
     with pytest.raises(ConfigError) as error:
         parse_profile(BAD[key], 'pad.yaml')
-    assert str(error.value).startswith('pad.yaml: {}:'.format(key))
+    assert str(error.value).startswith('pad.yaml: {}'.format(
+        key if ':' in key else key + ':'))
 
 
 def test_axis_never_leaves_its_range():

@@ -3,7 +3,6 @@
 """Requests to the panel: every action from every kind of selection."""
 import pytest
 
-from mhri.core.screen import requests
 from mhri.core.screen.requests import check_request, RequestRefused, selection_after
 
 ROBOTS = ('bot1', 'bot2', 'bot3')
@@ -40,11 +39,3 @@ def test_next_of_nothing():
         with pytest.raises(RequestRefused, match='no robot'):
             selection_after(action, (), (), ())
     assert selection_after('select_all', (), (), ()) == ()
-
-
-def test_the_actions_are_those_of_the_message():
-    """The message is what others see; the rules have no ROS."""
-    message = pytest.importorskip('mhri.msg').PanelRequest
-    names = {value for name, value in vars(message).items()
-             if name.isupper() and isinstance(value, str)}
-    assert names == set(requests.ACTIONS)

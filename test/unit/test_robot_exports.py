@@ -106,6 +106,29 @@ def test_manifest_that_cannot_be_read(workspace, monkeypatch):
     """It went while it was looked at."""
     folder = workspace('gone')
     rospack = rospkg.RosPack([str(workspace.path)])
-    assert rospack.list() == ['gone']
+    assert list(rospack.list()) == ['gone']
     os.remove(str(folder / 'package.xml'))
     assert exported_types(rospack) == ([], [])
+
+
+WRONG = {
+    'too_large': ('is larger than 1 MB', lambda path: path.write_bytes(b'#' * 10000000)),
+    'endless': ('is no regular file', lambda path: path.symlink_to('/dev/zero')),
+    'pipe': ('is no regular file', os.mkfifo),
+    'tag': ("line 1: 'maybe' is no bool", lambda path: path.write_text('name: !!bool maybe')),
+    'bytes': ('is not UTF-8', lambda path: path.write_bytes(b'name: \xff')),
+}
+
+
+@pytest.mark.parametrize('case', sorted(WRONG))
+def test_a_hostile_template_hides_no_other(workspace, case):
+    """Neither by its tags and size, nor by never ending."""
+    said, write = WRONG[case]
+    workspace('good')
+    write(workspace('wrong', template=None) / 'robot.yaml')
+    exports, errors = exported(workspace)
+    types, unusable = load_robot_types([], exports)
+    assert sorted(types) == ['good'] and len(errors + unusable) == 1
+    message = str((errors + unusable)[0])
+    assert said in message and message.count('robot.yaml') == 1 and len(message) <= 300
+    assert message.endswith('mend it there and start mhri again')

@@ -5,8 +5,10 @@ import glob
 import os
 
 import pytest
+import yaml
 
 from mhri.core.config import ConfigError
+from mhri.core.robots.robot_hardware import HardwareStopSpec, MotorPowerSpec
 from mhri.core.robots.robot_types import (
     Export, Limits, load_robot_types, parse_robot_type, resolve_robot_type, Seen)
 
@@ -80,10 +82,60 @@ def test_parameters_override_any_of_it():
     assert kind.limits == Limits(0.1, 3.14) and kind.odometry == ('odom',)
 
 
+HARDWARE = {
+    'power_by_topic': ('motor_power: {topic: motor_power}', MotorPowerSpec('motor_power'), None),
+    'power_by_number': (
+        'motor_power: {topic: base/power, type: kobuki_msgs/MotorPower, field: state, powered: 1, '
+        'cut: 0}', MotorPowerSpec('base/power', False, 'kobuki_msgs/MotorPower', 'state', 1, 0),
+        None),
+    'power_by_service': ('motor_power: {service: motor_power}',
+                         MotorPowerSpec('motor_power', True, 'std_srvs/SetBool', ''), None),
+    'stop': ('hardware_stop: {topic: e_stop}', None, HardwareStopSpec('e_stop')),
+    'stop_by_values': (
+        'hardware_stop: {topic: e_stop, type: lab_msgs/State, field: base.mode, stopped: [2, 3]}',
+        None, HardwareStopSpec('e_stop', 'lab_msgs/State', 'base.mode', (2, 3))),
+    'none': ('motor_power: none', None, None),
+}
+
+
+@pytest.mark.parametrize('case', sorted(HARDWARE))
+def test_hardware_of_a_type_and_by_parameter(case):
+    """What takes the power from its motors, and what tells of its own emergency stop."""
+    text, power, stop = HARDWARE[case]
+    kind = parse_robot_type(GOOD + text, 'crawler.yaml')
+    assert (kind.motor_power, kind.hardware_stop) == (power, stop)
+    kind, errors = resolve_robot_type(shipped(), 'bot1', {'mhri': yaml.safe_load(text)})
+    assert (kind.motor_power, kind.hardware_stop, errors) == (power, stop, [])
+
+
+def test_hardware_of_the_shipped_types():
+    """And of a robot without a namespace."""
+    powers = {name: kind.motor_power for name, kind in shipped().items()}
+    assert powers == {
+        'generic': None, 'turtlesim': None, 'turtlebot3': MotorPowerSpec('motor_power'),
+        'turtlebot2': MotorPowerSpec('mobile_base/commands/motor_power', False,
+                                     'kobuki_msgs/MotorPower', 'state', 1, 0)}
+    assert shipped()['turtlebot3'].at_root().motor_power.name == '/motor_power'
+    kind, errors = resolve_robot_type(shipped(), 'bot1', {
+        'robot_type': 'turtlebot3', 'mhri': {'motor_power': 'none'}})
+    assert (kind.motor_power, errors) == (None, [])
+
+
+@pytest.mark.parametrize('said, silent_after_s', [(None, 1.0), (2.5, 2.5), (0, 0.0), (60, 60.0)])
+def test_type_and_parameter_say_when_a_robot_is_silent(said, silent_after_s):
+    """Odometry at 1 Hz, or in motion only."""
+    text = GOOD if said is None else GOOD + 'silent_after_s: {}\n'.format(said)
+    assert parse_robot_type(text, 'crawler.yaml').silent_after_s == silent_after_s
+    params = {} if said is None else {'mhri': {'silent_after_s': said}}
+    kind, errors = resolve_robot_type(shipped(), 'bot1', params)
+    assert (kind.silent_after_s, errors) == (silent_after_s, [])
+
+
 OVERRIDES = {
     'mhri': 'fast', 'mhri.limits.linear_mps': {'limits': {'linear_mps': -1}},
     'mhri.limits.linear': {'limits': {'linear': 1}}, 'mhri.colour': {'colour': 'red'},
-    'mhri.command': {'command': 3}, 'mhri.limits': {'limits': 3}}
+    'mhri.command': {'command': 3}, 'mhri.limits': {'limits': 3},
+    'mhri.silent_after_s': {'silent_after_s': 0.1}}
 UNCHECKED = {
     'mhri.odometry_type': {'mhri': {'odometry_type': 'foo/Bar'}},
     'mhri.command': {'mhri': {'command': []}},
@@ -125,6 +177,19 @@ BAD = {
     'models.big.linear_mps': GOOD + 'models: {big: {angular_rad_s: 1}}\n',
     'name': GOOD.replace('crawler', '3'),
     'known_by': GOOD + 'known_by: {feet: 3}\n',
+    'silent_after_s': GOOD + 'silent_after_s: -1\n',
+    'motor_power': GOOD + 'motor_power: {topic: a, service: b}\n',
+    'motor_power.type': GOOD + 'motor_power: {service: a, type: std_srvs/Trigger}\n',
+    'motor_power.topic': GOOD + 'motor_power: {topic: "a b"}\n',
+    'motor_power.cut': GOOD + 'motor_power: {topic: a, powered: 1, cut: 1}\n',
+    'motor_power.powered': GOOD + 'motor_power: {topic: a, powered: [1]}\n',
+    'motor_power.field': GOOD + 'motor_power: {topic: a, field: _buff}\n',
+    'motor_power.off': GOOD + 'motor_power: {topic: a, "off": 0}\n',
+    'hardware_stop.topic': GOOD + 'hardware_stop: {}\n',
+    'hardware_stop': GOOD + 'hardware_stop: 3\n',
+    'hardware_stop.stopped': GOOD + 'hardware_stop: {topic: a, stopped: []}\n',
+    'hardware_stop.type': GOOD + 'hardware_stop: {topic: a, type: Bool}\n',
+    'hardware_stop.colour': GOOD + 'hardware_stop: {topic: a, colour: red}\n',
 }
 
 

@@ -28,6 +28,31 @@ def test_defaults_of_a_row():
     assert (config.default, config.linear_mps, config.angular_rad_s) == ('joy', 0.5, 1.5)
 
 
+def test_a_row_of_type_twist_needs_no_profile_and_may_rest_in_silence():
+    config = parse('sources:\n  - {name: cmd, topic: /cmd_vel, type: twist}\n' + TAIL)
+    source = config.sources[0]
+    assert (source.kind, source.profile, source.timeout_s, source.rests) == (
+        'twist', None, 0.5, True)
+
+
+def test_a_source_that_sends_changes_only_is_held_for_a_while_not_for_ever():
+    row = '  - {{name: pad, topic: /joy, profile: p, holds: true{}}}\n'
+    assert parse('sources:\n' + row.format('') + TAIL).sources[0].timeout_s == 5.0
+    assert parse('sources:\n' + row.format(', timeout_s: 60') + TAIL).sources[0].timeout_s == 60.0
+    with pytest.raises(ConfigError, match='timeout_s'):
+        parse('sources:\n' + row.format(', timeout_s: 61') + TAIL)
+
+
+def test_dead_man_buttons_can_be_turned_off_for_all_profiles():
+    profile = PROFILE + 'dead_man_button: 4\n'
+
+    def read(name):
+        return 'p.yaml', profile
+    assert parse('sources:\n' + ROW + TAIL, read).sources[0].profile.dead_man == 4
+    config = parse('dead_man: false\nsources:\n' + ROW + TAIL, read)
+    assert (config.dead_man, config.sources[0].profile.dead_man) == (False, None)
+
+
 def test_shipped_file_has_the_contract_s_sources():
     """Names, topics and services are public interface."""
     def read(name):
@@ -44,6 +69,7 @@ def test_shipped_file_has_the_contract_s_sources():
         ('voice', '/mux_in/voice', '/mhri_voice/set_suspended', 0.5)]
     assert config.default == 'joy'
     for source in config.sources:
+        assert source.exclusive == (source.name == 'joy')
         if source.name != 'ps3joy':
             stick = source.profile.read((1.0, 0.5), ())
             assert (stick.turn, stick.forward) == (1.0, 0.5), 'axes[0] left +, axes[1] forward +'
@@ -59,6 +85,13 @@ BAD = {
     'sources[1].name': 'sources:\n' + ROW + '  - {name: joy, topic: /b, profile: p}\n' + TAIL,
     'sources[1].topic': 'sources:\n' + ROW + '  - {name: b, topic: /mux_in/joy, profile: p}\n'
                         + TAIL,
+    'sources[0].type': 'sources:\n  - {name: j, topic: /a, profile: p, type: string}\n' + TAIL,
+    'sources[0].profile': 'sources:\n  - {name: j, topic: /a}\n' + TAIL,
+    'sources[0].holds': 'sources:\n  - {name: j, topic: /a, profile: p, holds: 3}\n' + TAIL,
+    'sources[0].label': 'sources:\n  - {name: j, topic: /a, profile: p, label: ' + 61 * 'x'
+                        + '}\n' + TAIL,
+    'enabling': 'enabling: cmd\nsources:\n  - {name: cmd, topic: /a, type: twist}\n' + TAIL,
+    'dead_man': 'dead_man: sometimes\nsources:\n' + ROW + TAIL,
     'default': 'default: ps5\nsources:\n' + ROW + TAIL,
     'speed_limit': 'sources:\n' + ROW,
     'speed_limit.linear_mps': 'sources:\n' + ROW

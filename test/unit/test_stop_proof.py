@@ -4,17 +4,18 @@
 import pytest
 
 from mhri.core.robots.link import Motion
-from mhri.core.robots.stop_proof import HEARING_S, PATIENCE_S, StopProof
+from mhri.core.robots.robot_types import SILENT_AFTER_S
+from mhri.core.robots.stop_proof import PATIENCE_S, ROW_S, StopProof, UNKNOWN_ROUND_TRIP_S
 from mhri.core.screen.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED, PROOF_WAITING
 
 REST, MOVES, NAN = Motion(0.0, 0.0), Motion(0.3, 0.0), Motion(float('nan'), 0.0)
 
 
-def follow(*readings, began=0.0):
-    """Return a proof that has taken in (time, motion) readings."""
-    proof = StopProof(began)
-    for now, motion in readings:
-        proof.on_motion(motion, now)
+def follow(*readings, began=0.0, round_trip_s=0.02):
+    """Return a proof that has taken in readings: (time, motion) or (time, motion, late [s])."""
+    proof = StopProof(began, round_trip_s)
+    for now, motion, *late_s in readings:
+        proof.on_motion(motion, now, *late_s)
         proof.view(now)
     return proof
 
@@ -25,26 +26,28 @@ def every(seconds, until, motion, begin=0.0):
     return [(begin + seconds * number, motion) for number in range(1, count + 1)]
 
 
-STOPS = every(0.02, 0.2, MOVES) + every(0.02, 0.3, REST, 0.2)
+STOPS = every(0.02, 0.2, MOVES) + every(0.02, 0.34, REST, 0.2)
 CASES = {
     'nothing_yet': ([], 0.5, PROOF_WAITING, 'stopping'),
     'still_moving': (every(0.02, 1.0, MOVES), 1.0, PROOF_WAITING, 'stopping'),
-    'stopped': (STOPS, 0.3, PROOF_STOPPED, 'stopped in 220 ms'),
-    'two_readings_are_no_proof': ([(0.1, REST), (0.12, REST)], 0.13, PROOF_WAITING, 'stopping'),
+    'stopped': (STOPS, 0.34, PROOF_STOPPED, 'stopped in 220 ms'),
+    'three_readings_in_a_moment_are_no_proof': (
+        [(0.1, REST), (0.101, REST), (0.102, REST)], 0.13, PROOF_WAITING, 'stopping'),
+    'two_readings_are_no_proof': ([(0.1, REST), (0.3, REST)], 0.33, PROOF_WAITING, 'stopping'),
     'a_move_between_begins_anew': (
         [(0.1, REST), (0.12, REST), (0.14, MOVES), (0.16, REST), (0.18, REST)], 0.19,
         PROOF_WAITING, 'stopping'),
     'nan_is_not_rest': (every(0.02, 0.5, NAN), 0.5, PROOF_WAITING, 'stopping'),
-    'never_heard': ([], HEARING_S + 0.001, PROOF_NOT_CONFIRMED,
+    'never_heard': ([], SILENT_AFTER_S + 0.001, PROOF_NOT_CONFIRMED,
                     'NOT CONFIRMED: it cannot be heard'),
     'moves_on': (every(0.02, PATIENCE_S + 0.04, MOVES), PATIENCE_S + 0.04, PROOF_NOT_CONFIRMED,
                  'NOT CONFIRMED: moves at 0.30 m/s, 0.00 rad/s'),
     'moves_again': (STOPS + [(0.4, MOVES)], 0.4, PROOF_NOT_CONFIRMED,
                     'NOT CONFIRMED: moves at 0.30 m/s, 0.00 rad/s'),
-    'falls_silent': (STOPS, 0.3 + HEARING_S + 0.001, PROOF_NOT_CONFIRMED,
+    'falls_silent': (STOPS, 0.34 + SILENT_AFTER_S + 0.001, PROOF_NOT_CONFIRMED,
                      'NOT CONFIRMED: it cannot be heard'),
     'late_but_in_the_end': (
-        every(0.02, 2.1, MOVES) + every(0.02, 2.2, REST, 2.1), 2.2, PROOF_STOPPED,
+        every(0.02, 2.1, MOVES) + every(0.02, 2.3, REST, 2.1), 2.3, PROOF_STOPPED,
         'stopped in 2120 ms'),
 }
 
@@ -52,12 +55,12 @@ CASES = {
 HALT = 4.0  # when a robot that was held up on the way is heard again
 UNSEEN = {
     'at_rest_when_heard_again': (
-        every(0.02, 0.1, MOVES) + every(0.02, HALT + 0.1, REST, HALT),
+        every(0.02, 0.1, MOVES) + every(0.02, HALT + 0.2, REST, HALT),
         'standstill seen after 4.0 s'),
     'moved_when_heard_again': (
         every(0.02, 0.1, MOVES) + every(0.02, HALT + 0.1, MOVES, HALT)
-        + every(0.02, HALT + 0.2, REST, HALT + 0.1), 'standstill seen after 4.1 s'),
-    'proved_before_it_fell_silent': (STOPS + every(0.02, HALT + 0.1, REST, HALT),
+        + every(0.02, HALT + 0.3, REST, HALT + 0.1), 'standstill seen after 4.1 s'),
+    'proved_before_it_fell_silent': (STOPS + every(0.02, HALT + 0.2, REST, HALT),
                                      'stopped in 220 ms'),
 }
 
@@ -81,7 +84,8 @@ def test_transition(case):
 def test_stopped_ms_is_none_before_the_proof():
     """And never negative, were the first reading older than the stop."""
     assert follow((0.1, REST)).stopped_ms is None
-    assert follow((4.9, REST), (4.95, REST), (5.1, REST), began=5.0).stopped_ms == 0.0
+    assert follow((5.0, REST), (5.05, REST), (5.11, REST), began=5.0,
+                  round_trip_s=0.0).stopped_ms == 0.0
 
 
 def test_silence_begins_the_row_anew():
@@ -90,9 +94,9 @@ def test_silence_begins_the_row_anew():
     proof.view(5.0)
     proof.on_motion(REST, 5.1)
     assert proof.view(5.1).state == PROOF_NOT_CONFIRMED
-    proof.on_motion(REST, 5.12)
-    proof.on_motion(REST, 5.14)
-    assert proof.view(5.14).state == PROOF_STOPPED
+    proof.on_motion(REST, 5.15)
+    proof.on_motion(REST, 5.2)
+    assert proof.view(5.2).state == PROOF_STOPPED
 
 
 def test_silence_begins_the_row_anew_even_when_nobody_looked():
@@ -105,8 +109,88 @@ def test_silence_begins_the_row_anew_even_when_nobody_looked():
 
 def test_a_robot_that_moved_again_is_not_called_stopped_in_the_time_of_the_first_row():
     """\"Stopped in 220 ms\" was refuted at 5 s."""
-    proof = follow(*(STOPS + every(0.5, 5.0, MOVES, 0.3) + every(0.02, 5.2, REST, 5.0)))
+    proof = follow(*(STOPS + every(0.5, 5.0, MOVES, 0.3) + every(0.02, 5.3, REST, 5.0)))
     assert proof.state == PROOF_STOPPED and proof.stopped_ms > 5000.0
+
+
+def pose(x_m=0.0, heading_rad=0.0, **speeds):
+    """Return a reading at a place, with velocities of zero where none is given."""
+    return Motion(speeds.get('linear', 0.0), speeds.get('angular', 0.0), x_m, 0.0, heading_rad,
+                  speeds.get('lateral', 0.0))
+
+
+def rolls(speed, turn=0.0, rate_hz=50, until=5.0):
+    """Return readings whose velocities say rest while the pose moves [m/s, rad/s]."""
+    return [(number / rate_hz, pose(speed * number / rate_hz, turn * number / rate_hz))
+            for number in range(1, int(until * rate_hz))]
+
+
+NEVER = {
+    'slides': (every(0.02, 5.0, pose(lateral=0.5)), 'moves at 0.50 m/s, 0.00 rad/s'),
+    'slides_back': (every(0.02, 5.0, pose(lateral=-0.02)), 'moves at 0.02 m/s'),
+    'slow_both_ways': (every(0.02, 5.0, pose(linear=0.009, lateral=0.009)), 'moves at 0.01 m/s'),
+    'pose_moves': (rolls(0.5), 'its pose moves at 0.50 m/s'),
+    'pose_creeps': (rolls(0.03), 'its pose moves at'),
+    'pose_moves_at_5_hz': (rolls(0.5, rate_hz=5), 'its pose moves at 0.50 m/s'),
+    'pose_turns': (rolls(0.0, 0.5), 'its pose moves at 0.00 m/s, 0.50 rad/s'),
+    'pose_turns_about': (rolls(0.0, -3.0), 'its pose moves at 0.00 m/s, 3.00 rad/s'),
+    'no_number_sideways': (every(0.02, 5.0, pose(lateral=float('nan'))), 'not possible'),
+    'no_number_of_the_place': (every(0.02, 5.0, pose(float('inf'))), 'not possible'),
+    'no_number_of_the_heading': (every(0.02, 5.0, pose(0.0, float('nan'))), 'not possible'),
+    'beyond_the_earth': (every(0.02, 5.0, pose(1e30)), 'not possible'),
+    'faster_than_light': (every(0.02, 5.0, pose(linear=1e308)), 'not possible'),
+    'older_than_the_stop': ([(now, REST, now + 0.1) for now, _ in every(0.02, 5.0, REST)],
+                            'what it says is 5.0 s old'),
+    'of_no_known_age': ([(now, REST, None) for now, _ in every(0.02, 5.0, REST)],
+                        'the clock of its stamps was set back'),
+}
+
+
+@pytest.mark.parametrize('case', sorted(NEVER))
+def test_never_proved(case):
+    """Not at any moment, and the words say why."""
+    readings, words = NEVER[case]
+    proof = StopProof(0.0, 0.02)
+    for now, motion, *late_s in readings:
+        proof.on_motion(motion, now, *late_s)
+        assert proof.view(now).state != PROOF_STOPPED, now
+    assert words in proof.view(readings[-1][0]).text
+
+
+@pytest.mark.parametrize('round_trip_s, late_s, stopped_s', [
+    (0.0, 0.0, 0.02), (0.3, 0.0, 0.3), (0.02, 0.6, 0.02), (0.3, 0.6, 0.3),
+    (None, 0.0, UNKNOWN_ROUND_TRIP_S)])
+def test_nothing_counts_that_was_measured_before_the_stop_was_there(
+        round_trip_s, late_s, stopped_s):
+    """A resting robot on a slow link: its readings from before prove nothing."""
+    proof = StopProof(0.0, round_trip_s)
+    for now, motion in every(0.02, 3.0, REST):
+        proof.on_motion(motion, now, late_s)
+        if proof.view(now).state == PROOF_STOPPED:
+            break
+    assert now >= stopped_s + late_s + ROW_S - 1e-9
+    assert proof.stopped_ms == pytest.approx(1e3 * stopped_s, abs=21.0)
+
+
+@pytest.mark.parametrize('rate_hz', [1, 5, 50])
+def test_a_jittering_pose_at_rest_is_rest(rate_hz):
+    """Half a millimetre, a milliradian; and heading that runs on by 0.1 degrees a second."""
+    proof = StopProof(0.0, 0.02, silent_after_s=2.5)
+    for number in range(1, 20 * rate_hz):
+        now, sign = number / rate_hz, number % 2 - 0.5
+        proof.on_motion(pose(0.0005 * sign, 0.001 * sign + 0.0017 * now), now)
+        state = proof.view(now).state
+        assert state == PROOF_STOPPED or now <= 3.0
+    assert state == PROOF_STOPPED
+
+
+def test_a_type_with_slow_odometry_is_not_called_silent():
+    """1 Hz: proved by the third reading, silent after its own time."""
+    proof = StopProof(0.0, 0.02, silent_after_s=2.5)
+    for now in (1.0, 2.0, 3.0):
+        proof.on_motion(REST, now)
+    assert proof.view(5.4).text == 'stopped in 1000 ms'
+    assert proof.view(5.6).text == 'NOT CONFIRMED: it cannot be heard'
 
 
 def test_words_do_not_claim_that_a_resting_robot_moves():

@@ -220,7 +220,7 @@ start_xvfb() {
 xvfb_answers() {
   local deadline=$((SECONDS + 20))
   while [ "$SECONDS" -lt "$deadline" ] && kill -0 "$XVFB_PID" 2>/dev/null; do
-    if python3 -c 'import socket, sys
+    if python3 -I -c 'import socket, sys
 socket.socket(socket.AF_UNIX).connect("/tmp/.X11-unix/X" + sys.argv[1])' "${DISPLAY#:}" \
       2>/dev/null; then return 0; fi
     sleep 0.05

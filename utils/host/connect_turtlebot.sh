@@ -29,14 +29,14 @@ robot's nodes. Asks for the robot's password unless ssh has a key for it.
 
   These are passed on; 'turtle_remote.sh --help' says what they mean:
   --type TYPE, --model MODEL, --launch FILE, --setup FILE, --ip ADDR, --port PORT, --no-camera,
-  --no-smoother, --guard
+  --no-smoother, --no-guard
 
 Exit status: 2 wrong option, 255 ssh could not connect or lost the robot, else that of
 turtle_remote.sh: 1 could not start or the robot's launch ended, 129, 130 or 143 ended from here.
 
 Examples
   connect_turtlebot.sh turtlebot 192.168.0.7 bot1
-  connect_turtlebot.sh pi 192.168.0.8 bot2 --type turtlebot3_burger --guard
+  connect_turtlebot.sh pi 192.168.0.8 bot2 --type turtlebot3_burger
 HELP
 }
 
@@ -78,7 +78,7 @@ parse_arguments() {
         printf -v "${option^^}" %s "$text"
         PASSED_ON+=("$1" "$text")
         shift ;;
-      --no-camera | --no-smoother | --guard) PASSED_ON+=("$1") ;;
+      --no-camera | --no-smoother | --no-guard) PASSED_ON+=("$1") ;;
       -*) usage_error "there is no option $1" ;;
       *) words+=("$1") ;;
     esac

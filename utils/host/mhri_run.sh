@@ -190,7 +190,7 @@ choose_address() {
 }
 
 free_port() {
-  python3 -c 'import socket
+  python3 -I -c 'import socket
 with socket.socket() as sock:
     sock.bind(("127.0.0.1", 0))
     print(sock.getsockname()[1])'

@@ -8,7 +8,9 @@
 PYTHON=
 BASE_LAUNCH=()
 CAMERA_LAUNCH=()
+GUARD_PYTHON=
 GUARD_TOPIC=cmd_vel
+GUARD_LIMITS=()
 
 # What operators put into ~/.bashrc, which a shell that is not interactive does not read. Only these
 # variables are taken over, and only where they are not set.
@@ -132,14 +134,31 @@ prepare_launch() {
   if ! "$GUARD"; then return; fi
   [ -f "$HERE/mhri_guard" ] ||
     die "there is no $HERE/mhri_guard: send the files again, with turtlebot_deploy.sh on the host"
-  python3 -c 'import rospy' >/dev/null 2>&1 ||
-    die "--guard needs rospy for Python 3, which this robot's ROS does not have: leave --guard out"
+  find_guard_python ||
+    die "mhri_guard needs rospy and geometry_msgs, which this robot's ROS does not have: install" \
+      "them, or leave the guard out with --no-guard"
 }
+
+# find_guard_python: one that has what the guard imports. ROS up to Melodic has it for Python 2.
+find_guard_python() {
+  for GUARD_PYTHON in "$PYTHON" python3 python; do
+    # Not where this was started: a rospy.py may lie there.
+    if (cd / && "$GUARD_PYTHON" -c 'import rospy, geometry_msgs.msg') >/dev/null 2>&1; then
+      return
+    fi
+  done
+  return 1
+}
+
+# limit_guard LINEAR ANGULAR: what this robot can do at most [m/s, rad/s], as its type on the host
+# has it.
+limit_guard() { GUARD_LIMITS=("_max_linear_mps:=$1" "_max_angular_rad_s:=$2"); }
 
 prepare_turtlebot2() {
   local folder
   folder=$(package turtlebot_bringup) || missing_package turtlebot_bringup
   GUARD_TOPIC=teleop/input
+  limit_guard 0.65 3.14
   if "$SMOOTHER" && ! package yocs_velocity_smoother >/dev/null; then
     warn "there is no package yocs_velocity_smoother: the robot will jerk more than it needs to"
     SMOOTHER=false
@@ -161,6 +180,7 @@ prepare_turtlebot3() {
     die "which TurtleBot3 is this? TURTLEBOT3_MODEL is '$MODEL': give --model burger, waffle or" \
       "waffle_pi"
   export TURTLEBOT3_MODEL=$MODEL
+  if [ "$MODEL" = burger ]; then limit_guard 0.22 2.84; else limit_guard 0.26 1.82; fi
   if [ -z "$LDS_MODEL" ] &&
     grep -qsF 'env LDS_MODEL' "$folder/launch/turtlebot3_lidar.launch"; then
     die "LDS_MODEL is not set: put 'export LDS_MODEL=LDS-01' (or LDS-02, see the label on the" \

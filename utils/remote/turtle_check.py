@@ -4,9 +4,10 @@
 """What turtle_remote.sh asks of the network; no operator calls it.
 
 turtle_check.py host HOST PORT OWN NAME     checks the master, both ways, and that NAME is free
-turtle_check.py watch HOST PORT NAME TOKEN  notes there that NAME runs from here; ends when the
-                                            host has a new master, which does not know it
-turtle_check.py release HOST PORT NAME TOKEN  takes the note back
+turtle_check.py claim HOST PORT NAME TOKEN  notes there that NAME runs from here
+turtle_check.py watch HOST PORT NAME TOKEN  ends when the host has a new master, which does not know
+                                            the note
+turtle_check.py release HOST PORT NAME TOKEN  takes back the note, and all parameters of NAME since
 turtle_check.py hold COMMAND...             becomes COMMAND; the kernel ends it with its parent
 
 Exit status 1, and one line that says what is wrong and what mends it, where something is. Needs the
@@ -240,6 +241,19 @@ def check_host(host, port, own, name):
                       'there (mhri_run.sh --ip {0}), then start this robot again'.format(host))
 
 
+def outermost(name, kept):
+    """Return the shortest beginning of a parameter's name that has nothing in it that is kept.
+
+    None where the parameter itself is.
+    """
+    parts = name.split('/')
+    for length in range(2, len(parts) + 1):
+        whole = '/'.join(parts[:length])
+        if not any((stays + '/').startswith(whole + '/') for stays in kept):
+            return whole
+    return None
+
+
 class Claim(object):
     """The note at the master that a robot runs from here; a new master does not have it.
 
@@ -256,12 +270,21 @@ class Claim(object):
         return '/{0}/{1}'.format(self._name, last)
 
     def make(self):
-        """Note it.
+        """Note it, and which parameters the robot has there already: those stay behind it.
+
+        What a run left that was killed is not the host's: the list of that run holds on.
 
         :raises Problem: the master does not answer
         """
+        if answer(self._master.getParam, self._key('mhri_remote_found')) is None:
+            answer(self._master.setParam, self._key('mhri_remote_found'), self._parameters())
         if answer(self._master.setParam, self._key('mhri_remote'), self._token) is None:
             raise Problem('the master at {0} stopped answering'.format(self._host))
+
+    def _parameters(self):
+        """Return the full names of the robot's parameters."""
+        names = answer(self._master.getParamNames) or []
+        return [name for name in names if name.startswith(self._key(''))]
 
     def state(self):
         """Return whether the master has our note; None where it does not answer."""
@@ -272,10 +295,12 @@ class Claim(object):
         return code == 1 and value == self._token
 
     def give_up(self):
-        """Take the note back, and what makes the name a robot for the host."""
-        if self.state():
-            for last in ('mhri_remote', 'robot_type'):
-                answer(self._master.deleteParam, self._key(last))
+        """Take back the note and what the robot brought: the host knows no such robot then."""
+        if not self.state():
+            return
+        found = answer(self._master.getParam, self._key('mhri_remote_found')) or []
+        for name in set(outermost(name, found) for name in self._parameters()) - {None}:
+            answer(self._master.deleteParam, name)
 
     def watch(self):
         """Return when the host has a new master; say when it falls silent, and when it is back."""
@@ -312,16 +337,15 @@ def hold(command):
 
 
 def watch(host, port, name, token):
-    """Note that the robot runs from here, and watch that the host knows it."""
+    """Watch that the host knows that the robot runs from here."""
     os.setsid()
     end_with_parent()
-    claim = Claim(host, int(port), name, token)
-    claim.make()
-    claim.watch()
+    Claim(host, int(port), name, token).watch()
 
 
 COMMANDS = {
     'host': lambda host, port, own, name: check_host(host, int(port), own, name),
+    'claim': lambda host, port, name, token: Claim(host, int(port), name, token).make(),
     'watch': watch,
     'release': lambda host, port, name, token: Claim(host, port, name, token).give_up(),
     'hold': lambda *command: hold(command),

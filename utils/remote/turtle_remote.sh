@@ -35,7 +35,8 @@ Robot
                        connect_turtlebot.sh: from the home on the robot), or PACKAGE/FILE.launch
   --no-camera          do not start the camera
   --no-smoother        TurtleBot2: leave the velocity smoother out
-  --guard              also start mhri_guard, which drops commands that come late
+  --no-guard           do not start mhri_guard, which drops commands that come late, stops the robot
+                       when none come, and keeps it stopped by stop-all when the network is lost
 
 Network
   --ip ADDR            this robot's address. Default: of those of 'hostname -I' the one on the
@@ -54,7 +55,7 @@ Exit status: 0 only for --help, 1 could not start or the robot's launch ended, 2
 
 Examples
   turtle_remote.sh 192.168.0.103 bot1
-  turtle_remote.sh 192.168.0.103 bot2 --type turtlebot3_burger --guard
+  turtle_remote.sh 192.168.0.103 bot2 --type turtlebot3_burger --ip 192.168.0.8
   turtle_remote.sh 192.168.0.103 husky1 --type generic --launch husky_base/base.launch
 HELP
 }
@@ -66,7 +67,7 @@ MODEL=
 LAUNCH=
 CAMERA=true
 SMOOTHER=true
-GUARD=false
+GUARD=true
 IP=
 PORT=11311
 SETUP=
@@ -93,7 +94,7 @@ parse_arguments() {
       --launch) LAUNCH=$(value "$@"); shift ;;
       --no-camera) CAMERA=false ;;
       --no-smoother) SMOOTHER=false ;;
-      --guard) GUARD=true ;;
+      --no-guard) GUARD=false ;;
       --ip) IP=$(value "$@"); shift ;;
       --port) PORT=$(value "$@"); shift ;;
       --setup) SETUP=$(value "$@"); shift ;;
@@ -137,6 +138,8 @@ choose_network() {
 held() { exec env "MHRI_REMOTE_ID=$TOKEN" "$PYTHON" "$HERE/turtle_check.py" hold "$@"; }
 
 start_all() {
+  # Before anything sets a parameter: it notes which there are.
+  "$PYTHON" "$HERE/turtle_check.py" claim "$HOST_IP" "$PORT" "$NAME" "$TOKEN" || exit 1
   held roslaunch "${BASE_LAUNCH[@]}" </dev/null &
   BASE_PID=$!
   if "$CAMERA" && [ "${#CAMERA_LAUNCH[@]}" -gt 0 ]; then
@@ -144,7 +147,8 @@ start_all() {
     CAMERA_PID=$!
   fi
   if "$GUARD"; then
-    ROS_NAMESPACE="/$NAME" held python3 "$HERE/mhri_guard" "_command:=$GUARD_TOPIC" </dev/null &
+    ROS_NAMESPACE="/$NAME" held "$GUARD_PYTHON" "$HERE/mhri_guard" "_command:=$GUARD_TOPIC" \
+      "${GUARD_LIMITS[@]}" </dev/null &
     GUARD_PID=$!
   fi
   "$PYTHON" "$HERE/turtle_check.py" watch "$HOST_IP" "$PORT" "$NAME" "$TOKEN" </dev/null &

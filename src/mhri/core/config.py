@@ -1,9 +1,43 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Configuration text turned into checked values: unknown keys are refused by name."""
+import reprlib
+
 import yaml
 
+# What a configuration may be at most. Those that are shipped have 2 kB, 300 values, 6 levels.
+MAX_BYTES = 1000 * 1000
+MAX_VALUES, MAX_DEPTH = 10 * 1000, 40
+# Words of one text without quotes, each of which costs PyYAML a search; digits of a number or date.
+MAX_WORDS, MAX_DIGITS = 50 * 1000, 64
+MAX_ERROR = 300
+_MAX_KEY, _MAX_ORIGIN = 60, 130
 _REQUIRED = object()
+_SHORT = reprlib.Repr()
+_SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 80
+_SHORT.maxlevel = 2
+
+
+def shown(value):
+    """Return any value as it is written in an error: like ``repr``, but of 600 characters at most.
+
+    Lists and mappings are cut after a few items, texts and numbers in their middle.
+    """
+    try:
+        return _SHORT.repr(value)
+    except ValueError:  # Python writes no numbers of more than 4,300 digits
+        return 'a number of too many digits'
+
+
+def _cut(text, most, tail):
+    """Return a printable text of ``most`` characters at most, its last ``tail`` kept."""
+    if len(text) > 2 * most:  # before it is looked at character by character
+        text = text[:most] + text[-most:]
+    text = ''.join(char if char.isprintable() else char.encode('unicode_escape').decode('ascii')
+                   for char in text)
+    if len(text) <= most:
+        return text
+    return text[:most - tail - 3] + '...' + text[len(text) - tail:]
 
 
 class ConfigError(ValueError):
@@ -12,14 +46,18 @@ class ConfigError(ValueError):
     :param origin: the file (or parameter namespace) the value came from
     :param key: dotted key inside it, or '' for the whole file
     :param problem: what is wrong and what would be right, as a sentence without a full stop
+
+    The message is one printable line of :data:`MAX_ERROR` characters at most.
     """
 
     def __init__(self, origin, key, problem):
         self.origin = origin
         self.key = key
         self.problem = problem
-        place = '{}: {}'.format(origin, key) if key else str(origin)
-        super().__init__('{}: {}'.format(place, problem))
+        place = _cut(str(origin), _MAX_ORIGIN, _MAX_ORIGIN - 3)
+        if key:
+            place += ': ' + _cut(str(key), _MAX_KEY, 20)
+        super().__init__('{}: {}'.format(place, _cut(str(problem), MAX_ERROR - len(place) - 2, 50)))
 
 
 class Section:
@@ -27,8 +65,8 @@ class Section:
 
     def __init__(self, mapping, origin, path=''):
         if not isinstance(mapping, dict):
-            raise ConfigError(origin, path, 'expected a mapping of keys to values, got {!r}'.format(
-                mapping))
+            raise ConfigError(origin, path, 'expected a mapping of keys to values, got {}'.format(
+                shown(mapping)))
         self.origin = origin
         self._path = path
         self._left = dict(mapping)
@@ -57,14 +95,14 @@ class Section:
         """Return a string."""
         value = self.take(name, default)
         if value is not default and not isinstance(value, str):
-            raise self.error(name, 'expected text, got {!r}'.format(value))
+            raise self.error(name, 'expected text, got {}'.format(shown(value)))
         return value
 
     def flag(self, name, default=_REQUIRED):
         """Return a boolean."""
         value = self.take(name, default)
         if value is not default and not isinstance(value, bool):
-            raise self.error(name, 'expected true or false, got {!r}'.format(value))
+            raise self.error(name, 'expected true or false, got {}'.format(shown(value)))
         return value
 
     def number(self, name, low, high, default=_REQUIRED):
@@ -74,8 +112,8 @@ class Section:
             return value
         good = isinstance(value, (int, float)) and not isinstance(value, bool)
         if not good or not low <= value <= high:
-            raise self.error(name, 'expected a number from {:g} to {:g}, got {!r}'.format(
-                low, high, value))
+            raise self.error(name, 'expected a number from {:g} to {:g}, got {}'.format(
+                low, high, shown(value)))
         return float(value)
 
     def index(self, name, default=_REQUIRED):
@@ -84,7 +122,7 @@ class Section:
         if value is default:
             return value
         if not isinstance(value, int) or isinstance(value, bool) or value < 0:
-            raise self.error(name, 'expected a whole number from 0 up, got {!r}'.format(value))
+            raise self.error(name, 'expected a whole number from 0 up, got {}'.format(shown(value)))
         return value
 
     def texts(self, name, default=_REQUIRED):
@@ -95,7 +133,7 @@ class Section:
         if isinstance(value, str):
             value = [value]
         if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
-            raise self.error(name, 'expected a list of texts, got {!r}'.format(value))
+            raise self.error(name, 'expected a list of texts, got {}'.format(shown(value)))
         return tuple(value)
 
     def section(self, name, default=_REQUIRED):
@@ -103,13 +141,17 @@ class Section:
         value = self.take(name, default)
         if value is default:
             return value
+        return self.sub_section(name, value)
+
+    def sub_section(self, name, value):
+        """Return a value that was taken from a key as a sub-section."""
         return Section(value, self.origin, self.key(name))
 
     def sections(self, name):
         """Return the sub-sections of a list of mappings."""
         value = self.take(name)
         if not isinstance(value, list):
-            raise self.error(name, 'expected a list, got {!r}'.format(value))
+            raise self.error(name, 'expected a list, got {}'.format(shown(value)))
         return [Section(item, self.origin, '{}[{}]'.format(self.key(name), number))
                 for number, item in enumerate(value)]
 
@@ -117,7 +159,7 @@ class Section:
         """Return {key: sub-section} of a mapping of mappings; {} where the key is missing."""
         value = self.take(name, {})
         if not isinstance(value, dict):
-            raise self.error(name, 'expected a mapping, got {!r}'.format(value))
+            raise self.error(name, 'expected a mapping, got {}'.format(shown(value)))
         return {str(key): Section(item, self.origin, '{}.{}'.format(self.key(name), key))
                 for key, item in value.items()}
 
@@ -128,13 +170,83 @@ class Section:
             raise self.error(name, 'unknown key')
 
 
-def parse_yaml(text, origin):
-    """Return the top section of a YAML text.
+class _Loader(yaml.SafeLoader):
+    """Reads YAML as ``SafeLoader`` does, but gives up before a text costs much time or memory.
 
-    :raises ConfigError: the text is not YAML, or not a mapping
+    An alias counts as all the values that it stands for: nine lists of nine aliases each, one in
+    the other, are 387 million values in 200 bytes.
     """
+
+    def __init__(self, stream):
+        super().__init__(stream)
+        self._depth = self._values = self._words = 0
+        self._sizes = {}
+
+    def compose_node(self, parent, index):
+        """Count the value that comes next, and those in it."""
+        event = self.peek_event()
+        alias = isinstance(event, yaml.AliasEvent)
+        if alias and event.anchor in self.anchors and event.anchor not in self._sizes:
+            self._refuse('*{} stands inside itself'.format(event.anchor), event)
+        begun = self._values
+        self._values += self._sizes.get(event.anchor, 1) if alias else 1
+        self._depth += 1
+        if self._values > MAX_VALUES:
+            self._refuse('more than {} values, aliases unfolded'.format(MAX_VALUES), event)
+        if self._depth > MAX_DEPTH:
+            self._refuse('more than {} levels'.format(MAX_DEPTH), event)
+        node = super().compose_node(parent, index)
+        self._depth -= 1
+        if event.anchor is not None and not alias:
+            self._sizes[event.anchor] = self._values - begun
+        return node
+
+    def construct_object(self, node, deep=False):
+        """Return the value of a node; what its tag cannot mean is an error of the file."""
+        scalar = isinstance(node, yaml.ScalarNode)
+        if scalar and len(node.value) > MAX_DIGITS and node.tag in _MEASURED:
+            self._refuse('a number or date of {} characters'.format(len(node.value)), node)
+        try:
+            return super().construct_object(node, deep)
+        except (ValueError, LookupError, AttributeError, TypeError, ArithmeticError):
+            self._refuse('{} is no {}'.format(
+                shown(node.value) if scalar else 'this', node.tag.rpartition(':')[2]), node)
+
+    def scan_plain_spaces(self, indent, start_mark):
+        """Count the words of texts without quotes."""
+        self._words += 1
+        if self._words > MAX_WORDS:
+            raise yaml.scanner.ScannerError(
+                None, None, 'more than {} words'.format(MAX_WORDS), start_mark)
+        return super().scan_plain_spaces(indent, start_mark)
+
+    def _refuse(self, problem, what):
+        raise yaml.constructor.ConstructorError(None, None, problem, what.start_mark)
+
+
+_MEASURED = {'tag:yaml.org,2002:' + kind for kind in ('int', 'float', 'timestamp')}
+
+
+def parse_yaml(text, origin):
+    """Return the top section of a YAML text; takes less than a second, whatever the text.
+
+    :raises ConfigError: the text is not YAML, larger than this module's limits, or not a mapping
+    """
+    if len(text) > MAX_BYTES:
+        raise too_large(origin)
     try:
-        return Section(yaml.safe_load(text), origin)
+        data = yaml.load(text, Loader=_Loader)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        raise ConfigError(origin, '', 'is not valid YAML: {}{}'.format(
+            'line {}: '.format(mark.line + 1) if mark else '', error.problem or error.context))
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise ConfigError(origin, '', 'is not valid YAML: {}'.format(
             ' '.join(str(error).split())))
+    return Section(data, origin)
+
+
+def too_large(origin):
+    """Return (not raise) the :class:`ConfigError` of a file larger than :data:`MAX_BYTES`."""
+    return ConfigError(origin, '', 'is larger than {} MB; a configuration of mhri is a few kB: is '
+                       'this the right file?'.format(MAX_BYTES // 1000000))

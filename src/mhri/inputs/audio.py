@@ -3,8 +3,8 @@
 """Sound in blocks of 20 ms: from a microphone, a WAV file, or a raw stream.
 
 All of it has the form of :mod:`mhri.core.voice.sound`; a microphone that has another rate is
-resampled by
-PortAudio's ALSA plug, a WAV file has to be converted (``sox in.wav -r 16000 -c 1 -b 16 out.wav``).
+resampled by PortAudio's ALSA plug, a WAV file has to be converted
+(``sox in.wav -r 16000 -c 1 -b 16 out.wav``).
 """
 import fcntl
 import json
@@ -12,11 +12,11 @@ import os
 import select
 import stat
 import subprocess
-import sys
 import time
 import wave
 
 from mhri.core.voice.sound import BLOCK_BYTES, BLOCK_S, RATE_HZ
+from mhri.inputs import child
 from mhri.inputs.reader import DeviceAbsent, DeviceLost
 
 # A microphone that gives nothing for so long is gone; ALSA does not always say so.
@@ -46,7 +46,7 @@ class Microphone:
         """
         self._held = b''
         self._process = subprocess.Popen(
-            [sys.executable, '-m', 'mhri.inputs.microphone', self._wanted],
+            child.command('mhri.inputs.microphone', self._wanted),
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
         fcntl.fcntl(self._process.stdout, _SET_PIPE_SIZE, _PIPE_BYTES)
         deadline = time.monotonic() + _OPEN_S

@@ -5,12 +5,12 @@ import json
 import os
 import select
 import subprocess
-import sys
 import threading
 import time
 
 from mhri.core.voice.speech import Heard, VoiceRules
 from mhri.core.voice.grammar import Command, Grammar, STOP
+from mhri.inputs import child
 from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader, Reading
 
 # Loading the model takes a second, on a busy computer several.
@@ -78,12 +78,11 @@ class VoiceReader(Reader):
         self.close()
         self._opened_source = source = self._source
         orders, self._orders = os.pipe()
-        environment = dict(os.environ, PYTHONPATH=os.pathsep.join(filter(None, sys.path)))
         try:
             self._process = subprocess.Popen(
-                [sys.executable, '-m', 'mhri.inputs.listening', str(orders)],
+                child.command('mhri.inputs.listening', str(orders)),
                 stdin=None if source == '-' else subprocess.DEVNULL, stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL, pass_fds=(orders,), env=environment)
+                stderr=subprocess.DEVNULL, pass_fds=(orders,))
         except OSError as error:
             raise DeviceAbsent('the process that listens cannot be started: {}'.format(error))
         finally:

@@ -27,6 +27,8 @@ from mhri.presenters.window_host import WindowHost
 
 DRAW_MS = 50
 STICK_MS = 50
+# How often the selection is said again: the operator's lease ends where this thread hangs.
+LEASE_MS = 500
 SLICE_MS = 4
 # A row takes about 2 ms to make: more at once would be felt at the stick.
 ADD_AT_ONCE = 6
@@ -71,6 +73,8 @@ class PanelHost(QObject):
         self._slice_timer.setInterval(SLICE_MS)
         self._stick_timer = QTimer(self)
         self._stick_timer.setInterval(STICK_MS)
+        self._lease_timer = QTimer(self)
+        self._lease_timer.setInterval(LEASE_MS)
 
     def _connect(self):
         panel, operator = self.panel, self.operator
@@ -89,9 +93,12 @@ class PanelHost(QObject):
         panel.talk_requested.connect(operator.talk)
         panel.stop_requested.connect(operator.stop_all)
         panel.release_requested.connect(operator.release)
+        panel.power_cut_requested.connect(lambda: operator.set_motor_power(False))
+        panel.control_requested.connect(operator.take_control)
         self._draw_timer.timeout.connect(lambda: self._guard.run(self.draw))
         self._slice_timer.timeout.connect(self._draw_next)
         self._stick_timer.timeout.connect(self._repeat_stick)
+        self._lease_timer.timeout.connect(operator.repeat_selection)
 
     def start(self, robots=(), selected=()):
         """Begin; returns at once.
@@ -109,6 +116,7 @@ class PanelHost(QObject):
         gc.freeze()
         self._draw_timer.start()
         self._stick_timer.start()
+        self._lease_timer.start()
         self.draw()
 
     def draw(self):
@@ -134,7 +142,8 @@ class PanelHost(QObject):
             elif kind == 'examined':
                 self.doctor.show(*value)
             elif kind == 'request':
-                self.requests.carry_out(*value)
+                if view.control.ours:
+                    self.requests.carry_out(*value)
             else:
                 self.panel.show_look_result(value)
         self.requests.tell_ends()
@@ -199,6 +208,7 @@ class PanelHost(QObject):
     def _remove(self, name):
         self._window_due.discard(name)
         self._close_window(name)
+        self.requests.end_recording(name)
         self.operator.remove(name)
         self.draw()
 
@@ -357,8 +367,10 @@ class PanelHost(QObject):
         self._draw_timer.stop()
         self._slice_timer.stop()
         self._stick_timer.stop()
+        self._lease_timer.stop()
         self.operator.close(forget)
         QApplication.instance().removeEventFilter(self.panel.drive_keys)
+        self.panel.drive_keys.close()
         self.doctor.close()
         for name in list(self.windows):
             self._close_window(name)

@@ -47,7 +47,7 @@ def motion_from_odometry(message):
     """Return the :class:`Motion` of a ``nav_msgs/Odometry``."""
     pose, twist = message.pose.pose, message.twist.twist
     return Motion(twist.linear.x, twist.angular.z, pose.position.x, pose.position.y,
-                  yaw_of(pose.orientation))
+                  yaw_of(pose.orientation), twist.linear.y)
 
 
 def motion_from_turtle_pose(message):

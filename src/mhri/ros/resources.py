@@ -4,11 +4,12 @@
 from dataclasses import replace
 import glob
 import os
+import stat
 
 from catkin_pkg.package import InvalidPackage, parse_package
 import rospkg
 
-from mhri.core.config import ConfigError
+from mhri.core.config import ConfigError, MAX_BYTES, too_large
 from mhri.core.robots.robot_types import Export, load_robot_types
 
 # The element of a package.xml with which a package exports a robot type, and its attributes.
@@ -25,14 +26,20 @@ def resource_path(*parts):
 
 
 def read_text(path):
-    """Return the UTF-8 text of a file.
+    """Return the UTF-8 text of a configuration file.
 
     :raises OSError: it cannot be read
-    :raises ConfigError: it is not UTF-8
+    :raises ConfigError: it is not UTF-8, too large, or a pipe or device, which might never end
     """
+    mode = os.stat(path).st_mode
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+        raise ConfigError(path, '', 'is no regular file')
+    with open(path, 'rb') as stream:
+        data = stream.read(MAX_BYTES + 1)
+    if len(data) > MAX_BYTES:
+        raise too_large(path)
     try:
-        with open(path, encoding='utf-8') as stream:
-            return stream.read()
+        return data.decode('utf-8')
     except UnicodeDecodeError as error:
         raise ConfigError(path, '', 'is not UTF-8 text: {}'.format(error))
 

@@ -127,6 +127,13 @@ class Graph:
         return sorted({node for group in (self.publishers, self.subscribers, self.services)
                        for nodes in group.values() for node in nodes})
 
+    def of(self, names):
+        """Return the part of it that some nodes have."""
+        return replace(self, **{key: {
+            topic: kept for topic, nodes in getattr(self, key).items()
+            for kept in [tuple(node for node in nodes if node in names)] if kept}
+            for key in ('publishers', 'subscribers', 'services')})
+
     def state(self):
         """Return it as ``getSystemState`` does."""
         return [[[name, list(nodes)] for name, nodes in group.items()]
@@ -179,7 +186,7 @@ class Stream:
 
     ``problem`` says why it was not connected; ``listened_s`` is for how long messages were waited
     for [s], 0 where they were not; ``samples`` are (received, stamp) pairs by the clock here and
-    the sender's [s].
+    the sender's [s]; ``refused`` what the gates refused lately, by their own words.
     """
 
     topic: str
@@ -191,6 +198,7 @@ class Stream:
     listened_s: float = 0.0
     messages: int = 0
     samples: Tuple[Tuple[float, float], ...] = ()
+    refused: Tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

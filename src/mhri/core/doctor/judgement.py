@@ -6,7 +6,7 @@ from mhri.core.doctor.host import find_on_host, find_on_master
 from mhri.core.doctor.links import find_on_links, missing_links
 from mhri.core.doctor.nodes import find_on_nodes, odd_nodes, robot_of
 from mhri.core.doctor.robots import find_on_robots, hidden_listeners, robots_of
-from mhri.core.doctor.system import find_on_system
+from mhri.core.doctor.system import find_on_system, hung
 
 _MARKS = {FAULT: '[X] fault', WARNING: '/!\\ warning', FINE: '(o) fine'}
 
@@ -20,7 +20,7 @@ def diagnose(facts, types, ignore):
     """
     found = find_on_host(facts) + find_on_master(facts)
     if facts.master.state == ANSWERS and not facts.master.uri_problem:
-        found += (find_on_system(facts) + find_on_nodes(facts) + find_on_links(facts)
+        found += (find_on_system(facts) + find_on_nodes(facts, hung(facts)) + find_on_links(facts)
                   + find_on_robots(facts, types, robots_of(facts.graph, types, ignore)))
     return sorted(_of_wanted(facts, found), key=lambda item: SEVERITIES.index(item.severity))
 
@@ -63,7 +63,8 @@ def as_lines(findings, took_s):
               for severity in SEVERITIES}
     lines.append('{} faults, {} warnings, {} fine; examined in {:.1f} s'.format(
         counts[FAULT], counts[WARNING], counts[FINE], took_s))
-    return lines
+    # Names come from whoever registers at the master: escape sequences would be obeyed.
+    return [''.join(char if char.isprintable() else '?' for char in line) for line in lines]
 
 
 def as_dict(findings, took_s):

@@ -31,12 +31,15 @@ def _other_name(facts, name):
         if robot else 'give one of them another name (__name:={}_2)'.format(name.lstrip('/'))
 
 
-def find_on_nodes(facts):
-    """Return the findings about reachability, registrations and names of the nodes."""
-    found = (_dead(facts) + _hosts(facts) + _wrong_address(facts) + _strangers(facts)
+def find_on_nodes(facts, known=()):
+    """Return the findings about reachability, registrations and names of the nodes.
+
+    :param known: names of nodes that hang, as is told elsewhere
+    """
+    found = (_dead(facts) + _hosts(facts, known) + _wrong_address(facts) + _strangers(facts)
              + _loopback(facts) + _stale(facts) + _fought(facts) + _doubles(facts)
              + _forgotten(facts))
-    if not found and facts.nodes:
+    if not found and facts.nodes and not known:
         answering = [node for node in facts.nodes.values() if node.state == ANSWERS]
         slowest = max(answering, key=lambda node: node.took_s, default=None)
         if slowest is not None:
@@ -80,10 +83,11 @@ def _dead(facts):
         for (host, _), group in _by(nodes, lambda node: (node.host, robot_of(node.name)))]
 
 
-def _hosts(facts):
+def _hosts(facts, known):
     """Computers that do not answer, or whose name is unknown."""
     found = []
-    silent = [node for node in _in_state(facts, SILENT) if not true_address(facts, node)]
+    silent = [node for node in _in_state(facts, SILENT)
+              if node.name not in known and not true_address(facts, node)]
     for host, nodes in _by(silent, lambda node: node.host):
         hung = [node for node in facts.nodes.values()
                 if node.host == host and node.state in (ANSWERS, REFUSED)]

@@ -3,7 +3,6 @@
 """The doctor on robots: type, topics, who drives them, and their clocks."""
 from dataclasses import dataclass, field
 from difflib import get_close_matches
-from fnmatch import fnmatchcase
 from statistics import median
 from typing import Dict, Tuple
 
@@ -11,6 +10,7 @@ from mhri.core.robots.discovery import (
     Candidate, find_candidates, NAME_PARAMETER, parameters_of, ROOT_PARAMETERS)
 from mhri.core.doctor.facts import ANSWERS, FAULT, FINE, Finding, listed, WARNING
 from mhri.core.doctor.nodes import start_robot
+from mhri.core.doctor.system import gates
 from mhri.core.robots.names import topic_of
 from mhri.core.robots.robot_types import resolve_robot_type, RobotType
 
@@ -18,9 +18,8 @@ TWIST = 'geometry_msgs/Twist'
 _TYPES = (('imu', 'sensor_msgs/Imu'), ('rgb', 'sensor_msgs/Image'),
           ('depth', 'sensor_msgs/Image'), ('scan', 'sensor_msgs/LaserScan'),
           ('battery', 'sensor_msgs/BatteryState'))
-# Who may publish a robot's velocity: the panel alone, in rqt, its keeper; the guard on the robot.
-DRIVERS = ('/mhri_panel*', '/rqt_gui*', '/mhri_gate_keeper*', '/*/mhri_guard', '/mhri_guard',
-           '/mhri_doctor*')
+# Who may publish a robot's velocity: the gates; its own guard; a doctor that tries its watchdog.
+GATES, TRIAL, GUARD = '/mhri_gates', '/mhri_doctor', 'mhri_guard'
 OFFSET_WARN_S, OFFSET_FAULT_S = 0.1, 0.5
 
 
@@ -165,16 +164,31 @@ def _velocity(facts, robot):
             '{}   # its real topic, then: rosparam set /{}/mhri/command "[<topic>]"; or start its '
             'base: {}'.format(robot.list_topics(), name, start_robot(facts, name)))]
     found = []
-    foreign = [node for node in facts.graph.publishers.get(chosen, ())
-               if not any(fnmatchcase(node, pattern) for pattern in DRIVERS)]
-    if foreign:
-        found.append(Finding(
-            WARNING, 'velocity_foreign', name, '{} also {} {}'.format(
-                listed(foreign), 'publishes' if len(foreign) == 1 else 'publish', chosen),
-            'the robot twitches, or goes on although the panel sends zero: stop all does not '
-            'reach that program', 'rosnode kill {}   # or have it publish into a '
-            'cmd_vel_mux'.format(' '.join(foreign))))
+    guard = '/' + GUARD if robot.candidate.seen.at_root else topic_of(name, GUARD)
+    drivers = [GATES, guard] + gates(facts)
+    for topic in topics + [guard + '/command']:
+        foreign = [node for node in facts.graph.publishers.get(topic, ())
+                   if node not in drivers and not node.startswith(TRIAL)]
+        if foreign and facts.graph.subscribers.get(topic):
+            found.append(_foreign(name, topic, foreign))
     return found + _hidden(facts, name, chosen, alive[chosen])
+
+
+def _foreign(name, topic, nodes):
+    """Say who drives a robot past the gates, or tries to."""
+    words = '{} {} {}, past the gates'.format(
+        listed(nodes), 'publishes' if len(nodes) == 1 else 'publish', topic)
+    if topic.endswith(GUARD + '/command'):
+        return Finding(
+            WARNING, 'velocity_foreign', name, words + '; its guard drops it',
+            'nothing, as long as the guard runs; somebody tries to drive this robot',
+            'rosnode kill {}   # nobody knows it? see "Security" in the guide'.format(
+                ' '.join(nodes)))
+    return Finding(
+        WARNING, 'velocity_foreign', name, words,
+        'the robot twitches, or goes on although the gates send zero: stop all does not reach that '
+        'program', 'rosnode kill {}   # or have it publish into a cmd_vel_mux'.format(
+            ' '.join(nodes)))
 
 
 def _uri(text):

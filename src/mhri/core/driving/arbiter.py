@@ -16,16 +16,17 @@ States and what leads out of them::
     DRIVING        a command other than zero            neutral or dead-man released -> READY
 
 A silent, suspended, lost or exchanged source, a change of mode, a robot that joins the selection,
-an enabling pedal that is released and the loss of the master lead from READY and DRIVING to
-WAIT_NEUTRAL; stop-all leads from anywhere to STOPPED. Each of them starts the zeros (but for
+an enabling pedal that is released, a dead-man button that is pressed while the stick is out, and
+the loss of the master or of the gates lead from READY and DRIVING to WAIT_NEUTRAL; stop-all leads
+from anywhere to STOPPED. Each of them starts the zeros (but for
 silence at rest, where they have been sent): one at once, more at :data:`REPEAT_HZ` for
 :data:`ZEROS_S`, then silence, since endless zeros would block a robot's own navigation behind its
 ``cmd_vel_mux`` (rqt_common_plugins#180).
 """
 from collections import Counter
 
-from mhri.core.driving.limits import Velocity, ZERO, speed_limit_problem
-from mhri.core.driving.profile import JoyRefused
+from mhri.core.driving.limits import ZERO, speed_limit_problem
+from mhri.core.driving.profile import JoyRefused, read_twist
 
 STOPPED = 'stopped'
 WAIT_NEUTRAL = 'wait_neutral'
@@ -61,6 +62,7 @@ class Arbiter:
         self._enabled_at = None
         self._automatic = config.automatic_switching
         self._rested = {}
+        self._resting = {}
         self._zeros_until = now + ZEROS_S
         self._next_repeat = now
         self.refused = Counter()
@@ -96,7 +98,7 @@ class Arbiter:
 
         :returns: '' (nothing: ready or driving), 'release' (stop-all), 'source' (nothing fresh is
             heard from the active source), 'neutral' (the stick is not centred), 'enabling' (the
-            enabling pedal is not pressed) or 'dead_man'
+            enabling pedal is not pressed) or 'dead_man' (that button is not held)
         """
         if self._state == STOPPED:
             return 'release'
@@ -104,7 +106,7 @@ class Arbiter:
             return 'source'
         if self._state == WAIT_NEUTRAL:
             return 'neutral'
-        if not self._enabled(now):
+        if not self.enabled(now):
             return 'enabling'
         return '' if self._stick.held else 'dead_man'
 
@@ -127,24 +129,47 @@ class Arbiter:
         source = self._sources[name]
         if name == self._enabling:
             return self._on_enabling(bool(buttons and buttons[0]), now)
-        if name != self._mode and not self._automatic:
+        return self._on_message(name, device, now,
+                                lambda: (profile or source.profile).read(axes, buttons))
+
+    def on_twist(self, name, linear, angular, device, now):
+        """Take in one Twist of a source: its two vectors [m/s], [rad/s]; else as :meth:`on_joy`."""
+        return self._on_message(name, device, now, lambda: read_twist(linear, angular))
+
+    def _on_message(self, name, device, now, read):
+        """Take in one message; ``read`` returns what it asks for, or raises JoyRefused."""
+        active, rests = name == self._mode, self._sources[name].rests
+        if not (active or rests or self._automatic):
             self.ignored[name] += 1
             return None
         try:
-            stick = (profile or source.profile).read(axes, buttons)
+            stick = read()
         except JoyRefused as refusal:
             self.refused[refusal.kind] += 1
             raise
-        if name != self._mode:
+        if rests:
+            self._resting[name] = (stick, device)
+        if active:
+            return self._on_active(stick, device, now)
+        if self._automatic:
             return self._on_other(name, stick, device, now)
+        self.ignored[name] += 1
+        return None
+
+    def _on_active(self, stick, device, now):
+        """Take in what the active source asks for."""
         exchanged = self._device not in (None, device) and self._state in (READY, DRIVING)
-        was_fresh = self._fresh(now)
+        was_fresh, before = self._fresh(now), self._stick
         self._stick, self._stick_at, self._device = stick, now, device
         if self._state == STOPPED:
             return None
         if self._state != WAIT_NEUTRAL and (exchanged or not was_fresh):
             zero = self._interlock('device' if exchanged else 'stale', now)
             return self._follow(stick, now) or zero
+        if self._state == READY and stick.held and not before.held and not stick.neutral:
+            # A thumb that finds the button must not set robots in motion.
+            self._enter(WAIT_NEUTRAL, 'dead_man')
+            return self._later_zero(now)
         return self._follow(stick, now)
 
     def _follow(self, stick, now):
@@ -155,7 +180,7 @@ class Arbiter:
             idle = self._cause == 'idle'
             self._enter(READY)
             return self._later_zero(now) if idle else self._zeros(now)
-        if stick.is_zero() or not self._enabled(now):
+        if stick.is_zero() or not self.enabled(now):
             if self._state == DRIVING:
                 self._enter(READY)
                 return self._zeros(now)
@@ -169,14 +194,14 @@ class Arbiter:
         Released, everything stops; pressed while the stick is deflected, nothing moves before that
         has been centred: a foot that comes back must not set robots in motion.
         """
-        was, self._enabled_at = self._enabled(now), now if pressed else None
+        was, self._enabled_at = self.enabled(now), now if pressed else None
         if was and not pressed and self._state == DRIVING:
             return self._interlock('enabling', now)
         if pressed and not was and self._state == READY and not self._stick.neutral:
             self._enter(WAIT_NEUTRAL, 'enabling')
         return None
 
-    def _enabled(self, now):
+    def enabled(self, now):
         """Tell whether the enabling pedal allows motion; without one, it is always allowed."""
         return self._enabling is None or (
             self._enabled_at is not None and now - self._enabled_at < ENABLING_TIMEOUT_S)
@@ -220,7 +245,8 @@ class Arbiter:
             return None
         self._mode = name
         self._rested.clear()
-        self._stick = self._stick_at = self._device = None
+        self._stick, self._device = self._resting.get(name, (None, None))
+        self._stick_at = now if self._stick else None
         return self._interlock('mode', now)
 
     def on_lost(self, name, cause, now):
@@ -228,10 +254,22 @@ class Arbiter:
 
         :returns: the velocity to send now, or None where the source is not the active one
         """
+        self._resting.pop(name, None)
+        self._rested.pop(name, None)
         if name != self._mode:
             return None
         self._stick = self._stick_at = self._device = None
         return self._interlock(cause, now)
+
+    def on_hung(self, now):
+        """Forget what every source has said: this mux has slept, and all of it is old.
+
+        :returns: the zero to send now
+        """
+        self._resting.clear()
+        self._rested.clear()
+        self._enabled_at = None
+        return self.on_lost(self._mode, 'hung', now)
 
     def on_hold(self, cause, now):
         """Hold everything until the stick is centred, for a cause outside the sources.
@@ -274,7 +312,7 @@ class Arbiter:
             self.refused['speed_limit'] += 1
             raise ValueError(problem)
         self._limits = (linear_mps, angular_rad_s)
-        if self._state == DRIVING and self._fresh(now) and self._enabled(now):
+        if self._state == DRIVING and self._fresh(now) and self.enabled(now):
             return self._drive(now)
         return None
 
@@ -285,8 +323,10 @@ class Arbiter:
         """
         if self._state == DRIVING and not self._fresh(now):
             return self._interlock('stale', now)
-        if self._state == DRIVING and not self._enabled(now):
+        if self._state == DRIVING and not self.enabled(now):
             return self._interlock('enabling', now)
+        if self._state == WAIT_NEUTRAL and self._rests():
+            return self._follow(self._stick, now)
         if self._state == READY and not self._fresh(now):
             # At rest already, and said so: a device that speaks now and then must not cause
             # zeros without end.
@@ -303,7 +343,7 @@ class Arbiter:
     def next_tick(self, now):
         """Return the time [s] at which :meth:`tick` has to be called next."""
         times = [now + 1.0]
-        if self._state in (READY, DRIVING):
+        if self._state in (READY, DRIVING) and not self._rests():
             times.append(self._stick_at + self.source.timeout_s)
         if self._state == DRIVING and self._enabling is not None:
             times.append(self._enabled_at + ENABLING_TIMEOUT_S)
@@ -313,7 +353,13 @@ class Arbiter:
 
     def _fresh(self, now):
         """Tell whether the active source has been heard recently enough to drive."""
-        return self._stick_at is not None and now - self._stick_at < self.source.timeout_s
+        return self._stick_at is not None and (
+            now - self._stick_at < self.source.timeout_s or self._rests())
+
+    def _rests(self):
+        """Tell whether the active source is silent at rest, and may be."""
+        return (self.source.rests and self._stick is not None and self._stick.neutral
+                and self._stick.is_zero())
 
     def _enter(self, state, cause=None):
         """Change the state; the only place that does."""
@@ -340,4 +386,4 @@ class Arbiter:
     def _drive(self, now):
         """Return the command of the present stick, and plan its repetition."""
         self._next_repeat = now + _PERIOD_S
-        return Velocity(self._stick.forward * self._limits[0], self._stick.turn * self._limits[1])
+        return self._stick.velocity(self._limits)

@@ -1,15 +1,35 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The gate of one robot: what of the one velocity command reaches it. No ROS, no clock."""
+"""The rule of one robot's gate: whom the robot obeys, and when it stands. No ROS, no clock.
+
+A robot obeys one thing: the operator while it is checked; else its task; else nothing. States and
+what leads out of them::
+
+    IDLE      obeys nobody                       checked -> JOINING or OPERATOR, task -> TASK
+    JOINING   checked, waits for a zero of the   a zero is commanded -> OPERATOR
+              mux: the stick is centred
+    OPERATOR  passes on the operator's command   unchecked -> IDLE, command stale -> JOINING
+    TASK      passes on its task's command       checked, task silent -> IDLE
+    HELD      the robot is not heard, nothing    heard again -> where it belongs, centred first
+              is sent
+    STOPPED   stop-all is in force               released -> where it belongs, centred first
+    CLOSED    the robot was removed              (nothing)
+
+Every way out of OPERATOR and TASK sends a zero, and so does every change of whom it obeys; so does
+STOPPED, to every robot, checked or not. Who joins while anything is driven waits for neutral: a
+command other than zero that was the last one heard means that something is.
+"""
 import math
 
 from mhri.core.driving.limits import Velocity, ZERO, clamp_keeping_curvature
 from mhri.core.robots.robot_types import Limits
 
+IDLE, JOINING, OPERATOR, TASK = 'idle', 'joining', 'operator', 'task'
+HELD, STOPPED, CLOSED = 'held', 'stopped', 'closed'
+STATES = (IDLE, JOINING, OPERATOR, TASK, HELD, STOPPED, CLOSED)
+
+# A command or a task that is older than this is no longer obeyed [s].
 STALE_S = 0.5
-# A robot that is selected while others are driven waits for the zero by which the mux answers, or
-# for so long.
-JOIN_S = 0.3
 
 
 def common_limits(limits):
@@ -21,42 +41,59 @@ def common_limits(limits):
 
 
 class GateRule:
-    """Decides, for one robot, what to forward and when to send the one zero.
+    """Decides, for one robot, what to forward and when to send a zero.
 
-    Like the arbiter's, every method returns the :class:`Velocity` to send now, or None; time is
-    seconds of a clock that never goes back. Closed (:meth:`close`), it never says anything again.
+    Every method that may change what the robot should do returns the :class:`Velocity` to send
+    now, or None; time is seconds of a clock that never goes back. Closed (:meth:`close`), it never
+    says anything again.
 
     :param limits: :class:`mhri.core.robots.robot_types.Limits` of the robot
+    :param command: the operator's command that was heard last, None before any: then something may
+        be driven, and the robot waits for neutral
     """
 
-    def __init__(self, limits):
+    def __init__(self, limits, command=None):
         self.limits = limits
         self._group = limits
         self._share = 1.0
-        self._selected = False
-        self._stops = set()
-        self._closed = False
-        self._last = ZERO
-        self._last_at = None
-        self._heard = ZERO
-        self._heard_at = None
-        self._joins_at = None
+        self._state = IDLE
+        self._checked = False
+        self._stopped = False
         self._held = False
+        # The robot must not move before the operator's command has been zero once (its task's
+        # command or silence, for the task).
+        self._command = command
+        self._centre = self._driven()
+        self._task_rests = False
+        self._command_at = self._task_at = -math.inf
+        self._last = ZERO
 
     @property
-    def selected(self):
-        """Whether the robot is selected for control."""
-        return self._selected
+    def state(self):
+        """One of :data:`STATES`."""
+        return self._state
 
     @property
-    def stopped(self):
-        """Whether a stop is in force."""
-        return bool(self._stops)
+    def checked(self):
+        """Whether the operator has checked the robot, and is in control."""
+        return self._checked
 
     @property
-    def driving(self):
-        """Whether the robot was last sent something other than zero."""
-        return not self._last.is_zero()
+    def sent(self):
+        """The :class:`Velocity` last sent."""
+        return self._last
+
+    @property
+    def obeys(self):
+        """Whom the robot obeys: OPERATOR, TASK or '' for nobody."""
+        if self._checked and self._state != CLOSED:
+            return OPERATOR
+        return TASK if self._state == TASK else ''
+
+    @property
+    def stands(self):
+        """Why the robot is kept standing: STOPPED, HELD, JOINING, or '' for no reason."""
+        return self._state if self._state in (STOPPED, HELD, JOINING) else ''
 
     def hold_to(self, group, share):
         """Let the robot keep to its group from the next command on.
@@ -67,101 +104,127 @@ class GateRule:
         self._group, self._share = group, share
 
     def on_command(self, velocity, now):
-        """Take in the one velocity command; return what this robot gets of it, or None."""
-        self._heard, self._heard_at = velocity, now
-        if velocity.is_zero() or self._joins_at is not None and now >= self._joins_at:
-            self._joins_at = None
-        return self._forward(velocity, now)
-
-    def _forward(self, velocity, now):
-        """Return what the robot gets of a command: nothing while anything is in the way."""
-        if self._closed or self._stops or self._held or not self._selected \
-                or self._joins_at is not None:
+        """Take in the operator's command; return what this robot gets of it, or None."""
+        self._command, self._command_at = velocity, now
+        if velocity.is_zero() and self._state != STOPPED:
+            self._centre = False
+            self._state = self._belongs(now)
+        if self._state != OPERATOR:
             return None
         share = self._share
         wanted = Velocity(share * velocity.linear_mps, share * velocity.angular_rad_s)
         return self._say(clamp_keeping_curvature(
-            clamp_keeping_curvature(wanted, self._group), self.limits), now)
+            clamp_keeping_curvature(wanted, self._group), self.limits))
 
-    def select(self, selected, now):
-        """Select or deselect the robot; deselected, it gets one zero.
+    def on_task(self, velocity, now):
+        """Take in the command of the robot's task; return what the robot gets of it, or None.
 
-        One that is selected in the middle of a drive joins at the next zero (the mux sends one and
-        waits for neutral), or after :data:`JOIN_S` where whoever drives is not our mux.
+        After a stop, a hold or a take-over a task is obeyed again once it has said zero or nothing
+        for a while: nothing resumes by itself.
         """
-        was, self._selected = self._selected, selected
-        if not selected:
-            self._joins_at = None
-        elif not was:
-            under_way = not self._heard.is_zero() and now - self._heard_at < STALE_S
-            self._joins_at = now + JOIN_S if under_way else None
-        if was and not selected and not self._closed and not self._stops:
-            return self._say(ZERO, now)
-        return None
+        if velocity.is_zero() or now - self._task_at >= STALE_S:
+            self._task_rests = True
+        self._task_at = now
+        if self._state == IDLE and self._task_rests:
+            self._state = TASK
+        if self._state != TASK:
+            return None
+        return self._say(clamp_keeping_curvature(velocity, self.limits))
 
-    @property
-    def waits(self):
-        """Whether the robot is left out until the stick has been centred: its link was lost."""
-        return self._joins_at == math.inf
+    def check(self, checked, now):
+        """Let the robot obey the operator, or not any more; the zero of a change goes out now."""
+        if checked == self._checked:
+            return None
+        self._checked = checked
+        self._task_rests = False
+        if checked and self._driven():
+            self._centre = True
+        return self._settle(now, changed=True)
 
-    @property
-    def held(self):
-        """Whether nothing is sent because the robot is not heard."""
-        return self._held
+    def stop(self, stopped, now):
+        """Engage or release stop-all; engaged, every robot gets a zero, checked or not."""
+        if stopped == self._stopped:
+            return None
+        self._stopped, self._task_rests = stopped, False
+        self._centre = self._centre or stopped
+        return self._settle(now)
 
     def hold(self, held, now):
-        """Send nothing to a robot that is not heard any more, after one zero where it was driven.
+        """Send nothing to a robot that is not heard, after one zero where it was driven.
 
-        What is sent into a link that stalls would come out, all of it, when it is back. Heard
-        again in the middle of a drive, the robot waits for a zero like one that joins.
+        What is sent into a link that stalls would come out, all of it, when it is back. Heard again
+        in the middle of a drive, the robot waits for neutral.
         """
-        was, self._held = self._held, held
-        if was and not held and not self._heard.is_zero() and self._heard_at is not None \
-                and now - self._heard_at < STALE_S:
-            self._joins_at = math.inf
-        if held and not was and self.driving and not self._closed:
-            return self._say(ZERO, now)
-        return None
+        if held == self._held:
+            return None
+        self._held = held
+        self._task_rests = False
+        self._centre = self._centre or self._driven()
+        return self._settle(now)
 
-    def stop(self, reason, stopped, now):
-        """Add or withdraw one reason to stop; the first one sends a zero, selected or not.
+    def join(self, now):
+        """Wait for neutral where anything is driven.
 
-        :param reason: 'mux' (stop-all in force) or 'panel' (pressed here, not confirmed yet)
+        For a robot that is newly connected, has lost its guard, or has another mux or operator.
         """
-        before = bool(self._stops)
-        if stopped:
-            self._stops.add(reason)
-        else:
-            self._stops.discard(reason)
-        if stopped and not before and not self._closed:
-            return self._say(ZERO, now)
-        return None
+        self._task_rests = False
+        self._centre = self._centre or self._driven()
+        return self._settle(now)
 
     def close(self, now):
         """End: the robot is removed or the program closes; the last word is a zero."""
-        if self._closed:
+        if self._state == CLOSED:
             return None
-        self._closed = True
-        return self._say(ZERO, now)
+        self._state = CLOSED
+        return self._say(ZERO)
 
     def tick(self, now):
-        """Let time pass: commands that went stale are ended by one zero; who waited joins."""
-        if self._joins_at is not None and now >= self._joins_at:
-            self._joins_at = None
-            if now - self._heard_at < STALE_S:
-                return self._forward(self._heard, now)
-        if self.driving and now - self._last_at >= STALE_S and not self._closed:
-            return self._say(ZERO, now)
+        """Let time pass: commands that went stale are ended by one zero."""
+        if self._state == OPERATOR and not self._last.is_zero() \
+                and now - self._command_at >= STALE_S:
+            self._centre = True
+            return self._settle(now)
+        if self._state == TASK and now - self._task_at >= STALE_S:
+            return self._settle(now, changed=True)
         return None
 
     def next_tick(self):
         """Return when :meth:`tick` has to be called next [s], or None: not before a command."""
-        if self._closed:
-            return None
-        if self._joins_at is not None:
-            return None if self.waits else self._joins_at
-        return self._last_at + STALE_S if self.driving else None
+        if self._state == OPERATOR and not self._last.is_zero():
+            return self._command_at + STALE_S
+        return self._task_at + STALE_S if self._state == TASK else None
 
-    def _say(self, velocity, now):
-        self._last, self._last_at = velocity, now
+    def _driven(self):
+        """Tell whether anything may be driven: the last command was no zero, or there was none."""
+        return self._command is None or not self._command.is_zero()
+
+    def _belongs(self, now):
+        """Return the state that follows from who wants what."""
+        if self._state == CLOSED:
+            return CLOSED
+        if self._stopped:
+            return STOPPED
+        if self._held:
+            return HELD
+        if self._checked:
+            return JOINING if self._centre else OPERATOR
+        on_task = self._task_rests and now - self._task_at < STALE_S
+        return TASK if on_task and self._state == TASK else IDLE
+
+    def _settle(self, now, changed=False):
+        """Go where the robot belongs; return the zero of that change, or None.
+
+        :param changed: whether the robot obeys another now: a zero even where it stands
+        """
+        before, self._state = self._state, self._belongs(now)
+        if self._state == STOPPED:
+            zero = before != STOPPED
+        elif self._state in (HELD, CLOSED):
+            zero = not self._last.is_zero()
+        else:
+            zero = changed or self._state in (IDLE, JOINING) and not self._last.is_zero()
+        return self._say(ZERO) if zero else None
+
+    def _say(self, velocity):
+        self._last = velocity
         return velocity

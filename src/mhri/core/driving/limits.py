@@ -40,6 +40,23 @@ def clamp_keeping_curvature(velocity, limits):
     return Velocity(velocity.linear_mps / excess, velocity.angular_rad_s / excess)
 
 
+def within_limits(velocity, linear_mps, angular_rad_s):
+    """Scale both components by one factor, so that neither is over the operator's limit.
+
+    A limit of 0 leaves nothing of a velocity that needs that component.
+
+    :param velocity: :class:`Velocity`, finite
+    :param linear_mps: the limit, >= 0
+    :param angular_rad_s: the limit, >= 0
+    """
+    share = 1.0
+    for wanted, most in ((abs(velocity.linear_mps), linear_mps),
+                         (abs(velocity.angular_rad_s), angular_rad_s)):
+        if wanted > most:
+            share = min(share, most / wanted)
+    return Velocity(velocity.linear_mps * share, velocity.angular_rad_s * share)
+
+
 def speed_limit_problem(linear_mps, angular_rad_s, ceiling=(5.0, 10.0)):
     """Say why a pair cannot be the operator's speed limit; return None where it can.
 

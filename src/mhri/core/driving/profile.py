@@ -2,10 +2,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Profiles: which axis and button of a device means what."""
 import math
-from dataclasses import dataclass
-from typing import Optional, Tuple
+from dataclasses import dataclass, replace
+from typing import Tuple, Union
 
 from mhri.core.config import parse_yaml
+from mhri.core.driving.limits import Velocity, within_limits
+
+# As a dead-man button: whichever is pressed, where nobody knows the buttons of a pad.
+ANY = 'any'
+# Slower than this [m/s, rad/s], a Twist asks for standstill.
+_CREEP = 1e-3
 
 # What a button may ask for besides driving; the keys of a profile are these and ``_button``.
 STOP_ALL = 'stop_all'
@@ -57,6 +63,43 @@ class Stick:
         """Tell whether nothing is asked for."""
         return self.forward == 0.0 and self.turn == 0.0
 
+    def velocity(self, limits):
+        """Return the :class:`Velocity` that is asked for under the limits (m/s, rad/s)."""
+        return Velocity(self.forward * limits[0], self.turn * limits[1])
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a source of velocities asks for; to the arbiter the same as a :class:`Stick`."""
+
+    wanted: Velocity
+    held = True
+
+    @property
+    def neutral(self):
+        """Whether it asks for standstill."""
+        return self.is_zero()
+
+    def is_zero(self):
+        """Tell whether nothing is asked for."""
+        return max(abs(self.wanted.linear_mps), abs(self.wanted.angular_rad_s)) < _CREEP
+
+    def velocity(self, limits):
+        """Return the :class:`Velocity` under the limits (m/s, rad/s), its curvature kept."""
+        return within_limits(self.wanted, *limits)
+
+
+def read_twist(linear, angular):
+    """Turn the two vectors of a ``geometry_msgs/Twist`` into an :class:`Asked`.
+
+    Robots are driven in the plane: x of the first and z of the second count [m/s, rad/s].
+
+    :raises JoyRefused: NaN or infinity anywhere
+    """
+    if not all(math.isfinite(value) for value in (*linear, *angular)):
+        raise JoyRefused('not_finite', 'a Twist with NaN or infinity')
+    return Asked(Velocity(linear[0], angular[2]))
+
 
 @dataclass(frozen=True)
 class Match:
@@ -77,8 +120,10 @@ class Profile:
     ``dead_zone`` is the fraction of travel around the centre that counts as zero (the rest is
     stretched, so that full travel stays full speed); ``neutral`` the fraction inside which the
     stick counts as released for the interlock; ``curve`` bends the response, 0 straight to 1
-    cubic, for fine control near the centre. ``turbo`` is a button; while it is not held, everything
-    is multiplied by ``without_turbo``. ``actions`` are (button, one of ``ACTIONS``).
+    cubic, for fine control near the centre. ``dead_man`` is the button without which nothing moves,
+    ``ANY`` for whichever is pressed, None for no such button. ``turbo`` is a button; while it is
+    not held, everything is multiplied by ``without_turbo``. ``actions`` are
+    (button, one of ``ACTIONS``).
     """
 
     name: str
@@ -86,9 +131,9 @@ class Profile:
     turn: Axis
     dead_zone: float = 0.0
     neutral: float = 0.02
-    dead_man: Optional[int] = None
+    dead_man: Union[int, str, None] = None
     curve: float = 0.0
-    turbo: Optional[int] = None
+    turbo: Union[int, None] = None
     without_turbo: float = 0.5
     actions: Tuple[Tuple[int, str], ...] = ()
     match: Match = Match()
@@ -106,12 +151,8 @@ class Profile:
         if len(axes) < needed:
             raise JoyRefused('too_few_axes', 'a Joy message with {} axes; profile {} needs '
                              '{}'.format(len(axes), self.name, needed))
-        if self.dead_man is not None and len(buttons) <= self.dead_man:
-            raise JoyRefused('too_few_buttons', 'a Joy message with {} buttons; the dead-man '
-                             'button of profile {} is number {}'.format(
-                                 len(buttons), self.name, self.dead_man))
+        held = self._held(buttons)
         forward, turn = self.forward.read(axes), self.turn.read(axes)
-        held = self.dead_man is None or bool(buttons[self.dead_man])
         neutral = max(abs(forward), abs(turn)) <= self.neutral
         if not held:
             return Stick(0.0, 0.0, neutral, False)
@@ -119,6 +160,26 @@ class Profile:
         slow = self.turbo is not None and not is_pressed(buttons, self.turbo)
         factor = self.without_turbo if slow else 1.0
         return Stick(factor * self._respond(forward), factor * self._respond(turn), neutral)
+
+    def _held(self, buttons):
+        """Tell whether the dead-man button is held; always, where there is none.
+
+        :raises JoyRefused: the device does not have that button
+        """
+        if self.dead_man is None:
+            return True
+        if self.dead_man == ANY and buttons:
+            return any(buttons)
+        if self.dead_man == ANY or len(buttons) <= self.dead_man:
+            raise JoyRefused('too_few_buttons', 'a Joy message with {} buttons; the dead-man '
+                             'button of profile {} is {}. Run mhri_joy --calibrate, or set '
+                             '/mux/dead_man to false'.format(
+                                 len(buttons), self.name, self.dead_man))
+        return bool(buttons[self.dead_man])
+
+    def without_dead_man(self):
+        """Return the same profile, but that no button has to be held."""
+        return replace(self, dead_man=None)
 
     def pressed(self, buttons):
         """Return the actions whose buttons are down, as a set; missing buttons are up."""
@@ -162,14 +223,29 @@ def parse_profile(text, origin):
         turn=_axis(section.section('turn')),
         dead_zone=dead_zone,
         neutral=section.number('neutral', 0.0, 0.9, max(0.02, dead_zone)),
-        dead_man=section.index('dead_man_button', None),
+        dead_man=_dead_man(section),
         curve=section.number('curve', 0.0, 1.0, 0.0),
         turbo=section.index('turbo_button', None),
         without_turbo=section.number('without_turbo', 0.05, 1.0, 0.5),
         actions=tuple((button, action) for button, action in buttons if button is not None),
         match=_match(section.section('match', None)))
+    taken = [button for button, _ in profile.actions] + [profile.turbo]
+    if profile.dead_man is not None and profile.dead_man in taken:
+        raise section.error('dead_man_button', 'button {} has another meaning already; a dead-man '
+                            'button can have no other'.format(profile.dead_man))
     section.close()
     return profile
+
+
+def _dead_man(section):
+    """Read ``dead_man_button: 4`` or ``dead_man_button: any``."""
+    value = section.take('dead_man_button', None)
+    if value is None or value == ANY:
+        return value
+    if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+        raise section.error('dead_man_button', 'expected a whole number from 0 up, or any, got '
+                            '{!r}'.format(value))
+    return value
 
 
 def _match(section):

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Sources: the rows of ``mux.yaml``, one for each way to drive."""
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Optional, Tuple
 
 from mhri.core.config import parse_yaml
@@ -9,21 +9,38 @@ from mhri.core.robots.names import is_base_name, is_global_name
 from mhri.core.driving.profile import Profile, parse_profile
 
 
+JOY, TWIST = 'joy', 'twist'
+# The longest text that is shown to the operator.
+LONGEST_LABEL = 60
+
+
 @dataclass(frozen=True)
 class Source:
-    """One way to drive: where its Joy comes from and how it is read.
+    """One way to drive: where its messages come from and how they are read.
 
-    ``timeout_s`` is the age at which the last message no longer counts; ``suspend_service`` (type
-    ``mhri/SetSuspended``) is called when the mode enters (False) and leaves (True) the source, None
-    where there is nothing to suspend.
+    ``profile`` is None for a source of type ``twist``. ``timeout_s`` is the age at which the last
+    message no longer counts; ``suspend_service`` (type ``mhri/SetSuspended``) is called when the
+    mode enters (False) and leaves (True) the source, None where there is nothing to suspend.
+    ``holds``: it sends changes only. ``exclusive``: it listens to one publisher at a time.
     """
 
     name: str
     label: str
     topic: str
-    profile: Profile
+    profile: Optional[Profile]
     timeout_s: float = 0.5
     suspend_service: Optional[str] = None
+    kind: str = JOY
+    holds: bool = False
+    exclusive: bool = False
+
+    @property
+    def rests(self):
+        """Whether it may be silent at rest: then it is as good as heard while its publisher lives.
+
+        Whoever publishes velocities often says zero once and nothing more.
+        """
+        return self.holds or self.kind == TWIST
 
 
 @dataclass(frozen=True)
@@ -32,7 +49,7 @@ class MuxConfig:
 
     ``enabling`` is the source whose first button is a dead-man for whatever drives, None where
     there is none. With ``automatic_switching``, a source that is touched while everything stands
-    still becomes the active one.
+    still becomes the active one. ``dead_man``: whether the dead-man buttons of profiles count.
     """
 
     sources: Tuple[Source, ...]
@@ -41,6 +58,14 @@ class MuxConfig:
     angular_rad_s: float
     enabling: Optional[str] = None
     automatic_switching: bool = False
+    dead_man: bool = True
+
+    def without_dead_man(self):
+        """Return the same configuration, but that no source needs a dead-man button."""
+        return replace(self, dead_man=False, sources=tuple(
+            source if source.profile is None else
+            replace(source, profile=source.profile.without_dead_man())
+            for source in self.sources))
 
 
 def parse_mux_config(text, origin, read_profile):
@@ -67,17 +92,29 @@ def parse_mux_config(text, origin, read_profile):
     config = MuxConfig(tuple(sources), default, limits.number('linear_mps', 0.0, 5.0),
                        limits.number('angular_rad_s', 0.0, 10.0),
                        _enabling(section, sources), section.flag('automatic_switching', False))
+    dead_man = section.flag('dead_man', True)
     limits.close()
     section.close()
-    return config
+    return config if dead_man else config.without_dead_man()
 
 
 def _enabling(section, sources):
     """Read the name of the enabling source, None where there is none."""
     name = section.text('enabling', None)
-    if name is not None and name not in [source.name for source in sources]:
-        raise section.error('enabling', 'no source {!r}'.format(name))
+    problem = enabling_problem(sources, name)
+    if problem:
+        raise section.error('enabling', problem)
     return name
+
+
+def enabling_problem(sources, name):
+    """Say why a source cannot be the enabling one; None where it can, or where none is named."""
+    source = next((source for source in sources if source.name == name), None)
+    if name and source is None:
+        return 'no source {!r}'.format(name)
+    if source is not None and source.kind == TWIST:
+        return 'source {!r} is of type twist and has no button to press'.format(name)
+    return None
 
 
 def _source(row, read_profile):
@@ -86,17 +123,32 @@ def _source(row, read_profile):
     if not is_base_name(name):
         raise row.error('name', 'expected a letter, then letters, digits and _, got {!r}'.format(
             name))
-    profile_name = row.text('profile')
-    try:
-        profile = parse_profile(*reversed(read_profile(profile_name)))
-    except OSError as error:
-        raise row.error('profile', 'cannot read profile {!r}: {}'.format(
-            profile_name, error.strerror or error))
+    kind = row.text('type', JOY)
+    if kind not in (JOY, TWIST):
+        raise row.error('type', 'expected joy or twist, got {!r}'.format(kind))
+    profile = _profile(row, read_profile) if kind == JOY else None
     topic, service = row.text('topic'), row.text('suspend_service', None)
     for key, value in (('topic', topic), ('suspend_service', service)):
         if value is not None and not is_global_name(value):
             raise row.error(key, 'expected a name such as /mux_in/joy, got {!r}'.format(value))
-    source = Source(name, row.text('label', name), topic, profile,
-                    row.number('timeout_s', 0.05, 2.0, 0.5), service)
+    label = row.text('label', name)
+    if len(label) > LONGEST_LABEL:
+        raise row.error('label', 'has {} characters; at most {} can be shown'.format(
+            len(label), LONGEST_LABEL))
+    holds = row.flag('holds', False)
+    # A value that is held is bounded as well: a pad that is pulled out of joy_node says nothing.
+    timeout_s = row.number('timeout_s', 0.05, 60.0 if holds else 2.0, 5.0 if holds else 0.5)
+    source = Source(name, label, topic, profile, timeout_s, service, kind, holds,
+                    row.flag('exclusive', False))
     row.close()
     return source
+
+
+def _profile(row, read_profile):
+    """Read the profile that a row of type joy names."""
+    profile_name = row.text('profile')
+    try:
+        return parse_profile(*reversed(read_profile(profile_name)))
+    except OSError as error:
+        raise row.error('profile', 'cannot read profile {!r}: {}'.format(
+            profile_name, error.strerror or error))

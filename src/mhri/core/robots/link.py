@@ -4,22 +4,42 @@
 import math
 from dataclasses import dataclass
 
+from mhri.core.robots.robot_types import SILENT_AFTER_S
 from mhri.core.screen.views import GONE, LIVE, SILENT, WAITING
 
-SILENT_AFTER_S = 1.0
 STANDSTILL_MPS = 0.01
 STANDSTILL_RAD_S = 0.03
+# Beyond these no robot drives, turns or is: m/s or rad/s, and m from where it was switched on.
+POSSIBLE_SPEED = 100.0
+POSSIBLE_M = 1e6
 
 
 @dataclass(frozen=True)
 class Motion:
-    """A robot's own word on how it moves (odometry): m/s, rad/s, m, m, rad in its odom frame."""
+    """A robot's own word on how it moves (odometry): m/s, rad/s, m, m, rad in its odom frame.
+
+    ``lateral_mps`` is how fast it moves to its left [m/s]: a robot that slides, or can drive so.
+    """
 
     linear_mps: float
     angular_rad_s: float
     x_m: float = 0.0
     y_m: float = 0.0
     heading_rad: float = 0.0
+    lateral_mps: float = 0.0
+
+    @property
+    def speed_mps(self):
+        """How fast it moves, whichever way [m/s, >= 0]."""
+        return math.hypot(self.linear_mps, self.lateral_mps)
+
+    def is_possible(self):
+        """Tell whether all of it are numbers that can be true of a robot."""
+        speeds = (self.linear_mps, self.lateral_mps, self.angular_rad_s)
+        # A comparison with NaN is false.
+        return (all(abs(speed) <= POSSIBLE_SPEED for speed in speeds)
+                and all(abs(place) <= POSSIBLE_M for place in (self.x_m, self.y_m))
+                and math.isfinite(self.heading_rad))
 
     def is_standstill(self):
         """Tell whether the speeds are those of a robot at rest.
@@ -27,21 +47,24 @@ class Motion:
         The thresholds are above the noise of wheel odometry at rest (which is none, encoders do
         not tick) and far below the slowest speed an operator can see.
         """
-        return (math.isfinite(self.linear_mps) and math.isfinite(self.angular_rad_s)
-                and abs(self.linear_mps) <= STANDSTILL_MPS
+        return (self.is_possible() and self.speed_mps <= STANDSTILL_MPS
                 and abs(self.angular_rad_s) <= STANDSTILL_RAD_S)
 
 
-def link_state(age_s, connections):
+def link_state(age_s, connections, silent_after_s=SILENT_AFTER_S):
     """Say how a robot's link is.
 
     :param age_s: age of its newest message [s], None where there never was one
     :param connections: number of open connections to its streams
+    :param silent_after_s: its messages may be this far apart [s]; 0: its silence means nothing,
+        as long as a connection is open
     :returns: WAITING, LIVE, SILENT or GONE
     """
-    if age_s is not None and age_s <= SILENT_AFTER_S:
+    if age_s is not None and age_s <= (silent_after_s or SILENT_AFTER_S):
         return LIVE
     if connections:
+        if not silent_after_s:
+            return LIVE
         return SILENT if age_s is not None else WAITING
     return GONE if age_s is not None else WAITING
 

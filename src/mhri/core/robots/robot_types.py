@@ -5,8 +5,13 @@ from dataclasses import dataclass, field, replace
 from typing import Dict, Optional, Tuple
 
 from mhri.core.config import ConfigError, Section, parse_yaml
+from mhri.core.robots.robot_hardware import (
+    HardwareStopSpec, MotorPowerSpec, read_hardware_stop, read_motor_power)
 
 ODOMETRY_TYPES = ('nav_msgs/Odometry', 'turtlesim/Pose')
+# A robot whose type says nothing else is silent when its odometry has not come for so long [s].
+SILENT_AFTER_S = 1.0
+_HARDWARE = {'motor_power': read_motor_power, 'hardware_stop': read_hardware_stop}
 _TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'scan', 'battery')
 
 
@@ -67,6 +72,9 @@ class RobotType:
     An empty list means the robot has none. ``window`` is a key of ``mhri.gui.screen.windows`` or,
     in a lab's own package, a class as ``package.module.Class``. ``known_by`` is {topic: ROS type}
     of what only robots of this type publish: by it one is recognised that has no ``robot_type``.
+    ``silent_after_s``: a robot is silent when its odometry has not come for so long [s]; 0 means
+    that its silence says nothing (it tells its odometry in motion only). ``motor_power`` and
+    ``hardware_stop`` are None where there is no such thing.
     """
 
     name: str
@@ -84,12 +92,17 @@ class RobotType:
     scan: Tuple[str, ...] = ()
     battery: Tuple[str, ...] = ()
     known_by: Dict[str, str] = field(default_factory=dict)
+    silent_after_s: float = SILENT_AFTER_S
+    motor_power: Optional[MotorPowerSpec] = None
+    hardware_stop: Optional[HardwareStopSpec] = None
 
     def at_root(self):
         """Return this type with absolute topics: for a robot without a namespace."""
-        return replace(self, **{
-            key: tuple('/' + topic.lstrip('/') for topic in getattr(self, key))
-            for key in _TOPIC_KEYS})
+        changes = {key: tuple('/' + topic.lstrip('/') for topic in getattr(self, key))
+                   for key in _TOPIC_KEYS}
+        changes.update((key, getattr(self, key).at_root()) for key in _HARDWARE
+                       if getattr(self, key))
+        return replace(self, **changes)
 
     def with_model(self, model):
         """Return this type with the limits of one of its models, e.g. ``waffle``.
@@ -129,6 +142,8 @@ def parse_robot_type(text, origin):
         limits=_limits(section.section('limits')),
         models={key: _limits(item) for key, item in section.named_sections('models').items()},
         odometry_type=odometry_type, known_by=_known_by(section),
+        silent_after_s=_silent_after_s(section),
+        **{key: read(section) for key, read in _HARDWARE.items()},
         **{key: _topics(section, key) for key in _TOPIC_KEYS})
     section.close()
     return robot_type
@@ -141,6 +156,18 @@ def _odometry_type(section):
         raise section.error('odometry_type', 'expected one of {}, got {!r}'.format(
             ', '.join(ODOMETRY_TYPES), kind))
     return kind
+
+
+def _silent_after_s(section):
+    """Read how long the odometry may stay away; 0: for ever.
+
+    Below 0.3 s, ordinary wireless networks would make a robot silent again and again.
+    """
+    value = section.number('silent_after_s', 0.0, 60.0, SILENT_AFTER_S)
+    if 0.0 < value < 0.3:
+        raise section.error('silent_after_s', 'expected 0 (its silence means nothing) or a number '
+                            'from 0.3 to 60, got {!r}'.format(value))
+    return value
 
 
 def _topics(section, key):
@@ -230,6 +257,9 @@ def _overridden(robot_type, overrides, origin):
     changes = {key: _topics(section, key) for key in _TOPIC_KEYS if key in section}
     if 'odometry_type' in section:
         changes['odometry_type'] = _odometry_type(section)
+    changes.update((key, read(section)) for key, read in _HARDWARE.items() if key in section)
+    if 'silent_after_s' in section:
+        changes['silent_after_s'] = _silent_after_s(section)
     for key in ('label', 'window'):
         if key in section:
             changes[key] = section.text(key)

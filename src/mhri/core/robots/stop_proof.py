@@ -1,12 +1,47 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The proof of a stop: a robot is called stopped only when its own odometry reads standstill."""
+import math
+
+from mhri.core.robots.link import POSSIBLE_SPEED, STANDSTILL_MPS, STANDSTILL_RAD_S
+from mhri.core.robots.robot_types import SILENT_AFTER_S
 from mhri.core.screen.views import (
     PROOF_NOT_CONFIRMED, PROOF_STOPPED, PROOF_WAITING, ProofView)
 
 READINGS = 3
+# From the first reading of a row to the last one: in less, a creeping pose looks like one at rest.
+ROW_S = 0.1
 PATIENCE_S = 2.0
-HEARING_S = 1.0
+# A resting pose may jitter by so much, and is looked at over so long.
+JITTER_M = 0.001
+JITTER_RAD = 0.003
+POSE_WINDOW_S = 1.0
+# Where the round trip is not known, a stop may take so long to the robot and its answer back [s].
+UNKNOWN_ROUND_TRIP_S = 0.25
+
+
+class PoseWatch:
+    """Tells whether a pose moves, whatever the velocities beside it say."""
+
+    def __init__(self):
+        self._anchor = None
+
+    def speed(self, motion, now):
+        """Take in one reading; return how fast the pose moves [m/s, rad/s], zeros at rest."""
+        if self._anchor is None:
+            self._anchor = (now, motion)
+            return 0.0, 0.0
+        since, anchor = self._anchor
+        took_s = max(0.0, now - since)
+        moved_m = math.hypot(motion.x_m - anchor.x_m, motion.y_m - anchor.y_m)
+        turned_rad = abs(math.remainder(motion.heading_rad - anchor.heading_rad, 2.0 * math.pi))
+        rests = (moved_m <= JITTER_M + STANDSTILL_MPS * took_s
+                 and turned_rad <= JITTER_RAD + STANDSTILL_RAD_S * took_s)
+        if not rests or took_s >= POSE_WINDOW_S:
+            self._anchor = (now, motion)
+        if rests:
+            return 0.0, 0.0
+        return moved_m / max(took_s, 0.01), turned_rad / max(took_s, 0.01)
 
 
 class StopProof:
@@ -14,78 +49,118 @@ class StopProof:
 
     States::
 
-        WAITING        -> STOPPED        READINGS readings of standstill in a row
+        WAITING        -> STOPPED        READINGS readings of standstill in a row, over ROW_S
         WAITING        -> NOT_CONFIRMED  it still moves after PATIENCE_S, or nothing was heard from
-                                         it for HEARING_S
+                                         it for ``silent_after_s``
         STOPPED        -> NOT_CONFIRMED  it moves again, or falls silent
-        NOT_CONFIRMED  -> STOPPED        READINGS readings of standstill in a row
+        NOT_CONFIRMED  -> STOPPED        READINGS readings of standstill in a row, over ROW_S
 
-    The time given is that of the first reading of the row. One reading alone proves nothing: it may
-    have been under way since before the stop. Where the robot was not heard for HEARING_S on the
-    way to that reading it may have stood still long before, and the words say so: what comes first
-    after a silence may be old.
+    A reading of standstill has all three planar velocities near zero, a pose that stays where it
+    was, and no number that cannot be. It counts from when it was measured, not from when it came,
+    and only if that was after the stop had reached the robot. The time given is that of the first
+    reading of the row. Where the robot was not heard for ``silent_after_s`` on the way to that
+    reading it may have stood still long before, and the words say so.
 
     :param now: when the zero was sent
+    :param round_trip_s: of the link to the robot [s], None where it is not known
+    :param silent_after_s: after so long the robot is silent [s]; 0: as 1
     """
 
-    def __init__(self, now):
+    def __init__(self, now, round_trip_s=None, silent_after_s=SILENT_AFTER_S):
         self._begun = now
+        # What was measured before this may be of a robot that knows nothing of the stop.
+        self._counts_from = now + (UNKNOWN_ROUND_TRIP_S if round_trip_s is None else round_trip_s)
+        self._silent_after_s = silent_after_s or SILENT_AFTER_S
         self._heard = now
+        self._measured = now
         self._run = 0
         self._run_began = now
-        self._speed = None
+        self._pose = PoseWatch()
+        self._doubt = ''
+        # A pose that creeps looks like rest in every other reading: its words stay for a while.
+        self._crept, self._crept_at = '', -math.inf
         self.state = PROOF_WAITING
         self._stopped_ms = None
         # Whether nobody can tell when the robot came to rest: it was not heard all the while.
         self._unseen = False
 
-    def on_motion(self, motion, now):
-        """Take in one reading of the robot's odometry, received at ``now``."""
-        silent = now - self._heard > HEARING_S
-        if silent:
+    def on_motion(self, motion, now, late_s=0.0):
+        """Take in one reading of the robot's odometry, received at ``now``.
+
+        :param late_s: by how much it came later than the quickest do [s]; None: nobody knows
+        """
+        self._heard = now
+        measured = self._measured if late_s is None else max(now - late_s, self._measured)
+        if measured - self._measured > self._silent_after_s:
             self._run = 0
             if self._stopped_ms is None:
                 self._unseen = True
-        self._heard = now
-        self._speed = motion
-        if not motion.is_standstill():
+        self._measured = measured
+        self._doubt = self._moves(motion, measured)
+        if self._doubt:
             self._run = 0
             self._stopped_ms = None
             if self.state == PROOF_STOPPED:
                 self.state = PROOF_NOT_CONFIRMED
-            return
+        elif late_s is None:
+            self._run = 0
+            self._doubt = 'the clock of its stamps was set back, or it was just switched on'
+        elif now - late_s >= self._counts_from:
+            self._rests(measured)
+
+    def _moves(self, motion, measured):
+        """Say how a reading is none of standstill; '' where it is one."""
+        if not motion.is_possible():
+            return 'its odometry is not possible'
+        pose_mps, pose_rad_s = self._pose.speed(motion, measured)
+        if not motion.is_standstill():
+            return 'moves at {:.2f} m/s, {:.2f} rad/s'.format(
+                motion.speed_mps, abs(motion.angular_rad_s))
+        if pose_mps or pose_rad_s:
+            self._crept = 'its pose moves at {:.2f} m/s, {:.2f} rad/s'.format(
+                min(pose_mps, POSSIBLE_SPEED), min(pose_rad_s, POSSIBLE_SPEED))
+            self._crept_at = measured
+            return self._crept
+        return ''
+
+    def _rests(self, measured):
+        """Count one reading of standstill."""
         if self._run == 0:
-            self._run_began = now
+            self._run_began = measured
         self._run += 1
-        if self._run >= READINGS and self.state != PROOF_STOPPED:
+        if self._run >= READINGS and measured - self._run_began >= ROW_S \
+                and self.state != PROOF_STOPPED:
             self.state = PROOF_STOPPED
             if self._stopped_ms is None:
                 self._stopped_ms = max(0.0, (self._run_began - self._begun) * 1000.0)
 
     def view(self, now):
         """Let time pass and return the :class:`ProofView` of this moment."""
-        silent = now - self._heard > HEARING_S
+        old = now - self._measured > self._silent_after_s
         late = self.state == PROOF_WAITING and now - self._begun > PATIENCE_S
-        if silent or late:
+        if old or late:
             self.state = PROOF_NOT_CONFIRMED
-            self._run = 0 if silent else self._run
-        return ProofView(self.state, self._words(silent))
+            self._run = 0 if old else self._run
+        return ProofView(self.state, self._words(now))
 
     @property
     def stopped_ms(self):
         """Time from the stop to the first reading of standstill [ms]; None while it moves."""
         return self._stopped_ms
 
-    def _words(self, silent):
+    def _words(self, now):
         if self.state == PROOF_STOPPED:
             if self._unseen:
                 return 'standstill seen after {:.1f} s'.format(self._stopped_ms / 1000.0)
             return 'stopped in {:.0f} ms'.format(self._stopped_ms)
         if self.state == PROOF_WAITING:
             return 'stopping'
-        if silent:
+        if now - self._heard > self._silent_after_s:
             return 'NOT CONFIRMED: it cannot be heard'
-        if self._speed.is_standstill():
-            return 'NOT CONFIRMED: at rest for less than {} readings'.format(READINGS)
-        return 'NOT CONFIRMED: moves at {:.2f} m/s, {:.2f} rad/s'.format(
-            abs(self._speed.linear_mps), abs(self._speed.angular_rad_s))
+        if self._doubt:
+            return 'NOT CONFIRMED: ' + self._doubt
+        if now - self._measured > self._silent_after_s:
+            return 'NOT CONFIRMED: what it says is {:.1f} s old'.format(now - self._measured)
+        if self._measured - self._crept_at < POSE_WINDOW_S:
+            return 'NOT CONFIRMED: ' + self._crept
+        return 'NOT CONFIRMED: at rest for less than {} readings'.format(READINGS)

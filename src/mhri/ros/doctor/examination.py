@@ -20,7 +20,7 @@ from mhri.core.doctor.facts import (
     Facts, Graph, REFUSED, SILENT, STRANGER, UNRESOLVED)
 from mhri.core.doctor.host import find_on_host
 from mhri.core.doctor.robots import robots_of
-from mhri.core.doctor.system import muxes
+from mhri.core.doctor.system import GATES_STATE, muxes
 from mhri.ros.doctor.host import look_at_computer
 from mhri.ros.doctor.masters import look_elsewhere, parse_uri
 from mhri.ros.doctor.probe import Probe
@@ -112,7 +112,17 @@ def _ask_master(api, master):
     begun = time.monotonic()
     graph = _graph(api)
     took_s = time.monotonic() - begun
-    return replace(master, took_s=took_s), graph, _uris(api, graph)
+    graph, uris = _with_uris(api, graph)
+    return replace(master, took_s=took_s), graph, uris
+
+
+def _with_uris(api, graph):
+    """Return (graph, {node: URI}) of one moment; one request.
+
+    A node that went between two requests is in the graph and has no URI: it is left out of both.
+    """
+    uris = _uris(api, graph)
+    return graph.of(uris), uris
 
 
 def _graph(api):
@@ -148,11 +158,11 @@ def _why_not(master, error):
 
 
 def _ask_nodes(facts, robots, uris, deadline):
-    """Ask every node at once; listen to odometry and IMU of every robot."""
+    """Ask every node at once; listen to the gates, and to odometry and IMU of every robot."""
     probe = Probe(facts.caller_id, deadline)
     listened = {topic for robot in robots
                 if not facts.wanted or robot.candidate.name in facts.wanted
-                for topic in robot.topics('odometry', 'imu')}
+                for topic in robot.topics('odometry', 'imu')} | {GATES_STATE}
     for name, uri in sorted(uris.items()):
         published = facts.graph.topics_of(name)[0]
         # What is listened to comes last: it takes its time.
@@ -180,8 +190,7 @@ def _look_again(facts, robots, api, wanted):
         odd = odd_ones(facts, robots)
         if odd:
             time.sleep(0.25)  # time to connect, for what has only just begun
-        graph = _graph(api)
-        uris = _uris(api, graph)
+        graph, uris = _with_uris(api, _graph(api))
     except MasterError:
         return facts
     probe = Probe(facts.caller_id, _deadline(wanted, LEAST_AGAIN_S))

@@ -15,6 +15,8 @@ import time
 from urllib.parse import urlsplit
 import xmlrpc.client
 
+import genpy
+
 from mhri.core.doctor.facts import (
     ANSWERS, Connection, is_ipv4, Node, REFUSED, SILENT, STRANGER, Stream, UNRESOLVED)
 from mhri.ros.doctor.host import resolve
@@ -25,8 +27,9 @@ from mhri.ros.recording.raw_link import LinkError, RawLink
 HEAVY = ('sensor_msgs/Image', 'sensor_msgs/CompressedImage', 'sensor_msgs/CameraInfo',
          'sensor_msgs/PointCloud2', 'sensor_msgs/PointCloud', 'stereo_msgs/DisparityImage',
          'theora_image_transport/Packet', 'nav_msgs/OccupancyGrid')
+GATES_STATE = 'mhri/GatesState'
 # Begin with a std_msgs/Header, whose stamp is read from the bytes.
-STAMPED = ('nav_msgs/Odometry', 'sensor_msgs/Imu')
+STAMPED = ('nav_msgs/Odometry', 'sensor_msgs/Imu', GATES_STATE)
 LISTEN_S = 0.6
 ENOUGH_SAMPLES = 25
 _QUESTIONS = ('getPid', 'getPublications', 'getSubscriptions', 'getBusInfo')
@@ -154,15 +157,15 @@ class Probe:
             if not listen:
                 return Stream(*known)
             begun = time.monotonic()
-            messages, samples = self._listen(link, fields['type'] in STAMPED)
+            messages, samples, newest = self._listen(link, fields['type'] in STAMPED)
             return Stream(*known, listened_s=time.monotonic() - begun, messages=messages,
-                          samples=tuple(samples))
+                          samples=tuple(samples), refused=_refused(fields, newest))
         finally:
             link.close()
 
     def _listen(self, link, stamped):
-        """Return (number of messages, [(received, stamp)]) of the next moment."""
-        messages, samples = 0, []
+        """Return (number of messages, [(received, stamp)], newest frame) of the next moment."""
+        messages, samples, newest = 0, [], b''
         end = min(time.monotonic() + LISTEN_S, self._deadline)
         while len(samples) < ENOUGH_SAMPLES and not (messages and not stamped):
             ready = select.select([link], [], [], max(0.0, end - time.monotonic()))[0]
@@ -174,12 +177,27 @@ class Probe:
             except LinkError:
                 break
             messages += len(frames)
+            newest = frames[-1] if frames else newest
             # Of those that came together only the newest was not kept waiting.
             if stamped and frames and len(frames[-1]) >= 16:
                 seconds, nanoseconds = _STAMP.unpack_from(frames[-1], 8)
                 if seconds:
                     samples.append((received, seconds + nanoseconds * 1e-9))
-        return messages, samples
+        return messages, samples, newest
+
+
+def _refused(fields, frame):
+    """Return what gates say they refused in a frame of their state, () of any other topic."""
+    if fields['type'] != GATES_STATE or not frame:
+        return ()
+    # Takes its time to import: only where there are gates.
+    from mhri.msg import GatesState
+    if fields['md5sum'] != GatesState._md5sum:
+        return ()
+    try:
+        return tuple(GatesState().deserialize(frame[4:]).refused)
+    except genpy.DeserializationError:
+        return ()
 
 
 def _host_of(uri):

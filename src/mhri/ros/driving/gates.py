@@ -1,8 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The gates of all robots in this program: from the one velocity command to each robot.
+"""The gates node: the only one that speaks to robots. ROS around the rules of core/driving.
 
-Everything here runs on ROS threads; the GUI thread only selects, stops and closes.
+Interfaces (global names; SI units):
+
+- subscribes ``/robot_controller/twist`` (``geometry_msgs/Twist``), ``/robot_controller/task_twist``
+  (``mhri/TeamTwist``) and ``/robot_controller/stop_all`` (``std_msgs/Bool``), all from the mux in
+  force alone; ``/robot_controller/robot_select`` (``mhri/RobotSelect``) and
+  ``/gates_in/group_speed`` (``mhri/GroupSpeed``) from the operator in control alone
+- publishes ``/gates/state`` (``mhri/GatesState``, latched, on change and at 2 Hz), and of each
+  robot what :class:`mhri.ros.driving.robot_gate.RobotGate` says
+- serves ``/gates/take_control`` (``std_srvs/Trigger``) and ``/gates/set_motor_power``
+  (``std_srvs/SetBool``: false takes the power from the motors of every robot that offers it)
+
+Everything runs on ROS threads and one of its own; one lock guards all of it.
 """
 import threading
 import time
@@ -10,276 +21,310 @@ import time
 from geometry_msgs.msg import Twist
 import rospy
 from std_msgs.msg import Bool
+from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 from mhri.core.driving.gate import common_limits
-from mhri.core.driving.limits import ZERO
-from mhri.msg import RobotSelect
+from mhri.core.driving.seat import ControlSeat
+from mhri.core.robots.link_quality import link_share
+from mhri.core.robots.names import name_problem
+from mhri.msg import GroupSpeed, RobotSelect, TeamTwist
 from mhri.ros.convert import from_twist
+from mhri.ros.driving.mux_in_force import MuxInForce
+from mhri.ros.driving.neighbour import Neighbour
+from mhri.ros.driving.robot_gate import RobotGate
+from mhri.ros.driving.roster import Roster
+from mhri.ros.graph.rospy_inside import caller_of, link_of, on_publisher_gone
+
+TICK_S = 0.05
 
 
-def _nobody(*_words):
-    """There is no other process to tell."""
+class Gates:
+    """The gates of all robots, fed by the mux and the operator in control.
 
+    :param types: {name: RobotType}
+    ``on_change`` is called when what ``/gates/state`` says may have changed; quick.
 
-class GateBank:
-    """Feeds the gates; one subscriber of each kind for all of them.
-
-    Subscribes ``/robot_controller/twist`` (``geometry_msgs/Twist``),
-    ``/robot_controller/robot_select`` (``mhri/RobotSelect``) and ``/robot_controller/stop_all``
-    (``std_msgs/Bool``).
-
-    :param on_stop: called with (stopped, when [s]) on each change of stop-all, on a ROS thread
     """
 
-    def __init__(self, clock=time.monotonic, on_stop=lambda stopped, when: None):
+    def __init__(self, types, clock=time.monotonic):
         self._clock = clock
-        self._on_stop = on_stop
+        self.on_change = lambda: None
+        self._lock = threading.RLock()
+        self._wake = threading.Condition(self._lock)
         self._gates = {}
-        self._selected = frozenset()
-        self._stopped = False
-        self._pressed = False
-        self._together = False
+        self._seat = ControlSeat()
+        # None: the mux in force has not said it yet.
+        self._stop = None
+        self._stop_links = []
+        self._command = None
+        self._together = self._slow_with_link = False
         self._share = 1.0
         self._closed = False
-        self._subscribers = []
-        self._tell = _nobody
-        self._changed = threading.Condition(threading.RLock())
+        self._session = '{:x}'.format(time.time_ns())
+        self._strangers = {}
+        self._states = []
+        self._neighbour = Neighbour('the mux')
+        self._mux = MuxInForce(self._refuse, self._on_new_mux)
+        self._roster = Roster(types, self._open, self._close_gate)
 
-    def start(self, hear_selection=True):
-        """Subscribe and begin to watch for stale commands.
-
-        :param hear_selection: False where somebody else tells by :meth:`select`: in two ways at
-            once an old word could overtake a new one
-        """
-        if hear_selection:
-            self._subscribers.append(rospy.Subscriber(
-                '/robot_controller/robot_select', RobotSelect,
-                lambda message: self.select(message.robots), queue_size=1, tcp_nodelay=True))
-        self._subscribers += [
-            rospy.Subscriber('/robot_controller/twist', Twist, self._on_twist, queue_size=1,
-                             tcp_nodelay=True),
-            rospy.Subscriber('/robot_controller/stop_all', Bool,
-                             lambda message: self.hear_stop(message.data), queue_size=10,
-                             tcp_nodelay=True)]
+    def start(self):
+        """Subscribe, serve, and begin to watch the time; returns at once."""
+        nodelay = dict(queue_size=1, tcp_nodelay=True)
+        self._mux.start()
+        self._roster.start()
+        select = rospy.Subscriber('/robot_controller/robot_select', RobotSelect, self._on_select,
+                                  **nodelay)
+        on_publisher_gone(select, self._on_operator_gone)
+        twist = rospy.Subscriber('/robot_controller/twist', Twist, self._on_twist, **nodelay)
+        on_publisher_gone(twist, self._on_mux_gone)
+        rospy.Subscriber('/robot_controller/task_twist', TeamTwist, self._on_task, **nodelay)
+        rospy.Subscriber('/robot_controller/stop_all', Bool, self._on_stop, queue_size=10,
+                         tcp_nodelay=True)
+        rospy.Subscriber('/gates_in/group_speed', GroupSpeed, self._on_group_speed, queue_size=10)
+        rospy.Service('/gates/take_control', Trigger, self._on_take)
+        rospy.Service('/gates/set_motor_power', SetBool, self._on_motor_power)
+        self._neighbour.start()
         threading.Thread(target=self._run, name='gates', daemon=True).start()
 
-    @property
-    def stopped(self):
-        """Whether everything is stopped: by the mux, or by a press not yet confirmed by it."""
-        return self._stopped or self._pressed
+    def read(self):
+        """Return what is to be said on ``/gates/state``, as keyword arguments of the message.
+
+        But for the operator's computer, which somebody else has to ask for; ``since`` is [s] of
+        this object's clock, None for nobody.
+        """
+        with self._lock:
+            refused = ['{}: robot_select, {} times'.format(name, count)
+                       for name, count in self._seat.refused.items()]
+            refused += ['{}: {}, {} times'.format(caller, topic, count)
+                        for (caller, topic), count in self._strangers.items()]
+            return dict(operator=self._seat.operator, since=self._seat.since,
+                        leased=self._seat.state == 'leased', mux=self._mux.caller,
+                        stop_all=bool(self._stop), together=self._together, share=self._share,
+                        refused=refused, robots=[gate.message() for gate in self._gates.values()])
 
     @property
-    def stop_confirmed(self):
-        """Whether the mux has stop-all in force."""
-        return self._stopped
+    def session(self):
+        """Names this run of the gates, also towards the guards."""
+        return self._session
 
-    def add(self, gate):
-        """Take a robot in; it obeys the present selection and stop."""
-        with self._changed:
-            now = self._clock()
-            self._gates[gate.name] = gate
-            gate.rule.select(gate.name in self._selected, now)
-            if self._stopped:
-                gate.send(gate.rule.stop('mux', True, now), now)
-            if self._pressed:
-                gate.send(gate.rule.stop('panel', True, now), now)
-            self._tell_of(gate)
-            self._keep_together()
-
-    def remove(self, name):
-        """Close the gate of a robot with a zero; return it, or None where there is none."""
-        with self._changed:
-            gate = self._gates.pop(name, None)
-            self._tell('close', name)
-            if gate is not None:
-                now = self._clock()
-                gate.send(gate.rule.close(now), now)
-            self._keep_together()
-            return gate
+    def mux_heard(self):
+        """Tell whether the mux in force has been heard within the last second."""
+        return bool(self._mux.caller) and not self._neighbour.silent
 
     def gates(self):
-        """Return the gates of all robots."""
-        with self._changed:
-            return tuple(self._gates.values())
+        """Return the :class:`RobotGate` of every robot."""
+        with self._lock:
+            return list(self._gates.values())
 
-    def meet(self, tell):
-        """Tell another process all that its gates have to know, now and from now on.
+    def _refuse(self, caller, topic):
+        """Count who is not believed; the names are bounded."""
+        key = (caller, topic)
+        if key in self._strangers or len(self._strangers) < 32:
+            self._strangers[key] = self._strangers.get(key, 0) + 1
+            self.on_change()
 
-        :param tell: called with the words of :mod:`mhri.ros.driving.keeper`, under the lock; quick
-        """
-        with self._changed:
-            self._tell = tell
-            tell('select', sorted(self._selected))
-            tell('press' if self._pressed else 'withdraw')
-            tell('pace', self._together, self._share)
+    def _on_twist(self, message):
+        """Forward; the one path on which every microsecond counts."""
+        if not self._mux.believes(message, 'twist'):
+            return
+        velocity = from_twist(message)
+        with self._lock:
+            now = self._clock()
+            before, self._command = self._command, velocity
             for gate in self._gates.values():
-                self._tell_of(gate)
+                gate.command(velocity, now)
+            if before is None or before.is_zero() != velocity.is_zero():
+                self.on_change()
 
-    def _tell_of(self, gate):
-        limits = gate.rule.limits
-        self._tell('open', gate.name, gate.topics, limits.linear_mps, limits.angular_rad_s)
-        self._tell('held', gate.name, gate.rule.held)
+    def _on_task(self, message):
+        """Pass on what the tasks want; the mux has checked the message."""
+        if not self._mux.believes(message, 'task_twist'):
+            return
+        with self._lock:
+            now = self._clock()
+            for name, twist in zip(message.robots, message.twists):
+                gate = self._gates.get(name)
+                if gate is not None:
+                    gate.task(from_twist(twist), now)
 
-    def follow(self, name):
-        """Let the gate of a robot, where there is one, follow that of another process."""
-        with self._changed:
-            if name in self._gates:
-                self._gates[name].follow()
+    def _on_stop(self, message):
+        """Engage what the mux says; give up only what this very mux has held, and released.
 
-    def announce(self, name):
-        """Announce a robot's gate, and that of the other process where that does not lead."""
-        with self._changed:
-            gate = self._gates.get(name)
-            if gate is not None and not gate.follows:
-                self._tell('announce', name)
-        if gate is not None:
-            gate.announce()
-
-    def speak_for(self, name):
-        """Let the gate of one robot speak, which the other one cannot reach.
-
-        It says zero, and nothing more while the robot is not heard (:meth:`hold`).
+        A mux that knows nothing of a stop, because it was restarted together with the master, does
+        not release it: it hears of the stop on ``/gates/state`` and engages it as well.
         """
-        with self._changed:
-            gate = self._gates.get(name)
-            if gate is not None:
-                gate.lead()
-                self._lose(gate)
+        if not self._mux.believes(message, 'stop_all'):
+            return
+        with self._lock:
+            link = link_of(message)
+            self._neighbour.beat(caller_of(message))
+            if message.data:
+                self._stop_links = [link]
+                self._set_stop(True)
+            elif not self._stop or any(known is link for known in self._stop_links):
+                self._set_stop(False)
 
-    def drop_cut(self):
-        """Drop the connections of links that are cut, and hold their robots; return the names."""
-        with self._changed:
-            lost = [gate for gate in self._gates.values() if gate.drop_cut()]
-            for gate in lost:
-                self._lose(gate)
-            return [gate.name for gate in lost]
+    def _set_stop(self, stopped):
+        if stopped == self._stop:
+            return
+        now, self._stop = self._clock(), stopped
+        for gate in self._gates.values():
+            gate.send(gate.rule.stop(stopped, now))
+            if not stopped and gate.power.is_cut:
+                gate.power.restore()
+        self.on_change()
 
-    def _lose(self, gate):
-        """Hold a robot of which the connection was dropped."""
-        now = gate.lost_at = self._clock()
-        self._tell('held', gate.name, True)
-        gate.send(gate.rule.hold(True, now) or ZERO, now)
+    def _on_foreign_stop(self, name):
+        """A robot was stopped by the gates before these, and nobody has released it since."""
+        if not self._stop:
+            rospy.logwarn('%s says that stop-all is in force since before this start: it stays so '
+                          'until it is released', name)
+            self._set_stop(True)
 
-    def take_over(self):
-        """Let all gates speak for themselves: the other process has ended."""
-        with self._changed:
-            self._tell = _nobody
+    def _on_new_mux(self, caller):
+        """Let every robot wait for neutral: what the mux before knew of the stick is gone."""
+        rospy.loginfo('the mux in force is %s', caller)
+        self._everybody_joins()
+
+    def _on_mux_gone(self, caller):
+        """The mux in force has ended: a zero at once for whoever moves."""
+        if caller == self._mux.caller:
+            self._everybody_joins()
+
+    def _everybody_joins(self):
+        with self._lock:
             now = self._clock()
             for gate in self._gates.values():
-                gate.take_over(now)
+                gate.send(gate.rule.join(now))
+            self.on_change()
 
-    def select(self, names):
-        """Let exactly these robots through; the others get a zero where they were selected."""
-        with self._changed:
-            self._selected = frozenset(names)
-            self._tell('select', sorted(self._selected))
+    def _on_select(self, message):
+        """Take in the word of the operator in control; it is also its lease."""
+        names = [name for name in message.robots[:1000] if name_problem(name) is None]
+        with self._lock:
+            before = self._seat.checked
+            if self._seat.on_selection(caller_of(message), dict.fromkeys(names), self._clock()):
+                if self._seat.checked != before:
+                    self._check()
+            else:
+                self.on_change()
+
+    def _on_operator_gone(self, caller):
+        with self._lock:
+            self._seat.on_gone(caller)
+            self._check()
+
+    def _on_take(self, request):
+        """Put the caller in control; every robot gets a zero, and neutral is asked for."""
+        caller = request._connection_header['callerid']
+        with self._lock:
             now = self._clock()
-            for name, gate in self._gates.items():
-                gate.send(gate.rule.select(name in self._selected, now), now)
+            self._seat.take(caller, now)
+            self._strangers.clear()
+            self._check()
+            self._everybody_joins()
+        rospy.loginfo('%s has taken control', caller)
+        return TriggerResponse(True, caller + ' is in control now: centre the stick to drive')
+
+    def _on_motor_power(self, request):
+        """Cut the power of all motors, at any time; give it back unless a stop is in force."""
+        with self._lock:
+            if request.data and self._stop:
+                return SetBoolResponse(False, 'release the stop first: the power comes with it')
+            without = [gate.name for gate in self._gates.values() if not gate.power.available]
+            for gate in self._gates.values():
+                (gate.power.restore if request.data else gate.power.cut)()
+            self.on_change()
+        words = 'the power of the motors is ' + ('given back' if request.data else 'being cut')
+        return SetBoolResponse(True, words + (
+            '; not of {}: nothing there takes it'.format(', '.join(without)) if without else ''))
+
+    def _check(self):
+        """Let the gates know which robots are checked now."""
+        now, checked = self._clock(), self._seat.checked
+        for name, gate in self._gates.items():
+            gate.send(gate.rule.check(name in checked, now))
+        self._keep_together()
+        self._roster.check(checked)
+        self.on_change()
+        self._wake.notify()
+
+    def _on_group_speed(self, message):
+        """Take in how the group keeps together, from the operator in control."""
+        with self._lock:
+            caller = caller_of(message)
+            if self._seat.operator not in ('', caller):
+                self._refuse(caller, 'group_speed')
+                return
+            self._together, self._slow_with_link = message.together, message.slow_with_link
             self._keep_together()
-            self._changed.notify()
-
-    def set_pace(self, together, share):
-        """Set how the robots of the selection keep to each other, from the next command on.
-
-        :param together: all are held to what the slowest of them can do, each along the same curve;
-            otherwise each does its best
-        :param share: how much of every command is passed on, in (0, 1]
-        """
-        with self._changed:
-            if (together, share) != (self._together, self._share):
-                self._together, self._share = together, share
-                self._tell('pace', together, share)
-                self._keep_together()
+            self.on_change()
 
     def _keep_together(self):
-        """Give every gate the limits it has to keep to."""
-        group = [gate.rule.limits for name, gate in self._gates.items() if name in self._selected]
-        common = common_limits(group) if self._together and group else None
+        """Give every gate the limits and the share it has to keep to."""
+        group = [gate for gate in self._gates.values() if gate.rule.checked]
+        common = common_limits([gate.rule.limits for gate in group]) \
+            if self._together and group else None
+        trips = [gate.round_trip_s for gate in group if gate.round_trip_s == gate.round_trip_s]
+        self._share = link_share(max(trips, default=None)) if self._slow_with_link else 1.0
         for gate in self._gates.values():
             gate.rule.hold_to(common or gate.rule.limits, self._share)
 
-    def hold(self, name, held):
-        """Send nothing to a robot while it is not heard; the others go on."""
-        with self._changed:
-            gate = self._gates.get(name)
-            if gate is not None:
-                self._tell('held', name, held)
-                now = self._clock()
-                gate.send(gate.rule.hold(held, now), now)
-                self._changed.notify()
-
-    def deselect_others(self, names):
-        """Close the gates of all but these robots; opening is the word of robot_select alone."""
-        with self._changed:
-            self.select(self._selected & frozenset(names))
-
-    def press_stop(self):
-        """Stop every robot now, without waiting for the mux to say so."""
-        with self._changed:
+    def _open(self, name, robot_type):
+        """Open the gate of a robot, in place of the one it had (on the roster's thread)."""
+        self._close_gate(name)
+        gate = RobotGate(name, robot_type, self._session, self._command, self._lock,
+                         self._on_foreign_stop, self._clock)
+        with self._lock:
             now = self._clock()
-            newly = not self.stopped
-            self._pressed = True
-            self._tell('press')
-            self._stop_gates('panel', True, now)
-        if newly:
-            self._on_stop(True, now)
+            if self._closed:
+                return
+            self._gates[name] = gate
+            gate.send(gate.rule.stop(bool(self._stop), now))
+            gate.send(gate.rule.check(name in self._seat.checked, now))
+            self._keep_together()
+            self.on_change()
 
-    def withdraw_press(self):
-        """The mux has taken the stop over, or released it: its word alone counts from now on."""
-        with self._changed:
-            self._pressed = False
-            self._tell('withdraw')
-            self._stop_gates('panel', False, self._clock())
-
-    def _stop_gates(self, reason, stopped, now):
-        for gate in self._gates.values():
-            gate.send(gate.rule.stop(reason, stopped, now), now)
-
-    def _on_twist(self, message):
-        """Forward; the one path on which every millisecond counts."""
-        velocity = from_twist(message)
-        with self._changed:
-            now = self._clock()
-            for gate in self._gates.values():
-                gate.send(gate.rule.on_command(velocity, now), now)
-            self._changed.notify()
-
-    def hear_stop(self, stopped):
-        """Take in the word of the mux on stop-all."""
-        with self._changed:
-            now = self._clock()
-            was = self.stopped
-            self._stopped = stopped
-            self._stop_gates('mux', stopped, now)
-            if stopped:
-                self.withdraw_press()
-            newly = self.stopped != was
-        if newly:
-            self._on_stop(self.stopped, now)
+    def _close_gate(self, name):
+        """Close the gate of a robot with a zero (blocking: it asks the master)."""
+        with self._lock:
+            gate = self._gates.pop(name, None)
+            if gate is None:
+                return
+            gate.send(gate.rule.close(self._clock()))
+            self._keep_together()
+            self.on_change()
+        gate.close()
 
     def _run(self):
-        """Send the zeros of stale commands."""
-        with self._changed:
+        """Let time pass: 20 times a second, and at the instant when something goes stale."""
+        with self._lock:
             while not self._closed:
                 now = self._clock()
-                for gate in self._gates.values():
-                    gate.send(gate.rule.tick(now), now)
-                times = [time_s for time_s in (gate.rule.next_tick()
-                                               for gate in self._gates.values())
-                         if time_s is not None]
-                self._changed.wait(max(0.0, min(times) - self._clock()) if times else None)
+                self._tick(now)
+                times = [self._seat.next_tick()] + [gate.rule.next_tick()
+                                                    for gate in self._gates.values()]
+                due = min([time_s for time_s in times if time_s is not None] + [now + TICK_S])
+                self._wake.wait(max(0.0, due - self._clock()))
+
+    def _tick(self, now):
+        before = self._seat.checked
+        self._seat.tick(now)
+        if self._seat.checked != before:
+            self._check()
+        for gate in self._gates.values():
+            gate.tick(now)
+        if self._slow_with_link:
+            self._keep_together()
+        states = [(gate.rule.obeys, gate.rule.stands) for gate in self._gates.values()]
+        if states != self._states:
+            self._states = states
+            self.on_change()
 
     def close(self):
-        """Close every gate with a zero; nothing is forwarded any more."""
-        with self._changed:
+        """Close every gate with a zero; nothing is forwarded any more. May be called twice."""
+        with self._lock:
             self._closed = True
-            now = self._clock()
             for gate in self._gates.values():
-                gate.send(gate.rule.close(now), now)
-            self._changed.notify()
-
-    def unregister(self):
-        """Stop listening (blocking: it asks the master)."""
-        for subscriber in self._subscribers:
-            subscriber.unregister()
+                gate.send(gate.rule.close(self._clock()))
+            self._wake.notify()

@@ -1,0 +1,121 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The host's end of the link to the guard on a robot (``utils/remote/mhri_guard``).
+
+The guard sends echoes, each with a new token; a command carries the token of the newest echo, and
+the guard obeys it while that token is young. Both say so in ``frame_id``,
+``<session>:<number>:<token>``: who speaks, its how manieth word this is (in an echo: the last one
+that was obeyed), and the token. While stop-all is in force the session of a command ends in ``!``,
+and while the stop is latched on the robot the token of an echo does.
+
+A stop is released by a zero without ``!`` that answers an echo sent after the stop; what is not a
+zero is dropped until then. So a gate says zero until :attr:`GuardLink.stop_confirmed` is false.
+"""
+import collections
+import re
+
+# An echo comes every 0.1 s; three in a row may be lost.
+ECHO_S = 0.35
+# Commands are waited for that long; one that was dropped on the robot is never answered.
+_WAIT_S = 2.0
+_ID = re.compile(r'([A-Za-z0-9_-]{1,32})(!?):([0-9]{1,15}):([A-Za-z0-9_-]{0,32})(!?)\Z')
+_SESSION = re.compile(r'[A-Za-z0-9_-]{1,32}\Z')
+# The session of an echo before anybody was obeyed.
+_NOBODY = '-'
+
+
+def format_id(session, number, token, stop=False):
+    """Return the frame_id of a command; one with an empty token is good as a stop only."""
+    return '{}{}:{}:{}'.format(session, '!' if stop else '', number, token)
+
+
+def parse_id(text):
+    """Return (session, number, token, stop) of a frame_id, or None where it is none.
+
+    ``stop`` is true for a command that stops and for an echo of a robot that is stopped.
+    """
+    found = _ID.match(text)
+    if found is None:
+        return None
+    session, stop, number, token, latched = found.groups()
+    return session, int(number), token, bool(stop or latched)
+
+
+class GuardLink:
+    """The link to the guard of one robot; time is passed in, of a clock that never goes back [s].
+
+    :param session: names this run of the sender: another one at each start, at most 32 of
+        ``A-Za-z0-9_-``
+    :raises ValueError: the session is something else
+    """
+
+    def __init__(self, session):
+        if not _SESSION.match(session) or session == _NOBODY:
+            raise ValueError('the session is {!r}: give at most 32 of A-Z, a-z, 0-9, _ and -'
+                             .format(session[:40]))
+        self._session = session
+        self._number = 0
+        self._token = ''
+        self._echo_at = None
+        self._was_alive = False
+        self._sent = collections.deque()
+        self._round_trip_s = None
+        self.obeyed_number = 0
+        self.displaced = False
+        self.stop_confirmed = False
+
+    def on_echo(self, frame_id, now):
+        """Take in the frame_id of an echo; return False where it is none, and nothing changes."""
+        echo = parse_id(frame_id)
+        if echo is None or not echo[2]:
+            return False
+        session, number, self._token, self.stop_confirmed = echo
+        self._echo_at = now
+        ours = session == self._session
+        self.displaced = not ours and session != _NOBODY and (
+            self.displaced or self.obeyed_number > 0)
+        self.obeyed_number = number if ours else 0
+        while self._sent and self._sent[0][0] <= self.obeyed_number:
+            sent, at = self._sent.popleft()
+            if sent == number:
+                self._round_trip_s = now - at
+        return True
+
+    def alive(self, now):
+        """Tell whether an echo came within the last 0.35 s."""
+        self._was_alive = self._echo_at is not None and now - self._echo_at <= ECHO_S
+        return self._was_alive
+
+    @property
+    def was_alive(self):
+        """What :meth:`alive` said last: a link that was alive and is not has been lost."""
+        return self._was_alive
+
+    def next_id(self, stop, now):
+        """Return the frame_id for the next command, which has to be sent.
+
+        Its token is empty before the first echo: the guard obeys it then if it is a stop.
+        """
+        self._number += 1
+        self._forget(now)
+        self._sent.append((self._number, now))
+        return format_id(self._session, self._number, self._token, stop)
+
+    def obeyed(self, number):
+        """Tell whether the guard has obeyed a command of this session so late or later."""
+        return 0 < number <= self.obeyed_number
+
+    def round_trip_s(self, now):
+        """Return the time from a command to the echo that says it was obeyed [s], or None.
+
+        The newest one that is known, or what the oldest of the last 2 s has waited already, if
+        that is more.
+        """
+        self._forget(now)
+        if not self._sent:
+            return self._round_trip_s
+        return max(now - self._sent[0][1], self._round_trip_s or 0.0)
+
+    def _forget(self, now):
+        while self._sent and now - self._sent[0][1] > _WAIT_S:
+            self._sent.popleft()

@@ -1,0 +1,81 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The power of a robot's motors: what is to be told to the robot next, and what is known of it."""
+
+# Words of the state. Without any, nobody has asked for anything, or the power was given back.
+UNTOUCHED = ''
+CUT_ASKED = 'cut asked'
+CUT_SENT = 'cut sent'        # handed to the robot, which has no way to confirm it
+CUT = 'cut'                  # the robot has confirmed it
+RESTORE_ASKED = 'restore asked'
+FAILED = 'failed: {}'
+
+RETRY_S = 1.0
+# A robot that cannot be told to power up is left alone after so long: nobody waits for it any more.
+RESTORE_FOR_S = 10.0
+
+
+class MotorPowerRule:
+    """Decides what to tell one robot; time is seconds of a clock that never goes back.
+
+    Cut, it goes on trying until the robot has been told, and tells again whoever comes new. To give
+    the power back it tries for :data:`RESTORE_FOR_S`. It never gives power unasked.
+    """
+
+    def __init__(self):
+        self._cut = None
+        self._pending = False
+        self._due_at = 0.0
+        self._asked_at = 0.0
+        self.state = UNTOUCHED
+
+    @property
+    def is_cut(self):
+        """Whether the power is to stay cut."""
+        return bool(self._cut)
+
+    def ask(self, cut, now):
+        """Take in what is wanted: cut (True) or give back (False)."""
+        if cut and self._cut and not self._pending:
+            return
+        self._cut, self._pending = cut, True
+        self._due_at = self._asked_at = now
+        self.state = CUT_ASKED if cut else RESTORE_ASKED
+
+    def due(self, now):
+        """Return what to tell the robot now, True (cut) or False (give back); None: nothing."""
+        return self._cut if self._pending and now >= self._due_at else None
+
+    def wait_s(self, now):
+        """Return for how long :meth:`due` says nothing by itself [s]; None: until asked."""
+        return max(0.0, self._due_at - now) if self._pending else None
+
+    def on_told(self, cut, confirmed, now):
+        """Take in that the robot was told.
+
+        :param confirmed: whether it has answered that it is so
+        """
+        if self._is_overtaken(cut, now):
+            return
+        self._pending = False
+        self.state = (CUT if confirmed else CUT_SENT) if cut else UNTOUCHED
+
+    def _is_overtaken(self, cut, now):
+        """Tell whether something else is wanted by now; that is told once more, to be the last."""
+        if cut == self._cut:
+            return False
+        self._pending, self._due_at, self._asked_at = True, now, now
+        return True
+
+    def on_failed(self, cut, problem, now):
+        """Take in why the robot could not be told; it is tried again, by and by."""
+        if self._is_overtaken(cut, now):
+            return
+        self.state = FAILED.format(problem)
+        self._due_at = now + RETRY_S
+        self._pending = cut or now - self._asked_at < RESTORE_FOR_S
+
+    def tell_again(self, now):
+        """Take in that somebody new listens, who knows nothing of a cut."""
+        if self._cut:
+            self._pending, self._due_at = True, now

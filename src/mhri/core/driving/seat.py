@@ -1,0 +1,95 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Who is the operator in control: one at a time, on a lease. No ROS, no clock.
+
+States and what leads out of them::
+
+    EMPTY    nobody is in control            a selection -> LEASED by its publisher
+    LEASED   the selection is repeated       silent for LEASE_S -> LAPSED, publisher gone -> EMPTY
+    LAPSED   its publisher is there, silent  repeated -> LEASED, publisher gone -> EMPTY
+
+Taking control is possible in every state. Nobody's robots but those of a leased seat may move.
+"""
+from collections import Counter
+
+EMPTY, LEASED, LAPSED = 'empty', 'leased', 'lapsed'
+
+# A selection that is not repeated for so long counts no more [s].
+LEASE_S = 1.5
+# What is taken note of at most: a name costs memory, and so does a robot.
+MOST_ROBOTS = 64
+MOST_REFUSED = 32
+
+
+class ControlSeat:
+    """The operator in control and the robots that it has checked.
+
+    Operators are caller ids; time is seconds of a clock that never goes back.
+    """
+
+    def __init__(self):
+        self._operator = ''
+        self._chosen = ()
+        self._repeated_at = None
+        self._lapsed = False
+        self.since = None
+        self.refused = Counter()
+
+    @property
+    def state(self):
+        """One of EMPTY, LEASED, LAPSED."""
+        if not self._operator:
+            return EMPTY
+        return LAPSED if self._lapsed else LEASED
+
+    @property
+    def operator(self):
+        """Caller id of the operator in control, '' for nobody."""
+        return self._operator
+
+    @property
+    def checked(self):
+        """Names of the robots that may be driven now."""
+        return self._chosen if self.state == LEASED else ()
+
+    def on_selection(self, caller, names, now):
+        """Take in a selection; tell whether it counts.
+
+        :param names: robots; more than :data:`MOST_ROBOTS` are cut off
+        """
+        if self._operator and caller != self._operator:
+            self.refuse(caller)
+            return False
+        if not self._operator:
+            self._sit(caller, now)
+        self._chosen = tuple(names)[:MOST_ROBOTS]
+        self._repeated_at, self._lapsed = now, False
+        return True
+
+    def refuse(self, caller):
+        """Count somebody who is not believed, by name."""
+        if caller in self.refused or len(self.refused) < MOST_REFUSED:
+            self.refused[caller] += 1
+
+    def take(self, caller, now):
+        """Put the caller in control; its selection is what it says from now on."""
+        self._sit(caller, now)
+
+    def on_gone(self, caller):
+        """Take note that a publisher of the selection has gone."""
+        if caller == self._operator:
+            self._operator, self._chosen, self._lapsed, self.since = '', (), False, None
+
+    def tick(self, now):
+        """Let time pass: a lease that is not renewed lapses."""
+        if self._operator and now - self._repeated_at >= LEASE_S:
+            self._lapsed = True
+
+    def next_tick(self):
+        """Return when :meth:`tick` has to be called next [s], or None."""
+        return self._repeated_at + LEASE_S if self.state == LEASED else None
+
+    def _sit(self, caller, now):
+        self._operator, self._chosen, self._lapsed = caller, (), False
+        self._repeated_at = self.since = now
+        self.refused.pop(caller, None)

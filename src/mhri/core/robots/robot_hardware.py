@@ -1,0 +1,130 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What takes the power from a robot's motors, and what tells of its own emergency stop, as data."""
+import re
+from dataclasses import dataclass, replace
+from typing import Tuple, Union
+
+SET_BOOL = 'std_srvs/SetBool'
+NONE = 'none'
+_TYPE = re.compile(r'[A-Za-z][A-Za-z0-9_]*/[A-Za-z][A-Za-z0-9_]*\Z')
+_FIELD = re.compile(r'[A-Za-z][A-Za-z0-9_]*(\.[A-Za-z][A-Za-z0-9_]*)*\Z')
+_NAME = re.compile(r'/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*\Z')
+
+Value = Union[bool, int, float, str]
+
+
+class AtRoot:
+    """A part that is reached by one ``name``, relative to its robot's namespace."""
+
+    def at_root(self):
+        """Return it with an absolute name: for a robot without a namespace."""
+        return replace(self, name='/' + self.name.lstrip('/'))
+
+
+@dataclass(frozen=True)
+class MotorPowerSpec(AtRoot):
+    """How the power is taken from the motors of a robot of some type, and given back.
+
+    :param name: the topic or service, relative to the robot's namespace
+    :param service: whether it is a service (``std_srvs/SetBool``, false takes the power)
+    :param kind: ROS type of the topic or service
+    :param field: of the topic's message: what tells power or none
+    :param powered: its value with power
+    :param cut: its value without
+    """
+
+    name: str
+    service: bool = False
+    kind: str = 'std_msgs/Bool'
+    field: str = 'data'
+    powered: Value = True
+    cut: Value = False
+
+
+@dataclass(frozen=True)
+class HardwareStopSpec(AtRoot):
+    """What tells of a robot's own emergency stop.
+
+    :param name: the topic, relative to the robot's namespace
+    :param kind: its ROS type
+    :param field: what of its message tells
+    :param stopped: the values that mean stopped; any other means free
+    """
+
+    name: str
+    kind: str = 'std_msgs/Bool'
+    field: str = 'data'
+    stopped: Tuple[Value, ...] = (True,)
+
+
+def read_motor_power(section):
+    """Return the :class:`MotorPowerSpec` at ``motor_power``; None where there is none.
+
+    :param section: :class:`mhri.core.config.Section` of a robot type
+    :raises ConfigError: names the key that is wrong
+    """
+    part = _part(section, 'motor_power')
+    if part is None:
+        return None
+    if ('topic' in part) == ('service' in part):
+        raise section.error('motor_power', 'name either a topic or a service')
+    if 'service' in part:
+        spec = MotorPowerSpec(_matching(part, 'service', _NAME), True,
+                              _matching(part, 'type', _TYPE, SET_BOOL), '')
+        if spec.kind != SET_BOOL:
+            raise part.error('type', 'a service of motor power is {}, got {!r}'.format(
+                SET_BOOL, spec.kind))
+    else:
+        spec = MotorPowerSpec(
+            _matching(part, 'topic', _NAME), False, _matching(part, 'type', _TYPE, 'std_msgs/Bool'),
+            _matching(part, 'field', _FIELD, 'data'), _value(part, 'powered', True),
+            _value(part, 'cut', False))
+        if spec.powered == spec.cut:
+            raise part.error('cut', 'must differ from powered, got {!r}'.format(spec.cut))
+    part.close()
+    return spec
+
+
+def read_hardware_stop(section):
+    """Return the :class:`HardwareStopSpec` at ``hardware_stop``; None where there is none.
+
+    :param section: :class:`mhri.core.config.Section` of a robot type
+    :raises ConfigError: names the key that is wrong
+    """
+    part = _part(section, 'hardware_stop')
+    if part is None:
+        return None
+    values = part.take('stopped', [True])
+    values = values if isinstance(values, list) else [values]
+    if not values or not all(isinstance(value, (bool, int, float, str)) for value in values):
+        raise part.error('stopped', 'expected the values that mean stopped, e.g. [true], got '
+                         '{!r}'.format(values))
+    spec = HardwareStopSpec(
+        _matching(part, 'topic', _NAME), _matching(part, 'type', _TYPE, 'std_msgs/Bool'),
+        _matching(part, 'field', _FIELD, 'data'), tuple(values))
+    part.close()
+    return spec
+
+
+def _part(section, key):
+    """Return the sub-section of a key; None where it is missing or says ``none``."""
+    raw = section.take(key, NONE)
+    return None if raw == NONE else section.sub_section(key, raw)
+
+
+def _matching(part, key, pattern, *default):
+    """Read a text of a certain form."""
+    text = part.text(key, *default)
+    if not pattern.match(text):
+        example = {'type': 'std_msgs/Bool', 'field': 'data'}.get(key, 'motor_power')
+        raise part.error(key, 'expected something like {}, got {!r}'.format(example, text))
+    return text
+
+
+def _value(part, key, default):
+    """Read a truth value or a number."""
+    value = part.take(key, default)
+    if not isinstance(value, (bool, int, float)):
+        raise part.error(key, 'expected true, false or a number, got {!r}'.format(value))
+    return value

@@ -1,0 +1,36 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The executable ``gates``: runs :class:`mhri.ros.driving.gates.Gates` as ``/mhri_gates``."""
+import gc
+import signal
+
+import rospy
+
+from mhri.ros.driving.gates import Gates
+from mhri.ros.driving.gates_state import GatesSpeaker
+from mhri.ros.graph import log
+from mhri.ros.graph.handshake import limit_handshakes
+from mhri.ros.graph.master_watch import MasterWatch
+from mhri.ros.resources import robot_types
+
+
+def main():
+    """Run until shut down; the last word to every robot is a zero."""
+    types, errors = robot_types()
+    limit_handshakes()
+    rospy.init_node('mhri_gates', disable_rostime=True)
+    log.install()
+    # A terminal that is closed must not end the gates without a zero.
+    signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
+    gates = Gates(types)
+    speaker = GatesSpeaker(gates.read, gates.mux_heard)
+    gates.on_change = speaker.on_change
+    rospy.on_shutdown(gates.close)
+    MasterWatch().start()
+    gates.start()
+    speaker.start()
+    for error in errors:
+        rospy.logwarn('robot type left out: %s', error)
+    # What has been loaded by now stays: looking through it would hold up a command.
+    gc.freeze()
+    rospy.spin()

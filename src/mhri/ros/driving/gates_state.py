@@ -1,0 +1,103 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the gates say of themselves: ``/gates/state`` and ``/diagnostics``."""
+import threading
+import time
+from urllib.parse import urlsplit
+
+from diagnostic_msgs.msg import DiagnosticStatus
+import rospy
+
+from mhri.msg import GatesState
+from mhri.ros.diagnostics import publish_diagnostics
+from mhri.ros.graph.master_api import MasterApi, MasterError
+
+PERIOD_S = 0.5
+# Changes that follow each other closely are told together.
+LEAST_S = 0.02
+
+
+class GatesSpeaker:
+    """A thread that publishes ``mhri/GatesState``, latched, on change and at 2 Hz.
+
+    :param read: :meth:`mhri.ros.driving.gates.Gates.read`
+    :param mux_heard: function telling whether the mux was heard within the last second
+    """
+
+    def __init__(self, read, mux_heard, clock=time.monotonic):
+        self._read = read
+        self._mux_heard = mux_heard
+        self._clock = clock
+        self._changed = threading.Event()
+        self._computers = {}
+        self._publisher = rospy.Publisher('/gates/state', GatesState, queue_size=1, latch=True,
+                                          tcp_nodelay=True)
+
+    def start(self):
+        """Begin; returns at once."""
+        threading.Thread(target=self._run, name='gates_state', daemon=True).start()
+        publish_diagnostics({'gates': self._diagnose})
+        return self
+
+    def on_change(self):
+        """Say it soon; returns at once."""
+        self._changed.set()
+
+    def _run(self):
+        while not rospy.is_shutdown():
+            self._changed.wait(PERIOD_S)
+            self._changed.clear()
+            self._publisher.publish(self.message())
+            time.sleep(LEAST_S)
+
+    def message(self):
+        """Return the ``mhri/GatesState`` of this moment."""
+        facts = self._read()
+        since, now = facts.pop('since'), time.time()
+        message = GatesState(**facts)
+        message.header.stamp = rospy.Time.from_sec(now)
+        message.mux_heard = self._mux_heard()
+        if message.operator:
+            message.since = rospy.Time.from_sec(now - (self._clock() - since))
+            message.computer = self._computer(message.operator)
+        return message
+
+    def _computer(self, operator):
+        """Return the computer of a node as the master knows it, '' until that was asked."""
+        if operator not in self._computers:
+            self._computers = {operator: ''}
+            threading.Thread(target=self._ask, args=(operator,), name='computer of ' + operator,
+                             daemon=True).start()
+        return self._computers[operator]
+
+    def _ask(self, operator):
+        try:
+            uri = MasterApi(rospy.get_name()).node_uri(operator)
+        except MasterError as error:
+            rospy.logdebug('the computer of %s is not known: %s', operator, error)
+            return
+        self._computers = {operator: (urlsplit(uri).hostname or '') if uri else ''}
+        self._changed.set()
+
+    def _diagnose(self, status):
+        """Fill the diagnostic status of the gates."""
+        message = self.message()
+        standing = [gate.name for gate in message.robots if gate.obeys and gate.stands]
+        if message.refused:
+            status.summary(DiagnosticStatus.WARN, 'refused: ' + message.refused[0])
+        elif message.mux and not message.mux_heard:
+            status.summary(DiagnosticStatus.ERROR, 'the mux is silent')
+        elif message.stop_all:
+            status.summary(DiagnosticStatus.WARN, 'stop-all is in force')
+        else:
+            status.summary(DiagnosticStatus.OK, 'in control: ' + (message.operator or 'nobody'))
+        status.add('mux', message.mux or 'none')
+        status.add('operator', message.operator or 'nobody')
+        status.add('kept standing', ', '.join(standing) or 'none')
+        for line in message.refused:
+            status.add('refused', line)
+        for gate in message.robots:
+            status.add(gate.name, '{}{}, {}'.format(gate.obeys or 'obeys nobody', gate.stands and
+                                                    ' ({})'.format(gate.stands),
+                                                    gate.topic or 'not reached'))
+        return status

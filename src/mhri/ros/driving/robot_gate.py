@@ -1,0 +1,211 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The gate of one robot: its rule with the connections that its words leave by."""
+import math
+import time
+
+from geometry_msgs.msg import Twist, TwistStamped
+import rospy
+
+from mhri.core.driving.gate import GateRule, STOPPED
+from mhri.core.driving.guard_link import GuardLink, parse_id
+from mhri.core.driving.limits import ZERO
+from mhri.core.driving.listeners import obeying
+from mhri.core.robots.link import link_state
+from mhri.core.robots.names import topic_of
+from mhri.core.screen.views import GONE, SILENT
+from mhri.msg import RobotGate as RobotGateMessage
+from mhri.ros.convert import to_twist
+from mhri.ros.driving.motor_power import MotorPower
+from mhri.ros.graph.rospy_inside import listeners, PromptPublisher, publisher_uri
+from mhri.ros.graph.unsubscribe import unsubscribe
+from mhri.ros.robots.link_probe import LinkProbe
+
+# A link that has confirmed nothing for so long is lost: the robot is held, with one zero behind the
+# little that is in it. Before that (0.1 s) nothing but zeros is written into it.
+LOST_S = 0.33
+# A robot has at most so many velocity topics: each costs connections and a registration.
+MOST_TOPICS = 8
+
+
+class RobotGate:
+    """A :class:`GateRule` with the publishers of its robot, and its ears.
+
+    Publishes each velocity topic of the robot's type (``geometry_msgs/Twist``) and
+    ``/<robot>/mhri_guard/command`` (``geometry_msgs/TwistStamped``); a zero goes to all of them, a
+    command to one: the guard's while its echo is alive, else the first that the robot listens to.
+    Subscribes ``/<robot>/mhri_guard/echo`` (``geometry_msgs/TwistStamped``) and the odometry, of
+    which only the time counts. Not thread-safe but for the ears: whoever owns it holds ``lock``.
+
+    :param name: the robot
+    :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
+    :param session: names this run of the gates, see :class:`GuardLink`
+    :param command: the operator's command that was heard last, None before any
+    :param lock: held by the ears' callbacks
+    :param on_foreign_stop: called where the robot says that another run of the gates stopped it
+    """
+
+    def __init__(self, name, robot_type, session, command, lock, on_foreign_stop,
+                 clock=time.monotonic):
+        self.name = name
+        self.robot_type = robot_type
+        self.rule = GateRule(robot_type.limits, command)
+        self._clock = clock
+        self._lock = lock
+        self._session = session
+        self._on_foreign_stop = on_foreign_stop
+        self._guard = GuardLink(session)
+        self._guarded = False
+        self._heard_at = None
+        self._round_trip_s = math.nan
+        self._publishers = [PromptPublisher('/{}/mhri_guard/command'.format(name), TwistStamped)]
+        self._publishers += [PromptPublisher(topic_of(name, topic), Twist)
+                             for topic in robot_type.command[:MOST_TOPICS]]
+        self._links = [()] * len(self._publishers)
+        self._obeying = [frozenset()] * len(self._publishers)
+        self._odometry = [
+            rospy.Subscriber(topic_of(name, topic), rospy.AnyMsg, self._on_odometry, queue_size=1,
+                             tcp_nodelay=True) for topic in robot_type.odometry]
+        self._echo = rospy.Subscriber('/{}/mhri_guard/echo'.format(name), TwistStamped,
+                                      self._on_echo, queue_size=1, tcp_nodelay=True)
+        self.power = MotorPower(name, robot_type)
+        self._probe = LinkProbe(name, self._node_uri, self._on_round_trip)
+
+    def _node_uri(self):
+        """Return the address of a node on the robot, or None."""
+        return next((uri for uri in map(publisher_uri, self._odometry + [self._echo]) if uri), None)
+
+    def _on_round_trip(self, round_trip_s):
+        self._round_trip_s = math.nan if round_trip_s is None else round_trip_s
+
+    @property
+    def round_trip_s(self):
+        """Time to a node of the robot and back [s], NaN where it is not known."""
+        return self._round_trip_s
+
+    def _on_odometry(self, _message):
+        first, self._heard_at = self._heard_at is None, self._clock()
+        if first:
+            with self._lock:
+                self.send(self.rule.join(self._heard_at))
+
+    def _on_echo(self, message):
+        """Take in what the guard says; tell it again of a stop, or its end, that it has missed."""
+        now = self._clock()
+        with self._lock:
+            if not self._guard.on_echo(message.header.frame_id, now):
+                return
+            session, _, _, stopped = parse_id(message.header.frame_id)
+            if stopped and session != self._session and self.rule.state != STOPPED:
+                self._on_foreign_stop(self.name)
+            self._look_at_guard(now)
+            if stopped != (self.rule.state == STOPPED) and self.rule.sent.is_zero():
+                self._send_to_guard(ZERO, now)
+
+    def _look_at_guard(self, now):
+        """Let the robot wait for neutral where its guard has come or gone."""
+        guarded = self._guard.alive(now) and bool(self._publishers[0].links())
+        if guarded != self._guarded:
+            self._guarded = guarded
+            self.send(self.rule.join(now) or ZERO)
+
+    def _look_at_links(self, now):
+        """Let the robot wait for neutral where something that it listens with is new."""
+        links = [publisher.links() for publisher in self._publishers]
+        if all(new is old for new, old in zip(links, self._links)):
+            return
+        ids = [listeners(link) for link in links]
+        obeying_now = obeying(self.name, ids[:1]) + obeying(self.name, ids[1:])
+        known = {id(link) for old in self._links for link in old}
+        new = any(id(link) not in known and link.endpoint_id in names
+                  for found, names in zip(links[1:], obeying_now[1:]) for link in found)
+        self._links, self._obeying = links, obeying_now
+        if new:
+            # What it was told before, perhaps by gates that were killed, is not known: a zero.
+            self.send(self.rule.join(now) or ZERO)
+
+    def command(self, velocity, now):
+        """Pass on the operator's command, as far as the rule lets it through."""
+        self._look_at_links(now)
+        self.send(self.rule.on_command(velocity, now))
+
+    def task(self, velocity, now):
+        """Pass on the command of the robot's task, as far as the rule lets it through."""
+        self._look_at_links(now)
+        self.send(self.rule.on_task(velocity, now))
+
+    def tick(self, now):
+        """Let time pass: staleness, a guard that fell silent, a link that was lost or is back."""
+        self.send(self.rule.tick(now))
+        self._look_at_links(now)
+        self._look_at_guard(now)
+        self.send(self.rule.hold(self._lost(now), now))
+
+    def _lost(self, now):
+        """Tell whether the robot is not heard, or its link confirms nothing."""
+        heard_at = self._heard_at
+        if heard_at is not None:
+            connections = sum(ear.get_num_connections() for ear in self._odometry)
+            if link_state(now - heard_at, connections, self.robot_type.silent_after_s) in (
+                    SILENT, GONE):
+                return True
+        # Only the robot's own: the laptop of somebody who listens may be lost without harm.
+        return max(publisher.stalled_s(names) for publisher, names
+                   in zip(self._publishers, self._obeying)) > LOST_S
+
+    def send(self, velocity):
+        """Publish what the rule returned (None: nothing)."""
+        if velocity is None:
+            return
+        now = self._clock()
+        if velocity.is_zero():
+            for publisher in self._publishers[1:]:
+                publisher.publish_urgent(to_twist(0.0, 0.0))
+            self._send_to_guard(velocity, now)
+        elif self._guarded:
+            # A guard that still holds a stop is released by a zero first.
+            self._send_to_guard(ZERO if self._guard.stop_confirmed else velocity, now)
+        else:
+            chosen = self._chosen()
+            if chosen is not None:
+                chosen.publish(to_twist(velocity.linear_mps, velocity.angular_rad_s))
+
+    def _chosen(self):
+        """Return the publisher that commands leave by, None where nobody listens."""
+        if self._guarded:
+            return self._publishers[0]
+        return next((publisher for publisher, names in zip(self._publishers[1:], self._obeying[1:])
+                     if names), None)
+
+    def _send_to_guard(self, velocity, now):
+        guard = self._publishers[0]
+        if not guard.links():
+            return
+        message = TwistStamped(twist=to_twist(velocity.linear_mps, velocity.angular_rad_s))
+        message.header.frame_id = self._guard.next_id(self.rule.state == STOPPED, now)
+        message.header.stamp = rospy.Time.from_sec(time.time())
+        (guard.publish_urgent if velocity.is_zero() else guard.publish)(message)
+
+    def reachable(self):
+        """Tell whether the robot listens to anything that is said here."""
+        return self._chosen() is not None
+
+    def message(self):
+        """Return the ``mhri/RobotGate`` of this moment."""
+        rule, chosen, sent = self.rule, self._chosen(), self.rule.sent
+        return RobotGateMessage(
+            name=self.name, obeys=rule.obeys,
+            stands='not_heard' if rule.stands == 'held' else rule.stands,
+            topic=chosen.resolved_name if chosen else '', guarded=self._guarded,
+            stop_confirmed=self._guarded and self._guard.stop_confirmed,
+            sent=to_twist(sent.linear_mps, sent.angular_rad_s), power=self.power.state,
+            round_trip_s=self._round_trip_s)
+
+    def close(self):
+        """Give everything back (blocking: it asks the master); say the last word before."""
+        self._probe.close()
+        self.power.close()
+        for publisher in self._publishers:
+            publisher.unregister()
+        for subscriber in self._odometry + [self._echo]:
+            unsubscribe(subscriber)

@@ -1,0 +1,156 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A time limit on the handshake of whoever connects to this node's TCPROS port.
+
+rospy reads the header of a new connection on the thread that accepts connections, for as long as it
+takes (``TCPServer.run`` of ``rospy/impl/tcpros_base.py``): one connection that says nothing locks
+every later subscriber and service call out, for ever. Here each header is waited for on a thread of
+its own, for :data:`LIMIT_S`; rospy's code gets the connection once the whole header is there.
+"""
+import collections
+import logging
+import select
+import socket
+import struct
+import threading
+import time
+
+from rospy.impl import tcpros_base
+
+LIMIT_S = 10.0
+# A header is a few hundred bytes. One whose length says more is no header: "GET " is 541 million.
+MOST_BYTES = 64 * 1024
+# Threads that wait at a time; beyond them the one that has waited longest has to go.
+MOST_WAITING = 32
+_LOOK_AGAIN_S = 0.01
+_LENGTH = struct.Struct('<I')
+_LOG = logging.getLogger('rosout')
+
+
+def _check():
+    """Make sure that rospy is as it is assumed to be here.
+
+    :raises ImportError: it is not
+    """
+    accepts = getattr(getattr(tcpros_base, 'TCPServer', None), 'run', None)
+    reads = getattr(getattr(tcpros_base, 'TCPROSServer', None), '_tcp_server_callback', None)
+    wanted = ((accepts, ('self',), {'accept', 'inbound_handler'}),
+              (reads, ('self', 'sock', 'client_addr'), {'read_ros_handshake_header'}))
+    for function, arguments, used in wanted:
+        code = getattr(function, '__code__', None)
+        if code is None or code.co_varnames[:code.co_argcount] != arguments \
+                or not used <= set(code.co_names):
+            raise ImportError('rospy.impl.tcpros_base is not that of ROS Noetic (TCPServer.run or '
+                              'TCPROSServer._tcp_server_callback): mhri.ros.graph.handshake has to '
+                              'be adapted to it')
+
+
+_check()
+
+
+class Doorman:
+    """Waits for the headers of new connections; calls ``enter(connection, address)`` with each.
+
+    :param enter: reads the header and takes the connection over; called on one thread at a time
+    :param limit_s: a header that is not whole by then is not waited for any longer [s]
+    :param most: how many are waited for at a time
+    """
+
+    def __init__(self, enter, limit_s=LIMIT_S, most=MOST_WAITING):
+        self._enter = enter
+        self._limit_s = limit_s
+        self._most = most
+        self._lock = threading.Lock()
+        self._entering = threading.Lock()
+        self._waiting = collections.OrderedDict()
+
+    def receive(self, connection, address):
+        """Take a connection that was accepted just now; returns at once."""
+        with self._lock:
+            self._waiting[connection] = address
+            late = list(self._waiting.items())[:-self._most]
+        for other, place in late:
+            self._send_away(other, place, 'too many others wait')
+        threading.Thread(target=self._wait, args=(connection, address), daemon=True).start()
+
+    def waiting(self):
+        """Return of how many connections the header is waited for."""
+        with self._lock:
+            return len(self._waiting)
+
+    def _wait(self, connection, address):
+        """Wait for the header; let the connection in, or send it away."""
+        try:
+            problem = _header_problem(connection, time.monotonic() + self._limit_s)
+        except OSError as error:
+            problem = str(error)
+        if problem:
+            self._send_away(connection, address, problem)
+            return
+        with self._lock:
+            mine = self._waiting.pop(connection, None) is not None
+        if mine:
+            with self._entering:
+                self._enter(connection, address)
+
+    def _send_away(self, connection, address, why):
+        """Hang up, unless somebody else has done so."""
+        with self._lock:
+            if self._waiting.pop(connection, None) is None:
+                return
+        try:
+            # Wakes the thread that waits for it; to close it alone would not.
+            connection.shutdown(socket.SHUT_RDWR)
+        except OSError:
+            pass  # the other end was quicker
+        connection.close()
+        # To the log file alone: whoever connects must not fill the terminal.
+        _LOG.debug('a connection from %s was closed: %s', address, why)
+
+
+def _header_problem(connection, deadline):
+    """Wait until a header has come whole, without reading it; return why it has not, else ''.
+
+    :raises OSError: the connection broke
+    """
+    poll = select.poll()
+    poll.register(connection, select.POLLIN | select.POLLRDHUP)
+    while True:
+        left_s = deadline - time.monotonic()
+        events = poll.poll(left_s * 1e3) if left_s > 0.0 else []
+        if not events:
+            return 'no whole header in time'
+        data = connection.recv(MOST_BYTES, socket.MSG_PEEK)
+        if len(data) >= _LENGTH.size:
+            whole = _LENGTH.unpack_from(data)[0] + _LENGTH.size
+            if whole > MOST_BYTES:
+                return 'what it says is no header'
+            if len(data) >= whole:
+                return ''
+        if not data or events[0][1] & ~select.POLLIN:
+            return 'it ended before its header did'
+        # What has come stays where it is, and poll would return at once.
+        time.sleep(_LOOK_AGAIN_S)
+
+
+def limit_handshakes():
+    """Let every connection to this process's TCPROS port have :data:`LIMIT_S` for its header.
+
+    Call it once, before or after ``rospy.init_node``; more often does nothing more.
+    """
+    server_class = tcpros_base.TCPROSServer
+    read = server_class._tcp_server_callback
+    if getattr(read, 'limited', False):
+        return
+
+    def callback(self, connection, address):
+        """Take the place of the callback that waits for the header itself."""
+        if getattr(self, 'mhri_doorman', None) is None:
+            self.mhri_doorman = Doorman(lambda *taken: read(self, *taken))
+        self.mhri_doorman.receive(connection, address)
+    callback.limited = True
+    server_class._tcp_server_callback = callback
+    running = tcpros_base._tcpros_server
+    if running is not None and running.tcp_ros_server is not None:
+        # In rqt another plugin has started it: it keeps the callback that it began with.
+        running.tcp_ros_server.inbound_handler = running._tcp_server_callback

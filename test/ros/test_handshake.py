@@ -1,0 +1,133 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whoever connects to a node has so long to say who it is, and keeps nobody else waiting."""
+import importlib
+import os
+import queue
+import socket
+import struct
+import sys
+import time
+
+import pytest
+import rosgraph.network
+from rospy.impl import tcpros_base
+
+from mhri.ros.graph import handshake
+from mhri.ros.graph.handshake import Doorman, MOST_BYTES
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
+
+from support.ros_system import wait_for  # noqa: E402
+
+HEADER = rosgraph.network.encode_ros_handshake_header({'topic': '/x', 'callerid': '/y'})
+START_S = 20.0
+
+
+def hung_up(outer):
+    """Wait until the other end hangs up; tell whether it said nothing before."""
+    try:
+        return outer.recv(1) == b''
+    except ConnectionResetError:
+        return True  # for the bytes that nobody read
+
+
+class Door:
+    """A doorman, and what it let in."""
+
+    def __init__(self, limit_s=START_S, most=4):
+        self.entered = queue.Queue()
+        self.doorman = Doorman(lambda connection, name: self.entered.put(
+            (name, connection.recv(MOST_BYTES))), limit_s, most)
+
+    def knock(self, name, data=b''):
+        """Connect, and send something; return the outer end."""
+        outer, inner = socket.socketpair()
+        outer.settimeout(START_S)
+        outer.sendall(data)
+        self.doorman.receive(inner, name)
+        return outer
+
+
+def test_a_whole_header_enters_with_all_its_bytes_unread():
+    door = Door()
+    door.knock('one', HEADER + b'more')
+    assert door.entered.get(timeout=START_S) == ('one', HEADER + b'more')
+    assert door.doorman.waiting() == 0
+
+
+def test_a_header_in_pieces_enters_when_it_is_whole():
+    door = Door()
+    outer = door.knock('one', HEADER[:3])
+    for byte in HEADER[3:-1]:
+        outer.sendall(bytes([byte]))
+    assert door.doorman.waiting() == 1 and door.entered.empty()
+    outer.sendall(HEADER[-1:])
+    assert door.entered.get(timeout=START_S) == ('one', HEADER)
+
+
+def test_those_that_say_nothing_keep_nobody_waiting():
+    door = Door()
+    silent = [door.knock('silent') for _ in range(3)]
+    door.knock('one', HEADER)
+    assert door.entered.get(timeout=START_S)[0] == 'one'
+    assert door.doorman.waiting() == len(silent)
+
+
+@pytest.mark.parametrize('data', [b'', HEADER[:2], HEADER[:-1]], ids=['nothing', 'two', 'part'])
+def test_the_limit(data):
+    """However much has come by then, and though more keeps coming."""
+    door = Door(limit_s=0.3)
+    begun = time.monotonic()
+    outer = door.knock('late', data)
+    assert hung_up(outer) and 0.3 <= time.monotonic() - begun < START_S
+    assert door.entered.empty() and door.doorman.waiting() == 0
+
+
+@pytest.mark.parametrize('data', [
+    b'GET / HTTP/1.0\r\n\r\n', struct.pack('<I', MOST_BYTES), struct.pack('<I', 0xffffffff)])
+def test_what_is_no_header_is_not_waited_for(data):
+    door = Door()
+    outer = door.knock('browser', data)
+    assert hung_up(outer)
+    assert door.entered.empty()
+
+
+@pytest.mark.parametrize('data', [b'', HEADER[:-1]], ids=['nothing', 'part'])
+@pytest.mark.parametrize('end', [socket.socket.close, lambda outer: outer.shutdown(
+    socket.SHUT_WR)], ids=['closed', 'half closed'])
+def test_one_that_ends_within_its_header(data, end):
+    door = Door()
+    end(door.knock('gone', data))
+    wait_for(lambda: door.doorman.waiting() == 0, START_S, 'the end')
+    assert door.entered.empty()
+
+
+def test_of_too_many_the_one_that_waited_longest_goes():
+    door = Door(most=4)
+    outers = [door.knock(number) for number in range(6)]
+    assert [outer.recv(1) for outer in outers[:2]] == [b'', b'']
+    assert door.doorman.waiting() == 4
+    for outer in outers[2:]:
+        outer.sendall(HEADER)
+    assert {door.entered.get(timeout=START_S)[0] for _ in range(4)} == {2, 3, 4, 5}
+
+
+class Other:
+    """A server of another rospy."""
+
+    def run(self):
+        """Accept on threads."""
+
+    def _tcp_server_callback(self, sock):
+        """Take one argument."""
+
+
+@pytest.mark.parametrize('name', ['TCPServer', 'TCPROSServer'])
+@pytest.mark.parametrize('other', [Other, None])
+def test_another_rospy_is_noticed_at_import(monkeypatch, name, other):
+    monkeypatch.setattr(tcpros_base, name, other)
+    with pytest.raises(ImportError, match='has to be adapted'):
+        importlib.reload(handshake)
+    monkeypatch.undo()
+    importlib.reload(handshake)

@@ -1,0 +1,240 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Messages that leave on the caller's thread: in order, whole, and never waited for."""
+import socket
+import struct
+import threading
+import time
+
+import pytest
+
+pytest.importorskip('rospy')
+
+from mhri.ros.graph.rospy_inside import Flow, PromptConnection  # noqa: E402
+from rospy.exceptions import TransportTerminated  # noqa: E402
+
+
+class Transport:
+    """What of rospy's ``TCPROSTransport`` a connection uses."""
+
+    def __init__(self, end):
+        self.socket = end
+        self.done = False
+        self.stat_bytes = self.stat_num_msg = 0
+        self.endpoint_id = 'robot'
+        self.threads = set()
+        self._closed = lambda connection: None
+
+    def set_cleanup_callback(self, callback):
+        self._closed = callback
+
+    def write_data(self, data):
+        self.threads.add(threading.current_thread())
+        try:
+            self.socket.sendall(data)
+        except OSError as error:
+            raise TransportTerminated(str(error))
+
+    def close(self):
+        self.done = True
+        self._closed(self)
+
+
+class Call:
+    """What the publisher says of a message."""
+
+    urgent = False
+
+
+@pytest.fixture
+def link():
+    """Return (connection, transport, the subscriber's end)."""
+    ours, theirs = socket.socketpair()
+    ours.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 4096)
+    transport = Transport(ours)
+    connection = PromptConnection(transport, 1, Call())
+    yield connection, transport, theirs
+    transport.close()
+    theirs.close()
+    ours.close()
+    connection._thread.join(5.0)
+    assert not connection._thread.is_alive(), 'the thread outlives its connection'
+
+
+def message(number, size=100):
+    return number.to_bytes(4, 'big') * (size // 4)
+
+
+def take(end, size):
+    end.settimeout(5.0)
+    found = b''
+    while len(found) < size:
+        found += end.recv(size - len(found))
+    return found
+
+
+def wait_until_idle(connection):
+    """Wait until the thread has nothing to do."""
+    deadline = time.monotonic() + 5.0
+    while (connection._busy or connection._queue) and time.monotonic() < deadline:
+        time.sleep(0.001)
+
+
+def fill(connection, size=100):
+    """Publish until the socket is full; return how many messages were published."""
+    for number in range(100000):
+        connection.write_data(message(number, size))
+        if connection._busy or connection._queue or connection._rest:
+            return number + 1
+    raise AssertionError('the buffer never gets full')
+
+
+def test_a_message_leaves_on_the_thread_of_the_caller(link):
+    connection, transport, theirs = link
+    for number in range(50):
+        connection.write_data(message(number))
+        assert take(theirs, 100) == message(number)
+    assert not transport.threads and transport.stat_num_msg == 50 and transport.stat_bytes == 5000
+
+
+def test_a_stalled_robot_is_never_waited_for_and_gets_the_newest(link):
+    connection, _, theirs = link
+    count = fill(connection)
+    begun = time.monotonic()
+    for number in range(count, count + 2000):
+        connection.write_data(message(number))
+    assert time.monotonic() - begun < 1.0
+    got = []
+    while not got or got[-1] != count + 1999:
+        data = take(theirs, 100)
+        got.append(int.from_bytes(data[:4], 'big'))
+        assert data == message(got[-1]), 'torn'
+    assert got == sorted(got)
+    # What the buffer held, what the thread was sending, and the newest.
+    assert len(got) <= count + 2
+    wait_until_idle(connection)
+    connection.write_data(message(7))
+    assert take(theirs, 100) == message(7), 'back on the short way'
+
+
+def test_a_message_taken_in_part_is_finished_before_any_other(link):
+    connection, transport, theirs = link
+    big = bytes(range(256)) * 4000
+    connection.write_data(big)
+    connection.write_data(message(1))
+    connection.write_data(message(2))
+    assert take(theirs, len(big)) == big and take(theirs, 100) == message(2)
+    assert transport.threads == {connection._thread}
+
+
+def test_the_end_of_a_connection_is_told_to_who_publishes_next(link):
+    connection, _, theirs = link
+    theirs.close()
+    with pytest.raises(TransportTerminated):
+        for number in range(1000):
+            connection.write_data(message(number))
+            time.sleep(0.001)
+
+
+def test_publishing_from_many_threads_tears_nothing(link):
+    connection, _, theirs = link
+    got = bytearray()
+    ended = threading.Event()
+
+    def receive():
+        theirs.settimeout(0.2)
+        while True:
+            try:
+                got.extend(theirs.recv(333))
+            except socket.timeout:
+                if ended.is_set():
+                    return
+
+    receiver = threading.Thread(target=receive)
+    receiver.start()
+    senders = [threading.Thread(target=lambda number=number: [
+        connection.write_data(message(number)) for _ in range(2000)]) for number in range(1, 5)]
+    for sender in senders:
+        sender.start()
+    for sender in senders:
+        sender.join()
+    ended.set()
+    receiver.join()
+    assert len(got) % 100 == 0 and len(got) >= 100
+    for at in range(0, len(got), 100):
+        assert bytes(got[at:at + 100]) == message(int.from_bytes(got[at:at + 4], 'big'))
+
+
+class Peer:
+    """A TCP socket as :class:`Flow` looks at it."""
+
+    family = socket.AF_INET
+
+    def __init__(self):
+        self.unacked, self.ack_ms, self.rtt_ms = 0, 0, 2
+
+    def getsockopt(self, level, option, size):
+        assert (level, option) == (socket.IPPROTO_TCP, socket.TCP_INFO)
+        info = bytearray(size)
+        struct.pack_into('=I', info, 24, self.unacked)
+        struct.pack_into('=I', info, 56, self.ack_ms)
+        struct.pack_into('=I', info, 68, self.rtt_ms * 1000)
+        return bytes(info)
+
+
+@pytest.mark.parametrize('what, steps, rtt_ms, stalled', [
+    # steps: (after [s], packets not confirmed, last confirmation ago [ms])
+    ('nothing under way', [(0.0, 0, 5), (9.0, 0, 9000)], 2, False),
+    ('the first after a long rest', [(0.0, 0, 60000), (0.05, 1, 60050)], 2, False),
+    ('always something under way', [(0.0, 0, 1)] + [(0.05, 3, 20)] * 40, 2, False),
+    ('nothing comes back', [(0.0, 0, 1), (0.05, 1, 51), (0.06, 2, 111)], 2, True),
+    ('a long way', [(0.0, 0, 1), (0.4, 8, 500), (0.4, 16, 900)], 500, False),
+    ('a long way, nothing comes back', [(0.0, 0, 1), (1.1, 8, 1100)], 500, True),
+    ('back again', [(0.0, 0, 1), (0.5, 9, 500), (0.1, 4, 3)], 2, False)])
+def test_a_link_that_confirms_nothing_has_stalled(what, steps, rtt_ms, stalled):
+    now, peer = [100.0], Peer()
+    flow, peer.rtt_ms = Flow(peer, lambda: now[0]), rtt_ms
+    for after_s, peer.unacked, peer.ack_ms in steps:
+        now[0] += after_s
+        found = flow.stalled()
+    assert found == stalled
+
+
+def test_the_flow_of_a_real_connection_is_read():
+    with socket.socket() as server:
+        server.bind(('127.0.0.1', 0))
+        server.listen(1)
+        with socket.create_connection(server.getsockname()) as ours, server.accept()[0] as theirs:
+            flow = Flow(ours)
+            for _ in range(50):
+                ours.sendall(b'x' * 50)
+                assert take(theirs, 50) == b'x' * 50 and not flow.stalled()
+            info = ours.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, 104)
+            rtt_us = struct.unpack_from('=I', info, 68)[0]
+            assert 0 < rtt_us < 1e6, 'not where the round trip is in struct tcp_info'
+
+
+def test_nothing_but_the_word_to_stop_is_given_to_a_stalled_link(link):
+    connection, transport, theirs = link
+    stalled = [True]
+    connection._flow.stalled = lambda: stalled[0]
+    for number in range(30):
+        connection.write_data(message(number))
+    theirs.settimeout(0.1)
+    with pytest.raises(socket.timeout):
+        theirs.recv(1)
+    stalled[0] = False
+    assert take(theirs, 100) == message(29), 'the newest, and nothing before it'
+    wait_until_idle(connection)
+    stalled[0] = True
+    connection.write_data(message(30))
+    connection._call.urgent = True
+    connection.write_data(message(0))
+    connection._call.urgent = False
+    assert take(theirs, 100) == message(0)
+    connection.write_data(message(31))
+    with pytest.raises(socket.timeout):
+        theirs.settimeout(0.1)
+        theirs.recv(1)
+    stalled[0] = False
+    assert take(theirs, 100) == message(31)

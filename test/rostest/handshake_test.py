@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Connections that say nothing lock nobody out of a node: subscribers and services get through."""
+import os
+import socket
+import sys
+import threading
+import time
+import unittest
+
+import rosgraph
+import rospy
+from rospy.impl.tcpros_base import get_tcpros_server_address
+import rostest
+from std_msgs.msg import String
+from std_srvs.srv import SetBool, SetBoolResponse
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
+
+from mhri.ros.graph.handshake import limit_handshakes  # noqa: E402
+from mhri.ros.recording.raw_link import RawLink  # noqa: E402
+from support.ros_system import wait_for  # noqa: E402
+
+CONNECT_S = 5.0
+DRIBBLE_S = 0.2
+SILENT = 8
+
+
+class HandshakeTest(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        cls.publisher = rospy.Publisher('/said', String, queue_size=1, latch=True)
+        cls.publisher.publish('yes')
+        rospy.Service('/asked', SetBool, lambda request: SetBoolResponse(request.data, 'yes'))
+        wait_for(lambda: get_tcpros_server_address()[1], CONNECT_S, 'the server')
+
+    def knock(self, data=b''):
+        """Connect to this node, and say this."""
+        connection = socket.create_connection(get_tcpros_server_address(), CONNECT_S)
+        self.addCleanup(connection.close)
+        connection.sendall(data)
+        return connection
+
+    def assert_open(self):
+        """Others get through, as subscribers and as callers of a service, at once."""
+        begun = time.monotonic()
+        link = RawLink('/said', rosgraph.Master('/test').lookupNode(rospy.get_name()),
+                       '/listener', CONNECT_S)
+        self.addCleanup(link.close)
+        wait_for(link.read, CONNECT_S, 'what was said')
+        took_s = time.monotonic() - begun
+        self.assertTrue(rospy.ServiceProxy('/asked', SetBool)(True).success)
+        print('MEASURED subscriber {:.1f} ms, service {:.1f} ms'.format(
+            took_s * 1e3, (time.monotonic() - begun - took_s) * 1e3))
+        self.assertLess(time.monotonic() - begun, CONNECT_S)
+
+    def test_nobody_else(self):
+        self.assert_open()
+
+    def test_connections_that_say_nothing(self):
+        for _ in range(SILENT):
+            self.knock()
+        self.assert_open()
+
+    def test_connections_that_say_half(self):
+        for _ in range(SILENT):
+            self.knock(b'\x40\x00\x00\x00\x10')
+        self.assert_open()
+
+    def test_a_connection_that_says_a_byte_at_a_time(self):
+        slow, ended = self.knock(b'\xff\x00\x00\x00'), threading.Event()
+
+        def dribble():
+            """Say a little, for as long as it is heard."""
+            try:
+                while not ended.wait(DRIBBLE_S):
+                    slow.sendall(b'x')
+            except OSError:
+                pass  # sent away, as it should be in the end
+        thread = threading.Thread(target=dribble)
+        thread.start()
+        self.addCleanup(thread.join)
+        self.addCleanup(ended.set)
+        self.assert_open()
+
+    def test_a_browser(self):
+        self.knock(b'GET / HTTP/1.0\r\n\r\n')
+        self.assert_open()
+
+    def test_more_than_are_waited_for(self):
+        for _ in range(100):
+            self.knock()
+        self.assert_open()
+
+
+if __name__ == '__main__':
+    limit_handshakes()
+    rospy.init_node('handshake_test')
+    rostest.rosrun('mhri', 'handshake', HandshakeTest)

@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+# The fast group: what needs no build, no ROS, no master and no screen. Usage: run_fast.sh FOLDER, which
+# gets the result files; the python3 that is first on the path needs what test/fast.txt lists.
+set -uo pipefail
+
+REPO=$(cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)
+RESULTS=${1:?where do the result files go}
+# What only a shell, Python and flake8 have to be there for.
+LINT='flake8 or syntax or parse or core_types'
+
+cd "$REPO" || exit
+mkdir -p "$RESULTS" || exit
+# test_files NAME PATH [ARGUMENT]...: nothing of a workspace or of ROS is on Python's path.
+test_files() {
+  PYTHONPATH="$REPO/src:$REPO/build/.ws/tools" timeout --kill-after=10 300 python3 -m pytest \
+    -p no:cacheprovider -q -rs -o faulthandler_timeout=120 \
+    --junitxml="$RESULTS/pytest-fast-$1.xml" "${@:2}"
+}
+
+status=0
+test_files lint test/scripts/test_lint.py -k "$LINT" >"$RESULTS/lint.log" 2>&1 &
+lint=$!
+test_files unit test/unit || status=$?
+wait "$lint" || status=$?
+cat "$RESULTS/lint.log"
+exit "$status"

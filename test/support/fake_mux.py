@@ -1,0 +1,99 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the gates need of the world, played by the test's own node: a mux, an operator, robots."""
+import threading
+import time
+
+from geometry_msgs.msg import Twist
+import rospy
+from std_msgs.msg import Bool
+from std_srvs.srv import SetBool, SetBoolResponse
+
+from mhri.msg import GatesState, RobotSelect, TeamTwist
+from support.ros_system import wait_for
+
+
+class FakeMux:
+    """The words of a mux that is told what to say; it serves ``/mux/set_stop_all``, too."""
+
+    def __init__(self):
+        self.twist = rospy.Publisher('/robot_controller/twist', Twist, queue_size=10,
+                                     tcp_nodelay=True)
+        self.task_twist = rospy.Publisher('/robot_controller/task_twist', TeamTwist, queue_size=10,
+                                          tcp_nodelay=True)
+        self.stop_all = rospy.Publisher('/robot_controller/stop_all', Bool, queue_size=10,
+                                        latch=True, tcp_nodelay=True)
+        rospy.Service('/mux/set_stop_all', SetBool, lambda request: SetBoolResponse(True, ''))
+        self.stopped = False
+        rospy.Timer(rospy.Duration(0.5), lambda event: self.stop_all.publish(self.stopped))
+
+    def say(self, linear, angular=0.0):
+        """Publish one command; return when [s, monotonic]."""
+        message = Twist()
+        message.linear.x, message.angular.z = linear, angular
+        when = time.monotonic()
+        self.twist.publish(message)
+        return when
+
+    def stop(self, stopped):
+        """Engage or release; return when [s, monotonic]."""
+        self.stopped = stopped
+        when = time.monotonic()
+        self.stop_all.publish(stopped)
+        return when
+
+
+class FakeOperator:
+    """Repeats its selection at 2 Hz, as whoever is in control has to."""
+
+    def __init__(self):
+        self._publisher = rospy.Publisher('/robot_controller/robot_select', RobotSelect,
+                                          queue_size=1, latch=True, tcp_nodelay=True)
+        self._names = None
+        self._changed = threading.Event()
+        threading.Thread(target=self._run, daemon=True).start()
+
+    def check(self, *names):
+        """Check exactly these robots; return when [s, monotonic]."""
+        self._names = list(names)
+        when = time.monotonic()
+        self._publisher.publish(self._names)
+        return when
+
+    def fall_silent(self):
+        """Say nothing any more, and stay there; return when."""
+        self._names = None
+        return time.monotonic()
+
+    def _run(self):
+        while not rospy.is_shutdown():
+            self._changed.wait(0.5)
+            if self._names is not None:
+                self._publisher.publish(self._names)
+
+
+class StateEar:
+    """The newest ``/gates/state``."""
+
+    def __init__(self):
+        self.message = None
+        self.at = None
+        self._subscriber = rospy.Subscriber('/gates/state', GatesState, self._hear, queue_size=1)
+
+    def _hear(self, message):
+        self.message, self.at = message, time.monotonic()
+
+    def wait(self, good, what, timeout_s=10.0):
+        """Wait until the state is good; return it."""
+        return wait_for(lambda: self.message is not None and good(self.message) and self.message,
+                        timeout_s, what)
+
+    def robot(self, name):
+        """Return what is said of one robot, or None."""
+        return next((robot for robot in (self.message.robots if self.message else ())
+                     if robot.name == name), None)
+
+    def wait_robot(self, name, good, what, timeout_s=10.0):
+        """Wait until what is said of one robot is good; return it."""
+        return wait_for(lambda: self.robot(name) and good(self.robot(name)) and self.robot(name),
+                        timeout_s, what)

@@ -1,0 +1,79 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Plays scripts to the guard's rule, with Python 2.7 or 3, without ROS.
+
+Usage: play_guard.py GUARD <SCRIPTS.json >ANSWERS.json; a script is a list of lines:
+
+    0.00 echo a                   an echo, whose token is called "a" from here on
+    0.01 A:1:a 0.3 0.1            a command; the token stands as it is where no echo has that name
+    0.31 tick
+    0.40 close
+
+Before them a line "with", and arguments of Guard as JSON. The answer to a line is what the robot is
+given, as "0.3 0.1", "none" for nothing, and why a command is not obeyed; to an echo its frame_id
+with "*" for the part of the token that another run would not repeat.
+"""
+import json
+import sys
+import types
+
+STAND_INS = {'rospy': (), 'geometry_msgs': (), 'geometry_msgs.msg': ('Twist', 'TwistStamped'),
+             'std_msgs': (), 'std_msgs.msg': ('Header',)}
+
+
+def load(path):
+    """Return what a guard's file defines; what it needs of ROS is not there, and not touched."""
+    before = {name: sys.modules.get(name) for name in STAND_INS}
+    for name, parts in STAND_INS.items():
+        sys.modules[name] = types.ModuleType(str(name))
+        for part in parts:
+            setattr(sys.modules[name], part, None)
+    names = {'__name__': 'mhri_guard'}
+    try:
+        with open(path) as source:
+            exec(compile(source.read(), path, 'exec'), names)
+    finally:
+        for name, module in before.items():
+            if module is None:
+                del sys.modules[name]
+            else:
+                sys.modules[name] = module
+    return names
+
+
+def play(names, lines):
+    """Return the answers to the lines of a script."""
+    options = {}
+    if lines[0].startswith('with '):
+        options = json.loads(lines[0][5:])
+        lines = lines[1:]
+    guard = names['Guard']('run', **options)
+    faults = {value: name.lower() for name, value in names.items()
+              if name.isupper() and isinstance(value, str)}
+    tokens = {}
+    answers = []
+    for line in lines:
+        words = line.split()
+        now, what = float(words[0]), words[1]
+        if what == 'echo':
+            said = guard.echo_id(now)
+            tokens[words[2]] = said.rstrip('!').split(':')[2]
+            answers.append(said.replace(tokens[words[2]], '*'))
+        elif what in ('tick', 'close'):
+            answers.append(written(getattr(guard, what)(now)))
+        else:
+            head, _, token = what.rpartition(':')
+            said, fault = guard.on_command(head + ':' + tokens.get(token, token),
+                                           (float(words[2]), float(words[3])), now)
+            answers.append(' '.join([written(said)] + ([faults[fault]] if fault else [])))
+    return answers
+
+
+def written(velocity):
+    """Return a velocity as it stands in the answers."""
+    return 'none' if velocity is None else '{:g} {:g}'.format(*velocity)
+
+
+if __name__ == '__main__':
+    GUARD = load(sys.argv[1])
+    json.dump([play(GUARD, script) for script in json.load(sys.stdin)], sys.stdout)

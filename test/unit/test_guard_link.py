@@ -1,0 +1,183 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The host's end of the link to a guard, alone and with a guard at the other end."""
+import collections
+from pathlib import Path
+
+import pytest
+
+from mhri.core.driving import guard_link
+from mhri.core.driving.guard_link import format_id, GuardLink, parse_id
+from play_guard import load
+
+GUARD = load(str(Path(__file__).resolve().parents[2] / 'utils' / 'remote' / 'mhri_guard'))
+LONG = 'x' * 32
+
+
+@pytest.mark.parametrize('text, parts', [
+    ('a:1:t', ('a', 1, 't', False)),
+    ('a!:1:t', ('a', 1, 't', True)),
+    ('a:1:t!', ('a', 1, 't', True)),
+    ('-:0:7f-1', ('-', 0, '7f-1', False)),
+    ('a!:1:', ('a', 1, '', True)),
+    (LONG + ':999999999999999:' + LONG, (LONG, 999999999999999, LONG, False)),
+    ('', None), ('map', None), ('a:1', None), (':1:t', None), ('a:1:t:', None), ('a:-1:t', None),
+    ('a:1.0:t', None), ('a: 1:t', None), ('a:1:t\n', None), ('!:1:t', None), ('a!!:1:t', None),
+    ('ä:1:t', None), ('a:١:t', None), ('a:1:t t', None), (LONG + 'x:1:t', None),
+    ('a:1:' + LONG + 'x', None), ('a:1000000000000000:t', None), ('a:1:t' * 100000, None)])
+def test_a_frame_id_is_read_alike_at_both_ends(text, parts):
+    assert parse_id(text) == GUARD['parse_id'](text) == parts
+
+
+@pytest.mark.parametrize('stop', [True, False])
+def test_what_is_written_is_read(stop):
+    assert parse_id(format_id('a', 12, 't', stop)) == ('a', 12, 't', stop)
+
+
+@pytest.mark.parametrize('session', ['', '-', 'a:b', 'a!', 'a\n', LONG + 'x'])
+def test_a_session_that_cannot_be_is_refused(session):
+    with pytest.raises(ValueError, match='at most 32 of'):
+        GuardLink(session)
+
+
+def test_every_command_has_the_next_number_and_the_newest_token():
+    link = GuardLink('a')
+    assert link.next_id(True, 0.0) == 'a!:1:'
+    assert link.on_echo('-:0:t1', 0.1) and link.next_id(False, 0.1) == 'a:2:t1'
+    assert link.on_echo('a:2:t2!', 0.2) and link.next_id(True, 0.2) == 'a!:3:t2'
+    assert not link.on_echo('nonsense', 0.3) and not link.on_echo('a:3:', 0.3)
+    assert link.next_id(False, 0.3) == 'a:4:t2'
+
+
+def test_a_link_is_alive_while_echoes_come():
+    link = GuardLink('a')
+    assert not link.alive(0.0) and not link.was_alive
+    link.on_echo('-:0:t', 1.0)
+    assert not link.was_alive and link.alive(1.34) and link.was_alive
+    assert not link.on_echo('no echo', 1.3) and not link.alive(1.36) and not link.was_alive
+
+
+@pytest.mark.parametrize('echoes, obeyed, confirmed, displaced', [
+    ([], 0, False, False),
+    (['-:0:t'], 0, False, False),
+    (['a:2:t'], 2, False, False),
+    (['a:2:t!'], 2, True, False),
+    (['b:7:t'], 0, False, False),
+    (['a:2:t', 'b:7:t'], 0, False, True),
+    (['a:2:t', 'b:7:t', 'b:8:t!'], 0, True, True),
+    (['a:2:t', 'b:7:t', '-:0:t'], 0, False, False),
+    (['a:2:t!', 'a:2:t'], 2, False, False)])
+def test_the_newest_echo_tells_whom_the_robot_obeys(echoes, obeyed, confirmed, displaced):
+    link = GuardLink('a')
+    for now, echo in enumerate(echoes):
+        assert link.on_echo(echo, float(now))
+    assert (link.obeyed_number, link.stop_confirmed, link.displaced) == (
+        obeyed, confirmed, displaced)
+    assert [link.obeyed(number) for number in (0, 1, 2, 3)] == [
+        False, obeyed >= 1, obeyed >= 2, False]
+
+
+def test_the_round_trip_is_that_of_the_newest_answer_or_the_wait_for_one():
+    link = GuardLink('a')
+    assert link.round_trip_s(0.0) is None
+    link.on_echo('-:0:t', 0.0)
+    for now in (1.0, 1.25, 1.5):
+        link.next_id(False, now)
+    assert link.round_trip_s(1.5) == 0.5, 'nothing was answered yet'
+    link.on_echo('a:2:t', 1.75)
+    assert link.round_trip_s(1.75) == 0.5 and link.round_trip_s(2.5) == 1.0
+    link.on_echo('a:3:t', 2.5)
+    assert link.round_trip_s(2.5) == link.round_trip_s(60.0) == 1.0
+    link.next_id(False, 60.0)
+    assert link.round_trip_s(63.0) == 1.0, 'what is dropped is not waited for without end'
+
+
+class Wire:
+    """One direction of a link: in order, and as late as a function of the time has it."""
+
+    def __init__(self, delay_s):
+        self._delay_s = delay_s
+        self._words = collections.deque()
+        self._last = 0.0
+
+    def send(self, word, now):
+        """Put a word in."""
+        self._last = max(self._last, now + self._delay_s(now))
+        self._words.append((self._last, word))
+
+    def arrived(self, now):
+        """Take out what has come through."""
+        while self._words and self._words[0][0] <= now:
+            yield self._words.popleft()[1]
+
+
+def drive(up_s, down_s, seconds, is_stop=lambda now: False):
+    """Hold a stick for so long; return rows (arrival, sent at, velocity given) at the robot."""
+    link, guard = GuardLink('a'), GUARD['Guard']('run')
+    up, down, rows = Wire(up_s), Wire(down_s), []
+    for step in range(int(seconds * 100)):
+        now = step / 100.0
+        for echo in down.arrived(now):
+            link.on_echo(echo, now)
+        if step % 5 == 0:
+            up.send((link.next_id(is_stop(now), now), now), now)
+        answer = step % 10 == 0
+        for frame_id, sent in up.arrived(now):
+            said, fault = guard.on_command(frame_id, (0.3, 0.0), now)
+            answer = answer or not fault
+            if said is not None:
+                rows.append((now, sent, said))
+        said = guard.tick(now)
+        if said is not None:
+            rows.append((now, now, said))
+        if answer:
+            down.send(guard.echo_id(now), now)
+    return rows
+
+
+def cut(begin, end):
+    """Return the delay of a link that keeps everything from one time to another."""
+    return lambda now: max(0.02, end - now) if now >= begin else 0.02
+
+
+@pytest.mark.parametrize('name, up_s, down_s, drives_s', [
+    ('quick', lambda now: 0.01, lambda now: 0.01, 60.0),
+    ('slow', lambda now: 0.3, lambda now: 0.3, 60.0),
+    ('creeping up', lambda now: 0.02 + 0.0066 * now, lambda now: 0.01, 140.0),
+    ('creeping down', lambda now: 0.01, lambda now: 0.02 + 0.0066 * now, 140.0),
+    ('creeping both ways', lambda now: 0.0066 * now, lambda now: 0.0066 * now, 70.0)])
+def test_no_command_that_is_obeyed_is_older_than_the_limit(name, up_s, down_s, drives_s):
+    rows = drive(up_s, down_s, 650.0)
+    obeyed = [row for row in rows if row[2] != (0.0, 0.0)]
+    assert all(now - sent < 1.0 for now, sent, _ in obeyed)
+    assert obeyed[-1][0] > drives_s, 'a link within the limit drives'
+    if name.startswith('creeping'):
+        assert obeyed[-1][0] < 160.0 and rows[-1][2] == (0.0, 0.0), 'one beyond it does not'
+
+
+@pytest.mark.parametrize('seconds', [0.2, 0.5, 0.9, 1.5, 2.5, 4.0, 15.0, 60.0])
+@pytest.mark.parametrize('ways', ['there', 'back', 'both'])
+def test_after_a_cut_no_backlog_moves_the_robot(seconds, ways):
+    """While echoes still come, the last second of what is sent is not old."""
+    end, whole = 5.0 + seconds, cut(0.0, 0.0)
+    broken = cut(5.0, end)
+    rows = drive(broken if ways != 'back' else whole, broken if ways != 'there' else whole, end + 5)
+    obeyed = [row for row in rows if row[2] != (0.0, 0.0)]
+    assert all(now - sent < 1.0 for now, sent, _ in obeyed)
+    if ways != 'back' and seconds >= 0.5:
+        stopped = next(now for now, _, given in rows if now > 5.0 and given == (0.0, 0.0))
+        assert stopped <= 5.0 + 0.02 + 0.3 + 0.05, 'the lease ends'
+    if seconds >= 1.5:
+        again = [sent for now, sent, _ in obeyed if now >= end]
+        assert again[0] >= end - (0.9 if ways == 'there' else 0.0), 'the backlog is dropped'
+    assert obeyed[-1][0] > end + 4.9, 'then it drives on: it is the gates that wait for neutral'
+
+
+def test_a_stop_in_the_backlog_of_a_cut_is_found():
+    """Stopped and released while the link was away: what stood among the others is not lost."""
+    rows = drive(cut(5.0, 8.0), lambda now: 0.02, 12.0, lambda now: 6.0 <= now < 7.0)
+    assert all(given == (0.0, 0.0) for now, _, given in rows if now >= 5.4)
+
+
+def test_three_echoes_in_a_row_may_be_lost():
+    assert 3 * GUARD['ECHO_S'] < guard_link.ECHO_S <= 4 * GUARD['ECHO_S']
