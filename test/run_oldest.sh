@@ -2,12 +2,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 # Unit and widget tests with the oldest libraries that mhri supports, in an environment that is made in
-# build/.ws/oldest. Usage: run_oldest.sh FOLDER, which gets the result files. Where there is no
-# Python 3.8, or pip cannot fetch the libraries, the one result is a skipped test that says so.
+# build/.ws/oldest. Usage: run_oldest.sh unit|widgets FOLDER, which gets the result file. Where there is
+# no Python 3.8, or pip cannot fetch the libraries, the result is a skipped test that says so.
 set -uo pipefail
 
 REPO=$(cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)
-RESULTS=${1:?where do the result files go}
+KIND=${1:?which tests, unit or widgets}
+RESULTS=${2:?where does the result file go}
+XML="$RESULTS/pytest-oldest-$KIND.xml"
 WANTED="$REPO/test/requirements_oldest.txt"
 HOME_OF_IT="$REPO/build/.ws/oldest"
 # PyPI has neither pocketsphinx nor PyAudio in a form that installs without their C libraries.
@@ -34,7 +36,7 @@ skip() {
   echo "skipped: $1"
   printf '<testsuite name="oldest" tests="1" skipped="1"><testcase classname="oldest" %s' \
     "name=\"libraries\"><skipped message=\"$1\"/></testcase></testsuite>" \
-    >"$RESULTS/pytest-oldest-oldest.xml"
+    >"$XML"
   exit 0
 }
 
@@ -51,20 +53,23 @@ print(os.path.dirname(python_qt_binding.__file__))') || return
   cp "$WANTED" "$HOME_OF_IT/installed"
 }
 
-# test_files NAME [ARGUMENT]...: their own process; nothing of a workspace or of ROS is on the path.
-test_files() {
-  PYTHONPATH="$REPO/src" timeout --kill-after=10 300 "$HOME_OF_IT/bin/python" -m pytest \
-    -p no:cacheprovider -q -rs -W ignore::DeprecationWarning -o faulthandler_timeout=120 \
-    --junitxml="$RESULTS/pytest-oldest-$1.xml" "${@:2}" || status=1
-}
-
 cd "$REPO" || exit
-mkdir -p "$RESULTS" || exit
+mkdir -p "$RESULTS" "${HOME_OF_IT%/*}" || exit
+exec 9>"$HOME_OF_IT.lock"
+flock 9
 if ! cmp -s "$WANTED" "$HOME_OF_IT/installed"; then
   PYTHON=$(find_python) || skip 'there is no Python 3.8 here (python3.8 on the path, or of pyenv)'
   make_environment "$PYTHON" || skip 'pip could not install what is in test/requirements_oldest.txt'
 fi
-status=0
-test_files unit "${LEFT_OUT[@]}" test/unit
-test_files widgets test/gui/test_widgets_*.py
-exit "$status"
+exec 9>&-
+if [ "$KIND" = unit ]; then
+  TESTS=("${LEFT_OUT[@]}" test/unit)
+else
+  # Their conftest.py starts a screen for them alone.
+  unset DISPLAY XAUTHORITY
+  TESTS=(test/gui/test_widgets_*.py)
+fi
+# Nothing of a workspace or of ROS is on the path.
+PYTHONPATH="$REPO/src" timeout --kill-after=10 300 "$HOME_OF_IT/bin/python" -m pytest \
+  -p no:cacheprovider -q -rs -W ignore::DeprecationWarning -o faulthandler_timeout=120 \
+  --junitxml="$XML" "${TESTS[@]}"

@@ -61,11 +61,11 @@ class Clinic:
     def start_healthy(self):
         """Start a mux, gates and two simulated robots, and wait until they are there."""
         self.system.node('mux', '__name:=mux')
-        self._patients.remove(self.patient('/mhri_gates', '--gates'))
+        self.system.node('gates', '__name:=mhri_gates')
         for name, kind in (('bot1', 'turtlebot2'), ('bot2', 'turtlebot3_burger')):
             self.system.launch('turtlebot.launch', 'name:=' + name, 'type:=' + kind)
         wait_for(lambda: self.topics() >= {
-            '/mux/mode', '/bot1/odom', '/bot2/odom', '/bot1/camera/rgb/camera_info',
+            '/mux/mode', '/gates/state', '/bot1/odom', '/bot2/odom', '/bot1/camera/rgb/camera_info',
             '/bot2/camera/rgb/camera_info', '/bot2/battery_state'}, START_S, 'the healthy system')
         self.base = self.nodes()
 

@@ -89,7 +89,10 @@ CASES = {
         [stream('/gates/state', samples=((100.0, 9.0),)), parameter(use_sim_time=True),
          add('/gazebo', ['/clock'])], []),
     'gates refuse somebody': (
-        [stream('/gates/state', refused=('/rogue: stop_all, 3 times',))], ['gates_refused']),
+        [stream('/gates/state', refused=('/rogue: stop_all, 3 times', '/gone: twist, 1 times')),
+         add('/rogue', ['/x'])], ['gates_refused']),
+    'gates refused somebody who has gone': (
+        [stream('/gates/state', refused=('/rogue: stop_all, 3 times',))], []),
     'gates bypassed': ([add('/rogue', ['/gates/state'])], ['gates_bypassed']),
     'two sticks': ([add('/script', ['/mux_in/joy']), add('/mhri_panel', ['/mux_in/joy'])],
                    ['stick_several']),
@@ -212,6 +215,17 @@ def test_clock_offset(ahead_s):
     offset_s, error_s = clock_offset(samples(ahead_s))
     assert abs(offset_s - ahead_s) <= 0.003
     assert 0.005 <= error_s < 0.01
+
+
+@pytest.mark.parametrize('stamp_s', [0.5, 1234.5])
+def test_simulated_time_is_not_called_a_clock_that_is_behind(stamp_s):
+    """By 56 years, to the millisecond."""
+    world = World()
+    stream('/bot1/odom', samples=tuple(
+        (1.76e9 + number, stamp_s + number) for number in range(20)))(world)
+    finding, = world.wrong()
+    assert (finding.check, finding.severity) == ('clock_offset', WARNING)
+    assert 'no real time' in finding.problem and 'behind' not in finding.problem
 
 
 def test_few_stamps_prove_little():

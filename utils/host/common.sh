@@ -26,7 +26,7 @@ DEBIAN_RUN=(
   ros-std-msgs ros-geometry-msgs
   python3-std-msgs python3-geometry-msgs python3-sensor-msgs python3-nav-msgs python3-std-srvs
   python3-tf2-msgs python3-rosgraph-msgs python3-diagnostic-msgs python3-diagnostic-updater
-  python3-cv-bridge python3-python-qt-binding python3-pyqt5 python3-pyqtgraph python3-pygame
+  python3-python-qt-binding python3-pyqt5 python3-pyqtgraph python3-pygame
   python3-evdev python3-pocketsphinx pocketsphinx-en-us python3-pyaudio
   python3-numpy python3-opencv python3-yaml python3-genpy python3-netifaces fonts-dejavu-core
   libturbojpeg0 openssh-client
@@ -36,6 +36,11 @@ DEBIAN_TEST=(
   librostest-dev python3-rostest topic-tools python3-pytest python3-flake8
   python3-flake8-docstrings python3-mccabe python3-pip python3-psutil catkin-lint shellcheck
   xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server openssl iproute2
+)
+# For the fast group of the tests alone; so called on Ubuntu, too.
+FAST=(
+  python3-catkin-pkg python3-evdev python3-flake8 python3-mccabe python3-numpy python3-opencv
+  python3-pip python3-pyaudio python3-pytest python3-rospkg python3-yaml util-linux
 )
 # On Ubuntu rosdep reads the ROS packages from package.xml; these have no key there.
 UBUNTU_RUN=(
@@ -47,11 +52,11 @@ UBUNTU_TEST=(
   shellcheck xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server openssl iproute2
 )
 
-say() { printf 'mhri: %s\n' "$*"; }
-warn() { printf 'mhri: %s\n' "$*" >&2; }
+say() { printf 'mhri: %s\n' "$(unarmed "$*")"; }
+warn() { printf 'mhri: %s\n' "$(unarmed "$*")" >&2; }
 die() { warn "$*"; exit 1; }
 # A wrong command line: exit status 2, and nothing has been started.
-usage_error() { warn "$* (--help lists every option)"; exit 2; }
+usage_error() { warn "$(brief "$*") (--help lists every option)"; exit 2; }
 
 # Prints debian or ubuntu, or ends with what is supported.
 os_family() {
@@ -113,10 +118,16 @@ install_rosdeps() {
   rosdep install "${keys[@]}" -r -y || die "rosdep could not install everything: see above"
 }
 
-# install_missing run|test: everything that kind of start needs.
+# install_missing run|test|fast: everything that kind of start needs.
 install_missing() {
   local family
   family=$(os_family)
+  if [ "$1" = fast ]; then
+    PACKAGES=("${FAST[@]}")
+    if [ "$family" = debian ]; then PACKAGES+=(python3-flake8-docstrings); fi
+    install_packages "${PACKAGES[@]}"
+    return
+  fi
   case "$family" in
     debian) PACKAGES=("${DEBIAN_RUN[@]}"); [ "$1" = run ] || PACKAGES+=("${DEBIAN_TEST[@]}") ;;
     ubuntu) PACKAGES=("${UBUNTU_RUN[@]}"); [ "$1" = run ] || PACKAGES+=("${UBUNTU_TEST[@]}") ;;

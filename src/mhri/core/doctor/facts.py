@@ -186,7 +186,8 @@ class Stream:
 
     ``problem`` says why it was not connected; ``listened_s`` is for how long messages were waited
     for [s], 0 where they were not; ``samples`` are (received, stamp) pairs by the clock here and
-    the sender's [s]; ``refused`` what the gates refused lately, by their own words.
+    the sender's [s]; ``refused`` what the gates refused, in their own words: '/node: twist, 3
+    times'.
     """
 
     topic: str

@@ -58,8 +58,9 @@ def _silent(facts, topic, check, words, start):
         found.append(Finding(
             FAULT, check, SYSTEM, '{} hangs: it is listed, but does not answer{}'.format(
                 name, words), _NOTHING + '; robots stand',
-            "on {}: pkill -KILL -f '__name:={}( |$)'   # its launch file starts it again; if none "
-            'does: {}'.format(facts.nodes[name].host, name.rpartition('/')[2], start)))
+            "on {}: pkill -KILL -f '^[^ ]*python[^ ]* .*__name:={}( |$)'   # its launch file "
+            'starts it again; if none does: {}'.format(
+                facts.nodes[name].host, name.rpartition('/')[2], start)))
     return found
 
 
@@ -149,12 +150,14 @@ def _heard(facts, stream):
             'more'.format(stream.node), _NOTHING + '; robots stand',
             'rosnode kill {}   # its launch file starts it again; if none does: rosrun mhri '
             'gates'.format(stream.node)))
-    if stream.refused:
+    there = set(facts.graph.nodes())
+    refused = [line for line in stream.refused if line.partition(':')[0] in there]
+    if refused:
         found.append(Finding(
-            WARNING, 'gates_refused', SYSTEM, 'the gates refused lately: {}'.format(
-                listed(stream.refused)), 'that program does not drive, though it may seem to',
+            WARNING, 'gates_refused', SYSTEM, 'the gates refuse {}'.format(
+                listed(refused)), 'that program does not drive, though it may seem to',
             'rosnode info {}   # a second panel: close it, or take control there; nobody knows it: '
-            'see "Security" in the guide'.format(stream.refused[0].partition(':')[0])))
+            'see "Security" in the guide'.format(refused[0].partition(':')[0])))
     return found
 
 

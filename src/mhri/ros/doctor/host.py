@@ -20,8 +20,8 @@ from mhri.core.recording.recording import ros_home
 _MODULES = {'python3-evdev': 'evdev', 'python3-numpy': 'numpy', 'python3-opencv': 'cv2',
             'python3-pygame': 'pygame', 'python3-pyqtgraph': 'pyqtgraph', 'python3-yaml': 'yaml'}
 _LIBRARIES = {'libturbojpeg': jpeg.available}
-# The panel has a window of its own where there is no rqt.
-_OPTIONAL = ('rqt_gui', 'rqt_gui_py')
+# The panel has a window of its own where there is no rqt; a TurtleBot 2 alone runs nodelets.
+_OPTIONAL = ('nodelet', 'rqt_gui', 'rqt_gui_py')
 
 
 def own_addresses():

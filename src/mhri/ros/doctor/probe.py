@@ -195,9 +195,12 @@ def _refused(fields, frame):
     if fields['md5sum'] != GatesState._md5sum:
         return ()
     try:
-        return tuple(GatesState().deserialize(frame[4:]).refused)
+        state = GatesState().deserialize(frame[4:])
     except genpy.DeserializationError:
         return ()
+    # Who is believed by now was refused while nothing was known of it.
+    return tuple(line for line in state.refused
+                 if line.partition(':')[0] not in (state.mux, state.operator))
 
 
 def _host_of(uri):

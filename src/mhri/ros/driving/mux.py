@@ -253,7 +253,7 @@ class Mux:
                 if topic.ownership and topic.ownership.take(operator):
                     self._send(self._arbiter.on_lost(topic.source.name, 'operator', self._clock()))
         if must_stop:
-            self._remember_stop()
+            self._memory.do(self._remember_stop)
             rospy.logwarn('the gates hold a stop that this mux did not know of: it is in force')
 
     def _task_allowed(self):

@@ -122,6 +122,11 @@ class MuxClient:
             if self._wheel is not None:
                 self._wheel.select(names)
 
+    @property
+    def at_wheel(self):
+        """Whether stick and selection are published from here."""
+        return self._wheel is not None
+
     def take_wheel(self):
         """Publish stick and selection from now on (blocking); tell whether that is news."""
         if self._wheel is not None:

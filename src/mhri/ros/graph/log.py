@@ -32,7 +32,8 @@ class PatientHandler(logging.Handler):
         super().__init__(handler.level)
         self._handler = handler
         self._waiting = queue.Queue(size)
-        self.lost = 0
+        self._counting = threading.Lock()
+        self._lost = 0
         threading.Thread(target=self._run, name='log', daemon=True).start()
 
     def createLock(self):
@@ -40,13 +41,14 @@ class PatientHandler(logging.Handler):
         self.lock = None
 
     def emit(self, record):
-        """Take a record; one too many is counted in :attr:`lost`."""
+        """Take a record; one too many is counted."""
         try:
             # Now: what it speaks of may have changed by the time it is written.
             record.msg, record.args = record.getMessage(), None
             self._waiting.put_nowait(record)
         except queue.Full:
-            self.lost += 1
+            with self._counting:
+                self._lost += 1
         except Exception:  # the words do not fit their arguments: that is for logging to say
             self.handleError(record)
 
@@ -58,7 +60,8 @@ class PatientHandler(logging.Handler):
         """Write what waits, and how much is missing."""
         while True:
             record = self._waiting.get()
-            lost, self.lost = self.lost, 0
+            with self._counting:
+                lost, self._lost = self._lost, 0
             if lost:
                 self._handler.handle(logging.makeLogRecord({
                     'name': record.name, 'levelno': logging.WARNING, 'levelname': 'WARNING',

@@ -14,7 +14,7 @@ from sensor_msgs.msg import BatteryState
 from mhri.core.robots.link import link_note, link_state
 from mhri.core.robots.link_quality import LinkQuality, link_warning
 from mhri.core.robots.names import topic_of
-from mhri.core.robots.stamp_age import StampAge
+from mhri.core.robots.stamp_age import delay_of, StampAge
 from mhri.core.robots.stop_proof import StopProof
 from mhri.core.screen.views import LIVE, RobotView, UNANSWERED
 from mhri.core.sensors.plausible import BATTERY, can_be
@@ -30,6 +30,8 @@ _READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odomet
 # Below a robot's namespace: the late commands that its guard kept from it.
 DROPPED = 'mhri_guard/dropped'
 DROPPED_SHOWN_S = 1.0
+# Whoever has taken commands for so long and told no odometry has none.
+MUTE_AFTER_S = 3.0
 
 
 def battery_fraction(message):
@@ -112,6 +114,7 @@ class RobotLink:
         self._lock = threading.Lock()
         self.added_at = clock()
         self._heard_at = None
+        self._reached_at = None
         self._heard_wall = ''
         self._pending = None
         self._motion = None
@@ -150,8 +153,8 @@ class RobotLink:
             late_s = 0.0
             if header is not None:
                 number, stamp_s = header
-                late_s = self._ages.setdefault(feed, StampAge()).late_s(stamp_s or None, now)
-                self._quality.on_message(number, came_at - stamp_s if stamp_s else None, now)
+                late_s = self._ages.setdefault(feed, StampAge()).late_s(stamp_s, now)
+                self._quality.on_message(number, delay_of(came_at, stamp_s), now)
             self._heard_at = now
             self._pending = (feed, message)
             # Bytes that are no message prove nothing, and neither does what was said before them.
@@ -202,7 +205,8 @@ class RobotLink:
             self._take()
             age = None if self._heard_at is None else now - self._heard_at
             motion, limits = self._motion, self.robot_type.limits
-            state = link_state(age, connections, self.robot_type.silent_after_s)
+            state = link_state(age, connections, self.robot_type.silent_after_s,
+                               self._takes_commands(now))
             if age is not None and (age < 1.0 or not self._heard_wall):
                 self._heard_wall = time.strftime('%H:%M:%S')
             proof = self._proof.view(now) if self._proof else None
@@ -221,6 +225,15 @@ class RobotLink:
             hardware_stop=self._hardware_stop.stopped, max_linear_mps=limits.linear_mps,
             max_angular_rad_s=limits.angular_rad_s)
         return seen_by_gates(view, self._gates.robot(self.name), self._gates.answers())
+
+    def _takes_commands(self, now):
+        """Tell whether the robot has listened to commands for long enough to be heard, too."""
+        gate = self._gates.robot(self.name)
+        if gate is None or not gate.topic or not self._gates.answers():
+            self._reached_at = None
+        elif self._reached_at is None:
+            self._reached_at = now
+        return self._reached_at is not None and now - self._reached_at > MUTE_AFTER_S
 
     def close(self):
         """Stop listening (blocking: it asks the master)."""

@@ -125,7 +125,7 @@ class ScreenBackend:
         """Mend what is missing: the sources of the mux, the links and types of robots."""
         if self._watch.state != LOST:
             self._meet_mux()
-            self._jobs.settle_parameters(list(self.selection.robots))
+            self._jobs.settle_parameters(list(self.selection.robots) if self.drives() else None)
             self.recordings.limits = self.settings.recording_limits()
             self._fleet.supervise()
 
@@ -209,17 +209,16 @@ class ScreenBackend:
         else:
             self.selection.check(())
             self._gates.leave_group()
-        self._worker.do(self._settle_wheel)
+        if self.drives() != self._mux.at_wheel:
+            self._worker.do(self._settle_wheel)
 
     def _settle_wheel(self):
         """Have the topics of the one who drives, or give them back (on the worker)."""
-        if self._closing.is_set():
-            return
-        if self.drives():
+        if self.drives() and not self._closing.is_set():
             if self._mux.take_wheel():
                 # Whatever another screen of this program selected counts no more.
                 self._mux.select(self.selection.selected)
-        else:
+        elif not self._closing.is_set():
             self._mux.leave_wheel()
 
     def take_control(self):

@@ -13,7 +13,7 @@ from mhri.ros.graph.look import look_for_robots
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.resources import read_resource, resource_path
 
-# The robots in the panel's list, in its order: voice and pad read it.
+# The robots in the panel's list, in its order: gates, voice and pad read it.
 ROBOTS_PARAMETER = '/mhri/robots'
 
 
@@ -33,9 +33,12 @@ class PanelJobs:
         self.settings = PanelSettings()
 
     def settle_parameters(self, robots):
-        """Read the panel's parameters, and write the list of robots for voice and pad."""
+        """Read the panel's parameters, and write the list of robots for gates, voice and pad.
+
+        :param robots: names; None where another screen is in control: its list counts
+        """
         calls = [('getParam', NAMESPACE)]
-        if robots != self._told_robots:
+        if robots not in (None, self._told_robots):
             calls.append(('setParam', ROBOTS_PARAMETER, robots))
         try:
             parameters = MasterApi(rospy.get_name()).call_many(calls)[0]
