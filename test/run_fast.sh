@@ -12,17 +12,24 @@ LINT='flake8 or syntax or parse or core_types'
 
 cd "$REPO" || exit
 mkdir -p "$RESULTS" || exit
-# test_files NAME PATH [ARGUMENT]...: nothing of a workspace or of ROS is on Python's path.
+# test_files NAME PATH [ARGUMENT]...: nothing of a workspace or of ROS is on Python's path. A process that
+# ended without a result file has not run, whatever its exit status.
 test_files() {
+  local status=0 xml="$RESULTS/pytest-fast-$1.xml"
+  rm -f "$xml"
   PYTHONPATH="$REPO/src:$REPO/build/.ws/tools" timeout --kill-after=10 300 python3 -m pytest \
     -p no:cacheprovider -q -rs -o faulthandler_timeout=120 \
-    --junitxml="$RESULTS/pytest-fast-$1.xml" "${@:2}"
+    --junitxml="$xml" "${@:2}" || status=$?
+  [ -s "$xml" ] || status=3
+  return "$status"
 }
 
-status=0
 test_files lint test/scripts/test_lint.py -k "$LINT" >"$RESULTS/lint.log" 2>&1 &
 lint=$!
-test_files unit test/unit || status=$?
-wait "$lint" || status=$?
+test_files unit test/unit
+unit=$?
+wait "$lint"
+lint=$?
 cat "$RESULTS/lint.log"
-exit "$status"
+# 1: a test failed; more: something did not run.
+exit $((lint > unit ? lint : unit))

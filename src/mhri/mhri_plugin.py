@@ -37,9 +37,11 @@ class MhriPlugin(Plugin):
     def restore_settings(self, plugin_settings, instance_settings):
         """Take them over again; a perspective that cannot be read is left out and said so."""
         try:
-            self._host.restore_state(json.loads(instance_settings.value(_KEY, '{}')))
-        except (ValueError, TypeError, AttributeError) as error:
-            rospy.logwarn('the saved settings cannot be used and are left out: %s', error)
+            problems = self._host.restore_state(json.loads(instance_settings.value(_KEY, '{}')))
+        except (ValueError, TypeError, RecursionError) as error:
+            problems = (str(error),)
+        if problems:
+            rospy.logwarn('of the saved settings is left out: %s', '; '.join(problems)[:500])
 
     def shutdown_plugin(self):
         """Stop the robots before the plugin goes."""

@@ -1,16 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The panel in a window of its own, for machines without rqt."""
-import json
 import signal
 import socket
 
-from python_qt_binding.QtCore import QSettings, QSocketNotifier, Signal
+from python_qt_binding.QtCore import QSocketNotifier, Signal
 from python_qt_binding.QtGui import QGuiApplication
 from python_qt_binding.QtWidgets import QApplication, QMainWindow
 import rospy
 
+from mhri.core.screen.saved_state import read_geometry
+from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.presenters.panel_host import PanelHost
+from mhri.presenters.settings_file import SettingsError, SettingsFile
 from mhri.ros.screen.backend import ScreenBackend
 
 
@@ -49,14 +51,13 @@ class Standalone:
     """The program: settings, signals, window.
 
     :param argv: the node's command line
-    :param settings_path: an INI file, None for the user's own
+    :param settings_path: a JSON file, None for the user's own
     :param remember: False leaves the settings alone, whatever happens
     """
 
     def __init__(self, argv, settings_path=None, remember=True):
         self._remember = remember
-        self._settings = QSettings(settings_path, QSettings.IniFormat) if settings_path else \
-            QSettings('mhri', 'panel')
+        self._settings = SettingsFile(settings_path)
         self.host = PanelHost(ScreenBackend(argv))
         self.window = PanelWindow(self.host)
         self.window.closing.connect(self.close)
@@ -65,15 +66,19 @@ class Standalone:
         self._closed = False
 
     def restore(self):
-        """Take over the settings of the last run."""
+        """Take over the settings of the last run, as far as they can be used."""
+        problems, saved, placed = [], {}, False
         try:
-            self.host.restore_state(json.loads(self._settings.value('state', '{}')))
-        except (ValueError, TypeError, AttributeError) as error:
-            rospy.logwarn('the saved settings cannot be used and are left out: %s', error)
-        geometry = self._settings.value('geometry')
-        if geometry is not None:
-            self.window.restoreGeometry(geometry)
-        else:
+            saved = self._settings.read()
+            problems += self.host.restore_state(saved.get('state', {}))
+            if 'geometry' in saved:
+                placed = restore_geometry(self.window, read_geometry(saved['geometry']))
+        except (SettingsError, ValueError) as error:
+            problems.append(str(error))
+        if problems:
+            rospy.logwarn('of the saved settings is left out: %s (the file is kept as %s)',
+                          '; '.join(problems)[:500], self._settings.keep_aside())
+        if not placed:
             # In a corner, and not in the middle, it leaves room for the robots' windows.
             self.window.move(QGuiApplication.primaryScreen().availableGeometry().topLeft())
 
@@ -101,12 +106,13 @@ class Standalone:
         if self._closed:
             return
         self._closed = True
-        state = json.dumps(self.host.save_state())
+        kept = {'state': self.host.save_state(), 'geometry': geometry_of(self.window)}
         remember = self._remember or self._has_changed_robots()
         self.host.close()
         if remember:
-            self._settings.setValue('state', state)
-            self._settings.setValue('geometry', self.window.saveGeometry())
-            self._settings.sync()
+            try:
+                self._settings.write(kept)
+            except SettingsError as error:
+                rospy.logwarn('the settings are not kept: %s', error)
         rospy.signal_shutdown('the panel was closed')
         QApplication.instance().quit()

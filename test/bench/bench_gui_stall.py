@@ -158,6 +158,7 @@ def main():
         system.screen()
         system.start_master()
         system.node('mux', '__name:=mux')
+        system.node('gates')
         system.launch('sim.launch', 'n:=4')
         import rospy
         import rosgraph

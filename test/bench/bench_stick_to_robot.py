@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Latency from a stick event to the command at the robot, beside a chain of existing nodes.
 
-mhri: Joy -> mux -> gate in the real panel -> Twist at the robot. Beside it, on the same machine and
+mhri: Joy -> mux -> gates -> Twist at the robot, selected in the real panel. Beside it, on the same machine and
 with rounds taken in turn: Twist -> topic_tools mux -> a topic_tools relay for each robot -> Twist,
 the same two hops made of C++ nodes from the distribution (without limits, watch on freshness,
 selection or stop). Every figure is in milliseconds, over all robots and events.
@@ -76,7 +76,7 @@ def row(name, robots, values):
 
 
 class Mhri:
-    """The mux and the real panel, with the robots selected.
+    """The mux, the gates and the real panel, with the robots selected.
 
     :param streaming: simulated robots with cameras, else none but who receives their commands
     """
@@ -87,6 +87,7 @@ class Mhri:
         from mhri.msg import ControlMode
         self._joy_class = Joy
         system.node('mux')
+        system.node('gates')
         if streaming:
             robots = system.launch('sim.launch', 'n:={}'.format(len(names)), 'types:=turtlebot2')
         for name in names:
@@ -99,7 +100,7 @@ class Mhri:
         wait_for(lambda: self._joy.get_num_connections() and mode.get_num_connections(), 15,
                  'the mux')
         mode.publish('pedal')
-        wait_for(self.receiver.connected, 60, 'the gates of the panel')
+        wait_for(self.receiver.connected, 60, 'the gates')
         wait_for(lambda: self._through(0.1), 60, 'the first command at every robot')
         if streaming:
             self.streams = Streams(system, names, panel, robots)
@@ -290,7 +291,7 @@ def run(robots, events, table, streaming=False):
         if streaming:
             compare_streaming(mhri, chain, robots, events, table)
         else:
-            compare({'mhri (mux, panel)': mhri, 'topic_tools (mux, relay)': chain}, robots, events,
+            compare({'mhri (mux, gates)': mhri, 'topic_tools (mux, relay)': chain}, robots, events,
                     table)
         rospy.signal_shutdown('measured')
 

@@ -132,12 +132,10 @@ class Measurement:
 
 def panel_with(system, views):
     """Start the panel with a window for each robot that shows these views; wait until it does."""
-    from python_qt_binding.QtCore import QSettings
     import rosgraph
-    path = os.path.join(system.home, 'panel_{}.ini'.format('_'.join(views)))
-    settings = QSettings(path, QSettings.IniFormat)
-    settings.setValue('state', json.dumps({'looks': {name: {'views': views} for name in NAMES}}))
-    settings.sync()
+    path = os.path.join(system.home, 'panel_{}.json'.format('_'.join(views)))
+    with open(path, 'w') as stream:
+        json.dump({'state': {'looks': {name: {'views': views} for name in NAMES}}}, stream)
     panel = system.node('panel', '--settings', path, '--select', ' '.join(NAMES))
     master = rosgraph.Master('/bench')
     topics = {'/{}/{}'.format(name, RGB) for name in NAMES} if 'rgb' in views else set()

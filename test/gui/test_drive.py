@@ -47,6 +47,7 @@ class Session:
         self.system.start_master()
         until(lambda: self.operator.view().ros == 'connected', what='the panel to connect')
         self.system.node('mux', '__name:=mux')
+        self.system.node('gates')
         self.system.launch('sim.launch', 'n:=3')
         from support.robots import Witness
         self.witnesses = {name: Witness(name) for name in ROBOTS}
@@ -63,6 +64,11 @@ class Session:
 
     def robot(self, name):
         return self.operator.robot_view(name)
+
+    def proof(self, name):
+        """Return the state of a robot's proof, None while the gates have not said it is stopped."""
+        proof = self.robot(name).proof
+        return proof.state if proof else None
 
     def drive(self, forward, turn, condition, what='the robots to drive'):
         """Hold the stick until a condition comes true."""
@@ -235,8 +241,8 @@ def test_a_robot_switched_off_is_gone_and_not_confirmed_and_comes_back(session):
     until(lambda: session.robot('bot3').link == 'gone', 5, 'bot3 to be gone')
     assert 'switched off' in session.robot('bot3').note
     session.click('stop_button')
-    until(lambda: session.robot('bot3').proof.state == 'not_confirmed', 3, 'NOT CONFIRMED')
-    until(lambda: session.robot('bot1').proof.state == 'stopped', 3, 'the proof of bot1')
+    until(lambda: session.proof('bot3') == 'not_confirmed', 3, 'NOT CONFIRMED')
+    until(lambda: session.proof('bot1') == 'stopped', 3, 'the proof of bot1')
     session.release()
     session.system.launch('turtlebot.launch', 'name:=bot3', 'type:=turtlebot3_waffle', 'x:=3',
                           'y:=1.5')

@@ -6,7 +6,7 @@ import sys
 import types
 
 import pytest
-from python_qt_binding.QtCore import QPoint, QRect, QSettings
+from python_qt_binding.QtCore import QPoint, QRect
 from python_qt_binding.QtWidgets import QApplication, QWidget
 
 from mhri.presenters.panel_host import PanelHost
@@ -74,7 +74,7 @@ def test_a_camera_knows_which_robot_is_in_front_of_it():
 
 
 def test_standalone_keeps_its_settings_in_a_file(tmp_path):
-    path = str(tmp_path / 'panel.ini')
+    path = str(tmp_path / 'panel.json')
     first = Standalone(['panel'], path)
     first.restore()
     for name in ('bot2', 'bot1', 'rover_7'):
@@ -92,7 +92,7 @@ def test_standalone_keeps_its_settings_in_a_file(tmp_path):
 
 
 def test_the_first_time_the_panel_leaves_room_for_the_windows(tmp_path):
-    path = str(tmp_path / 'panel.ini')
+    path = str(tmp_path / 'panel.json')
     first = Standalone(['panel'], path)
     first.restore()
     screen = QApplication.primaryScreen().availableGeometry()
@@ -107,10 +107,9 @@ def test_the_first_time_the_panel_leaves_room_for_the_windows(tmp_path):
 
 @pytest.mark.parametrize('rubbish', ['{', '[]', '"x"', '{"robots": 5}', '{"limits": "fast"}', ''])
 def test_settings_that_cannot_be_used_are_left_out(tmp_path, rubbish):
-    path = str(tmp_path / 'panel.ini')
-    settings = QSettings(path, QSettings.IniFormat)
-    settings.setValue('state', rubbish)
-    settings.sync()
+    path = str(tmp_path / 'panel.json')
+    with open(path, 'w') as stream:
+        stream.write('{{"state": {}}}'.format(rubbish))
     program = Standalone(['panel'], path)
     program.restore()
     assert program.host.operator.selection.robots == ()
@@ -120,7 +119,7 @@ def test_settings_that_cannot_be_used_are_left_out(tmp_path, rubbish):
 @pytest.fixture
 def saved(tmp_path):
     """The path of settings with one robot in them."""
-    path = str(tmp_path / 'panel.ini')
+    path = str(tmp_path / 'panel.json')
     program = Standalone(['panel'], path)
     program.host._add('kept')
     program.window.close()
@@ -129,7 +128,8 @@ def saved(tmp_path):
 
 
 def robots_in(path):
-    return json.loads(QSettings(path, QSettings.IniFormat).value('state'))['robots']
+    with open(path) as stream:
+        return json.load(stream)['state']['robots']
 
 
 def test_a_demo_leaves_the_settings_alone(saved):

@@ -120,7 +120,7 @@ def test_settings_come_back(window, operator, ui_dir):
 
 
 @pytest.mark.parametrize('settings', [
-    {}, {'views': []}, {'views': ['gone', 'rgb', 'depth'], 'splitter': 'zz', 'graph': {}}])
+    {}, {'views': []}, {'views': ['gone', 'rgb', 'depth'], 'splitter': [1, 2], 'graph': {}}])
 def test_settings_of_another_version_do_no_harm(window, settings):
     window.restore_settings(settings)
     assert window.wanted() <= {'imu', 'rgb'}

@@ -9,6 +9,7 @@ from python_qt_binding.QtTest import QTest
 
 from mhri.core.screen import views
 from mhri.core.screen.views import ProofView, RobotView
+from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.gui.screen import theme
 from mhri.gui.screen.bot_window import BotWindow
 from mhri.gui.screen.windows import TurtleBotWindow, window_class
@@ -135,7 +136,7 @@ def test_its_place_is_remembered(operator, ui_dir):
     first.setGeometry(120, 90, 800, 560)
     operator.show(first)
     second = TurtleBotWindow(ui_dir, 'bot1', 'TurtleBot2')
-    second.restoreGeometry(first.saveGeometry())
+    assert restore_geometry(second, geometry_of(first))
     operator.show(second)
     assert second.geometry() == first.geometry()
 

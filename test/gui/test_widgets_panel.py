@@ -238,7 +238,7 @@ def test_tab_order_is_the_reading_order(panel, operator, application, four_robot
                     'angular_slider', 'together_box', 'stop_button']
 
 
-def test_settings_survive_json_and_nonsense_is_left_out(panel, operator, ui_dir):
+def test_settings_survive_json_and_those_of_another_version_do_no_harm(panel, operator, ui_dir):
     panel.splitter.setSizes([400, 600])
     settings = json.loads(json.dumps(panel.save_settings()))
     other = PanelWidget(ui_dir)
@@ -246,9 +246,8 @@ def test_settings_survive_json_and_nonsense_is_left_out(panel, operator, ui_dir)
     other.restore_settings(settings)
     operator.show(other)
     assert other.splitter.sizes() == panel.splitter.sizes()
-    for nonsense in ({}, {'splitter': 'x'}, {'splitter': [None, 1]}, {'geometry': '%%'},
-                     {'geometry': 5, 'splitter': [1, 2, 3]}):
-        other.restore_settings(nonsense)
+    for other_version in ({}, {'splitter': [1, 2, 3]}):
+        other.restore_settings(other_version)
         assert other.splitter.sizes() == panel.splitter.sizes()
 
 

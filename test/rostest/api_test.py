@@ -17,6 +17,8 @@ from mhri.ros.resources import read_text, robot_types  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
 INPUTS = ('mhri_joy', 'mhri_pedal', 'mhri_voice')
+# Behind what is installed: the message that takes the power from a TurtleBot2's motors.
+MESSAGES = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'support', 'messages')
 EVERYWHERE = ('/rosout', '/clock')
 ROW = re.compile(r'^\| (publishes|subscribes|serves) \| `([^`]+)` \| (?:`([^`]+)`|[^|]+) \|', re.M)
 
@@ -62,6 +64,8 @@ class ApiTest(unittest.TestCase):
         cls.system = System()
         cls.system.screen()
         cls.system.start_master()
+        cls.system.env['PYTHONPATH'] = os.pathsep.join(
+            (os.environ.get('PYTHONPATH', ''), MESSAGES))
         cls.system.node('mux', '__name:=mux')
         for name in INPUTS:
             cls.system.node(name, '__name:=' + name)
@@ -109,7 +113,7 @@ class ApiTest(unittest.TestCase):
             template = robot_types()[0][kind]
             own = {'/tf'} | {'/{}/{}'.format(robot, topic) for topic in (
                 *template.command, *template.imu, *template.odometry, *template.scan,
-                *template.battery, *camera_topics(template))}
+                *template.battery, template.motor_power.name, *camera_topics(template))}
             wanted = {(direction, name.replace('<robot>', robot), kind)
                       for direction, name, kind in pages
                       if name.replace('<robot>', robot) in own}

@@ -4,6 +4,7 @@
 """Looking for robots, on a real master with many registrations."""
 import os
 import socket
+import subprocess
 import sys
 import threading
 import time
@@ -18,12 +19,15 @@ import rostest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
 from mhri.core.robots.discovery import IgnoreList, parse_ignore_list  # noqa: E402
-from mhri.ros.graph.look import knock, look_for_robots  # noqa: E402
+from mhri.core.robots.names import topic_of  # noqa: E402
+from mhri.core.robots.robot_types import resolve_robot_type  # noqa: E402
+from mhri.ros.graph.look import knock, look_for_robots, robot_facts  # noqa: E402
 from mhri.ros.graph.master_api import MasterApi, MasterError  # noqa: E402
-from mhri.ros.resources import read_resource  # noqa: E402
+from mhri.ros.resources import read_resource, robot_types  # noqa: E402
 from support.ros_system import free_port, wait_for  # noqa: E402
 
 ROBOTS, TOPICS = 100, 20
+TURTLES = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'support', 'turtles.py')
 
 
 class Node:
@@ -166,6 +170,44 @@ class DiscoveryTest(unittest.TestCase):
         found = look_for_robots('/discovery_test', self.ignore)
         self.assertEqual(self.names(found.live), ['alive'])
         self.assertEqual(self.names(found.leftovers), ['crashed', 'nowhere', 'parked'])
+
+    def test_a_dead_robot_without_a_namespace_hides_no_live_one(self):
+        """Its registrations stay behind when it is switched off."""
+        nowhere = 'http://127.0.0.1:{}/'.format(free_port())
+        for uri, live in ((nowhere, ['bot1']), (self.node.uri, ['robot'])):
+            with self.subTest(uri=uri):
+                self.master.registerSubscriber('/base', '/cmd_vel', 'geometry_msgs/Twist', uri)
+                self.addCleanup(self.forget_listeners, [('/base', '/cmd_vel', uri)])
+                self.register('/bot1/driver', '/bot1/odom')
+                self.register('/ghost/driver', '/ghost/odom', nowhere)
+                found = look_for_robots('/discovery_test', self.ignore)
+                self.assertEqual(self.names(found.live), live)
+                self.assertNotIn('ghost', self.names(found.live + found.leftovers))
+
+    def test_each_turtle_of_a_turtlesim_is_a_robot(self):
+        types = robot_types()[0]
+        for namespace, names in (('/', ['robot', 'turtle2']), ('/pond', ['pond', 'pond_turtle2'])):
+            process = subprocess.Popen([sys.executable, TURTLES, 'turtle1', 'turtle2'],
+                                       env=dict(os.environ, ROS_NAMESPACE=namespace))
+            self.addCleanup(process.wait, 10)
+            self.addCleanup(process.terminate)
+
+            def all_of_them():
+                found = look_for_robots('/discovery_test', self.ignore, types=types)
+                return found if self.names(found.live)[-2:] == names else None
+            facts = wait_for(all_of_them, 20.0, 'both turtles', 0.1).facts
+            for number, name in enumerate(names, 1):
+                # Looked for, and added by hand.
+                for known in (facts[name], robot_facts('/discovery_test', [name], types)[name]):
+                    kind, errors = resolve_robot_type(types, name, known.parameters, known.seen)
+                    self.assertEqual((kind.name, errors), ('turtlesim', []))
+                    begin = '{}/turtle{}/'.format(namespace.rstrip('/'), number)
+                    self.assertEqual(
+                        [topic_of(name, *kind.command), topic_of(name, *kind.odometry)],
+                        [begin + 'cmd_vel', begin + 'pose'])
+            process.terminate()
+            process.wait(10)
+        self.assertIsNone(robot_facts('/discovery_test', ['turtle3'], types)['turtle3'].seen)
 
     def test_knocking_at_silent_doors_takes_no_longer_than_promised(self):
         """A full backlog leaves an attempt to connect without an answer, as a lost robot does."""

@@ -2,7 +2,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Whoever takes over finds robots that stand still: a real mux, with two devices and a pedal."""
+import os
 import signal
+import time
 import unittest
 
 from rostest_tools import (
@@ -14,9 +16,11 @@ from std_msgs.msg import Bool, String
 
 from mhri.msg import ControlMode, PanelRequest, RobotSelect
 
+HERE = os.path.dirname(os.path.abspath(__file__))
 PS3_UP = (0.0, -1.0)
 # Buttons of resource/pads/ps3.yaml and xbox.yaml that are tried here.
-PS3_BUTTONS = {'stop_all': 1, 'next': 5, 'previous': 4, 'select_all': 2}
+PS3_BUTTONS = {'stop_all': 1, 'next': 5, 'previous': 3, 'select_all': 2}
+DEAD_MAN = 4
 
 
 def held(*numbers):
@@ -28,7 +32,7 @@ class Handover(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.joy, cls.pad = Stick('/mux_in/joy'), Stick('/mux_in/ps3joy')
+        cls.joy, cls.pad = Stick('/mux_in/joy'), Stick('/mux_in/ps3joy', held(DEAD_MAN))
         cls.pedal = Stick('/mux_in/pedal')
         cls.select = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=10,
                                      latch=True)
@@ -124,6 +128,44 @@ class Handover(unittest.TestCase):
         self.assertIn('no_such_pad', self.process.said())
         with self.pad.frame('profile:ps3'):
             self.assert_held_until_neutral(begun, self.pad, PS3_UP)
+
+    def test_dead_man_buttons_can_be_turned_off_and_that_is_said(self):
+        self.mux()
+        on = Recorder('/mux/dead_man', Bool, lambda message: message.data)
+        self.addCleanup(on.close)
+        on.wait(lambda value: value is True)
+        self.mode.publish(source='ps3joy')
+        self.pad.hold(NEUTRAL, held())
+        self.waits.wait(lambda _: self.waits.last() == 'dead_man')
+        self.doCleanups()
+        self.mux('_dead_man:=false')
+        off = Recorder('/mux/dead_man', Bool, lambda message: message.data)
+        self.addCleanup(off.close)
+        off.wait(lambda value: value is False)
+        self.mode.publish(source='ps3joy')
+        self.pad.hold(NEUTRAL, held())
+        self.waits.wait(lambda _: self.waits.last() == '')
+        for frame in ('', 'profile:xbox'):
+            with self.pad.frame(frame):
+                self.pad.hold(NEUTRAL, held())
+                self.waits.wait(lambda _: self.waits.last() == '')
+                begun = self.pad.hold(PS3_UP, held())
+                self.twists.wait(moves, begun)
+                self.pad.hold(NEUTRAL, held())
+                self.twists.wait(rests, begun)
+
+    def test_a_device_that_is_lost_has_to_be_centred_however_patient_its_source(self):
+        """With timeout_s 2 a pad that comes back within it, held out, drives nothing."""
+        self.mux('_config:=' + os.path.join(HERE, 'mux_patient.yaml'))
+        self.drive(self.pad, PS3_UP)
+        with self.pad.frame(' lost'):
+            begun = self.pad.once(NEUTRAL, held())
+            self.pad.silence()
+        self.twists.wait(rests, begun)
+        self.waits.wait(lambda _: self.waits.last() == 'neutral')
+        wait_until(lambda: time.monotonic() - begun > 1.1, 'no time passes')
+        begun = self.pad.hold(PS3_UP)
+        self.assert_held_until_neutral(begun, self.pad, PS3_UP)
 
     def test_buttons(self):
         """Stop counts from every source, all else from the one that drives; once each press."""

@@ -92,7 +92,7 @@ class InputNodes(unittest.TestCase):
     def _neutral(self, begun, words):
         """Check that one neutral message comes, and nothing after it."""
         first = self.joys.wait(lambda value: value.axes == (0.0, -1.0), begun)
-        self.assertEqual((first.value.buttons, first.value.frame), ((0, 0), 'profile:lab'))
+        self.assertEqual((first.value.buttons, first.value.frame), ((0, 0), 'profile:lab lost'))
         self.joys.wait_silence(0.4)
         self.assertEqual(self.joys.since(first.at), [first])
         return measured(words, first.at - begun)

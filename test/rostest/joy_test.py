@@ -18,6 +18,9 @@ from std_srvs.srv import SetBool
 
 from mhri.msg import ControlMode
 
+# The dead-man button of resource/pads/ps3.yaml.
+L1 = 4
+
 
 @unittest.skipIf(NO_PADS, NO_PADS)
 class Joy(unittest.TestCase):
@@ -59,7 +62,7 @@ class Joy(unittest.TestCase):
 
     def _push(self, number):
         """Centre the stick until the mux is content, then push it forward."""
-        self.node.set(number, axes={0: 0.0, 1: 0.0})
+        self.node.set(number, axes={0: 0.0, 1: 0.0}, buttons={L1: 1})
         self.waits.wait(lambda _: self.waits.last() == '')
         pushed = self.node.set(number, axes={1: -1.0})
         first = self.twists.wait(moves, pushed)
@@ -135,6 +138,7 @@ class Joy(unittest.TestCase):
             self.node.joys.wait_silence(0.5)
             self.assertFalse([item for item in self.twists.since(zero.at) if moves(item.value)])
             number = self.node.attach(PS3, axes={1: -1.0})
+            self.node.set(number, buttons={L1: 1})
             back = self.node.joys.wait(lambda value: value.axes[1] < -0.9, zero.at + 0.5)
             wait_until(lambda: len(self.node.joys.since(back.at)) > 5, 'does not repeat')
             self.assertFalse([item for item in self.twists.since(zero.at) if moves(item.value)],

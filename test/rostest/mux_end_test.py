@@ -43,10 +43,10 @@ class MuxEnd(unittest.TestCase):
         for recorder in (self.twists, self.stops, self.waits):
             recorder.close()
 
-    def _start(self, *arguments):
+    def _start(self, *arguments, output=None):
         """Start a mux and wait until it drives, or would."""
         begun = time.monotonic()
-        mux = start_mux(*arguments)
+        mux = start_mux(*arguments, output=output)
         self.muxes.append(mux)
         self.stops.wait(lambda value: True, begun)
         self.waits.wait(lambda value: True, begun)
@@ -227,6 +227,34 @@ class MuxEnd(unittest.TestCase):
         older.wait()
         measured('hung mux gone after', time.monotonic() - woken)
         self.assertFalse([item for item in self.twists.since(begun) if moves(item.value)])
+
+    def test_a_terminal_that_takes_nothing_holds_up_nothing(self):
+        """Ctrl-S: whatever is said, the zeros come, the stop is answered, and the mux ends."""
+        reading, writing = os.pipe()
+        try:
+            os.set_blocking(writing, False)
+            with self.assertRaises(BlockingIOError):
+                while True:
+                    os.write(writing, bytes(65536))
+            os.set_blocking(writing, True)
+            mux = self._start(output=writing)
+            self._drive()
+            # Refused, and said, on the thread that has the stick.
+            begun = self.stick.hold((float('nan'), 0.0))
+            self.twists.wait(rests, begun)
+            self.waits.wait(lambda value: value == 'source', begun)
+            self._drive()
+            asked = time.monotonic()
+            self.assertTrue(rospy.ServiceProxy(SERVICE, SetBool)(True).success)
+            zero = self.twists.wait(rests, asked)
+            self.assertLess(measured('stop, terminal blocked', zero.at - asked), 0.05)
+            begun = mux.send(signal.SIGTERM)
+            first = self.twists.wait(rests, begun)
+            self.assertLess(measured('SIGTERM, terminal blocked', first.at - begun), 0.05)
+            self.assertEqual(mux.wait(5.0), 0)
+        finally:
+            os.close(reading)
+            os.close(writing)
 
     def _broken(self, text, *words):
         with tempfile.NamedTemporaryFile('wb', suffix='.yaml') as stream:

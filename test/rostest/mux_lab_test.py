@@ -64,14 +64,19 @@ class MuxLab(unittest.TestCase):
         self.twists.wait(lambda value: value == DRIVE, start)
 
     def test_dead_man_released_means_zero(self):
-        """At once, then silence; pressed again it drives."""
+        """At once, then silence; pressed again on the stick held out it drives nothing."""
         self._drive()
         begun = self.pad.hold(FORWARD, RELEASED)
         first = self.twists.wait(rests, begun)
         self.assertLess(measured('first zero after the dead-man button', first.at - begun), 0.05)
         self.waits.wait(lambda _: self.waits.last() == 'dead_man')
         self.twists.wait_silence(0.7)
+        again = self.pad.hold(FORWARD, HELD)
+        self.waits.wait(lambda value: value == 'neutral', again)
+        wait_until(lambda: self.pad.last_sent > again + 0.5, 'nothing sent')
         self.assertFalse([item for item in self.twists.since(first.at) if moves(item.value)])
+        self.pad.hold(NEUTRAL, HELD)
+        self.waits.wait(lambda _: self.waits.last() == '')
         self._drive()
 
     def test_an_added_row_drives(self):

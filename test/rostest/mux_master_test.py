@@ -118,6 +118,24 @@ class MuxMaster(unittest.TestCase):
         self._assert_registered(before)
         self._drive()
 
+    def test_master_that_hangs_is_a_zero_within_1500_ms(self):
+        """It takes calls and never answers; what it forgot, nobody knows."""
+        took = []
+        for _ in range(3):
+            self.stick.hold(NEUTRAL)
+            wait_until(lambda: rospy.ServiceProxy('/mux/set_stop_all', SetBool)(False).success,
+                       'not released')
+            self._drive()
+            hung = self.master.send(signal.SIGSTOP)
+            try:
+                zero = self.twists.wait(rests, hung)
+                took.append(measured('first zero after the master hung', zero.at - hung))
+            finally:
+                self.master.send(signal.SIGCONT)
+            self.twists.wait_silence(0.7)
+            self._drive()
+        self.assertLess(max(took), 1.5)
+
     def test_registered_again_whatever_asks_the_new_master_first(self):
         """Also where something has made the new master know the node by its name alone."""
         before = self._registered()

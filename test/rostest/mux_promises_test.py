@@ -31,6 +31,7 @@ class MuxPromises(unittest.TestCase):
         cls.modes = Recorder('/mux/mode', ControlMode, lambda message: message.source)
         cls.stops = Recorder('/robot_controller/stop_all', Bool, lambda message: message.data)
         cls.waits = Recorder('/mux/waits_for', String, lambda message: message.data)
+        cls.advice = Recorder('/mux/advice', String, lambda message: message.data)
         cls.stick, cls.pedal = (Stick('/mux_in/' + name) for name in ('joy', 'pedal'))
         cls.select = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
         cls.limit = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=10)
@@ -119,7 +120,8 @@ class MuxPromises(unittest.TestCase):
 
     def test_killed_source_zero_within_550_ms(self):
         """SIGKILL of the process that holds the stick."""
-        source = StickProcess('/mux_in/joy')
+        self._mode('pedal')
+        source = StickProcess('/mux_in/pedal')
         try:
             source.hold(NEUTRAL)
             self.waits.wait(lambda _: self.waits.last() == '')
@@ -169,16 +171,38 @@ class MuxPromises(unittest.TestCase):
 
     def test_neutral_interlock_after_a_newly_connected_device(self):
         """Another publisher takes the stick over, held."""
-        self._drive()
-        source = StickProcess('/mux_in/joy')
+        self._mode('pedal')
+        self._drive(self.pedal)
+        source = StickProcess('/mux_in/pedal')
         try:
             source.hold(FORWARD)
             begun = self.twists.wait(rests, time.monotonic()).at
-            self.stick.silence()
+            self.pedal.silence()
             self.waits.wait(lambda _: self.waits.last() == 'neutral')
             self._assert_interlock(source, begun)
         finally:
             source.process.end()
+
+    def test_a_second_virtual_joystick_is_refused_until_the_first_has_gone(self):
+        """Two panels: they must not take turns; the second one is named."""
+        first = StickProcess('/mux_in/joy', 'first_panel')
+        try:
+            self._drive()
+            first.hold((0.0, -1.0))
+            self.advice.wait(lambda words: '/first_panel publishes /mux_in/joy as well' in words)
+            start = time.monotonic()
+            self.twists.wait(lambda _: len(self.twists.since(start)) > 30)
+            self.assertEqual({item.value for item in self.twists.since(start)}, {DRIVE})
+        finally:
+            first.process.end()
+
+    def test_stop_all_is_repeated_twice_a_second(self):
+        """It is the mux's sign of life, and what undoes another node's word."""
+        start = time.monotonic()
+        self.stops.wait(lambda _: len(self.stops.since(start)) > 4)
+        said = [item.at for item in self.stops.since(start)]
+        gaps = [later - sooner for sooner, later in zip(said, said[1:])]
+        self.assertLess(measured('longest gap between two of stop-all', max(gaps)), 0.75)
 
     def test_neutral_interlock_after_a_released_stop_all(self):
         """Release itself needs neutral; then the stick has to be centred once more."""

@@ -3,20 +3,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Robots without a namespace, without a type, with topics of their own: found, added and driven.
 
-Each robot is a process of its own on a real master; looking, links and gates are the panel's.
+Each robot is a process of its own on a real master, beside a real mux and real gates; looking and
+links are the panel's.
 """
 import os
 import signal
 import sys
 import tempfile
-import threading
 import unittest
 
 from geometry_msgs.msg import Twist
 import roslib.packages
 import rospy
 import rostest
-from rostest_tools import Process, start_mux
+from rostest_tools import FORWARD, NEUTRAL, Process, start_mux, Stick
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 sys.path.insert(0, os.path.join(HERE, '..'))
@@ -25,42 +25,20 @@ try:
 except ImportError:
     sys.path.insert(0, os.path.join(HERE, '..', 'support', 'messages'))
 
-from mhri.msg import RobotSelect  # noqa: E402
+from mhri.ros.driving.gates_client import GatesClient  # noqa: E402
 from mhri.ros.robots.fleet import Fleet  # noqa: E402
-from mhri.ros.driving.gates import GateBank  # noqa: E402
 from mhri.ros.graph.look import look_for_robots, shipped_ignore_list  # noqa: E402
 from mhri.ros.resources import robot_types  # noqa: E402
 from mhri.ros.worker import Worker  # noqa: E402
-from support.deaf_robot import DeafRobot  # noqa: E402
+from support.fake_mux import FakeOperator  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 PATIENCE_S = 30.0
 PLAIN_ROBOT = os.path.join(HERE, '..', 'support', 'plain_robot.py')
 TB3_SIGN = ('--sign', 'sensor_state', 'turtlebot3_msgs/SensorState')
+TURTLES = os.path.join(HERE, '..', 'support', 'turtles.py')
 GUARD = os.path.join(HERE, '..', '..', 'utils', 'remote', 'mhri_guard')
 PARAMETERS = ('/robot_type', '/robot_model', '/robot_name')
-
-
-class Driver:
-    """Says the same velocity 20 times a second, as the mux does."""
-
-    def __init__(self):
-        self._publisher = rospy.Publisher('/robot_controller/twist', Twist, queue_size=1)
-        self._twist = Twist()
-        self._done = threading.Event()
-        threading.Thread(target=self._run, daemon=True).start()
-
-    def _run(self):
-        while not self._done.wait(0.05) and not rospy.is_shutdown():
-            self._publisher.publish(self._twist)
-
-    def hold(self, linear, angular=0.0):
-        twist = Twist()
-        twist.linear.x, twist.angular.z = linear, angular
-        self._twist = twist
-
-    def connected(self):
-        return self._publisher.get_num_connections() > 0
 
 
 class RobotTypesTest(unittest.TestCase):
@@ -69,23 +47,36 @@ class RobotTypesTest(unittest.TestCase):
     def setUpClass(cls):
         cls.types, errors = robot_types()
         assert not errors, errors
-        cls.driver = Driver()
-        cls.select = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1,
-                                     latch=True)
-        cls.bank = GateBank()
-        cls.bank.start()
+        cls.processes = [start_mux('__name:=mux'),
+                         Process([roslib.packages.find_node('mhri', 'gates')[0]])]
+        cls.stick, cls.operator = Stick('/mux_in/joy'), FakeOperator()
+        limit = Twist()
+        limit.linear.x, limit.angular.z = 5.0, 5.0
+        cls.limit = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=1, latch=True)
+        cls.limit.publish(limit)
+        cls.gates = GatesClient(lambda state, now: None).start()
         cls.worker = Worker('feeds').start()
-        wait_for(lambda: cls.driver.connected() and cls.select.get_num_connections(), PATIENCE_S)
+        cls.stick.wait_listener()
+        wait_for(lambda: cls.gates.state() and cls.gates.state().mux == '/mux', PATIENCE_S)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.stick.silence()
+        for process in cls.processes:
+            process.send(signal.SIGTERM)
+            process.wait(PATIENCE_S)
+            process.end()
 
     def setUp(self):
         self.ignore = shipped_ignore_list()
-        self.fleet = Fleet(self.types, self.bank, self.worker, lambda *_: None)
+        self.fleet = Fleet(self.types, self.gates, self.worker)
         self.names = []
         self.addCleanup(self.end)
 
     def end(self):
-        self.driver.hold(0.0)
-        self.select.publish([])
+        self.stick.hold(NEUTRAL)
+        self.operator.check()
+        rospy.set_param('/mhri/robots', [])
         for name in self.names:
             link = self.fleet.drop(name)
             if link:
@@ -136,6 +127,7 @@ class RobotTypesTest(unittest.TestCase):
     def add(self, name, facts=None):
         """Take a robot into the list, as the panel does; return its type."""
         self.names.append(name)
+        rospy.set_param('/mhri/robots', self.names)
         self.fleet.want(name)
         self.fleet.connect(name, facts)
         return self.fleet.robot_type(name)
@@ -143,15 +135,22 @@ class RobotTypesTest(unittest.TestCase):
     def view(self, name):
         return self.fleet.view(name, True)
 
+    def take_stick(self, name):
+        """Check a robot, and hold the stick ahead once it has been centred."""
+        self.stick.hold(NEUTRAL)
+        self.operator.check(name)
+        wait_for(lambda: self.view(name).obeys and not self.view(name).stands
+                 and self.gates.robot(name).topic, PATIENCE_S, name + ' to be ready')
+        self.stick.hold(FORWARD)
+
     def drives(self, name, most):
         """Drive a robot with all there is: as fast as it may; it stops when deselected."""
         wait_for(lambda: self.view(name).link == 'live', PATIENCE_S, name + ' to be heard')
-        self.select.publish([name])
-        self.driver.hold(5.0)
+        self.take_stick(name)
         wait_for(lambda: abs(self.view(name).linear_mps - most) < 0.01, PATIENCE_S,
                  '{} to move at {} m/s'.format(name, most))
-        self.assertTrue(self.view(name).driven)
-        self.select.publish([])
+        wait_for(lambda: self.view(name).driven, 1.0, 'the word of the gates')
+        self.operator.check()
         wait_for(lambda: self.view(name).linear_mps == 0.0, PATIENCE_S, name + ' to stop')
 
     def test_a_turtlebot3_at_the_root(self):
@@ -170,8 +169,7 @@ class RobotTypesTest(unittest.TestCase):
         self.addCleanup(self.gone, guard, '/robot/mhri_guard')
         wait_for(lambda: '/robot/mhri_guard' in self.nodes(), PATIENCE_S, 'the guard')
         self.add('robot', self.found('robot')['robot'])
-        gate = next(gate for gate in self.bank.gates() if gate.name == 'robot')
-        wait_for(gate.guarded, PATIENCE_S, 'the guard to listen')
+        wait_for(lambda: self.view('robot').guarded, PATIENCE_S, 'the guard to be heard')
         self.drives('robot', 0.22)
 
     def test_its_parameters_and_its_name(self):
@@ -206,6 +204,23 @@ class RobotTypesTest(unittest.TestCase):
             self.assertEqual((kind.name, kind.command), ('turtlesim', (topic,)))
             self.drives(name, 2.0)
 
+    def test_two_turtles_of_one_turtlesim(self):
+        process = Process([sys.executable, TURTLES, 'turtle1', 'turtle2'])
+        self.addCleanup(self.gone, process, '/turtlesim')
+        facts = self.found('robot', 'turtle2')
+        for name in ('robot', 'turtle2'):
+            self.add(name, facts[name])
+        for name, other in (('robot', 'turtle2'), ('turtle2', 'robot')):
+            self.drives(name, 2.0)
+            self.assertEqual(self.view(other).linear_mps, 0.0)
+
+    def test_a_robot_without_odometry_is_not_said_to_be_waited_for(self):
+        """It is driven."""
+        self.start('cmd_vel', 'elsewhere', namespace='/mute')
+        self.add('mute', self.found('mute')['mute'])
+        wait_for(lambda: self.view('mute').link == 'live', PATIENCE_S, 'mute to be reached')
+        self.assertIn('no odometry', self.view('mute').note)
+
     def test_a_robot_started_with_ros_namespace(self):
         rospy.set_param('/bot7/robot_type', 'turtlebot3')
         self.addCleanup(rospy.delete_param, '/bot7')
@@ -216,8 +231,7 @@ class RobotTypesTest(unittest.TestCase):
         kind = self.add('bot7', self.found('bot7')['bot7'])
         self.assertEqual(kind.label, 'TurtleBot3 Burger')
         wait_for(lambda: self.view('bot7').link == 'live', PATIENCE_S, 'bot7 to be heard')
-        self.select.publish(['bot7'])
-        self.driver.hold(0.2)
+        self.take_stick('bot7')
         wait_for(lambda: self.view('bot7').linear_mps > 0.1, PATIENCE_S, 'bot7 to move')
 
     def test_an_unknown_robot_is_driven_by_the_topic_it_has(self):
@@ -254,21 +268,6 @@ class RobotTypesTest(unittest.TestCase):
         wait_for(known, PATIENCE_S, 'its topic', 0.1)
         self.drives('half', 0.5)
 
-    def test_a_robot_that_is_heard_and_does_not_listen_is_told_again_who_speaks(self):
-        """It was out of reach when the master told it."""
-        deaf = DeafRobot('/deaf/cmd_vel')
-        self.addCleanup(deaf.close)
-        self.start('drive/velocity', 'odom', '--halfway', namespace='/deaf')
-        self.add('deaf', self.found('deaf')['deaf'])
-        wait_for(lambda: deaf.told, PATIENCE_S, 'the first time')
-        told = len(deaf.told)
-
-        def again():
-            self.fleet.supervise()
-            return len(deaf.told) > told
-        wait_for(again, PATIENCE_S, 'the next time', 0.1)
-        self.assertIn(rospy.get_name(), deaf.told[-1])
-
     def test_a_robot_keeps_its_topic_while_it_is_away(self):
         process = self.start('drive/velocity', 'odom', namespace='/away')
         kind = self.add('away', self.found('away')['away'])
@@ -281,8 +280,6 @@ class RobotTypesTest(unittest.TestCase):
         self.drives('away', 0.5)
 
     def test_neither_mhri_nor_the_tools_of_ros_are_offered(self):
-        mux = start_mux('__name:=mux')
-        self.addCleanup(self.gone, mux, '/mux')
         self.start('/mhri_odd/cmd_vel', '/mhri_odd/odom', node='mhri_odd')
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)

@@ -144,9 +144,13 @@ def wait_until(condition, words, patience_s=PATIENCE_S):
 
 
 class Stick:
-    """A stick on a Joy topic, held at 50 Hz as a pad's driver does, by this process."""
+    """A stick on a Joy topic, held at 50 Hz as a pad's driver does, by this process.
 
-    def __init__(self, topic):
+    :param buttons: what is held with it where nothing else is said
+    """
+
+    def __init__(self, topic, buttons=()):
+        self._buttons = buttons
         self._publisher = rospy.Publisher(topic, Joy, queue_size=10, tcp_nodelay=True)
         self._held = None
         self._frame = ''
@@ -182,10 +186,10 @@ class Stick:
         finally:
             self._frame = ''
 
-    def hold(self, axes, buttons=()):
+    def hold(self, axes, buttons=None):
         """Hold the stick like this from now on; return the time of it."""
         with self._changed:
-            self._held = (axes, buttons)
+            self._held = (axes, self._buttons if buttons is None else buttons)
             self._changed.notify()
             return time.monotonic()
 
@@ -213,9 +217,10 @@ def free_port():
 class Process:
     """A process of its own, with what it said; ended at the latest by :meth:`end`."""
 
-    def __init__(self, command, env=None, stdin=None):
+    def __init__(self, command, env=None, stdin=None, output=None):
         self._said = tempfile.NamedTemporaryFile('w+', suffix='.log')
-        self._popen = subprocess.Popen(command, stdout=self._said, stderr=subprocess.STDOUT,
+        self._popen = subprocess.Popen(command, stdout=output or self._said,
+                                       stderr=subprocess.STDOUT,
                                        stdin=stdin, env=dict(os.environ, **(env or {})))
         self.stdin = self._popen.stdin
 
@@ -252,10 +257,10 @@ class Process:
         self._said.close()
 
 
-def start_mux(*arguments, env=None):
-    """Start the real mux node, e.g. with '__name:=other'."""
+def start_mux(*arguments, env=None, output=None):
+    """Start the real mux node, e.g. with '__name:=other'; ``output``: where it writes instead."""
     path = roslib.packages.find_node('mhri', 'mux')[0]
-    return Process([path] + list(arguments), env)
+    return Process([path] + list(arguments), env, output=output)
 
 
 class StickProcess:

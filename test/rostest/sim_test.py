@@ -16,13 +16,21 @@ import rosgraph
 import rospy
 import rostest
 from sensor_msgs.msg import BatteryState, Imu, LaserScan
+from std_msgs.msg import Bool
 from tf2_msgs.msg import TFMessage
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
+SUPPORT = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'support')
+sys.path.insert(0, os.path.dirname(SUPPORT))
+# Behind what is installed: the message that takes the power from a TurtleBot2's motors.
+sys.path.append(os.path.join(SUPPORT, 'messages'))
 
+from kobuki_msgs.msg import MotorPower  # noqa: E402
 from support.robots import report, Witness  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
+# What takes the power from its motors: topic, without, with.
+POWER = {'turtlebot2': ('mobile_base/commands/motor_power', MotorPower(0), MotorPower(1)),
+         'turtlebot3': ('motor_power', Bool(False), Bool(True))}
 # What sim.launch starts: robot -> robot_type, robot_model, watchdog [s], IMU, commands, more.
 ROBOTS = {
     'bot1': ('turtlebot2', None, 0.6, 'mobile_base/sensors/imu_data',
@@ -124,6 +132,8 @@ class SimTest(unittest.TestCase):
     def setUpClass(cls):
         cls.system = System()
         cls.system.start_master()
+        cls.system.env['PYTHONPATH'] = os.pathsep.join(
+            (os.environ.get('PYTHONPATH', ''), os.path.join(SUPPORT, 'messages')))
         cls.system.launch('sim.launch', 'n:=3')
         rospy.init_node('sim_test', disable_signals=True)
         cls.witnesses = {name: Witness(name) for name in ROBOTS}
@@ -152,15 +162,16 @@ class SimTest(unittest.TestCase):
 
     def test_topics_are_exactly_those_of_the_template(self):
         publishers, subscribers, types = graph()
-        for name, (_, _, _, imu, commands, more) in ROBOTS.items():
+        for name, (robot_type, _, _, imu, commands, more) in ROBOTS.items():
             prefix, node = '/' + name + '/', '/' + name + '/base'
             wanted = {'/tf': 'tf2_msgs/TFMessage', prefix + 'odom': 'nav_msgs/Odometry',
                       prefix + imu: 'sensor_msgs/Imu', prefix + 'scan': 'sensor_msgs/LaserScan'}
             wanted.update({prefix + topic: 'sensor_msgs/BatteryState' for topic in more})
             wanted.update(cameras(prefix, name == 'bot1'))
             self.assertEqual({topic: types[topic] for topic in of_node(node, publishers)}, wanted)
-            self.assertEqual({topic: types[topic] for topic in of_node(node, subscribers)},
-                             {prefix + topic: 'geometry_msgs/Twist' for topic in commands})
+            wanted = {prefix + topic: 'geometry_msgs/Twist' for topic in commands}
+            wanted[prefix + POWER[robot_type][0]] = POWER[robot_type][1]._type
+            self.assertEqual({topic: types[topic] for topic in of_node(node, subscribers)}, wanted)
 
     def test_parameters(self):
         for name, (robot_type, model, *_) in ROBOTS.items():
@@ -244,6 +255,28 @@ class SimTest(unittest.TestCase):
                 self.assertLess(stood, watchdog_s + 0.25, 'stood too late')
                 wait_for(lambda: time.monotonic() > since + stood + 0.2, 1.0, 'the time to pass')
                 self.assertFalse(witness.moved_since(since + stood))
+
+    def test_without_power_it_stands_and_power_moves_nothing(self):
+        twist = Twist()
+        twist.linear.x = 9.0
+        for name, (robot_type, _, _, _, commands, _) in ROBOTS.items():
+            witness, (topic, without, with_power) = self.witnesses[name], POWER[robot_type]
+            publisher = rospy.Publisher('/{}/{}'.format(name, topic), type(without), queue_size=1)
+            wait_for(publisher.get_num_connections, PATIENCE_S, 'its switch')
+            self.drive(name, commands[0], 0.4, twist)
+            self.assertTrue(witness.moving())
+            publisher.publish(without)
+            since = time.monotonic()
+            stood = wait_for(lambda: witness.stood_still_at(since), 5.0, 'standstill') - since
+            report('{} without power'.format(name), {name: stood})
+            self.drive(name, commands[0], 0.4, twist)
+            publisher.publish(with_power)
+            end = time.monotonic() + 0.4
+            wait_for(lambda: time.monotonic() > end, 1.0, 'the time to pass')
+            self.assertFalse(witness.moved_since(since + stood), 'power alone moved it')
+            self.drive(name, commands[0], 0.4, twist)
+            self.assertTrue(witness.moving())
+            publisher.unregister()
 
     def test_what_is_not_finite_does_not_move_it(self):
         twist = Twist()

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The launch files, as roslaunch reads them."""
 from pathlib import Path
+import shlex
 import xml.etree.ElementTree as ElementTree
 
 import pytest
@@ -59,6 +60,14 @@ def test_panels_command_line(arguments, said, unsaid):
     args = nodes(load(MHRI, *arguments))['/mhri_panel'].args
     assert [text for text in said if text not in args] == []
     assert [text for text in unsaid if text in args] == []
+
+
+@pytest.mark.parametrize('robots', ["bot1' --demo --select 'bot1", "'", 'bot1\\', 'bot1" x'])
+def test_names_of_robots_add_no_options_to_the_panel(robots):
+    # Split as roslaunch does it.
+    words = shlex.split(nodes(load(MHRI, 'robots:=' + robots))['/mhri_panel'].args)
+    assert words[words.index('--robots') + 1] == robots.replace("'", '?')
+    assert words[words.index('--robots') + 2] == '--screenshot'
 
 
 def test_arguments_of_the_host():

@@ -4,6 +4,7 @@
 
 The package is built and its tests are run by catkin, for real.
 """
+import re
 import shutil
 import signal
 import time
@@ -34,6 +35,7 @@ rosunit.unitrun('mhri', '{}', Case)
 SMALL_TESTS = {
     'unit/test_good.py': 'import pytest\n\n\ndef test_a():\n    print("a figure: 42 ms")\n\n\n'
                          '@pytest.mark.skip\ndef test_b():\n    pass\n',
+    'ros/test_ros.py': 'from mhri.msg import RobotSelect\n\n\ndef test_it():\n    RobotSelect()\n',
     'gui/test_screen.py': 'import subprocess\n\n\ndef test_display():\n'
                           '    subprocess.check_call(["xdpyinfo"], stdout=subprocess.DEVNULL)\n',
     'rostest/good.test': ROSTEST.format(name='good'),
@@ -83,7 +85,7 @@ def run_tests(package, *arguments):
 
 def test_good_tests(package):
     status, output = run_tests(package, *GROUPS[:-2])
-    assert output.splitlines()[-1] == '4 passed, 0 failed, 1 skipped', output
+    assert output.splitlines()[-1] == '5 passed, 0 failed, 1 skipped', output
     assert status == 0
     assert 'a figure: 42 ms' in output
     assert package.called('apt-get', 'sudo') == []
@@ -99,7 +101,7 @@ def test_bad_tests_are_all_counted(package):
                  'pytest-faults-test_none.xml: no test ran', 'rosunit-bad',
                  'rosunit-crash.xml: is not a whole result file'):
         assert [line for line in failed if name in line], (name, output)
-    assert output.splitlines()[-1] == '6 passed, 6 failed, 1 skipped', output
+    assert output.splitlines()[-1] == '7 passed, 6 failed, 1 skipped', output
     assert 'ending what was left running' in output and 'sleep 600' in output
 
 
@@ -108,7 +110,61 @@ def test_results_of_the_last_run_do_not_count(package):
     assert output.splitlines()[-1] == '1 passed, 1 failed', output
     shutil.rmtree(str(package.root / 'test' / 'unit'))
     status, output = run_tests(package, '--only', 'unit')
-    assert output.splitlines()[-1] == '0 passed, 1 failed', output
+    assert output.splitlines()[-1] == '1 passed, 1 failed', output
+
+
+MEETING = '''import os
+import pathlib
+import time
+
+
+def test_meeting():
+    here = pathlib.Path(__file__).resolve()
+    (here.parent / (here.stem + '.came')).touch()
+    end = time.monotonic() + float(os.environ['MEETING_S'])
+    while len(list(here.parent.glob('*.came'))) < 2:
+        assert time.monotonic() < end, 'nobody else came'
+        time.sleep(0.02)
+'''
+
+
+@pytest.mark.parametrize('group, jobs, together', [
+    ('scripts', '2', True), ('scripts', '1', False), ('faults', '2', False)])
+def test_files_that_measure_no_times_run_together(package, group, jobs, together):
+    for folder in ('scripts', 'faults'):
+        shutil.rmtree(str(package.root / 'test' / folder), ignore_errors=True)
+    write_tests(package, {group + '/test_one.py': MEETING, group + '/test_two.py': MEETING,
+                          group + '/test_remote_network.py': 'def test_alone():\n    pass\n'})
+    status, output = package.run(
+        '--only', group, '--jobs', jobs, script=package.script.with_name('mhri_test.sh'),
+        limit_s=240, MEETING_S='60' if together else '0.5')
+    assert output.splitlines()[-1] == ('3 passed, 0 failed' if together else '2 passed, 1 failed')
+    assert re.search(r'^mhri: times: {}\w* \d+ s'.format(group), output, re.M), output
+
+
+@pytest.fixture
+def fast(checkout):
+    """Return a function that runs the fast group with a unit test; nothing is built."""
+    def go(text):
+        write_tests(checkout, {'scripts/test_lint.py': 'def test_flake8():\n    pass\n',
+                               'unit/test_rule.py': text})
+        shutil.copy(str(REPO / 'test' / 'run_fast.sh'), str(checkout.root / 'test'))
+        status, output = run_tests(checkout, '--only', 'fast')
+        assert checkout.calls == [], output
+        return status, output
+    return go
+
+
+@pytest.mark.parametrize('text, status, count', [
+    ('def test_rule():\n    assert True\n', 0, '2 passed, 0 failed'),
+    ('def test_rule():\n    assert False\n', 1, '1 passed, 1 failed'),
+    ('import os\n\n\ndef test_rule():\n    os._exit(0)\n', 1, '1 passed, 1 failed'),
+    ('import no_such_module\n', 1, '1 passed, 2 failed'),
+])
+def test_fast_group_builds_and_installs_nothing(fast, text, status, count):
+    done, output = fast(text)
+    assert output.splitlines()[-1] == count, output
+    assert done == status and 'mhri: times: fast ' in output
 
 
 def test_interrupted_run_leaves_nothing(package):
@@ -133,6 +189,8 @@ def test_interrupted_run_leaves_nothing(package):
     (['--only'], "there is no group ''"),
     (['--only', 'nothing'], "there is no group 'nothing'"),
     (['--only', 'unit gui'], "there is no group 'unit gui'"),
+    (['--jobs'], "--jobs: '' is no number"),
+    (['--jobs', '0'], "--jobs: '0' is no number"),
     (['unit'], "'unit' is not an option"),
 ])
 def test_wrong_arguments_are_refused(checkout, arguments, said):

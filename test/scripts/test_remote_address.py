@@ -30,6 +30,8 @@ SPEC.loader.exec_module(turtle_address)
     ('192.168.0.7', ['10.0.0.5', '192.168.0.7'], {}, None, '192.168.0.7'),
     ('192.168.0.103', ['192.168.0.7'], {'192.168.0.7': 32}, None, '192.168.0.7'),
     ('192.168.0.103', [], {}, None, None),
+    ('127.0.0.1', ['192.168.0.7', '10.0.0.5', '172.17.0.1'], {}, '127.0.0.1', '127.0.0.1'),
+    ('127.0.0.1', ['192.168.0.7'], {}, '127.0.0.1', '127.0.0.1'),
 ])
 def test_address_on_the_network_of_the_other(target, own, lengths, out, chosen):
     if chosen is None:
@@ -45,3 +47,19 @@ def test_no_address_is_one_line_and_status_1():
     assert done.returncode == 1 and done.stdout == ''
     assert done.stderr.startswith('mhri: this computer has no IPv4 address')
     assert done.stderr.count('\n') == 1
+
+
+@pytest.mark.parametrize('arguments, said', [
+    (['--ip', '', '1.2.3.4'], "'' is not an IPv4 address"),
+    (['--ip', '1.2.3.4', ''], "'' is not an IPv4 address"),
+    (['--ip', '1.2.3.4\n', '1.2.3.4'], 'is not an IPv4 address'),
+    (['--ip', '1.2.3.4 x', '1.2.3.4'], 'is not an IPv4 address'),
+    (['--ip', '\x1b[2J', '1.2.3.4'], 'is not an IPv4 address'),
+    (['--ip', '1.' * 50000, '1.2.3.4'], 'is not an IPv4 address'),
+    (['--ip'], 'usage: '), ([], 'usage: ')])
+def test_what_is_no_address_is_one_line_and_status_1(arguments, said):
+    done = subprocess.run([sys.executable, str(PATH)] + arguments, stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, universal_newlines=True)
+    assert done.returncode == 1 and done.stdout == '' and said in done.stderr
+    assert done.stderr.startswith('mhri: ') and done.stderr[:-1].isprintable()
+    assert len(done.stderr) <= 300

@@ -19,15 +19,24 @@ RIGHT = {'connect': ['turtle', '192.0.2.7', 'bot1'], 'deploy': ['turtle@192.0.2.
          'remote': ['192.0.2.1', 'bot1']}
 NAMES = ['bot1; reboot', '../x', '$(id)', '`id`', 'my bot', '-oProxyCommand=touch hacked', '1bot',
          'bot1\nreboot', 'bot1|touch hacked', 'bot1&', 'bot/1', "bot'1", 'bot"1', 'bot*', 'böt', '',
-         '/bot1', '~bot', 'x' * 33, 'bot1:=2', '--', '-', 'mux', 'robot_controller']
+         '/bot1', '~bot', 'x' * 33, 'bot1\n', '\x1b[2Jx', 'x' * 100000,
+         'bot1:=2', '--', '-', 'mux', 'robot_controller']
 ADDRESSES = ['300.1.1.1', '1.2.3', '1.2.3.4.5', 'robot', 'fe80::1', '1.2.3.4; touch hacked',
              '$(touch hacked)', '`touch hacked`', '1.2.3.4\n5', '-oProxyCommand=touch hacked', '',
-             '08.1.1.300', '1.2.3.4 5.6.7.8', '1.2.3.4/24', '0x7f.1.1.1', '--', '1.2.3.4,1.2.3.5']
+             '1.2.3.4\n', '\n1.2.3.4', '1.2.3.4\r', '1.2.3.4\t', '08.1.1.300',
+             '1.2.3.4 5.6.7.8', '1.2.3.4/24', '0x7f.1.1.1', '--', '1.2.3.4,1.2.3.5']
 USERS = ['-oProxyCommand=touch hacked', 'root; touch hacked', '$(touch hacked)', 'a b', '../x',
-         'a@b', '', 'a\nb', "a'b", '-l', 'a:b', '`id`', 'x' * 33]
+         'turtle\n', '\x1b[31ma', 'a' * 100000, 'a@b', '', 'a\nb', "a'b", '-l', 'a:b', '`id`',
+         'x' * 33]
 FOLDERS = ['/etc', '../x', 'a/../b', '..', '.', '-x', 'a b', '$(touch hacked)', 'a;b', '', '~',
-           'a//b', 'a/', '.ssh', "a'b", 'a\nb']
-PORTS = ['0', '65536', '-1', 'ssh', '22; touch hacked', '1e3', '', '123456', '2 2']
+           'a//b', 'a/', 'a\n', '.ssh', "a'b", 'a\nb']
+PORTS = ['0', '65536', '-1', 'ssh', '22; touch hacked', '1e3', '', '123456', '2 2',
+         '22\n', '\n22', '22\t']
+
+
+def short(text):
+    """Return the id of a parameter."""
+    return repr(text)[1:30]
 
 
 @pytest.fixture
@@ -60,7 +69,8 @@ def is_refused(run, script, arguments, said=None):
     """Assert that a command line is refused, with one message, and that nothing was run."""
     status, output = run(script, *arguments)
     assert status == 2, output
-    assert output.startswith('mhri: ') and '--help' in output
+    assert output.startswith('mhri: ') and output.endswith('(--help lists every option)\n')
+    assert output[:-1].isprintable() and len(output) <= 600, 'safe for a terminal, and short'
     if said is not None:
         assert said in output
     assert run.calls() == []
@@ -74,13 +84,13 @@ def with_one(script, index, text):
     return arguments
 
 
-@pytest.mark.parametrize('name', NAMES)
+@pytest.mark.parametrize('name', NAMES, ids=short)
 @pytest.mark.parametrize('script, index', [('connect', 2), ('remote', 1)])
 def test_wrong_names_are_refused(run, script, index, name):
     is_refused(run, script, with_one(script, index, name))
 
 
-@pytest.mark.parametrize('address', ADDRESSES)
+@pytest.mark.parametrize('address', ADDRESSES, ids=short)
 def test_wrong_addresses_are_refused(run, address):
     is_refused(run, 'connect', with_one('connect', 1, address))
     is_refused(run, 'remote', with_one('remote', 0, address))
@@ -105,19 +115,19 @@ def test_addresses_with_leading_zeros_are_refused_with_the_right_ones(run, addre
     is_refused(run, 'deploy', ['turtle@' + address], 'IP: ' + said)
 
 
-@pytest.mark.parametrize('user', USERS)
+@pytest.mark.parametrize('user', USERS, ids=short)
 def test_wrong_users_are_refused(run, user):
     is_refused(run, 'connect', with_one('connect', 0, user))
     is_refused(run, 'deploy', [user + '@192.0.2.7'])
 
 
-@pytest.mark.parametrize('folder', FOLDERS)
+@pytest.mark.parametrize('folder', FOLDERS, ids=short)
 def test_folders_outside_the_home_are_refused(run, folder):
     is_refused(run, 'connect', RIGHT['connect'] + ['--to', folder])
     is_refused(run, 'deploy', RIGHT['deploy'] + ['--to', folder])
 
 
-@pytest.mark.parametrize('port', PORTS)
+@pytest.mark.parametrize('port', PORTS, ids=short)
 def test_wrong_ports_are_refused(run, port):
     is_refused(run, 'connect', RIGHT['connect'] + ['--ssh-port', port])
     is_refused(run, 'deploy', RIGHT['deploy'] + ['--ssh-port', port])
@@ -125,11 +135,20 @@ def test_wrong_ports_are_refused(run, port):
 
 
 @pytest.mark.parametrize('text', ['$(touch hacked)', 'a b', 'x;touch hacked', '', '-x', '`id`',
-                                  "a'b", 'a\nb', 'a*', 'a&b', 'a|b', 'a>b', 'a\\b', 'a"b'])
+                                  "a'b", 'a\nb', 'a*', 'a&b', 'a|b', 'a>b', 'a\\b', 'a"b', 'a\n',
+                                  'burger\n', '\x1b[2Ja', '\x1b]0;a\x07', 'x' * 100000,
+                                  '0.' * 50000, '\x9b2J', '\u202ea'], ids=short)
 @pytest.mark.parametrize('option', ['--type', '--model', '--launch', '--setup', '--ip', '--port'])
 def test_nothing_strange_is_passed_on_to_the_robot(run, option, text):
     is_refused(run, 'connect', RIGHT['connect'] + [option, text])
     is_refused(run, 'remote', RIGHT['remote'] + [option, text])
+
+
+@pytest.mark.parametrize('script', sorted(SCRIPTS))
+@pytest.mark.parametrize('text', ['\x1b[2J', '-\x1b[2J', '--\x1b]0;hacked\x07',
+                                  '--' + 'x' * 100000], ids=short)
+def test_what_is_no_option_is_shown_safely(run, script, text):
+    is_refused(run, script, RIGHT[script] + [text])
 
 
 @pytest.mark.parametrize('script, arguments, said', [

@@ -264,8 +264,10 @@ def test_release_takes_what_the_robot_brought_and_nothing_else(master, before):
         claim.make()
         master.params.update(brought)
         if ends:
+            master.params['/bot1/mhri/command'] = 'said while it ran'
             claim.give_up()
-    assert master.params == dict(before, **{'/run_id': 'x'})
+    assert master.params == dict(before, **{'/run_id': 'x',
+                                            '/bot1/mhri/command': 'said while it ran'})
 
 
 def test_wrong_things_are_one_line_and_status_1(master):
@@ -275,6 +277,28 @@ def test_wrong_things_are_one_line_and_status_1(master):
                           universal_newlines=True, timeout=60)
     assert done.returncode == 1
     assert done.stdout.startswith('mhri: the host calls itself') and done.stdout.count('\n') == 1
+
+
+@pytest.mark.parametrize('arguments', [
+    [], ['host'], ['nonsense'], ['host', '', '11311', HOST, 'bot1'], ['hold'],
+    ['host', HOST, '', HOST, 'bot1'], ['host', HOST, '99999', HOST, 'bot1'],
+    ['host', HOST, '11311\n', HOST, 'bot1'], ['host', HOST + '\n', '1', HOST, 'bot1'],
+    ['watch', HOST, 'port', 'bot1', 'me'], ['release', '\x1b[2J' * 10000, '1', 'bot1', 'me']])
+def test_wrong_command_lines_are_one_line_and_status_1(arguments):
+    done = subprocess.run([sys.executable, str(PATH)] + arguments, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, universal_newlines=True, timeout=60)
+    assert done.returncode == 1 and done.stdout.startswith('mhri: '), done.stdout
+    assert done.stdout[:-1].isprintable() and len(done.stdout) <= 600
+
+
+def test_what_a_master_says_is_shown_safely(master, listener):
+    node = '/bot1/\x7f\x9b2J\u202e' + 'x' * 100000
+    master.nodes[node] = 'http://{}:{}/'.format(HOST, listener)
+    done = subprocess.run([sys.executable, str(PATH), 'host', HOST, str(master.port), HOST, 'bot1'],
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          universal_newlines=True, timeout=60)
+    assert done.returncode == 1 and 'bot1 runs already' in done.stdout
+    assert done.stdout[:-1].isprintable() and len(done.stdout) <= 600
 
 
 def test_held_command_ends_with_its_parent(tmp_path):

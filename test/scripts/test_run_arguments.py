@@ -28,8 +28,23 @@ import pytest
     (['--ip', '1.2.3.4.5'], "'1.2.3.4.5'"),
     (['--ip', '010.1.1.1'], 'has leading zeros, which not every program reads alike: write 10.1'),
     (['--ip', 'fe80::1'], "'fe80::1'"),
-    (['--ip', '1.2.3.4\n5'], 'is not an IPv4 address'),
     (['--ip', '`touch hacked`'], "'`touch hacked`'"),
+    (['--ip', '127.0.0.1\n'], '--ip: a control character'),
+    (['--ip', '1.2.3.4\x1b[2J'], '--ip: a control character'),
+    (['--ip', '1.' * 50000], 'is too long: at most 512'),
+    (['--ip', '1.' * 200], 'is not an IPv4 address'),
+    (['--master', 'http://127.0.0.1:11311\n'], '--master: a control character'),
+    (['--sim', '3\n'], '--sim: a control character'),
+    (['--\x1b[2J'], 'there is no option --?[2J'),
+    (['--' + 'x' * 100000], 'there is no option --xxx'),
+    (['x' * 100000], 'is neither an option nor'),
+    (['gui:=\x1b[2J'], 'gui: a control character'),
+    (['robots:=bot1\nbot2'], 'robots: a control character'),
+    (["robots:=bot1' --fresh --select 'bot1"], "robots: 'bot1'' is not a robot's name"),
+    (['robots:=bot1 --select'], "robots: '--select' is not a robot's name"),
+    (["screenshot:=x' --fresh '"], 'screenshot: a quote'),
+    (["demo_result:=x' --fresh '"], 'demo_result: a quote'),
+    (['--demo', '--screenshot', "x' --fresh '.png"], '--screenshot: a quote'),
     (['--master'], '--master needs a value'),
     (['--master', 'localhost'], "'localhost' is not an address"),
     (['--master', 'http://host'], "'http://host'"),
@@ -70,6 +85,7 @@ def test_wrong_arguments_are_refused(checkout, arguments, said):
     assert status == 2, output
     assert said in output and '--help' in output
     assert len(output.strip().splitlines()) <= 2, 'one line that says what is wrong'
+    assert output.replace('\n', '').isprintable() and len(output) <= 600
     assert checkout.calls == []
     assert not (checkout.root / 'build').exists()
     assert not list(checkout.root.parent.rglob('hacked'))

@@ -109,9 +109,9 @@ def publishers(proxy, topic):
 
 def test_demo_drives_three_robots_without_hands(start, tmp_path):
     before = NO_NETWORK if has_own_network() else ()
-    settings = tmp_path / 'config' / 'mhri' / 'panel.conf'
+    settings = tmp_path / 'config' / 'mhri' / 'panel.json'
     settings.parent.mkdir(parents=True)
-    settings.write_text('[General]\nstate="the operator\'s"\n')
+    settings.write_text('{"state": {"mode": "joy"}}\n')
     run = start('--demo', '--screenshot', 'drive.png', before=before)
     status = run.wait(180)
     print('\n' + '\n'.join(line for line in run.output.splitlines() if 'bot' in line))
@@ -127,7 +127,7 @@ def test_demo_drives_three_robots_without_hands(start, tmp_path):
     assert sorted(path.name for path in tmp_path.glob('*.png')) == pictures
     manual = subprocess.run([str(SCRIPT), '--help'], stdout=subprocess.PIPE).stdout.decode()
     assert [name for name in pictures if name[5:-4] not in manual] == []
-    assert settings.read_text() == '[General]\nstate="the operator\'s"\n'
+    assert settings.read_text() == '{"state": {"mode": "joy"}}\n'
     assert list(settings.parent.iterdir()) == [settings]
 
 

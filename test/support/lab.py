@@ -198,6 +198,7 @@ class Operator:
         self.system.screen()
         rospy.init_node('lab', disable_signals=True)
         self.system.node('mux', '__name:=mux')
+        self.system.node('gates')
         self.system.node('panel', '--fresh', '--select', 'bot1 bot2', '__name:=mhri_panel')
         self.witnesses = {name: Witness(name) for name in ('bot1', 'bot2')}
         self.stick = Stick()

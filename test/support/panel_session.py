@@ -37,6 +37,7 @@ class PanelSession:
         self.system.screen()
         self.system.start_master()
         self.system.node('mux', '__name:=mux')
+        self.system.node('gates')
         for words in launches:
             self.system.launch(*words)
         self.app = QApplication.instance() or QApplication(['panel'])

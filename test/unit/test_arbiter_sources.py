@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The rules of driving for sources that speak in velocities, fall silent at rest, or were slept by."""
+"""The rules of driving: velocities, sources that are silent at rest, and a mux that slept."""
 from dataclasses import replace
 
 import pytest

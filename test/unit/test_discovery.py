@@ -8,8 +8,9 @@ import pytest
 
 from mhri.core.config import ConfigError
 from mhri.core.robots.discovery import (
-    Candidate, find_candidates, IgnoreList, nodes_of, parameters_of, parse_ignore_list, TWIST)
-from mhri.core.robots.robot_types import load_robot_types, Seen
+    Candidate, find_candidates, IgnoreList, named_instances, nodes_of, parameters_of,
+    parse_ignore_list, TWIST)
+from mhri.core.robots.robot_types import load_robot_types, resolve_robot_type, Seen
 
 IGNORE = IgnoreList(('/rosout', '/*/rosout', '/bot*/helper'), ('mux', 'rqt_*'))
 RESOURCE = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'discovery.yaml')
@@ -140,6 +141,7 @@ TB3 = ('/turtlebot3_core reads /cmd_vel', '/turtlebot3_core writes /odom nav_msg
        '/turtlebot3_core writes /sensor_state turtlebot3_msgs/SensorState',
        '/turtlebot3_lds writes /scan sensor_msgs/LaserScan')
 TURTLE = ('/turtlesim reads /turtle1/cmd_vel', '/turtlesim writes /turtle1/pose turtlesim/Pose')
+TURTLE2 = tuple(line.replace('turtle1', 'turtle2') for line in TURTLE)
 TB2 = ('/cmd_vel_mux reads /cmd_vel_mux/input/teleop', '/cmd_vel_mux reads /cmd_vel_mux/input/navi',
        '/velocity_smoother reads /teleop/input',
        '/cmd_vel_mux writes /mobile_base/commands/velocity',
@@ -171,8 +173,26 @@ GRAPHS = {
         ('/sim/turtlesim reads /sim/turtle1/cmd_vel',
          '/sim/turtlesim writes /sim/turtle1/pose turtlesim/Pose'), {},
         [('sim', None, Seen(False, 'turtlesim', 'turtle1/cmd_vel'))]),
-    'two_turtles': (TURTLE + ('/turtlesim reads /turtle2/cmd_vel',), {}, [
-        ('robot', None, Seen(True, 'turtlesim', 'turtle1/cmd_vel'))]),
+    'two_turtles': (TURTLE + TURTLE2, {}, [
+        ('robot', None, Seen(True, 'turtlesim', 'turtle1/cmd_vel')),
+        ('turtle2', None, Seen(False, 'turtlesim', None, '/turtle2'))]),
+    'two_turtles_with_a_name': (TURTLE + TURTLE2, {'robot_name': 'wanda'}, [
+        ('turtle2', None, Seen(False, 'turtlesim', None, '/turtle2')),
+        ('wanda', None, Seen(True, 'turtlesim', 'turtle1/cmd_vel'))]),
+    'the_second_turtle_alone': (TURTLE2, {}, [
+        ('turtle2', None, Seen(False, 'turtlesim', None, '/turtle2'))]),
+    'two_turtles_in_a_namespace': (
+        tuple(line.replace(' /turtle', ' /sim/turtle').replace('/turtlesim ', '/sim/turtlesim ')
+              for line in TURTLE + TURTLE2), {'sim': {'robot_type': 'turtlesim'}},
+        [('sim', 'turtlesim', Seen(False, 'turtlesim', 'turtle1/cmd_vel')),
+         ('sim_turtle2', None, Seen(False, 'turtlesim', None, '/sim/turtle2'))]),
+    'turtles_beside_a_turtlebot3_at_the_root': (TB3 + TURTLE2, {'robot_type': 'turtlebot3'}, [
+        ('robot', 'turtlebot3', Seen(True, 'turtlebot3', 'cmd_vel')),
+        ('turtle2', None, Seen(False, 'turtlesim', None, '/turtle2'))]),
+    'a_robot_of_the_name_of_a_turtle': (
+        TURTLE + TURTLE2 + ('/turtle2/base reads /turtle2/drive',), {}, [
+            ('robot', None, Seen(True, 'turtlesim', 'turtle1/cmd_vel')),
+            ('turtle2', None, Seen(False, None, 'cmd_vel'))]),
     'another_topic': (('/crawler/base reads /crawler/drive/velocity',), {}, [
         ('crawler', None, Seen(False, None, 'drive/velocity'))]),
     'an_absolute_topic': (('/crawler/base reads /cmd_vel',), {}, [
@@ -233,6 +253,38 @@ def test_the_nodes_of_a_robot_at_the_root_are_those_that_drive_and_tell():
     groups, kinds = graph(*TB3, '/teleop writes /cmd_vel', '/rviz_1 reads /odom nav_msgs/Odometry')
     found, = find_candidates(groups, {'robot_type': 'turtlebot3'}, SHIPPED_IGNORE, (), kinds, TYPES)
     assert '/turtlebot3_core' in found.nodes and '/rviz_1' not in found.nodes
+
+
+def test_turtles_have_the_topics_of_their_own():
+    """And those with a namespace of their own, the contract's."""
+    groups, kinds = graph(*TURTLE, *TURTLE2)
+    topics = {}
+    for item in find_candidates(groups, {}, SHIPPED_IGNORE, (), kinds, TYPES):
+        kind, errors = resolve_robot_type(TYPES, item.name, {}, item.seen)
+        assert (errors, item.nodes) == ([], ('/turtlesim',))
+        topics[item.name] = kind.command + kind.odometry
+    assert topics == {'robot': ('/turtle1/cmd_vel', '/turtle1/pose'),
+                      'turtle2': ('/turtle2/cmd_vel', '/turtle2/pose')}
+
+
+@pytest.mark.parametrize('known, left', [
+    ((), ['robot', 'turtle2']), (('robot',), ['turtle2']), (('turtle2',), ['robot']),
+    (('turtle1',), ['turtle2']), (('turtle1', 'turtle2'), [])])
+def test_no_turtle_is_offered_twice(known, left):
+    """The first one may have been added by hand, by its own name."""
+    groups, kinds = graph(*TURTLE, *TURTLE2)
+    found = find_candidates(groups, {}, SHIPPED_IGNORE, known, kinds, TYPES)
+    assert [item.name for item in found] == left
+    assert named_instances(groups, {}, SHIPPED_IGNORE, kinds, TYPES) == {
+        name: Seen(False, 'turtlesim', None, '/' + name) for name in ('turtle1', 'turtle2')}
+
+
+def test_parts_of_a_robot_at_the_root_are_known_as_such():
+    """They are robots if it turns out to be dead."""
+    groups, kinds = graph(*TB2, '/bot1/base writes /bot1/odom nav_msgs/Odometry')
+    found = find_candidates(groups, {}, SHIPPED_IGNORE, (), kinds, TYPES, with_parts=True)
+    assert [item.name for item in found if not item.part] == ['robot']
+    assert 'bot1' in [item.name for item in found if item.part]
 
 
 def test_a_known_robot_at_the_root_is_left_out():

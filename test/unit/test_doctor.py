@@ -217,6 +217,17 @@ def test_clock_offset(ahead_s):
     assert 0.005 <= error_s < 0.01
 
 
+@pytest.mark.parametrize('stamp_s', [0.5, 1234.5])
+def test_simulated_time_is_not_called_a_clock_that_is_behind(stamp_s):
+    """By 56 years, to the millisecond."""
+    world = World()
+    stream('/bot1/odom', samples=tuple(
+        (1.76e9 + number, stamp_s + number) for number in range(20)))(world)
+    finding, = world.wrong()
+    assert (finding.check, finding.severity) == ('clock_offset', WARNING)
+    assert 'no real time' in finding.problem and 'behind' not in finding.problem
+
+
 def test_few_stamps_prove_little():
     assert clock_offset(samples(0.0, 1))[1] == 0.1
     assert clock_offset(samples(0.0, 5))[1] < 0.1

@@ -21,12 +21,17 @@ MESSAGES = {'mhri.msg', 'mhri.srv', 'cv_bridge', 'genpy', 'rosbag'}
 # The files that join ROS and Qt; every other file keeps to its room.
 JOINING = {'mhri_plugin.py', 'standalone.py'}
 JOINING_ROOMS = {'nodes', 'presenters'}
-# What Python says of itself from 3.10 on; before that, what core/ may want.
-STDLIB = getattr(sys, 'stdlib_module_names', frozenset(
-    CLOCKS_AND_IO | {'array', 'bisect', 'collections', 'copy', 'dataclasses', 'datetime', 'enum',
-                     'functools', 'heapq', 'itertools', 'json', 'math', 'operator', 're', 'string',
-                     'struct', 'textwrap', 'typing', 'zlib', 'contextlib', 'abc', 'types',
-                     'traceback', 'argparse', 'errno', 'warnings', 'html', 'uuid', 'statistics'}))
+
+
+def stdlib_modules():
+    """Return the names of the standard library's modules; Python says them itself from 3.10 on."""
+    folder = Path(ast.__file__).parent
+    return getattr(sys, 'stdlib_module_names', None) or set(sys.builtin_module_names).union(
+        path.name.partition('.')[0] for place in (folder, folder / 'lib-dynload')
+        for path in place.iterdir())
+
+
+STDLIB = stdlib_modules()
 
 
 def is_message(module):

@@ -43,7 +43,16 @@ def test_each_type_has_its_own_silence(age_s, connections, silent_after_s, state
     assert link_state(age_s, connections, silent_after_s) == state
 
 
+@pytest.mark.parametrize('age_s, connections, state', [
+    (None, 0, LIVE), (None, 1, WAITING), (5.0, 0, GONE), (5.0, 1, SILENT)])
+def test_a_robot_that_takes_commands_and_has_no_odometry_is_not_waited_for(
+        age_s, connections, state):
+    """It is driven; one whose odometry has ended is gone all the same."""
+    assert link_state(age_s, connections, reached=True) == state
+
+
 @pytest.mark.parametrize('state, age_s, waited_s, words', [
+    (LIVE, None, 9.0, 'tells no odometry: mhri cannot know whether it moves'),
     (LIVE, 0.1, 9.0, ''), (SILENT, 3.21, 9.0, 'nothing for 3.2 s'),
     (GONE, 9.0, 9.0, 'switched off or out of reach; last heard 14:02:11'),
     (WAITING, None, 1.0, ''),

@@ -7,7 +7,7 @@ import pytest
 
 from mhri.core.robots.link_quality import (
     LEAST_SHARE, link_share, link_warning, LinkQuality, MOST_LOST)
-from mhri.core.driving.group_speed import pace_of
+from mhri.core.driving.group_speed import pace_words
 from mhri.core.screen.views import LinkFigures, RobotView
 
 
@@ -108,18 +108,17 @@ def robot(name, selected=True, round_trip_s=None, limits=(0.5, 1.0)):
                      max_linear_mps=limits[0], max_angular_rad_s=limits[1])
 
 
-@pytest.mark.parametrize('robots, together, slow, share, words', [
-    ([], False, False, 1.0, 'each does its best'),
-    ([], True, False, 1.0, 'all as the slowest'),
-    ([robot('a')], True, False, 1.0, 'all as a: at most 0.50 m/s, 1.00 rad/s'),
-    ([robot('a'), robot('b', limits=(0.2, 2.0))], True, False, 1.0,
+@pytest.mark.parametrize('robots, together, share, words', [
+    ([], False, 1.0, 'each does its best'),
+    ([], True, 1.0, 'all as the slowest'),
+    ([robot('a')], True, 1.0, 'all as a: at most 0.50 m/s, 1.00 rad/s'),
+    ([robot('a'), robot('b', limits=(0.2, 2.0))], True, 1.0,
      'all as b and a: at most 0.20 m/s, 1.00 rad/s'),
-    ([robot('a'), robot('b', False, limits=(0.2, 2.0))], True, False, 1.0, 'all as a: '),
-    ([robot('a', True, 0.3), robot('b', True, 0.1)], False, False, 1.0, 'each does its best'),
-    ([robot('a', True, 0.3), robot('b', True, 0.1)], False, True, 0.5,
+    ([robot('a'), robot('b', False, limits=(0.2, 2.0))], True, 1.0, 'all as a: '),
+    ([robot('a', True, 0.3), robot('b', True, 0.1)], False, 1.0, 'each does its best'),
+    ([robot('a', True, 0.3), robot('b', True, 0.1)], False, 0.5,
      '50 % of the speed: the link to a takes 300 ms'),
-    ([robot('a', False, 0.3), robot('b', True, 0.1)], True, True, 1.0, 'all as b'),
+    ([robot('a', True)], True, 0.5, '50 % of the speed: a link is slow'),
 ])
-def test_the_pace_says_why(robots, together, slow, share, words):
-    found = pace_of(robots, together, slow)
-    assert found[0] == share and words in found[1]
+def test_the_pace_says_why(robots, together, share, words):
+    assert words in pace_words(robots, together, share)

@@ -78,9 +78,13 @@ def test_a_cut_is_tried_for_ever_and_power_for_a_while():
         assert rule.state == WHY
 
 
-def test_what_was_cut_before_is_known_and_not_told_again():
-    """The node that cut it has been replaced."""
-    rule = MotorPowerRule(cut=True)
-    assert (rule.state, rule.is_cut, rule.due(0.0), rule.wait_s(0.0)) == (CUT, True, None, None)
-    rule.ask(False, 1.0)
-    assert (rule.is_cut, rule.due(1.0), rule.wait_s(1.0)) == (False, False, 0.0)
+def test_it_says_for_how_long_nothing_is_due():
+    """A thread waits for so long, or until it is asked."""
+    rule = MotorPowerRule()
+    assert (rule.wait_s(0.0), rule.is_cut) == (None, False)
+    rule.ask(CUT_OFF, 1.0)
+    assert (rule.wait_s(1.0), rule.is_cut) == (0.0, True)
+    rule.on_failed(CUT_OFF, 'nobody listens', 1.0)
+    assert rule.wait_s(1.25) == RETRY_S - 0.25
+    rule.on_told(CUT_OFF, True, 2.0)
+    assert (rule.wait_s(2.0), rule.is_cut) == (None, True)

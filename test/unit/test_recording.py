@@ -162,7 +162,8 @@ ROBOT = parse_robot_type(
     (('odometry',), ['/b/imu', '/b/imu/data', '/b/odom']),
     (('rgb', 'depth'), ['/b/imu', '/b/imu/data', '/b/camera/rgb/image_raw/compressed',
                         '/b/camera/rgb/camera_info', '/b/camera/rgb/depth/compressedDepth']),
-    (('scan', 'commands'), ['/b/imu', '/b/imu/data', '/b/scan', '/robot_controller/twist',
+    (('scan', 'commands'), ['/b/imu', '/b/imu/data', '/b/scan', '/b/cmd_vel',
+                            '/b/mhri_guard/command', '/robot_controller/twist',
                             '/robot_controller/robot_select', '/robot_controller/stop_all',
                             '/mux/mode']),
 ])
@@ -170,10 +171,12 @@ def test_topics(choices, topics):
     assert list(topics_of('b', ROBOT, choices)) == topics
 
 
-def test_no_recording_subscribes_a_robot_s_velocity_topic():
-    """The gate sends to the first velocity topic that has a subscriber: that must be the robot."""
-    everything = topics_of('b', ROBOT, [key for key, _ in CHOICES])
-    assert not [topic for topic in everything if topic.endswith('cmd_vel')]
+def test_a_recording_of_commands_has_what_the_robot_is_sent():
+    """To its velocity topics, or to its guard; without the choice neither is listened to."""
+    sent = {'/b/cmd_vel', '/b/mhri_guard/command'}
+    assert sent <= set(topics_of('b', ROBOT, ['commands']))
+    others = [key for key, _ in CHOICES if key != 'commands']
+    assert not sent & set(topics_of('b', ROBOT, others))
 
 
 def test_unknown_choice():

@@ -106,7 +106,7 @@ def test_manifest_that_cannot_be_read(workspace, monkeypatch):
     """It went while it was looked at."""
     folder = workspace('gone')
     rospack = rospkg.RosPack([str(workspace.path)])
-    assert rospack.list() == ['gone']
+    assert list(rospack.list()) == ['gone']
     os.remove(str(folder / 'package.xml'))
     assert exported_types(rospack) == ([], [])
 

@@ -177,6 +177,7 @@ BAD = {
     'models.big.linear_mps': GOOD + 'models: {big: {angular_rad_s: 1}}\n',
     'name': GOOD.replace('crawler', '3'),
     'known_by': GOOD + 'known_by: {feet: 3}\n',
+    'instance': GOOD + 'instance: left\n',
     'silent_after_s': GOOD + 'silent_after_s: -1\n',
     'motor_power': GOOD + 'motor_power: {topic: a, service: b}\n',
     'motor_power.type': GOOD + 'motor_power: {service: a, type: std_srvs/Trigger}\n',

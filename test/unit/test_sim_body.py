@@ -136,6 +136,20 @@ def test_what_is_not_finite_is_refused(v, w):
     assert rig.now - given < rig.kind.watchdog_s + 0.1, 'and the watchdog was not fed'
 
 
+@pytest.mark.parametrize('kind', sorted(LIMITS))
+def test_without_power_nothing_drives_and_power_alone_neither(kind):
+    rig = Rig(kind)
+    rig.drive(0.2, 0.5, 1.0)
+    rig.body.set_power(False)
+    rig.drive(0.2, 0.5, 0.2)
+    assert (rig.body.v, rig.body.w) == (0.0, 0.0)
+    rig.body.set_power(True)
+    rig.step(0.3)
+    assert (rig.body.v, rig.body.w) == (0.0, 0.0), 'a command from before'
+    rig.drive(0.2, 0.5, 0.1)
+    assert rig.body.v > 0.0
+
+
 @pytest.mark.parametrize('kind, watchdog_s', [
     ('turtlebot2', 0.6), ('turtlebot3_burger', 0.5), ('turtlebot3_waffle', 0.5)])
 @pytest.mark.parametrize('v, w', [(9.0, 0.0), (0.0, 9.0), (9.0, 9.0), (-9.0, -9.0)])

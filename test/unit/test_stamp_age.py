@@ -3,7 +3,8 @@
 """How late a message is, whatever the clock of its sender says."""
 import pytest
 
-from mhri.core.robots.stamp_age import SETTLE_S, SET_SINCE_S, StampAge
+from mhri.core.robots.link_quality import link_warning, LinkQuality
+from mhri.core.robots.stamp_age import delay_of, SETTLE_S, SET_SINCE_S, StampAge
 
 NOW = 1.8e9  # the robot's clock, when ours (which counts from anywhere) says 0
 
@@ -57,3 +58,15 @@ def test_no_stamp_and_simulated_time_say_nothing(stamp_s):
     """No lateness is made up."""
     age = StampAge()
     assert [age.late_s(stamp_s, now) for now in (1.0, 5.0)] == [0.0, 0.0]
+
+
+@pytest.mark.parametrize('stamp_s, words', [
+    (0.0, ''), (12.0, ''), (NOW - 0.005, ''), (NOW - 2.0, 'its clock is 2.0 s behind'),
+    (NOW + 2.0, 'its clock is 2.0 s ahead')])
+def test_simulated_time_is_not_called_a_clock_that_is_behind(stamp_s, words):
+    """1759999988 s behind was said of a simulator."""
+    quality = LinkQuality()
+    quality.on_round_trip(0.01)
+    quality.on_message(1, delay_of(NOW, stamp_s), 5.0)
+    assert link_warning(quality.read(5.0)).startswith(words)
+    assert bool(link_warning(quality.read(5.0))) == bool(words)

@@ -8,8 +8,8 @@ import pytest
 
 from mhri.core.screen.status import ATTENTION, CALM, status_line, STOPPED
 from mhri.core.screen.views import (
-    GONE, LINK_STATES, LIVE, PanelView, PROOF_NOT_CONFIRMED, PROOF_STOPPED, ProofView,
-    ROS_CONNECTED, ROS_NO_MASTER, ROS_STARTING, RobotView, SILENT)
+    ControlView, GONE, LINK_STATES, LIVE, PanelView, PROOF_NOT_CONFIRMED, PROOF_STOPPED, ProofView,
+    ROS_CONNECTED, ROS_CUT_OFF, ROS_NO_MASTER, ROS_STARTING, RobotView, SILENT)
 
 SOURCES = (('joy', 'Virtual joystick'), ('ps3joy', 'PS3 Controller'))
 
@@ -38,6 +38,15 @@ CASES = {
     'not_confirmed': (panel([proved(PROOF_STOPPED), proved(PROOF_NOT_CONFIRMED, 'bot9')],
                             stop_all=True), 'release', 'bot9 NOT CONFIRMED', STOPPED),
     'no_mux': (panel([READY], mode=None), None, 'the mux is not running', ATTENTION),
+    'no_gates': (panel([DRIVEN], answers=False), '', 'drive service does not answer', ATTENTION),
+    'nobody_there': (panel([READY], mode=None, answers=False), None, 'the mux is not', ATTENTION),
+    'looking_on': (panel([READY], control=ControlView(False, 'panel on lab-pc2 since 14:02')), '',
+                   'only looking on: panel on lab-pc2 since 14:02 drives', CALM),
+    'cut_off': (panel([DRIVEN], ros=ROS_CUT_OFF, stop_all=True), '', 'cut off', STOPPED),
+    'stop_asked': (panel([proved(PROOF_STOPPED)], stop_all=True, stop_taken=False), '',
+                   'not confirmed yet', STOPPED),
+    'stop_unheard': (panel([proved(PROOF_STOPPED)], stop_all=True, stop_taken=False,
+                           answers=False), '', 'NOT CONFIRMED', STOPPED),
     'no_robots': (panel(), 'source', 'no robots yet', CALM),
     'none_selected': (panel([IDLE]), '', 'no robot selected', CALM),
     'silent': (panel([DRIVEN, MUTE]), '', 'bot4 has sent nothing for 3.2 s', ATTENTION),

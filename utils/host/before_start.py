@@ -12,6 +12,7 @@ Works without ROS: what needs YAML is left out as long as that is not installed.
 """
 import difflib
 import os
+import re
 import socket
 import sys
 import threading
@@ -30,6 +31,9 @@ PANEL_TOPICS = ('/mux_in/mode_select', '/robot_controller/robot_select')
 CHOICES = {'gui': ('auto', 'rqt', 'standalone', 'none')}
 INPUTS = ('joy', 'pedal', 'voice', 'none')
 MOST_ROBOTS = 12
+ROBOT = re.compile(r'[A-Za-z0-9_/]+\Z')
+# The launch file puts these between quotes, and what ends a quote could add options.
+QUOTED = ('screenshot', 'demo_result')
 
 
 def what_is_at(uri):
@@ -152,6 +156,11 @@ def one_of(words):
 def wrong_value(name, value, default, resource, mux_config):
     """Return what is wrong with the value of an argument, or None."""
     allowed, given = CHOICES.get(name), [value]
+    if name == 'robots':
+        odd = [word for word in value.split() if not ROBOT.match(word)]
+        return odd and "robots: '{}' is not a robot's name".format(odd[0])
+    if name in QUOTED and "'" in value:
+        return '{}: a quote is in {}'.format(name, value)
     if default in ('true', 'false'):
         allowed = ('true', 'false')
     elif name == 'inputs':

@@ -37,6 +37,11 @@ DEBIAN_TEST=(
   python3-flake8-docstrings python3-mccabe python3-pip python3-psutil catkin-lint shellcheck
   xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server openssl iproute2 nftables
 )
+# For the fast group of the tests alone; so called on Ubuntu, too.
+FAST=(
+  python3-catkin-pkg python3-evdev python3-flake8 python3-mccabe python3-numpy python3-opencv
+  python3-pip python3-pyaudio python3-pytest python3-rospkg python3-yaml util-linux
+)
 # On Ubuntu rosdep reads the ROS packages from package.xml; these have no key there.
 UBUNTU_RUN=(
   python3-rosdep build-essential cmake fonts-dejavu-core xvfb xauth hostname util-linux
@@ -48,11 +53,11 @@ UBUNTU_TEST=(
   nftables
 )
 
-say() { printf 'mhri: %s\n' "$*"; }
-warn() { printf 'mhri: %s\n' "$*" >&2; }
+say() { printf 'mhri: %s\n' "$(unarmed "$*")"; }
+warn() { printf 'mhri: %s\n' "$(unarmed "$*")" >&2; }
 die() { warn "$*"; exit 1; }
 # A wrong command line: exit status 2, and nothing has been started.
-usage_error() { warn "$* (--help lists every option)"; exit 2; }
+usage_error() { warn "$(brief "$*") (--help lists every option)"; exit 2; }
 
 # Prints debian or ubuntu, or ends with what is supported.
 os_family() {
@@ -114,10 +119,16 @@ install_rosdeps() {
   rosdep install "${keys[@]}" -r -y || die "rosdep could not install everything: see above"
 }
 
-# install_missing run|test: everything that kind of start needs.
+# install_missing run|test|fast: everything that kind of start needs.
 install_missing() {
   local family
   family=$(os_family)
+  if [ "$1" = fast ]; then
+    PACKAGES=("${FAST[@]}")
+    if [ "$family" = debian ]; then PACKAGES+=(python3-flake8-docstrings); fi
+    install_packages "${PACKAGES[@]}"
+    return
+  fi
   case "$family" in
     debian) PACKAGES=("${DEBIAN_RUN[@]}"); [ "$1" = run ] || PACKAGES+=("${DEBIAN_TEST[@]}") ;;
     ubuntu) PACKAGES=("${UBUNTU_RUN[@]}"); [ "$1" = run ] || PACKAGES+=("${UBUNTU_TEST[@]}") ;;

@@ -116,6 +116,7 @@ check_arguments() {
   [ -z "$PICTURE" ] || "$DEMO" || usage_error "--screenshot goes with --demo"
   for arg in "${LAUNCH_ARGS[@]}"; do
     [[ $arg =~ ^[a-z][a-z0-9_]*:= ]] || usage_error "'$arg' is not ARG:=VALUE"
+    [[ $arg != *[[:cntrl:]]* ]] || usage_error "${arg%%:=*}: a control character is in '$arg'"
   done
 }
 
@@ -140,6 +141,7 @@ check_picture() {
   "$DEMO" || return 0
   PICTURE=$(realpath -m -- "${PICTURE:-mhri-demo.png}")
   folder=$(dirname "$PICTURE")
+  [[ $PICTURE != *\'* ]] || usage_error "--screenshot: a quote is in $PICTURE: choose another name"
   [ ! -d "$PICTURE" ] || usage_error "--screenshot: $PICTURE is a folder"
   [ -d "$folder" ] || usage_error "--screenshot: there is no folder $folder"
   [ -w "$folder" ] || usage_error "--screenshot: cannot write to $folder"

@@ -6,25 +6,31 @@ set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
-GROUPS_IN_ORDER=(lint unit rostest gui scripts faults bench)
+GROUPS_IN_ORDER=(lint unit oldest scripts rostest gui faults bench)
+# Targets whose files may run at the same time, and those that measure times, which run alone.
+CALM=(lint unit oldest scripts_calm rostest_calm)
+TIMED=(scripts_timed rostest_timed gui faults bench)
 
 help_text() {
   cat <<'HELP'
-Usage: mhri_test.sh [--only GROUP]... [--bench]
+Usage: mhri_test.sh [--only GROUP]... [--jobs N] [--bench]
 
-Installs what is missing, builds in build/.ws and runs every test, one after the other, on this
-machine alone (127.0.0.1). The last line is the count, e.g. "412 passed, 0 failed"; the exit status
-is 0 only where something ran and nothing failed.
+Installs what is missing, builds in build/.ws and runs every test on this machine alone (127.0.0.1).
+The last line is the count, e.g. "412 passed, 0 failed"; the exit status is 0 only where something
+ran and nothing failed.
 
-  --only GROUP   run one group only (may be given again): lint, unit, rostest, gui, scripts, faults,
-                 bench
+  --only GROUP   run one group only (may be given again): lint, unit, oldest, scripts, rostest,
+                 gui, faults, bench, or fast
+  --jobs N       run N files at the same time where no times are measured, the others alone
+                 (default: the number of processors, at most 4); 1: one after the other
   --bench        run the benchmarks (test/bench) in full instead of their short form
   -h, --help     this text
 
-  lint     flake8 with docstrings, shellcheck, catkin_lint, Python 3.8 syntax and library
-  unit     rules, without ROS               rostest  nodes on a real master
-  gui      the panel, under Xvfb            scripts  the scripts and launch files, in real runs
-  faults   what happens when parts are killed; prints the measured times
+  fast     lint and rules without ROS: needs no build, no master and no screen; under a minute
+  lint     flake8 with docstrings, shellcheck, catkin_lint, Python 3.8 syntax and library, types
+  unit     rules, without a master          oldest   rules and widgets with Ubuntu 20.04's libraries
+  scripts  the scripts and launch files     rostest  nodes on a real master
+  gui      the panel, under Xvfb            faults   what happens when parts are killed
   bench    each benchmark; prints its table
 
 The result files (JUnit) are in build/.ws/build/test_results. Works on Debian 12, and on Ubuntu 20.04
@@ -34,6 +40,7 @@ HELP
 
 ONLY=()
 BENCH=short
+JOBS=
 RUN_PID=
 
 parse_arguments() {
@@ -42,9 +49,13 @@ parse_arguments() {
       -h | --help) help_text; exit 0 ;;
       --bench) BENCH=full ;;
       --only)
-        [[ " ${GROUPS_IN_ORDER[*]} " == *" ${2:-} "* && -n ${2:-} ]] ||
-          usage_error "--only: there is no group '${2:-}'; the groups are ${GROUPS_IN_ORDER[*]}"
+        [[ " ${GROUPS_IN_ORDER[*]} fast " == *" ${2:-} "* && -n ${2:-} ]] ||
+          usage_error "--only: there is no group '${2:-}'; the groups are ${GROUPS_IN_ORDER[*]} fast"
         ONLY+=("$2")
+        shift ;;
+      --jobs)
+        [[ ${2:-} =~ ^[1-9][0-9]?$ ]] || usage_error "--jobs: '${2:-}' is no number from 1 to 99"
+        JOBS=$2
         shift ;;
       -*) usage_error "there is no option $1" ;;
       *) usage_error "'$1' is not an option" ;;
@@ -52,6 +63,7 @@ parse_arguments() {
     shift
   done
   [ "${#ONLY[@]}" -gt 0 ] || ONLY=("${GROUPS_IN_ORDER[@]}")
+  if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 4 ? $(nproc) : 4)); fi
 }
 
 # Tools that Debian and Ubuntu do not package, in the workspace, at fixed versions.
@@ -77,43 +89,95 @@ isolate() {
   start_xvfb
 }
 
-# run_group GROUP: its targets, one after the other; a make that fails is a failed test too, since
-# then something did not run.
-run_group() {
-  local status=0
-  say "tests: $1"
-  MHRI_RUN_ID=$RUN_ID setsid setpriv --pdeathsig TERM \
-    make --no-print-directory -C "$WS/build" -j1 "run_tests_mhri_$1" </dev/null &
+# run JOBS GROUP...: their targets, JOBS at a time; a make that fails is a failed test too, since then
+# something did not run. Says how long it took.
+run() {
+  local status=0 jobs=$1 started=$SECONDS targets=() command
+  shift
+  say "tests: $*"
+  command=("$REPO/test/run_fast.sh" "$RESULTS")
+  if [ "$1" != fast ]; then
+    targets=("${@/#/run_tests_mhri_}")
+    command=(make --no-print-directory -C "$WS/build" "-j$jobs" --keep-going)
+    # What runs at the same time is printed one after the other.
+    if [ "$jobs" -gt 1 ]; then command+=(--output-sync=target); fi
+    command+=("${targets[@]}")
+  fi
+  MHRI_RUN_ID=$RUN_ID setsid setpriv --pdeathsig TERM "${command[@]}" </dev/null &
   RUN_PID=$!
   wait "$RUN_PID" || status=$?
   RUN_PID=
-  [ "$status" = 0 ] || NOT_RUN+=("$1")
+  # The fast group says by 1 that a test failed; a target of make ends well whatever its tests say.
+  [ "$status" = 0 ] || [ "$*/$status" = fast/1 ] || NOT_RUN+=("$*")
+  TIMES+=("$* $((SECONDS - started)) s")
+  say "tests: $* took $((SECONDS - started)) s"
   end_leftovers
 }
+
+# run_all: the chosen groups.
+run_all() {
+  local target calm=() timed=()
+  for target in "${CALM[@]}"; do
+    if wanted "${target%_*}"; then calm+=("$target"); fi
+  done
+  for target in "${TIMED[@]}"; do
+    if wanted "${target%_*}"; then timed+=("$target"); fi
+  done
+  if [ "$JOBS" = 1 ]; then
+    timed=("${calm[@]}" "${timed[@]}")
+  elif [ "${#calm[@]}" -gt 0 ]; then
+    run "$JOBS" "${calm[@]}"
+  fi
+  for target in "${timed[@]}"; do run 1 "$target"; done
+}
+
+# wanted GROUP: it was asked for.
+wanted() { [[ " ${ONLY[*]} " == *" $1 "* ]]; }
 
 stop() {
   warn "interrupted"
   exit 130
 }
 
+# has_fast: python3 has what the fast group imports.
+has_fast() {
+  PYTHONPATH="$WS/tools" python3 -c 'import catkin_pkg, cv2, evdev, flake8, flake8_docstrings, mccabe
+import numpy, pyaudio, pytest, rospkg, yaml' 2>/dev/null
+}
+
+# The fast group alone: no build, no screen, and where Python has what it needs, no apt.
+run_fast() {
+  mkdir -p "$RESULTS" 2>/dev/null || die "cannot write to $REPO: the results go to build/.ws"
+  rm -rf "$RESULTS"
+  if ! has_fast; then
+    install_missing fast
+    has_fast || install_tools
+  fi
+  run 1 fast
+}
+
 main() {
-  local results="$WS/build/test_results/mhri" group NOT_RUN=()
+  local RESULTS="$WS/build/test_results/mhri" NOT_RUN=() TIMES=()
   parse_arguments "$@"
-  needs_plain_path rostest
   make_scratch
   trap clean_up EXIT
   trap stop INT TERM HUP
-  install_missing test
-  build_workspace ON
-  source_setup "$WS/devel/setup.bash"
-  if [[ " ${ONLY[*]} " == *" lint "* ]]; then install_tools; fi
-  isolate
-  rm -rf "$results"
-  for group in "${GROUPS_IN_ORDER[@]}"; do
-    if [[ " ${ONLY[*]} " == *" $group "* ]]; then run_group "$group"; fi
-  done
-  catkin_test_results "$results" || true
-  python3 "$REPO/utils/host/count_results.py" "$results" "${NOT_RUN[@]}"
+  if [ "${ONLY[*]}" = fast ]; then
+    run_fast
+  else
+    needs_plain_path rostest
+    install_missing test
+    build_workspace ON
+    source_setup "$WS/devel/setup.bash"
+    if wanted lint; then install_tools; fi
+    isolate
+    rm -rf "$RESULTS"
+    if wanted fast; then run 1 fast; fi
+    run_all
+    catkin_test_results "$RESULTS" || true
+  fi
+  say "times: $(IFS=,; printf '%s' "${TIMES[*]}")"
+  python3 "$REPO/utils/host/count_results.py" "$RESULTS" "${NOT_RUN[@]}"
 }
 
 main "$@"

@@ -19,8 +19,14 @@ class Problem(Exception):
 
 
 def number(address):
-    """Return an IPv4 address as a number."""
-    return struct.unpack('!I', socket.inet_aton(address))[0]
+    """Return an IPv4 address as a number.
+
+    :raises Problem: it is none
+    """
+    try:
+        return struct.unpack('!I', socket.inet_pton(socket.AF_INET, address))[0]
+    except (OSError, socket.error, ValueError):  # not the same in Python 2; a null character
+        raise Problem('{0:.40} is not an IPv4 address such as 192.168.0.7'.format(repr(address)))
 
 
 def prefix_lengths():
@@ -56,6 +62,7 @@ def choose_address(target, own, lengths, out, option):
     :param option: the option with which the operator names one, e.g. ``--ip``
     :raises Problem: there is none, or several would do
     """
+    number(target)
     if not own:
         raise Problem('this computer has no IPv4 address: connect it to the network of {0}, or '
                       'name one with {1} ADDR'.format(target, option))
@@ -68,7 +75,8 @@ def choose_address(target, own, lengths, out, option):
             near.append(address)
     if len(near) == 1:
         return near[0]
-    if out in (near or own):
+    # The system speaks to its own addresses, 127.0.0.1 among them, from the same one.
+    if out == target or out in (near or own):
         return out
     if len(own) == 1:
         return own[0]
@@ -76,9 +84,14 @@ def choose_address(target, own, lengths, out, option):
                   '{2} ADDR'.format(' '.join(own), target, option))
 
 
-def main(option, target, *own):
+def main(*arguments):
     """Print the address; end with what is wrong where there is none."""
+    if len(arguments) < 2:
+        sys.exit('mhri: usage: turtle_address.py OPTION TARGET ADDRESS...')
+    option, target, own = arguments[0], arguments[1], arguments[2:]
     try:
+        for address in own:
+            number(address)
         address = choose_address(target, own, prefix_lengths(), way_out(target), option)
     except Problem as problem:
         sys.exit('mhri: {0}'.format(problem))

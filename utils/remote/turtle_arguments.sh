@@ -4,6 +4,16 @@
 # What turtle_remote.sh and the scripts of utils/host share: checks of their arguments. Sourced,
 # never run; usage_error is the script's. Works with the bash of Ubuntu 16.04.
 
+# unarmed TEXT: without control characters, which would do something to a terminal.
+unarmed() { printf '%s' "${1//[[:cntrl:]]/?}"; }
+
+# brief TEXT: of what somebody typed as much as fits into a line or two, in ASCII.
+brief() {
+  local LC_ALL=C text=$1
+  [ "${#text}" -le 500 ] || text="${text:0:300} ... ${text: -170}"
+  printf '%s' "${text//[^[:print:]]/?}"
+}
+
 # valid_ip TEXT: whether it is an IPv4 address. Not with leading zeros, which some programs leave out
 # and others take for octal: 010.1.1.1 would be 10.1.1.1 here and 8.1.1.1 there.
 valid_ip() {
@@ -17,6 +27,7 @@ valid_ip() {
 check_ip() {
   local plain=$2
   if valid_ip "$2"; then return; fi
+  [ "${#plain}" -le 40 ] || plain=
   while [[ $plain =~ ^(.*\.)?0+([0-9].*)$ ]]; do plain=${BASH_REMATCH[1]}${BASH_REMATCH[2]}; done
   if valid_ip "$plain"; then
     usage_error "$1: '$2' has leading zeros, which not every program reads alike: write $plain"
@@ -28,7 +39,10 @@ check_ip() {
 value() {
   case "${2:-}" in
     '' | -*) usage_error "$1 needs a value" ;;
+    # One at the end would be lost on the way to the variable, and with it the check.
+    *[[:cntrl:]]*) usage_error "$1: a control character is in '$2'" ;;
   esac
+  [ "${#2}" -le 512 ] || usage_error "$1: '$2' is too long: at most 512 characters"
   printf '%s' "$2"
 }
 

@@ -36,6 +36,8 @@ except ImportError:
     from xmlrpclib import Error as XmlRpcError, ServerProxy
 
 TIMEOUT_S = 3.0
+# Of a line for the operator; a master may say anything.
+LONGEST = 500
 # From Linux's prctl.h.
 PR_SET_PDEATHSIG = 1
 CALLER = '/mhri_remote'
@@ -43,6 +45,8 @@ CALLER = '/mhri_remote'
 HOST_NODES = ('/rosout', '/mux', '/mhri_panel')
 WATCH_EVERY_S = 2.0
 RUN_ID_TIMEOUT_S = 3.0
+# Of a line for the operator; a master may say anything.
+LONGEST = 500
 RUN_ID_TRIES = 15
 # Ways in which a call to a master fails; half an answer is one of them.
 FAILURES = (XmlRpcError, HTTPException, ExpatError, OSError, socket.error)
@@ -56,11 +60,36 @@ class Problem(Exception):
 
 def say(text):
     """Tell the operator a line; a terminal that is gone is no reason to fail."""
+    text = ''.join(char if ' ' <= char <= '~' else '?' for char in str(text))
+    if len(text) > LONGEST:
+        text = '{0} ... {1}'.format(text[:LONGEST - 200], text[-190:])
     try:
         sys.stderr.write('mhri: {0}\n'.format(text))
         sys.stderr.flush()
     except (OSError, IOError):
         return
+
+
+def address(text):
+    """Return a text that is an IPv4 address.
+
+    :raises Problem: it is none
+    """
+    try:
+        socket.inet_pton(socket.AF_INET, text)
+    except (OSError, socket.error, ValueError):
+        raise Problem('{0:.40} is not an IPv4 address such as 192.168.0.103'.format(repr(text)))
+    return text
+
+
+def number(text):
+    """Return the port that a text says.
+
+    :raises Problem: it is none
+    """
+    if not (text.isdigit() and len(text) <= 5 and 0 < int(text) < 65536):
+        raise Problem('there is no port {0:.40}'.format(repr(text)))
+    return int(text)
 
 
 def connect(host, port):
@@ -242,10 +271,7 @@ def check_host(host, port, own, name):
 
 
 def outermost(name, kept):
-    """Return the shortest beginning of a parameter's name that has nothing in it that is kept.
-
-    None where the parameter itself is.
-    """
+    """Return the shortest beginning of a name under which nothing is kept, None if it is itself."""
     parts = name.split('/')
     for length in range(2, len(parts) + 1):
         whole = '/'.join(parts[:length])
@@ -272,7 +298,7 @@ class Claim(object):
     def make(self):
         """Note it, and which parameters the robot has there already: those stay behind it.
 
-        What a run left that was killed is not the host's: the list of that run holds on.
+        Of a run that was killed the list is there still, and holds on.
 
         :raises Problem: the master does not answer
         """
@@ -295,11 +321,14 @@ class Claim(object):
         return code == 1 and value == self._token
 
     def give_up(self):
-        """Take back the note, and what the robot brought: its name is no robot for the host then."""
+        """Take back the note, and what the robot brought: no robot is called so then."""
         if not self.state():
             return
         found = answer(self._master.getParam, self._key('mhri_remote_found')) or []
-        for name in set(outermost(name, found) for name in self._parameters()) - {None}:
+        names = self._parameters()
+        # What an operator says of the robot, while it runs, too.
+        found += [name for name in names if name.startswith(self._key('mhri/'))]
+        for name in set(outermost(name, found) for name in names) - {None}:
             answer(self._master.deleteParam, name)
 
     def watch(self):
@@ -340,15 +369,14 @@ def watch(host, port, name, token):
     """Watch that the host knows that the robot runs from here."""
     os.setsid()
     end_with_parent()
-    Claim(host, int(port), name, token).watch()
+    Claim(host, port, name, token).watch()
 
 
 COMMANDS = {
-    'host': lambda host, port, own, name: check_host(host, int(port), own, name),
-    'claim': lambda host, port, name, token: Claim(host, int(port), name, token).make(),
+    'host': check_host,
+    'claim': lambda *note: Claim(*note).make(),
     'watch': watch,
-    'release': lambda host, port, name, token: Claim(host, port, name, token).give_up(),
-    'hold': lambda *command: hold(command),
+    'release': lambda *note: Claim(*note).give_up(),
 }
 
 
@@ -356,7 +384,12 @@ def main(arguments):
     """Do what the command line says; return the exit status."""
     socket.setdefaulttimeout(TIMEOUT_S)
     try:
-        COMMANDS[arguments[0]](*arguments[1:])
+        if arguments[:1] == ['hold'] and len(arguments) > 1:
+            hold(arguments[1:])
+        if len(arguments) != 5 or arguments[0] not in COMMANDS:
+            raise Problem('turtle_check.py was called with {0!r:.200}: it is for turtle_remote.sh '
+                          'alone'.format(arguments))
+        COMMANDS[arguments[0]](address(arguments[1]), number(arguments[2]), *arguments[3:])
     except Problem as problem:
         say(problem)
         return 1

@@ -79,10 +79,10 @@ GUARD_PID=
 WATCH_PID=
 
 # A terminal that is gone must not keep the robot from being ended.
-say() { printf 'mhri: %s\n' "$*" 2>/dev/null || true; }
-warn() { printf 'mhri: %s\n' "$*" >&2 || true; }
+say() { printf 'mhri: %s\n' "$(unarmed "$*")" 2>/dev/null || true; }
+warn() { printf 'mhri: %s\n' "$(unarmed "$*")" >&2 || true; }
 die() { warn "$*"; exit 1; }
-usage_error() { warn "$* (--help lists every option)"; exit 2; }
+usage_error() { warn "$(brief "$*") (--help lists every option)"; exit 2; }
 
 parse_arguments() {
   local words=()

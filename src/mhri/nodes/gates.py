@@ -8,6 +8,8 @@ import rospy
 
 from mhri.ros.driving.gates import Gates
 from mhri.ros.driving.gates_state import GatesSpeaker
+from mhri.ros.graph import log
+from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.resources import robot_types
 
@@ -15,11 +17,13 @@ from mhri.ros.resources import robot_types
 def main():
     """Run until shut down; the last word to every robot is a zero."""
     types, errors = robot_types()
+    limit_handshakes()
     rospy.init_node('mhri_gates', disable_rostime=True)
+    log.install()
     # A terminal that is closed must not end the gates without a zero.
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     gates = Gates(types)
-    speaker = GatesSpeaker(gates.read, gates.mux_silent_s)
+    speaker = GatesSpeaker(gates.read, gates.mux_heard)
     gates.on_change = speaker.on_change
     rospy.on_shutdown(gates.close)
     MasterWatch().start()

@@ -10,7 +10,9 @@ import rosgraph
 import rospy
 
 from mhri.core.config import ConfigError
-from mhri.core.driving.sources import parse_mux_config
+from mhri.core.driving.sources import enabling_problem, parse_mux_config
+from mhri.ros.graph import log
+from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.driving.mux import Mux, STOP_PARAMETER
 from mhri.ros.driving.mux_takeover import end_other_muxes
@@ -39,13 +41,25 @@ def adjusted(config):
     :raises ConfigError: a parameter that cannot be used
     """
     enabling = rospy.get_param('~enabling', config.enabling or '')
-    automatic = rospy.get_param('~automatic_switching', config.automatic_switching)
-    if enabling and enabling not in [source.name for source in config.sources]:
-        raise ConfigError(rospy.resolve_name('~enabling'), '', 'no source {!r}'.format(enabling))
-    if not isinstance(automatic, bool):
-        raise ConfigError(rospy.resolve_name('~automatic_switching'), '',
-                          'expected true or false, got {!r}'.format(automatic))
-    return replace(config, enabling=enabling or None, automatic_switching=automatic)
+    problem = 'expected text, got {!r}'.format(enabling) if not isinstance(enabling, str) \
+        else enabling_problem(config.sources, enabling)
+    if problem:
+        raise ConfigError(rospy.resolve_name('~enabling'), '', problem)
+    config = replace(config, enabling=enabling or None, automatic_switching=_flag(
+        '~automatic_switching', config.automatic_switching))
+    return config if _flag('~dead_man', config.dead_man) else config.without_dead_man()
+
+
+def _flag(name, default):
+    """Return a parameter that is true or false.
+
+    :raises ConfigError: it is neither
+    """
+    value = rospy.get_param(name, default)
+    if not isinstance(value, bool):
+        raise ConfigError(rospy.resolve_name(name), '',
+                          'expected true or false, got {!r}'.format(value))
+    return value
 
 
 def main():
@@ -55,18 +69,20 @@ def main():
         config = parse_mux_config(read_text(path), path, profile_reader(path))
     except (ConfigError, OSError, MasterError) as error:
         sys.exit('the mux cannot start: {}'.format(error))
+    limit_handshakes()
     rospy.init_node('mux')
+    log.install()
     # A terminal that is closed must not end the mux without a zero.
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     stopped = bool(rospy.get_param(STOP_PARAMETER, False))
-    if stopped:
-        rospy.logwarn('stop-all was in force when the last mux ended: it still is')
     try:
         config = adjusted(config)
     except ConfigError as error:
         sys.exit('the mux cannot start: {}'.format(error))
     end_other_muxes()
     Mux(config).start(stopped)
+    if stopped:
+        rospy.logwarn('stop-all was in force when the last mux ended: it still is')
     # What has been loaded by now stays: looking through it would hold up a command.
     gc.freeze()
     rospy.spin()

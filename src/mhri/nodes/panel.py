@@ -21,7 +21,7 @@ def parse(argv):
                         help='where to show it; auto: in rqt where that is installed')
     parser.add_argument('--robots', default='', help='names to add at start, separated by spaces')
     parser.add_argument('--select', default='', help='names to add and select at start')
-    parser.add_argument('--settings', help='INI file for the settings, instead of the user\'s own')
+    parser.add_argument('--settings', help='JSON file for the settings, instead of the user\'s own')
     parser.add_argument('--fresh', action='store_true',
                         help='begin without the saved settings, and keep them until robots, mode '
                              'or limits are changed')

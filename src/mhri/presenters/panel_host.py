@@ -8,13 +8,16 @@ by timers and never waited for.
 import gc
 import json
 
-from python_qt_binding.QtCore import QByteArray, QObject, Qt, QTimer
+from python_qt_binding.QtCore import QObject, Qt, QTimer
 from python_qt_binding.QtWidgets import QApplication
 import rospy
 
 from mhri.core.robots.names import tidy_name
+from mhri.core.screen.saved_state import usable_state
 from mhri.core.screen.views import GONE, SILENT
 from mhri.presenters.doctor_host import DoctorHost
+from mhri.presenters.draw_guard import DrawGuard
+from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.gui.screen.panel import PanelWidget
 from mhri.gui.screen.placing import place_window
 from mhri.gui.screen.window_maker import WindowMaker
@@ -24,6 +27,8 @@ from mhri.presenters.window_host import WindowHost
 
 DRAW_MS = 50
 STICK_MS = 50
+# How often the selection is said again: the operator's lease ends where this thread hangs.
+LEASE_MS = 500
 SLICE_MS = 4
 # A row takes about 2 ms to make: more at once would be felt at the stick.
 ADD_AT_ONCE = 6
@@ -60,6 +65,7 @@ class PanelHost(QObject):
     def _build(self):
         self._ui_dir = resource_path()
         self.panel = PanelWidget(self._ui_dir)
+        self._guard = DrawGuard(self.panel)
         QApplication.instance().installEventFilter(self.panel.drive_keys)
         self._draw_timer = QTimer(self)
         self._draw_timer.setInterval(DRAW_MS)
@@ -67,6 +73,8 @@ class PanelHost(QObject):
         self._slice_timer.setInterval(SLICE_MS)
         self._stick_timer = QTimer(self)
         self._stick_timer.setInterval(STICK_MS)
+        self._lease_timer = QTimer(self)
+        self._lease_timer.setInterval(LEASE_MS)
 
     def _connect(self):
         panel, operator = self.panel, self.operator
@@ -85,9 +93,12 @@ class PanelHost(QObject):
         panel.talk_requested.connect(operator.talk)
         panel.stop_requested.connect(operator.stop_all)
         panel.release_requested.connect(operator.release)
-        self._draw_timer.timeout.connect(self.draw)
+        panel.power_cut_requested.connect(lambda: operator.set_motor_power(False))
+        panel.control_requested.connect(operator.take_control)
+        self._draw_timer.timeout.connect(lambda: self._guard.run(self.draw))
         self._slice_timer.timeout.connect(self._draw_next)
         self._stick_timer.timeout.connect(self._repeat_stick)
+        self._lease_timer.timeout.connect(operator.repeat_selection)
 
     def start(self, robots=(), selected=()):
         """Begin; returns at once.
@@ -105,6 +116,7 @@ class PanelHost(QObject):
         gc.freeze()
         self._draw_timer.start()
         self._stick_timer.start()
+        self._lease_timer.start()
         self.draw()
 
     def draw(self):
@@ -130,7 +142,8 @@ class PanelHost(QObject):
             elif kind == 'examined':
                 self.doctor.show(*value)
             elif kind == 'request':
-                self.requests.carry_out(*value)
+                if view.control.ours:
+                    self.requests.carry_out(*value)
             else:
                 self.panel.show_look_result(value)
         self.requests.tell_ends()
@@ -161,7 +174,8 @@ class PanelHost(QObject):
             highlighted = self.panel.robot_list.current
             self._hosts[robot.name].behind = \
                 highlighted if highlighted in self._hosts and highlighted != robot.name else ''
-            self._guarded(robot.name, self._hosts[robot.name].draw, robot, self._stopped)
+            host = self._hosts[robot.name]
+            host.guard.run(self._guarded, robot.name, host.draw, robot, self._stopped)
 
     def _repeat_stick(self):
         """Say again where the stick is: a source that is not heard for 0.5 s counts as lost."""
@@ -194,6 +208,7 @@ class PanelHost(QObject):
     def _remove(self, name):
         self._window_due.discard(name)
         self._close_window(name)
+        self.requests.end_recording(name)
         self.operator.remove(name)
         self.draw()
 
@@ -274,8 +289,7 @@ class PanelHost(QObject):
     def _place(self, name, window):
         """Put a window where it was last time, else beside the panel and the others."""
         saved = self._places.get(name)
-        if saved:
-            window.restoreGeometry(QByteArray.fromHex(saved.encode('ascii')))
+        if saved and restore_geometry(window, saved):
             return
         place_window(window, self.panel,
                      [other for other in self.windows.values() if other is not window])
@@ -304,7 +318,7 @@ class PanelHost(QObject):
 
     def _keep_look(self, name):
         window = self.windows[name]
-        self._places[name] = bytes(window.saveGeometry().toHex()).decode('ascii')
+        self._places[name] = geometry_of(window)
         try:
             look = window.save_settings()
             json.dumps(look)
@@ -319,13 +333,18 @@ class PanelHost(QObject):
         """Return what is kept between runs as a plain dict: never which robots are selected."""
         for name in self.windows:
             self._keep_look(name)
-        return {'robots': list(self.operator.selection.robots), 'mode': self._mode,
-                'limits': list(self.operator.view().limits), 'windows': self._places,
-                'together': self.operator.view().together, 'looks': self._looks,
-                'panel': self.panel.save_settings()}
+        state = {'robots': list(self.operator.selection.robots), 'mode': self._mode,
+                 'limits': list(self.operator.view().limits), 'windows': self._places,
+                 'together': self.operator.view().together, 'looks': self._looks,
+                 'panel': self.panel.save_settings()}
+        return usable_state(state)[0]
 
     def restore_state(self, state):
-        """Take over a dict of :meth:`save_state`; call it before :meth:`start`."""
+        """Take over a dict of :meth:`save_state`; call it before :meth:`start`.
+
+        :returns: what of it cannot be used and is left out, in words
+        """
+        state, problems = usable_state(state)
         for name in state.get('robots', []):
             self.operator.add(name)
         if state.get('mode'):
@@ -337,17 +356,21 @@ class PanelHost(QObject):
         self._places.update(state.get('windows', {}))
         self._looks.update(state.get('looks', {}))
         self.panel.restore_settings(state.get('panel', {}))
+        return problems
 
     def close(self, forget=False):
         """Stop the robots first, then close everything; ``forget`` as in the backend."""
         if self._closed:
             return
         self._closed = True
+        self._guard.end()
         self._draw_timer.stop()
         self._slice_timer.stop()
         self._stick_timer.stop()
+        self._lease_timer.stop()
         self.operator.close(forget)
         QApplication.instance().removeEventFilter(self.panel.drive_keys)
+        self.panel.drive_keys.close()
         self.doctor.close()
         for name in list(self.windows):
             self._close_window(name)

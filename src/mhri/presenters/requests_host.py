@@ -70,6 +70,13 @@ class RequestsHost:
         for name in names:
             self._operator.recordings.stop(name)
 
+    def end_recording(self, name):
+        """End the recording of a robot that leaves the list, and say what has become of it."""
+        if name in self._operator.recordings.running():
+            self._ends = []
+            self._asked.add(name)
+            self._operator.recordings.stop(name)
+
     def tell_ends(self):
         """Say what has become of the recordings that were asked for here and have ended."""
         ended = []

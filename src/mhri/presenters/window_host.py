@@ -10,6 +10,7 @@ from mhri.core.camera.images import DEPTH, RGB
 from mhri.core.robots.mocap import DriftMeter, Pose
 from mhri.core.screen.views import StateView
 from mhri.gui.camera.camera_view import still_name
+from mhri.presenters.draw_guard import DrawGuard
 from mhri.ros.robots.bot_feeds import IMU, MOCAP, SCAN
 
 _CAMERA_NAMES = {RGB: 'RGB', DEPTH: 'depth'}
@@ -29,6 +30,7 @@ class WindowHost:
 
     def __init__(self, window, operator):
         self.window = window
+        self.guard = DrawGuard(window)
         self._operator = operator
         self._name = window.name
         self._notes = []
@@ -145,6 +147,7 @@ class WindowHost:
 
     def close(self):
         """Let the feeds rest: a closed window costs nothing."""
+        self.guard.end()
         feeds = self._operator.feeds(self._name)
         if feeds is not None:
             feeds.want(())

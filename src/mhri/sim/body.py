@@ -110,6 +110,12 @@ class Body:
         self._bias = [1.0 + random.gauss(0.0, self.WHEEL_BIAS) for _ in range(2)]
         self._order = (0.0, 0.0, -math.inf)
         self.blocked = False
+        self._powered = True
+
+    def set_power(self, powered):
+        """Give the motors power, or take it; with it given back they stand until commanded."""
+        self._powered = powered
+        self._order = (0.0, 0.0, -math.inf)
 
     def command(self, v, w, now):
         """Take in a velocity command [m/s, rad/s]; one that is not finite is refused.
@@ -120,6 +126,8 @@ class Body:
         """
         if not (math.isfinite(v) and math.isfinite(w)):
             return False
+        if not self._powered:
+            return True
         limits = self._limits
         # One assignment, so that a step never sees half of a command.
         self._order = (max(-limits.linear_mps, min(limits.linear_mps, v)),
@@ -127,10 +135,10 @@ class Body:
         return True
 
     def step(self, dt, now):
-        """Move on by ``dt`` seconds; the base's watchdog brakes when commands stop coming."""
+        """Move on by ``dt`` seconds; the base brakes when commands or power are gone."""
         v, w, commanded_at = self._order
         before = self.v
-        if now - commanded_at > self.type.watchdog_s:
+        if now - commanded_at > self.type.watchdog_s or not self._powered:
             brake = self.type.brake_mps2 * dt
             self.v = _approach(self.v, 0.0, brake)
             self.w = _approach(self.w, 0.0, 2.0 * brake / self.type.wheel_separation_m)

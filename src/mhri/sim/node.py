@@ -5,8 +5,8 @@
 Publishes odometry at 50 Hz, IMU at 100 Hz, laser scan at 10 Hz, ``/tf`` at 50 Hz and, where the
 template has one, the battery at 1 Hz; on request also the true pose at 50 Hz as a motion capture
 system would tell it (``/vrpn_client_node/<robot>/pose``, frame ``world``). Reads every velocity
-topic of the template. Frames are ``<robot>/odom``, ``<robot>/base_link``, ``<robot>/imu_link`` and
-``<robot>/laser`` (REP-105).
+topic of the template, and what takes the power from its motors. Frames are ``<robot>/odom``,
+``<robot>/base_link``, ``<robot>/imu_link`` and ``<robot>/laser`` (REP-105).
 """
 import math
 import time
@@ -16,8 +16,11 @@ from nav_msgs.msg import Odometry
 import numpy as np
 import rospy
 from sensor_msgs.msg import BatteryState, Imu, LaserScan
+from std_srvs.srv import SetBool, SetBoolResponse
 from tf2_msgs.msg import TFMessage
 
+from mhri.core.robots.names import topic_of
+from mhri.ros.messages import message_class, MessageMissing, read_field
 from mhri.sim.sensors import ImuSensor
 from mhri.sim.ticks import Due, Ticks
 
@@ -27,6 +30,38 @@ SCAN_EVERY = 10
 BATTERY_EVERY = 100
 MAX_STEP_S = 0.1
 BATTERY_LIFE_S = 2.5 * 3600.0
+
+
+class PowerSwitch:
+    """What takes the power from its motors: the topic or service that the template names.
+
+    :param robot: its name
+    :param spec: :class:`mhri.core.robots.robot_hardware.MotorPowerSpec`, None where it has none
+    :param set_power: called with True for power, False for none
+    """
+
+    def __init__(self, robot, spec, set_power):
+        self._spec = spec
+        self._set_power = set_power
+        if spec is None:
+            return
+        name = topic_of(robot, spec.name)
+        if spec.service:
+            rospy.Service(name, SetBool, self._on_call)
+            return
+        try:
+            rospy.Subscriber(name, message_class(spec.kind), self._on_message, queue_size=1)
+        except MessageMissing as error:
+            rospy.loginfo('%s: no switch for the power of its motors: %s', robot, error)
+
+    def _on_call(self, request):
+        self._set_power(request.data)
+        return SetBoolResponse(True, 'power is {}'.format('on' if request.data else 'cut'))
+
+    def _on_message(self, message):
+        value = read_field(message, self._spec.field)
+        if value in (self._spec.powered, self._spec.cut):
+            self._set_power(value == self._spec.powered)
 
 
 class SimRobot:
@@ -61,6 +96,7 @@ class SimRobot:
                                             queue_size=1) if template.battery else None
         self._mocap_pub = rospy.Publisher('/vrpn_client_node/{}/pose'.format(name), PoseStamped,
                                           queue_size=1) if tracked else None
+        PowerSwitch(name, template.motor_power, body.set_power)
         for topic in template.command:
             rospy.Subscriber(prefix + topic, Twist, self._on_twist, queue_size=1, tcp_nodelay=True)
 

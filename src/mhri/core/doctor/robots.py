@@ -13,6 +13,7 @@ from mhri.core.doctor.nodes import start_robot
 from mhri.core.doctor.system import gates
 from mhri.core.robots.names import topic_of
 from mhri.core.robots.robot_types import resolve_robot_type, RobotType
+from mhri.core.robots.stamp_age import delay_of
 
 TWIST = 'geometry_msgs/Twist'
 _TYPES = (('imu', 'sensor_msgs/Imu'), ('rgb', 'sensor_msgs/Image'),
@@ -299,6 +300,14 @@ def _clock(facts, robot):
                for sample in stream.samples]
     if not samples or facts.graph.parameters.get('use_sim_time') is True:
         return []
+    received_s, newest_s = max(samples)
+    if delay_of(received_s, newest_s) is None:
+        return [Finding(
+            WARNING, 'clock_offset', name, 'its stamps are of no real time (the newest: {:.1f} s '
+            'after 1970): a simulator\'s, or its clock was never set'.format(newest_s),
+            'transforms and recordings do not fit those of the others',
+            'rosparam set use_sim_time true   # where a simulator publishes /clock; on a robot: '
+            'sudo apt install chrony; sudo chronyc makestep')]
     offset_s, error_s = clock_offset(samples)
     words = 'its clock is {:.3f} s {} the clock here'.format(
         abs(offset_s), 'ahead of' if offset_s > 0 else 'behind')

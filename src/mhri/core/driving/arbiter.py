@@ -16,9 +16,9 @@ States and what leads out of them::
     DRIVING        a command other than zero            neutral or dead-man released -> READY
 
 A silent, suspended, lost or exchanged source, a change of mode, a robot that joins the selection,
-an enabling pedal that is released, a dead-man button that is pressed while the stick is out, and the
-loss of the master or of the gates lead from READY and DRIVING to WAIT_NEUTRAL; stop-all leads from
-anywhere to STOPPED. Each of them starts the zeros (but for
+an enabling pedal that is released, a dead-man button that is pressed while the stick is out, and
+the loss of the master or of the gates lead from READY and DRIVING to WAIT_NEUTRAL; stop-all leads
+from anywhere to STOPPED. Each of them starts the zeros (but for
 silence at rest, where they have been sent): one at once, more at :data:`REPEAT_HZ` for
 :data:`ZEROS_S`, then silence, since endless zeros would block a robot's own navigation behind its
 ``cmd_vel_mux`` (rqt_common_plugins#180).
@@ -106,7 +106,7 @@ class Arbiter:
             return 'source'
         if self._state == WAIT_NEUTRAL:
             return 'neutral'
-        if not self._enabled(now):
+        if not self.enabled(now):
             return 'enabling'
         return '' if self._stick.held else 'dead_man'
 
@@ -180,7 +180,7 @@ class Arbiter:
             idle = self._cause == 'idle'
             self._enter(READY)
             return self._later_zero(now) if idle else self._zeros(now)
-        if stick.is_zero() or not self._enabled(now):
+        if stick.is_zero() or not self.enabled(now):
             if self._state == DRIVING:
                 self._enter(READY)
                 return self._zeros(now)
@@ -194,14 +194,14 @@ class Arbiter:
         Released, everything stops; pressed while the stick is deflected, nothing moves before that
         has been centred: a foot that comes back must not set robots in motion.
         """
-        was, self._enabled_at = self._enabled(now), now if pressed else None
+        was, self._enabled_at = self.enabled(now), now if pressed else None
         if was and not pressed and self._state == DRIVING:
             return self._interlock('enabling', now)
         if pressed and not was and self._state == READY and not self._stick.neutral:
             self._enter(WAIT_NEUTRAL, 'enabling')
         return None
 
-    def _enabled(self, now):
+    def enabled(self, now):
         """Tell whether the enabling pedal allows motion; without one, it is always allowed."""
         return self._enabling is None or (
             self._enabled_at is not None and now - self._enabled_at < ENABLING_TIMEOUT_S)
@@ -255,6 +255,7 @@ class Arbiter:
         :returns: the velocity to send now, or None where the source is not the active one
         """
         self._resting.pop(name, None)
+        self._rested.pop(name, None)
         if name != self._mode:
             return None
         self._stick = self._stick_at = self._device = None
@@ -311,7 +312,7 @@ class Arbiter:
             self.refused['speed_limit'] += 1
             raise ValueError(problem)
         self._limits = (linear_mps, angular_rad_s)
-        if self._state == DRIVING and self._fresh(now) and self._enabled(now):
+        if self._state == DRIVING and self._fresh(now) and self.enabled(now):
             return self._drive(now)
         return None
 
@@ -322,7 +323,7 @@ class Arbiter:
         """
         if self._state == DRIVING and not self._fresh(now):
             return self._interlock('stale', now)
-        if self._state == DRIVING and not self._enabled(now):
+        if self._state == DRIVING and not self.enabled(now):
             return self._interlock('enabling', now)
         if self._state == WAIT_NEUTRAL and self._rests():
             return self._follow(self._stick, now)

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """How the robots of a selection keep to each other, and to the slowest of their links."""
-from mhri.core.robots.link_quality import link_share
 
 
 def slowest_link(robots):
@@ -13,20 +12,19 @@ def slowest_link(robots):
     return max(timed, key=lambda robot: robot.figures.round_trip_s, default=None)
 
 
-def pace_of(robots, together, slow_with_link):
-    """Return (how much of a command is passed on, in words what the robots keep to).
+def pace_words(robots, together, share):
+    """Return in words what the robots keep to.
 
     :param robots: :class:`mhri.core.screen.views.RobotView` of all
     :param together: whether all are held to what the slowest can do
-    :param slow_with_link: whether the slowest link counts
+    :param share: how much of each command is passed on, in (0, 1]; less than 1: a link is slow
     """
-    worst = slowest_link(robots) if slow_with_link else None
-    share = link_share(worst.figures.round_trip_s) if worst else 1.0
-    words = [_together(robots)] if together else ['each does its best']
     if share < 1.0:
-        words = ['{:.0f} % of the speed: the link to {} takes {:.0f} ms'.format(
-            100.0 * share, worst.name, 1e3 * worst.figures.round_trip_s)]
-    return share, words[0]
+        worst = slowest_link(robots)
+        return '{:.0f} % of the speed: {}'.format(100.0 * share, 'a link is slow' if worst is None
+                                                  else 'the link to {} takes {:.0f} ms'.format(
+                                                      worst.name, 1e3 * worst.figures.round_trip_s))
+    return _together(robots) if together else 'each does its best'
 
 
 def _together(robots):

@@ -20,16 +20,14 @@ class MotorPowerRule:
 
     Cut, it goes on trying until the robot has been told, and tells again whoever comes new. To give
     the power back it tries for :data:`RESTORE_FOR_S`. It never gives power unasked.
-
-    :param cut: whether the power was cut already when this began
     """
 
-    def __init__(self, cut=False):
-        self._cut = True if cut else None
+    def __init__(self):
+        self._cut = None
         self._pending = False
         self._due_at = 0.0
         self._asked_at = 0.0
-        self.state = CUT if cut else UNTOUCHED
+        self.state = UNTOUCHED
 
     @property
     def is_cut(self):

@@ -8,7 +8,7 @@ from typing import Tuple, Union
 from mhri.core.config import parse_yaml
 from mhri.core.driving.limits import Velocity, within_limits
 
-# As a dead-man button: whichever is pressed, for pads of which nobody knows where their buttons are.
+# As a dead-man button: whichever is pressed, where nobody knows the buttons of a pad.
 ANY = 'any'
 # Slower than this [m/s, rad/s], a Twist asks for standstill.
 _CREEP = 1e-3
@@ -121,8 +121,9 @@ class Profile:
     stretched, so that full travel stays full speed); ``neutral`` the fraction inside which the
     stick counts as released for the interlock; ``curve`` bends the response, 0 straight to 1
     cubic, for fine control near the centre. ``dead_man`` is the button without which nothing moves,
-    ``ANY`` for whichever is pressed, None for no such button. ``turbo`` is a button; while it is not held, everything
-    is multiplied by ``without_turbo``. ``actions`` are (button, one of ``ACTIONS``).
+    ``ANY`` for whichever is pressed, None for no such button. ``turbo`` is a button; while it is
+    not held, everything is multiplied by ``without_turbo``. ``actions`` are
+    (button, one of ``ACTIONS``).
     """
 
     name: str

@@ -23,6 +23,8 @@ _NO_FILES_IN = ('/dev', '/proc', '/sys')
 #: what an operator may choose: (key, label); IMU is always recorded
 CHOICES = (('odometry', 'Odometry'), ('commands', 'Commands'), ('scan', 'Laser scan'),
            ('rgb', 'RGB camera (compressed)'), ('depth', 'Depth camera (compressed)'))
+# Below a robot's namespace: where the commands go of one that has a guard.
+GUARD_COMMAND = 'mhri_guard/command'
 _COMMAND_TOPICS = ('/robot_controller/twist', '/robot_controller/robot_select',
                    '/robot_controller/stop_all', '/mux/mode')
 
@@ -88,8 +90,8 @@ def topics_of(robot, robot_type, choices=()):
 
     Of each list of a template every candidate is taken: one that does not exist brings nothing.
     Cameras are recorded compressed, with their ``camera_info``; what has no compressed topic can be
-    added by name. Of the commands those on the host are recorded. The robot's own velocity topic is
-    not: a recorder that subscribes it would be taken for the robot, and driven in its place.
+    added by name. Of the commands those on the host are recorded, and those to the robot: it does
+    not matter to the gates who merely listens.
 
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
     :param choices: keys of ``CHOICES``
@@ -105,6 +107,8 @@ def topics_of(robot, robot_type, choices=()):
     for key, suffix in (('rgb', '/compressed'), ('depth', '/compressedDepth')):
         for topic in getattr(robot_type, key) if key in choices else ():
             names += [topic + suffix, topic.rpartition('/')[0] + '/camera_info']
+    if 'commands' in choices:
+        names += (*robot_type.command, GUARD_COMMAND)
     topics = [topic_of(robot, name) for name in names]
     if 'commands' in choices:
         topics += _COMMAND_TOPICS

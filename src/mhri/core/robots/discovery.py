@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Which parts of a ROS graph are robots: the rules of "Look for Connected Bots"."""
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from typing import Optional, Tuple
 
@@ -37,7 +37,8 @@ class Candidate:
 
     ``robot_type`` is its parameter, None where it has none; ``nodes`` are the nodes registered
     under it, none where only its parameters are left; ``problem`` says why it cannot be added.
-    ``seen`` is what the graph tells of it besides.
+    ``seen`` is what the graph tells of it besides. ``part`` is true for a namespace that counts as
+    a part of the robot without a namespace, as long as that one lives.
     """
 
     name: str
@@ -45,6 +46,7 @@ class Candidate:
     nodes: Tuple[str, ...] = ()
     problem: Optional[str] = None
     seen: Seen = Seen()
+    part: bool = False
 
 
 def parse_ignore_list(text, origin):
@@ -90,13 +92,15 @@ def parameters_of(name, parameters, at_root=False):
     return dict(found, mhri=own['mhri']) if 'mhri' in own else found
 
 
-def find_candidates(system_state, parameters, ignore, known=(), topic_types=(), types=None):
+def find_candidates(system_state, parameters, ignore, known=(), topic_types=(), types=None,
+                    with_parts=False):
     """Return the robots of a graph, sorted by name.
 
     A namespace is a robot if it has a ``robot_type``, or nodes under it that are neither ignored
     nor under a known robot, or velocity topics that a node outside of it reads (a simulator). The
     root is a robot, of the name :func:`root_name`, if it has a ``robot_type`` or velocity topics;
-    namespaces without either are then taken for its parts.
+    namespaces without either are then taken for its parts. Of a node with several robots
+    (``instance`` of a type) each is one.
 
     :param system_state: publishers, subscribers, services as the master lists them
     :param parameters: all parameters as one nested dict
@@ -104,9 +108,29 @@ def find_candidates(system_state, parameters, ignore, known=(), topic_types=(), 
     :param known: names of the robots that are in the list already; they are left out
     :param topic_types: pairs (topic, ROS type) as the master lists them
     :param types: {name: RobotType}, to recognise robots and their velocity topics by
+    :param with_parts: also those that are taken for parts of the robot without a namespace
     """
     survey = Survey(system_state, parameters, ignore, topic_types, types or {})
-    return [item for item in survey.candidates() if item.name not in known]
+    return [item for item in survey.candidates() if not known_by_name(item, known, types or {})
+            and (with_parts or not item.part)]
+
+
+def known_by_name(candidate, known, types):
+    """Tell whether a robot is in the list already: by its name, or by that of its instance."""
+    kind = types.get(candidate.seen.kind)
+    return candidate.name in known or bool(
+        kind and kind.instance and candidate.seen.at_root and kind.instance in known)
+
+
+def named_instances(system_state, parameters, ignore, topic_types, types):
+    """Return {name: :class:`Seen`} of every robot at the root that has siblings in its node.
+
+    Other than in :func:`find_candidates`, the first one goes by its own name, too: so it may be
+    called by hand. Parameters as there.
+    """
+    survey = Survey(system_state, parameters, ignore, topic_types, types)
+    return {place.lstrip('/'): Seen(False, kind.name, None, place)
+            for place, (kind, _) in survey.instances.items() if place.count('/') == 1}
 
 
 class Survey:
@@ -129,6 +153,8 @@ class Survey:
             if not self._ignored(node) and not self._is_nested(node):
                 self._members.setdefault(namespace, []).append(node)
         self._root_nodes = set(self._members.pop(ROOT, ()))
+        #: {place of a robot of several, e.g. ``/turtle2``: (RobotType, its nodes)}
+        self.instances = dict(self._find_instances())
         self._commands = {}
         self._listeners = {}
         self._share_out_commands()
@@ -158,11 +184,34 @@ class Survey:
     def _is_nested(self, name):
         return any(name.startswith('/{}/'.format(robot)) for robot in self._nested)
 
+    def _find_instances(self):
+        """Yield (place, (RobotType, nodes)) of each robot of a node that may have several."""
+        for kind in (kind for kind in self._types.values() if kind.instance):
+            signs = [(topic[len(kind.instance):], sign) for topic, sign in kind.known_by.items()]
+            tail, _ = signs[0]
+            for topic in self._publishers:
+                place = topic[:-len(tail)]
+                name, below = split(place)
+                own_space = name == ROOT and (below in self._typed or below in self._members)
+                if topic.endswith(tail) and place.count('/') in (1, 2) and not own_space \
+                        and not self._ignored(topic) and not self._is_nested(topic) \
+                        and all(self._published(place + end, one) for end, one in signs):
+                    command = kind.for_instance(place).command[0]
+                    yield place, (kind, tuple(sorted(
+                        self._subscribers.get(command) or self._publishers[topic])))
+
+    def _siblings(self):
+        """Yield (place, RobotType, nodes) of the instances beside the template's own."""
+        for place, (kind, nodes) in sorted(self.instances.items()):
+            if place.rpartition('/')[2] != kind.instance:
+                yield place, kind, nodes
+
     def _share_out_commands(self):
         """Find the robot of each velocity topic that somebody reads."""
+        of_siblings = tuple(place + '/' for place, *_ in self._siblings())
         for topic, nodes in self._subscribers.items():
             if self._topic_types.get(topic) != TWIST or self._ignored(topic) \
-                    or self._is_nested(topic):
+                    or self._is_nested(topic) or topic.startswith(of_siblings):
                 continue
             nodes = [node for node in nodes if not self._ignored(node)]
             owner, name = self._owner(topic, nodes) if nodes else (None, '')
@@ -192,11 +241,16 @@ class Survey:
         root = self._root()
         names = set(self._typed) | set(self._commands) | set(self._members)
         names.discard(ROOT)
+        parts = set()
         if root and root.nodes:
-            names = {name for name in names if name in self._typed
-                     or name in self._members and name in self._commands}
-        found = [self._in_namespace(name) for name in names
+            parts = {name for name in names if name not in self._typed
+                     and not (name in self._members and name in self._commands)}
+        found = [replace(self._in_namespace(name), part=name in parts) for name in names
                  if name in self._typed or not self._ignore.covers('/' + name, name)]
+        for place, kind, nodes in self._siblings():
+            name = place.lstrip('/').replace('/', '_')
+            found.append(Candidate(name, None, nodes, name_problem(name),
+                                   Seen(False, kind.name, None, place)))
         found += [Candidate(name, problem=name_problem(name)) for name in self._nested]
         if root:
             taken = any(item.name == root.name for item in found)

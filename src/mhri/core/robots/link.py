@@ -51,13 +51,15 @@ class Motion:
                 and abs(self.angular_rad_s) <= STANDSTILL_RAD_S)
 
 
-def link_state(age_s, connections, silent_after_s=SILENT_AFTER_S):
+def link_state(age_s, connections, silent_after_s=SILENT_AFTER_S, reached=False):
     """Say how a robot's link is.
 
     :param age_s: age of its newest message [s], None where there never was one
     :param connections: number of open connections to its streams
     :param silent_after_s: its messages may be this far apart [s]; 0: its silence means nothing,
         as long as a connection is open
+    :param reached: whether a node of the robot takes commands; of one without odometry that is all
+        there is to know
     :returns: WAITING, LIVE, SILENT or GONE
     """
     if age_s is not None and age_s <= (silent_after_s or SILENT_AFTER_S):
@@ -66,7 +68,9 @@ def link_state(age_s, connections, silent_after_s=SILENT_AFTER_S):
         if not silent_after_s:
             return LIVE
         return SILENT if age_s is not None else WAITING
-    return GONE if age_s is not None else WAITING
+    if age_s is None:
+        return LIVE if reached else WAITING
+    return GONE
 
 
 def link_note(state, age_s, heard_at, waited_s):
@@ -75,6 +79,8 @@ def link_note(state, age_s, heard_at, waited_s):
     :param heard_at: local time of the newest message as text, e.g. '14:02:11'
     :param waited_s: for how long the robot has been in the list [s]
     """
+    if state == LIVE and age_s is None:
+        return 'tells no odometry: mhri cannot know whether it moves'
     if state == SILENT:
         return 'nothing for {:.1f} s'.format(age_s)
     if state == GONE:

@@ -52,15 +52,18 @@ class Seen:
     :param kind: the type that it was recognised as by its topics, None where it was not
     :param command: its velocity topic, as in a template; None where there is none, or where of
         several none is the likeliest
+    :param instance: where the topics of this robot begin, e.g. ``/turtle2``, of several that one
+        node has; None for any other
     """
 
     at_root: bool = False
     kind: Optional[str] = None
     command: Optional[str] = None
+    instance: Optional[str] = None
 
     def anything(self):
         """Tell whether there is more to it than a name."""
-        return bool(self.at_root or self.kind or self.command)
+        return bool(self.at_root or self.kind or self.command or self.instance)
 
 
 @dataclass(frozen=True)
@@ -74,7 +77,8 @@ class RobotType:
     of what only robots of this type publish: by it one is recognised that has no ``robot_type``.
     ``silent_after_s``: a robot is silent when its odometry has not come for so long [s]; 0 means
     that its silence says nothing (it tells its odometry in motion only). ``motor_power`` and
-    ``hardware_stop`` are None where there is no such thing.
+    ``hardware_stop`` are None where there is no such thing. ``instance`` is the first segment of
+    all its topics where one node may have several such robots, each with another first segment.
     """
 
     name: str
@@ -95,6 +99,7 @@ class RobotType:
     silent_after_s: float = SILENT_AFTER_S
     motor_power: Optional[MotorPowerSpec] = None
     hardware_stop: Optional[HardwareStopSpec] = None
+    instance: Optional[str] = None
 
     def at_root(self):
         """Return this type with absolute topics: for a robot without a namespace."""
@@ -103,6 +108,15 @@ class RobotType:
         changes.update((key, getattr(self, key).at_root()) for key in _HARDWARE
                        if getattr(self, key))
         return replace(self, **changes)
+
+    def for_instance(self, place):
+        """Return this type with the topics of one of several robots.
+
+        :param place: where they begin, e.g. ``/turtle2``
+        """
+        return replace(self, **{
+            key: tuple(place + topic[len(self.instance):] for topic in getattr(self, key))
+            for key in _TOPIC_KEYS})
 
     def with_model(self, model):
         """Return this type with the limits of one of its models, e.g. ``waffle``.
@@ -144,9 +158,24 @@ def parse_robot_type(text, origin):
         odometry_type=odometry_type, known_by=_known_by(section),
         silent_after_s=_silent_after_s(section),
         **{key: read(section) for key, read in _HARDWARE.items()},
+        instance=section.text('instance', None),
         **{key: _topics(section, key) for key in _TOPIC_KEYS})
+    _check_instance(section, robot_type)
     section.close()
     return robot_type
+
+
+def _check_instance(section, robot_type):
+    """Refuse an instance that is not the first segment of everything."""
+    if robot_type.instance is None:
+        return
+    topics = [topic for key in _TOPIC_KEYS for topic in getattr(robot_type, key)]
+    for topic in topics + list(robot_type.known_by):
+        if topic.partition('/')[0] != robot_type.instance:
+            raise section.error('instance', '{} does not begin with {}/'.format(
+                topic, robot_type.instance))
+    if not robot_type.known_by:
+        raise section.error('instance', 'needs known_by, to find the others by')
 
 
 def _odometry_type(section):
@@ -242,6 +271,8 @@ def resolve_robot_type(types, robot, params, seen=Seen()):
         errors.append(ConfigError(origin, 'robot_model', error.problem + '; driven at the slowest'))
     if chosen.name == 'generic' and seen.command and seen.command not in chosen.command:
         chosen = replace(chosen, command=(seen.command,) + chosen.command)
+    if seen.instance and chosen.instance:
+        chosen = chosen.for_instance(seen.instance)
     overrides = params.get('mhri')
     if overrides:
         try:

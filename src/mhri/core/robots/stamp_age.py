@@ -11,6 +11,15 @@ LEAK = 5e-4
 SETTLE_S = 1.0
 
 
+def delay_of(received_s, stamp_s):
+    """Return the time from a stamp to the receipt of its message [s], by two clocks.
+
+    :param received_s: by the clock here [s since 1970]
+    :returns: None where the stamp is none of that time: see :data:`SET_SINCE_S`
+    """
+    return None if stamp_s < SET_SINCE_S <= received_s else received_s - stamp_s
+
+
 class StampAge:
     """Compares the delay of each message with the least that there was.
 

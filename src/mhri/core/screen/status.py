@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The one line at the bottom of the panel: the one thing that matters now."""
 from mhri.core.screen.stop_words import stop_words
-from mhri.core.screen.views import GONE, ROS_CONNECTED, ROS_STARTING, SILENT
+from mhri.core.screen.views import (
+    GONE, ROS_CONNECTED, ROS_CUT_OFF, ROS_STARTING, SILENT, UNANSWERED)
 
 CALM = 'calm'
 ATTENTION = 'attention'
@@ -16,7 +17,7 @@ def status_line(view, waits_for, master_uri=''):
     :param waits_for: the last word of ``/mux/waits_for``; None where the mux has not been heard
     :returns: (sentence, level), never empty
     """
-    for rule in (_no_ros, _stopped, _no_mux, _no_robots, _lost_robot):
+    for rule in (_no_ros, _stopped, _no_mux, _no_gates, _not_ours, _no_robots, _lost_robot):
         line = rule(view, waits_for, master_uri)
         if line:
             return line
@@ -26,6 +27,8 @@ def status_line(view, waits_for, master_uri=''):
 def _no_ros(view, _, master_uri):
     if view.ros == ROS_STARTING:
         return 'connecting to ROS', CALM
+    if view.ros == ROS_CUT_OFF:
+        return 'this screen is cut off and shows nothing new: restart it', STOPPED
     if view.ros != ROS_CONNECTED:
         return ('no ROS master at {}: start roscore there, or set ROS_MASTER_URI; looking again '
                 'every second'.format(master_uri), ATTENTION)
@@ -34,7 +37,7 @@ def _no_ros(view, _, master_uri):
 
 def _stopped(view, _, __):
     if view.stop_all:
-        return stop_words(view.robots).sentence, STOPPED
+        return stop_words(view.robots, view.stop_taken, view.answers).sentence, STOPPED
     return None
 
 
@@ -42,6 +45,18 @@ def _no_mux(view, _, __):
     if view.mode is None:
         return 'the mux is not running: nothing can be driven until it is (rosrun mhri mux)', \
             ATTENTION
+    return None
+
+
+def _no_gates(view, _, __):
+    if not view.answers:
+        return UNANSWERED + ': no robot can be driven, and those that were stand', ATTENTION
+    return None
+
+
+def _not_ours(view, _, __):
+    if not view.control.ours:
+        return 'only looking on: {} drives'.format(view.control.who or 'somebody else'), CALM
     return None
 
 

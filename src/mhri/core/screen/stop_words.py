@@ -20,18 +20,30 @@ class StopWords(NamedTuple):
     sentence: str
 
 
+# The robots may not know of the stop yet: nobody has said that it is in force.
+NOT_TAKEN = StopWords(('STOPPING - not confirmed yet', 'STOPPING'),
+                      'waiting for the drive service to say that the stop is in force',
+                      'stop all is asked for, and not confirmed yet')
+UNANSWERED_STOP = StopWords(
+    ('STOP ALL NOT CONFIRMED - the drive service does not answer', 'STOP ALL NOT CONFIRMED',
+     'NOT CONFIRMED'), 'they may still move: go and look, or use the switch on the robot',
+    'stop all is NOT CONFIRMED: the drive service does not answer')
 NOBODY_HEARD = StopWords((IN_FORCE,), 'no command goes out until you release it',
                          'stop all is in force; release it to drive again')
 
 
-def stop_words(robots):
+def stop_words(robots, taken=True, answers=True):
     """Say how far the stop of some robots is proved.
 
     A robot that has never been heard, and is not being proved, has no part in it.
 
     :param robots: :class:`mhri.core.screen.views.RobotView` of all
+    :param taken: whether the gates have said that the stop is in force
+    :param answers: whether the gates are heard
     :returns: :class:`StopWords`
     """
+    if not taken:
+        return NOT_TAKEN if answers else UNANSWERED_STOP
     robots = [robot for robot in robots if robot.proof is not None or robot.age_s is not None]
     if not robots:
         return NOBODY_HEARD

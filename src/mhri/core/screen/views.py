@@ -22,10 +22,14 @@ PROOF_WAITING = 'waiting'            # zero sent, standstill not read yet
 PROOF_STOPPED = 'stopped'            # its own odometry reads standstill
 PROOF_NOT_CONFIRMED = 'not_confirmed'  # it moves on, moved again, or cannot be heard
 
+# What is said in every row while the gates are not heard.
+UNANSWERED = 'the drive service does not answer'
+
 # States of the ROS connection.
 ROS_STARTING = 'starting'
 ROS_NO_MASTER = 'no_master'
 ROS_CONNECTED = 'connected'
+ROS_CUT_OFF = 'cut_off'  # this program's node was ended or its name taken: nothing goes out
 
 
 @dataclass(frozen=True)
@@ -55,15 +59,18 @@ class RobotView:
 
     ``age_s`` is the age of the newest odometry [s]; speeds are the robot's own odometry [m/s,
     rad/s], ``heading_rad`` its yaw in (-pi, pi], x and y in metres in its ``odom`` frame; None
-    where nothing has been heard. ``battery`` is a fraction in [0, 1]. ``driven`` is true while
-    commands other than zero are being forwarded to it, ``recording`` while a bag of it is open,
-    ``guarded`` while its commands go through a guard on the robot. ``note`` is what is worth saying
-    in words about the link, e.g. "nothing for 3.2 s"; '' while all is well. ``figures`` are what
-    was measured of the link, ``slow`` is true where they are past what driving needs, ``waits``
-    while it is left out until the stick has been centred, since its link was lost.
-    ``hardware_stop`` is true while the robot's own emergency stop holds it, None where nothing
-    tells. ``power`` says in words what was done to the power of its motors
-    (:mod:`mhri.core.driving.motor_power`), '' where nothing was.
+    where nothing has been heard. ``battery`` is a fraction in [0, 1]. ``recording`` is true while a
+    bag of it is open. ``note`` is what is worth saying in words about the link, e.g. "nothing for
+    3.2 s"; '' while all is well. ``figures`` are what was measured of the link, ``slow`` is true
+    where something asks for attention.
+
+    What the gates say: ``driven`` is true while the velocity last sent to it is not zero,
+    ``guarded`` while its commands go through a guard on the robot, ``obeys`` is whom it obeys ('',
+    'operator', 'task'), ``stands`` why it is kept standing ('', 'stopped', 'not_heard', 'joining'),
+    ``waits`` is true while it is left out until the stick has been centred, ``stop_latched`` once
+    its guard has confirmed the stop. ``hardware_stop`` is true while the robot's own emergency stop
+    holds it, None where nothing tells. ``power`` says in words what was done to the power of its
+    motors (:mod:`mhri.core.driving.motor_power`), '' where nothing was.
     """
 
     name: str
@@ -89,8 +96,11 @@ class RobotView:
     figures: LinkFigures = LinkFigures()
     slow: bool = False
     waits: bool = False
-    hardware_stop: Optional[bool] = None
+    obeys: str = ''
+    stands: str = ''
+    stop_latched: bool = False
     power: str = ''
+    hardware_stop: Optional[bool] = None
 
 
 @dataclass(frozen=True)
@@ -120,6 +130,14 @@ class HeardView:
 
 
 @dataclass(frozen=True)
+class ControlView:
+    """Who is in control: this screen (``ours``), or who, e.g. "panel on lab-pc2 since 14:02"."""
+
+    ours: bool = True
+    who: str = ''
+
+
+@dataclass(frozen=True)
 class PanelView:
     """Everything the panel shows at one instant.
 
@@ -130,7 +148,8 @@ class PanelView:
     ``together`` is true while all selected robots are held to the pace of the slowest, ``pace``
     says in words what that is, ``slowed`` is true while a slow link holds them back.
     ``camera_bits_per_s`` is what all pictures on show take of the network. ``heard`` is what the
-    voice node heard last, None before that.
+    voice node heard last, None before that. ``control`` is who drives, ``answers`` is false while
+    the gates are not heard, ``stop_taken`` true once they have said that the stop is in force.
     """
 
     ros: str = ROS_STARTING
@@ -147,3 +166,6 @@ class PanelView:
     robots: Tuple[RobotView, ...] = ()
     camera_bits_per_s: float = 0.0
     heard: Optional[HeardView] = None
+    control: ControlView = ControlView()
+    answers: bool = True
+    stop_taken: bool = True

@@ -7,7 +7,7 @@ whatever widget has the focus, and stop-all from anywhere at all. It acts in the
 alone: widgets marked by :func:`mark_drive_area` (panel, bot windows) and what is in them; another
 rqt plugin beside the panel keeps its keys. Stop-all knows no such bounds.
 """
-from python_qt_binding.QtCore import QEvent, QObject, Qt, Signal
+from python_qt_binding.QtCore import QEvent, QObject, Qt, QTimer, Signal
 from python_qt_binding.QtWidgets import (
     QAbstractButton, QAbstractItemView, QAbstractSlider, QAbstractSpinBox, QApplication, QComboBox,
     QLineEdit, QPlainTextEdit, QTextEdit, QWidget)
@@ -37,6 +37,9 @@ _ARRIVALS = frozenset((QEvent.WindowActivate, QEvent.WindowUnblocked, QEvent.App
 
 _TEXT_FIELDS = (QLineEdit, QAbstractSpinBox, QTextEdit, QPlainTextEdit)
 _ARROW_USERS = (QAbstractSlider, QComboBox, QAbstractItemView)
+# How often the X server is asked whether a key that is held here is down in truth: whoever grabs
+# the keyboard (a shortcut of the desktop) keeps its release, and tells nobody.
+_LOOK_MS = 40
 _AREA = 'mhri_drive_area'
 _KEEPS_ARROWS = 'mhri_keeps_arrows'
 
@@ -118,6 +121,11 @@ class DriveKeys(QObject):
         self._dead = set()
         self._deflection = (0.0, 0.0)
         self._talk = None
+        # Of the keys that are down those that the X server knows of: not what a program made up.
+        self._real = set()
+        self._look_timer = QTimer(self)
+        self._look_timer.setInterval(_LOOK_MS)
+        self._look_timer.timeout.connect(self._look)
 
     @property
     def talking(self):
@@ -140,6 +148,34 @@ class DriveKeys(QObject):
         """Count every held key as released until it has been."""
         self._dead.update(self._held)
         self._held.clear()
+        self._update()
+
+    def close(self):
+        """Let every key go, and the X server, too."""
+        self.release()
+        self._look_timer.stop()
+        self._keys.close()
+
+    def _look(self):
+        """Let go the keys that are up in truth, though nobody has said so."""
+        held = self._real & (set(self._held) | {self._talk})
+        down = self._keys.down()
+        if not held or down is None:
+            self._look_timer.stop()
+            return
+        for identity in held - down:
+            self._let_go(identity)
+            # Its release may still come, and is not for anybody else.
+            self._dead.add(identity)
+
+    def _let_go(self, identity):
+        """Count a key of ours as released."""
+        self._down.discard(identity)
+        self._real.discard(identity)
+        if identity == self._talk:
+            self._set_talk(None)
+        self._held.pop(identity, None)
+        self._dead.discard(identity)
         self._update()
 
     def eventFilter(self, watched, event):  # noqa: N802
@@ -179,6 +215,10 @@ class DriveKeys(QObject):
         if event.isAutoRepeat() or identity in self._down:
             return False
         self._down.add(identity)
+        if event.spontaneous() and event.nativeScanCode():
+            self._real.add(identity)
+            if not self._look_timer.isActive():
+                self._look_timer.start()
         return True
 
     def _on_stop(self, event, kind):
@@ -198,12 +238,8 @@ class DriveKeys(QObject):
         if event.isAutoRepeat() or event.nativeScanCode() in (self._keys.down() or ()):
             return ours
         self._down.discard(identity)
-        if identity == self._talk:
-            self._set_talk(None)
-        elif ours:
-            self._held.pop(identity, None)
-            self._dead.discard(identity)
-            self._update()
+        if ours:
+            self._let_go(identity)
         return ours
 
     def _listens(self, watched, focus):

@@ -1,6 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Stop all, across the whole panel: one press to stop, two steps to release."""
+"""Stop all, across the whole panel: one press to stop, two steps to release.
+
+Held for 2 s, or by a second step on the page that says what is stopped, it cuts the power of the
+motors of those robots that offer it.
+"""
 from python_qt_binding.QtCore import Qt, QTimer, Signal
 from python_qt_binding.QtGui import QPainter
 from python_qt_binding.QtWidgets import (
@@ -14,6 +18,12 @@ from mhri.gui.driving.stop_button import StopButton
 
 CONFIRM_WITHIN_S = 5.0
 ANSWER_WITHIN_S = 2.0
+# Held for so long, the stop button cuts the power of the motors as well.
+CUT_AFTER_S = 2.0
+CUT_OFF = 'This screen is cut off: STOP ALL here reaches nothing'
+CUT_OFF_NOTE = ('another program has taken its name, or it was ended from elsewhere: stop the '
+                'robots by hand or from another screen; restart this one')
+CUT_OFF_SHORTER = ('stop the robots from elsewhere; restart this screen', 'restart this screen')
 
 
 class StopBar(QWidget):
@@ -25,10 +35,13 @@ class StopBar(QWidget):
 
     stop_requested = Signal()
     release_requested = Signal()
+    #: the power of the motors is to be cut: the stop was held, or the second step taken
+    power_cut_requested = Signal()
 
     def __init__(self, parent=None):
         super().__init__(parent)
         self._stopped = False
+        self._cut_off = False
         self._note = ''
         self._words = NOBODY_HEARD
         self._asked = Pending(ANSWER_WITHIN_S)
@@ -55,12 +68,16 @@ class StopBar(QWidget):
         self._sign.show_sign((theme.OCTAGON, theme.STOP))
         self.release_button = self._button('release_button', 'Release...')
         self.confirm_button = self._button('confirm_button', 'Confirm release')
+        self.power_button = self._button('power_button', 'Cut motor power')
         self.cancel_button = self._button('cancel_button', 'Cancel')
         self._pages = QStackedLayout(self)
         self._pages.addWidget(self.stop_button)
         self._pages.addWidget(self._stopped_page)
         self._lay_out_stopped()
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
+        self._held = QTimer(self)
+        self._held.setSingleShot(True)
+        self._held.setInterval(round(CUT_AFTER_S * 1000))
         self._countdown = QTimer(self)
         self._countdown.setSingleShot(True)
         self._countdown.setInterval(round(CONFIRM_WITHIN_S * 1000))
@@ -93,6 +110,7 @@ class StopBar(QWidget):
         row.setSpacing(unit // 2)
         row.addWidget(self._sign)
         row.addLayout(words, 1)
+        row.addWidget(self.power_button)
         row.addWidget(self.confirm_button)
         row.addWidget(second)
 
@@ -108,6 +126,10 @@ class StopBar(QWidget):
     def _connect(self):
         """Wire buttons and timers."""
         self.stop_button.pressed.connect(self.request_stop)
+        self.stop_button.pressed.connect(self._held.start)
+        self.stop_button.let_go.connect(self._held.stop)
+        self._held.timeout.connect(self.power_cut_requested)
+        self.power_button.clicked.connect(self.power_cut_requested)
         self.release_button.clicked.connect(self._ask)
         self.cancel_button.clicked.connect(self._cancel)
         self.confirm_button.clicked.connect(self._confirm)
@@ -128,6 +150,12 @@ class StopBar(QWidget):
         changed = (stopped, note, said) != (self._stopped, self._note, self._words)
         self._stopped, self._note, self._words = stopped, note, said
         if changed:
+            self._show()
+
+    def show_cut_off(self, cut_off):
+        """Show that nothing that is pressed on this screen reaches anything any more."""
+        if cut_off != self._cut_off:
+            self._cut_off = cut_off
             self._show()
 
     def request_stop(self):
@@ -161,22 +189,26 @@ class StopBar(QWidget):
     def _show(self):
         """Show the state as it is known."""
         asked = self._asked.settle(self._stopped)
-        self._pages.setCurrentIndex(1 if self._stopped else 0)
+        self._pages.setCurrentIndex(1 if self._stopped or self._cut_off else 0)
         stopping = asked and not self._stopped
         self.stop_button.setText('STOPPING ...' if stopping else 'STOP ALL')
         releasing = self._stopped and not asked
         headline, *shorter = ('RELEASING ...',) if releasing else self._words.headlines
         self._headline.show_text(headline, shorter=shorter)
         self._note_line.show_text(self._note or self._words.note)
+        if self._cut_off:
+            self._headline.show_text(CUT_OFF, shorter=('CUT OFF',))
+            self._note_line.show_text(CUT_OFF_NOTE, shorter=CUT_OFF_SHORTER)
         confirming = self._countdown.isActive()
         self.confirm_button.setVisible(confirming)
         self._second.setCurrentIndex(1 if confirming else 0)
-        self.release_button.setEnabled(not releasing)
+        self.release_button.setEnabled(not releasing and not self._cut_off)
+        self.power_button.setVisible(not confirming and not self._cut_off)
         self.update()
 
     def paintEvent(self, event):  # noqa: N802
         """Paint the frame of the stopped state."""
-        if not self._stopped:
+        if not self._stopped and not self._cut_off:
             return
         painter = QPainter(self)
         painter.setRenderHint(QPainter.Antialiasing)

@@ -1,28 +1,36 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The stop button: acts when it is pressed, not when it is let go, by mouse and by any finger."""
-from python_qt_binding.QtCore import QEvent, QRectF, QSize, Qt
+from python_qt_binding.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from python_qt_binding.QtGui import QPainter, QPen
-from python_qt_binding.QtWidgets import QAbstractButton, QSizePolicy
+from python_qt_binding.QtWidgets import QAbstractButton, QApplication, QSizePolicy
 
 from mhri.gui.screen import theme
 
+_ENDS = frozenset((QEvent.MouseButtonRelease, QEvent.TouchEnd, QEvent.TouchCancel,
+                   QEvent.ApplicationDeactivate))
 # How much darker than the colour of the palette the button is [%].
 _AT_REST, _UNDER_POINTER, _DOWN = 112, 120, 140
 
 
 class StopButton(QAbstractButton):
-    """A large vermillion button; connect to ``pressed``.
+    """A large vermillion button; connect to ``pressed``, and to ``let_go`` for its end.
+
+    It may be hidden while it is held: the page that says what is stopped takes its place. So the
+    end of a press is looked for in the application, not awaited here.
 
     It takes touches itself: while one finger holds the virtual joystick, Qt turns no other finger
     into a mouse, and stopping has to work just then.
     """
+
+    let_go = Signal()
 
     def __init__(self, parent=None):
         super().__init__(parent)
         self._hint = ''
         self._lines = 2.0
         self._engaged = False
+        self.pressed.connect(self._watch)
         self.setAttribute(Qt.WA_AcceptTouchEvents)
         self.setFocusPolicy(Qt.TabFocus)
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
@@ -58,6 +66,17 @@ class StopButton(QAbstractButton):
             return super().event(event)
         event.accept()
         return True
+
+    def _watch(self):
+        """Look for the end of this press."""
+        QApplication.instance().installEventFilter(self)
+
+    def eventFilter(self, watched, event):  # noqa: N802
+        """Tell of the end of a press, wherever it arrives."""
+        if event.type() in _ENDS:
+            QApplication.instance().removeEventFilter(self)
+            self.let_go.emit()
+        return False
 
     def paintEvent(self, event):  # noqa: N802
         """Paint the button; darker under the pointer, and more so while it is down."""

@@ -94,6 +94,7 @@ class RobotList(QScrollArea):
         self._robots = ()
         self._wanted = ()
         self._current = None
+        self._in_force = True
         self._asked = Pending(_ANSWER_WITHIN_S)
         self._build()
 
@@ -211,6 +212,7 @@ class RobotList(QScrollArea):
     def _new_row(self, name):
         """Make a row."""
         row = self._rows[name] = RobotRow(name, self._inside)
+        row.box.setEnabled(self._in_force)
         row.checked.connect(self._on_checked)
         row.clicked.connect(self._on_click)
         row.opened.connect(self.open_requested)
@@ -249,8 +251,18 @@ class RobotList(QScrollArea):
         every = [robot.name for robot in self._robots]
         self._select([] if self.checked() == every else every)
 
+    def show_in_force(self, in_force):
+        """Show whether a selection that is made here counts; otherwise none can be made."""
+        if in_force != self._in_force:
+            self._in_force = in_force
+            self._asked.drop()
+            for row in self._rows.values():
+                row.box.setEnabled(in_force)
+
     def _select(self, names):
         """Ask for a selection, and show it at once while the answer is on its way."""
+        if not self._in_force:
+            return
         self._asked.ask(tuple(names))
         self._answer.start()
         self.show_robots(self._robots, numbers=False)

@@ -41,7 +41,7 @@ class BigCheckBox(QCheckBox):
         palette = self.palette()
         side = self.fontMetrics().height() * 1.35
         box = QRectF((self.width() - side) / 2.0, (self.height() - side) / 2.0, side, side)
-        ink = theme.colour(theme.DRIVE, palette)
+        ink = theme.colour(theme.DRIVE if self.isEnabled() else theme.MUTED, palette)
         checked = self.isChecked()
         border = ink if checked or self.underMouse() else theme.colour(theme.MUTED, palette)
         painter.setPen(QPen(border, 2))

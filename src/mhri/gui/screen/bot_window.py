@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """One robot's window: who it is, whether it is being driven, how it moves, what it sees."""
-from python_qt_binding.QtCore import QByteArray, QEvent, QSize, Qt, Signal
+from python_qt_binding.QtCore import QEvent, QSize, Qt, Signal
 from python_qt_binding.QtGui import QPainter, QPen
 from python_qt_binding.QtWidgets import QDialog, QSizePolicy
 
@@ -306,8 +306,7 @@ class BotWindow(QDialog):
         """Return what is kept between runs as a plain dict: choices, splitter."""
         return {'views': self.switches.chosen(), 'graph': self.graph.save_settings(),
                 'recording': self.recording.save_settings(),
-                'splitter': bytes(self.views_splitter.saveState().toHex()).decode('ascii')
-                if self._splitter_set else ''}
+                'splitter': self.views_splitter.sizes() if self._splitter_set else []}
 
     def restore_settings(self, settings):
         """Take over a dict of :meth:`save_settings`; what is missing or unknown stays as it is."""
@@ -315,8 +314,10 @@ class BotWindow(QDialog):
             self.switches.choose(settings['views'])
         self.graph.restore_settings(settings.get('graph', {}))
         self.recording.restore_settings(settings.get('recording', {}))
-        state = settings.get('splitter', '').encode('ascii')
-        self._splitter_set = self.views_splitter.restoreState(QByteArray.fromHex(state))
+        sizes = settings.get('splitter', [])
+        self._splitter_set = len(sizes) == self.views_splitter.count()
+        if self._splitter_set:
+            self.views_splitter.setSizes(sizes)
 
     def showEvent(self, event):  # noqa: N802
         """Ask for the views."""

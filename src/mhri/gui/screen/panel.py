@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The panel: robots on the left, driving on the right, stop-all and one sentence below."""
-import base64
-
-from python_qt_binding.QtCore import QByteArray, QPoint, QRect, Qt, QTimer, Signal
+from python_qt_binding.QtCore import QPoint, QRect, Qt, QTimer, Signal
 from python_qt_binding.QtWidgets import QPushButton, QWidget
 
 from mhri.core.screen.stop_words import stop_words
-from mhri.core.screen.views import PanelView
+from mhri.core.screen.views import PanelView, ROS_CUT_OFF
 from mhri.gui.screen import theme, words
+from mhri.gui.driving.control_bar import ControlBar
+from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.gui.driving.drive_keys import DriveKeys, mark_drive_area
 from mhri.gui.screen.forms import load_form
 from mhri.gui.screen.labels import Sign, TextLine
@@ -27,8 +27,8 @@ STOP_RECORDING = 'Stop recording ({})'
 # What came of looking or recording is news for so long.
 RESULT_MS = 20000
 
-_WIDGETS = (
-    ModeCombo, RobotList, Sign, SpeedLimits, StatusLine, StopBar, TextLine, VirtualJoystick)
+_WIDGETS = (ControlBar, ModeCombo, RobotList, Sign, SpeedLimits, StatusLine, StopBar, TextLine,
+            VirtualJoystick)
 
 
 class PanelWidget(QWidget):
@@ -69,6 +69,10 @@ class PanelWidget(QWidget):
     together_requested = Signal(bool)
     stop_requested = Signal()
     release_requested = Signal()
+    #: the power of the motors is to be cut
+    power_cut_requested = Signal()
+    #: this screen is to be the one that drives
+    control_requested = Signal()
 
     def __init__(self, ui_dir, parent=None):
         super().__init__(parent)
@@ -133,6 +137,8 @@ class PanelWidget(QWidget):
         self.speed_limits.together_requested.connect(self.together_requested)
         self.stop_bar.stop_requested.connect(self._on_stop)
         self.stop_bar.release_requested.connect(self.release_requested)
+        self.stop_bar.power_cut_requested.connect(self.power_cut_requested)
+        self.control_bar.take_requested.connect(self.control_requested)
         self.talk_button.pressed.connect(self._press_talk)
         self.talk_button.released.connect(self._let_talk_go)
         self.drive_keys.talk_changed.connect(self._tell_talk)
@@ -156,11 +162,15 @@ class PanelWidget(QWidget):
         """
         self._view = view
         numbers = self._numbers.due()
+        self.robot_list.show_in_force(view.control.ours)
         self.robot_list.show_robots(view.robots, numbers)
+        self.control_bar.show_control(view.control)
         self.mode_combo.show_mode(view.sources, view.mode)
         self.speed_limits.show_limits(view.limits)
         self.speed_limits.show_pace(view.together, view.pace, view.slowed)
-        self.stop_bar.show_stop(view.stop_all, view.stop_note, stop_words(view.robots))
+        self.stop_bar.show_cut_off(view.ros == ROS_CUT_OFF)
+        self.stop_bar.show_stop(view.stop_all, view.stop_note, stop_words(
+            view.robots, view.stop_taken, view.answers))
         self.status_line.show_status(view.status, view.status_level)
         self._show_buttons()
         self._show_stick(numbers)
@@ -225,21 +235,15 @@ class PanelWidget(QWidget):
         """Return what only concerns the looks as a plain dict of JSON values."""
         settings = {'splitter': self.splitter.sizes()}
         if self.isWindow():
-            geometry = bytes(self.saveGeometry())
-            settings['geometry'] = base64.b64encode(geometry).decode('ascii')
+            settings['geometry'] = geometry_of(self)
         return settings
 
     def restore_settings(self, settings):
-        """Take back what :meth:`save_settings` returned; what cannot be used is left out."""
-        sizes = settings.get('splitter')
-        if isinstance(sizes, (list, tuple)) and len(sizes) == 2:
-            try:
-                self.splitter.setSizes([int(size) for size in sizes])
-            except (TypeError, ValueError):
-                pass
-        geometry = settings.get('geometry')
-        if isinstance(geometry, str) and self.isWindow():
-            self.restoreGeometry(QByteArray.fromBase64(geometry.encode('ascii', 'ignore')))
+        """Take back what :meth:`save_settings` returned; :func:`usable_state` has looked at it."""
+        if len(settings.get('splitter', ())) == self.splitter.count():
+            self.splitter.setSizes(settings['splitter'])
+        if 'geometry' in settings and self.isWindow():
+            restore_geometry(self, settings['geometry'])
 
     def _look(self):
         """Ask to look for robots."""
@@ -308,17 +312,19 @@ class PanelWidget(QWidget):
             self.record_button.setText(text)
         self.record_button.setEnabled(
             bool(running) or any(robot.selected for robot in self._view.robots))
-        self.all_button.setEnabled(bool(self._view.robots))
-        self.none_button.setEnabled(bool(self._view.robots))
+        for button in (self.all_button, self.none_button):
+            button.setEnabled(bool(self._view.robots) and self._view.control.ours)
 
     def _show_stick(self, numbers):
         """Show what the stick asks for, and whether anybody listens to it."""
         view = self._view
-        in_force = view.mode == VIRTUAL_JOYSTICK and not view.stop_all
+        in_force = view.mode == VIRTUAL_JOYSTICK and not view.stop_all and view.control.ours
         self.joystick.show_active(in_force)
         self.talk_button.setVisible(view.mode == VOICE)
         shorter = ()
-        if view.stop_all:
+        if not view.control.ours:
+            note = 'no effect: {} drives'.format(view.control.who.partition(' since ')[0])
+        elif view.stop_all:
             note = 'no effect: stop all is in force'
         elif view.mode is None:
             note = 'no effect: the mode is not known yet'

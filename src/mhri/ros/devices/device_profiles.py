@@ -18,9 +18,12 @@ class DeviceProfiles:
     A profile is read when its device is first heard, and again when another device was heard
     meanwhile or :meth:`forget` was called. Shipped names come from ``resource/pads``, all others
     from the operator's own folder.
+
+    :param dead_man: whether their dead-man buttons have to be held
     """
 
-    def __init__(self):
+    def __init__(self, dead_man=True):
+        self._dead_man = dead_man
         self._newest = {}
 
     def of(self, source, frame_id):
@@ -35,6 +38,8 @@ class DeviceProfiles:
         name, profile = self._newest.get(source, ('', None))
         if name != frame_id:
             profile = _read(frame_id[len(PREFIX):])
+            if not (self._dead_man or isinstance(profile, JoyRefused)):
+                profile = profile.without_dead_man()
             self._newest[source] = (frame_id, profile)
         if isinstance(profile, JoyRefused):
             raise profile

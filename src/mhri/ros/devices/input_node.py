@@ -5,7 +5,8 @@
 Interfaces of the node (the names are passed in):
 
 - publishes ``sensor_msgs/Joy`` on its topic, on change (at most 100 Hz) and at 20 Hz;
-  ``header.frame_id`` is ``profile:<name>``, the profile that says what the axes mean, or ''
+  ``header.frame_id`` is ``profile:<name>``, the profile that says what the axes mean, or ''; the
+  last word of a device that is lost or suspended has `` lost`` behind that
 - serves ``mhri/SetSuspended``; a node starts suspended
 - ``/diagnostics`` at 1 Hz: which device is open, or why none is
 """
@@ -29,8 +30,9 @@ READING = 'reading'
 CLOSED = 'closed'
 
 LOOK_PERIOD_S = 1.0
-# After a neutral Joy, longer than the mux waits (0.5 s) before it asks for neutral again: a device
-# that comes back with a deflected stick moves nothing, even where it comes back at once.
+# Behind header.frame_id of a device's last word: the mux asks for neutral before it drives again.
+LOST = ' lost'
+# After it, for listeners that go by the time alone.
 SILENCE_S = 1.0
 HANGING_S = 2.0
 # rospy writes on a thread for each connection: what was published needs this to leave the process.
@@ -152,16 +154,17 @@ class InputNode:
     def _neutral(self):
         """Send the one neutral Joy that ends what was published; call it with the lock held."""
         if self._last is not None:
-            self._publish(self._last.neutral())
+            self._publish(self._last.neutral(), LOST)
             self._silent_until = self._clock() + SILENCE_S
         self._last = None
         self._pacer = Pacer()
 
-    def _publish(self, reading):
+    def _publish(self, reading, suffix=''):
         """Publish one reading; call it with the lock held, so that nothing overtakes a neutral."""
         message = Joy(axes=reading.axes, buttons=reading.buttons)
         message.header.stamp = rospy.Time.now()
-        message.header.frame_id = 'profile:' + reading.profile if reading.profile else ''
+        message.header.frame_id = (
+            'profile:' + reading.profile if reading.profile else '') + suffix
         self._joy.publish(message)
         self._published += 1
 

@@ -10,7 +10,8 @@ Interfaces (global names; SI units):
   ``/gates_in/group_speed`` (``mhri/GroupSpeed``) from the operator in control alone
 - publishes ``/gates/state`` (``mhri/GatesState``, latched, on change and at 2 Hz), and of each
   robot what :class:`mhri.ros.driving.robot_gate.RobotGate` says
-- serves ``/gates/take_control`` (``std_srvs/Trigger``)
+- serves ``/gates/take_control`` (``std_srvs/Trigger``) and ``/gates/set_motor_power``
+  (``std_srvs/SetBool``: false takes the power from the motors of every robot that offers it)
 
 Everything runs on ROS threads and one of its own; one lock guards all of it.
 """
@@ -20,7 +21,7 @@ import time
 from geometry_msgs.msg import Twist
 import rospy
 from std_msgs.msg import Bool
-from std_srvs.srv import Trigger, TriggerResponse
+from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 from mhri.core.driving.gate import common_limits
 from mhri.core.driving.seat import ControlSeat
@@ -29,6 +30,7 @@ from mhri.core.robots.names import name_problem
 from mhri.msg import GroupSpeed, RobotSelect, TeamTwist
 from mhri.ros.convert import from_twist
 from mhri.ros.driving.mux_in_force import MuxInForce
+from mhri.ros.driving.neighbour import Neighbour
 from mhri.ros.driving.robot_gate import RobotGate
 from mhri.ros.driving.roster import Roster
 from mhri.ros.graph.rospy_inside import caller_of, link_of, on_publisher_gone
@@ -61,7 +63,7 @@ class Gates:
         self._session = '{:x}'.format(time.time_ns())
         self._strangers = {}
         self._states = []
-        self._mux_heard_at = clock()
+        self._neighbour = Neighbour('the mux')
         self._mux = MuxInForce(self._refuse, self._on_new_mux)
         self._roster = Roster(types, self._open, self._close_gate)
 
@@ -80,6 +82,8 @@ class Gates:
                          tcp_nodelay=True)
         rospy.Subscriber('/gates_in/group_speed', GroupSpeed, self._on_group_speed, queue_size=10)
         rospy.Service('/gates/take_control', Trigger, self._on_take)
+        rospy.Service('/gates/set_motor_power', SetBool, self._on_motor_power)
+        self._neighbour.start()
         threading.Thread(target=self._run, name='gates', daemon=True).start()
 
     def read(self):
@@ -103,9 +107,9 @@ class Gates:
         """Names this run of the gates, also towards the guards."""
         return self._session
 
-    def mux_silent_s(self):
-        """Return for how long the mux in force has said nothing [s]."""
-        return self._clock() - self._mux_heard_at
+    def mux_heard(self):
+        """Tell whether the mux in force has been heard within the last second."""
+        return bool(self._mux.caller) and not self._neighbour.silent
 
     def gates(self):
         """Return the :class:`RobotGate` of every robot."""
@@ -152,7 +156,8 @@ class Gates:
         if not self._mux.believes(message, 'stop_all'):
             return
         with self._lock:
-            self._mux_heard_at, link = self._clock(), link_of(message)
+            link = link_of(message)
+            self._neighbour.beat(caller_of(message))
             if message.data:
                 self._stop_links = [link]
                 self._set_stop(True)
@@ -165,6 +170,8 @@ class Gates:
         now, self._stop = self._clock(), stopped
         for gate in self._gates.values():
             gate.send(gate.rule.stop(stopped, now))
+            if not stopped and gate.power.is_cut:
+                gate.power.restore()
         self.on_change()
 
     def _on_foreign_stop(self, name):
@@ -218,6 +225,19 @@ class Gates:
             self._everybody_joins()
         rospy.loginfo('%s has taken control', caller)
         return TriggerResponse(True, caller + ' is in control now: centre the stick to drive')
+
+    def _on_motor_power(self, request):
+        """Cut the power of all motors, at any time; give it back unless a stop is in force."""
+        with self._lock:
+            if request.data and self._stop:
+                return SetBoolResponse(False, 'release the stop first: the power comes with it')
+            without = [gate.name for gate in self._gates.values() if not gate.power.available]
+            for gate in self._gates.values():
+                (gate.power.restore if request.data else gate.power.cut)()
+            self.on_change()
+        words = 'the power of the motors is ' + ('given back' if request.data else 'being cut')
+        return SetBoolResponse(True, words + (
+            '; not of {}: nothing there takes it'.format(', '.join(without)) if without else ''))
 
     def _check(self):
         """Let the gates know which robots are checked now."""

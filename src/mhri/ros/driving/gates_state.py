@@ -15,19 +15,18 @@ from mhri.ros.graph.master_api import MasterApi, MasterError
 PERIOD_S = 0.5
 # Changes that follow each other closely are told together.
 LEAST_S = 0.02
-HEARD_S = 0.9
 
 
 class GatesSpeaker:
     """A thread that publishes ``mhri/GatesState``, latched, on change and at 2 Hz.
 
     :param read: :meth:`mhri.ros.driving.gates.Gates.read`
-    :param mux_silent_s: function returning for how long the mux was not heard [s]
+    :param mux_heard: function telling whether the mux was heard within the last second
     """
 
-    def __init__(self, read, mux_silent_s, clock=time.monotonic):
+    def __init__(self, read, mux_heard, clock=time.monotonic):
         self._read = read
-        self._mux_silent_s = mux_silent_s
+        self._mux_heard = mux_heard
         self._clock = clock
         self._changed = threading.Event()
         self._computers = {}
@@ -57,7 +56,7 @@ class GatesSpeaker:
         since, now = facts.pop('since'), time.time()
         message = GatesState(**facts)
         message.header.stamp = rospy.Time.from_sec(now)
-        message.mux_heard = bool(message.mux) and self._mux_silent_s() < HEARD_S
+        message.mux_heard = self._mux_heard()
         if message.operator:
             message.since = rospy.Time.from_sec(now - (self._clock() - since))
             message.computer = self._computer(message.operator)

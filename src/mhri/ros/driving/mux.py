@@ -4,17 +4,22 @@
 
 Interfaces (all global names; units SI):
 
-- subscribes to each source's topic (``sensor_msgs/Joy``), ``/mux_in/mode_select``
-  (``mhri/ControlMode``), ``/mux_in/speed_limit`` (``geometry_msgs/Twist``: ``linear.x`` m/s,
-  ``angular.z`` rad/s) and ``/robot_controller/robot_select`` (``mhri/RobotSelect``)
+- subscribes to each source's topic (``sensor_msgs/Joy`` or ``geometry_msgs/Twist``),
+  ``/mux_in/mode_select`` (``mhri/ControlMode``), ``/mux_in/speed_limit`` (``geometry_msgs/Twist``:
+  ``linear.x`` m/s, ``angular.z`` rad/s), ``/robot_controller/robot_select``
+  (``mhri/RobotSelect``), ``/gates/state`` (``mhri/GatesState``) and ``/mux_in/task``
+  (``mhri/TeamTwist``)
 - publishes ``/robot_controller/twist`` (``geometry_msgs/Twist``, on events and at 20 Hz),
-  ``/robot_controller/stop_all`` (``std_msgs/Bool``, latched), ``/mux/mode`` (``mhri/ControlMode``,
+  ``/robot_controller/stop_all`` (``std_msgs/Bool``, latched, and at 2 Hz: the mux's sign of life),
+  ``/robot_controller/task_twist`` (``mhri/TeamTwist``), ``/mux/mode`` (``mhri/ControlMode``,
   latched), ``/mux/speed_limit`` (``geometry_msgs/Twist``, latched), ``/mux/waits_for``
-  (``std_msgs/String``, latched: '' or one of release, source, neutral, enabling, dead_man) and
-  ``/panel_in/request`` (``mhri/PanelRequest``: what the pad's buttons ask of the panel)
+  (``std_msgs/String``, latched: '' or one of release, source, neutral, enabling, dead_man),
+  ``/mux/advice`` (``std_msgs/String``, latched: a sentence, or ''), ``/mux/dead_man``
+  (``std_msgs/Bool``, latched: whether dead-man buttons have to be held) and ``/panel_in/request``
+  (``mhri/PanelRequest``: what the pad's buttons ask of the panel)
 - serves ``/mux/set_stop_all`` (``std_srvs/SetBool``)
-- parameters: ``~config`` (path of the sources' YAML, default ``resource/mux.yaml``), ``~enabling``
-  and ``~automatic_switching`` (default: what that file says),
+- parameters: ``~config`` (path of the sources' YAML, default ``resource/mux.yaml``), ``~enabling``,
+  ``~automatic_switching`` and ``~dead_man`` (default: what that file says),
   ``/mux/sources`` (written: list of {name, label}), ``/mux/stop_all`` (written, and read at start,
   so that a mux that crashed while everything was stopped comes back stopped)
 """
@@ -23,25 +28,37 @@ import time
 
 from geometry_msgs.msg import Twist
 import rospy
-from sensor_msgs.msg import Joy
 from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool, SetBoolResponse
 
-from mhri.core.driving.arbiter import Arbiter, DRIVING, REPEAT_HZ, ZEROS_S
+from mhri.core.driving.arbiter import Arbiter, DRIVING, READY, REPEAT_HZ, ZEROS_S
 from mhri.core.driving.buttons import ButtonEdges
 from mhri.core.driving.limits import ZERO
 from mhri.core.driving.profile import JoyRefused, NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL, STOP_ALL
+from mhri.core.driving.pulse import Pulse
+from mhri.core.driving.sources import TWIST
 from mhri.msg import ControlMode, PanelRequest, RobotSelect
 from mhri.ros.convert import to_twist
 from mhri.ros.devices.device_profiles import DeviceProfiles
 from mhri.ros.graph.master_api import MasterError
 from mhri.ros.graph.master_watch import MasterWatch
+from mhri.ros.driving.mux_advice import Advice
 from mhri.ros.driving.mux_diagnostics import MuxDiagnostics
+from mhri.ros.driving.mux_gates import GatesWatch
 from mhri.ros.driving.mux_takeover import is_superseded
-from mhri.ros.graph.rospy_inside import PromptPublisher
+from mhri.ros.driving.source_topic import LONGEST_TEXT, SourceTopic
 from mhri.ros.driving.suspender import Suspender
+from mhri.ros.driving.task_mux import TaskMux
+from mhri.ros.graph.rospy_inside import PromptPublisher
 from mhri.ros.worker import Worker
 
+# The mux repeats its stop-all so often, and asks the master so often [s]; a master that hangs is
+# lost after no more than the second and the third together.
+BEAT_S = 0.5
+MASTER_PERIOD_S = 0.25
+MASTER_PATIENCE_S = 1.1
+# The loop comes round at least so often: only then does it know that it was asleep.
+LOOP_S = 0.1
 STOP_PARAMETER = '/mux/stop_all'
 SOURCES_PARAMETER = '/mux/sources'
 # What a button asks of the panel, in the words of its messages.
@@ -59,6 +76,8 @@ class Mux:
     def __init__(self, config, clock=time.monotonic):
         self._clock = clock
         self._arbiter = Arbiter(config, clock())
+        self._pulse = Pulse(clock())
+        self._next_beat = 0.0
         self._changed = threading.Condition(threading.RLock())
         self._said_waiting = None
         self._closing = False
@@ -68,6 +87,7 @@ class Mux:
         self._stop = rospy.Publisher('/robot_controller/stop_all', Bool, queue_size=10, latch=True)
         self._limit = rospy.Publisher('/mux/speed_limit', Twist, queue_size=10, latch=True)
         self._waits = rospy.Publisher('/mux/waits_for', String, queue_size=10, latch=True)
+        self._dead_man = rospy.Publisher('/mux/dead_man', Bool, queue_size=1, latch=True)
         self._ask = rospy.Publisher('/panel_in/request', PanelRequest, queue_size=10,
                                     tcp_nodelay=True)
         services = {source.name: source.suspend_service for source in config.sources
@@ -75,19 +95,25 @@ class Mux:
         self._suspender = Suspender(services.values(), awake=[
             service for name, service in services.items()
             if config.automatic_switching or name == config.enabling])
-        self._profiles = DeviceProfiles()
+        self._profiles = DeviceProfiles(config.dead_man)
         self._buttons = ButtonEdges()
         self._memory = Worker('stop_memory')
         self._watch = MasterWatch(
             on_lost=lambda reason: self._hold('master'),
             parameters={SOURCES_PARAMETER: [{'name': source.name, 'label': source.label}
-                                            for source in config.sources]})
+                                            for source in config.sources]},
+            period_s=MASTER_PERIOD_S, patience_s=MASTER_PATIENCE_S)
         self._config = config
-        self._joys = {}
-        self._own = {source.name: source.profile for source in config.sources}
+        self._topics = {source.name: SourceTopic(source, clock) for source in config.sources}
         self._remembering = threading.Lock()
-        self._diagnostics = MuxDiagnostics(self._arbiter, self._changed, self._suspender, clock,
-                                           config)
+        self._gates = GatesWatch(self._on_gates, lambda: self._arbiter.stop_all,
+                                 lambda: self._hold('gates'), clock)
+        self._tasks = TaskMux(self._changed, self._task_allowed)
+        self._advice = Advice(self._facts)
+        self._diagnostics = MuxDiagnostics(
+            self._arbiter, self._changed, clock, config, self._topics,
+            {'gates': self._gates.words, 'suspend': self._suspender.state,
+             'tasks': self._tasks.counts})
 
     def start(self, stopped):
         """Open for business.
@@ -104,10 +130,12 @@ class Mux:
         self._listen('/mux_in/speed_limit', Twist, self._on_limit, queue_size=1)
         self._listen('/robot_controller/robot_select', RobotSelect, self._on_selection,
                      queue_size=1, tcp_nodelay=True)
-        for source in self._config.sources:
-            self._joys[source.name] = self._listen(
-                source.topic, Joy, self._on_joy, callback_args=source.name, queue_size=1,
-                tcp_nodelay=True)
+        for part in (self._gates, self._tasks, self._advice):
+            if not self._closing:
+                part.start()
+        for topic in self._topics.values():
+            if not self._closing:
+                topic.open(self._on_source)
         self._suspender.activate(self._arbiter.source.suspend_service)
         threading.Thread(target=self._run, name='mux_timer', daemon=True).start()
         self._diagnostics.start()
@@ -126,6 +154,7 @@ class Mux:
         """Publish the latched state anew."""
         self._mode.publish(source=self._arbiter.mode)
         self._stop.publish(data=self._arbiter.stop_all)
+        self._dead_man.publish(data=self._config.dead_man)
         limits = self._arbiter.limits
         self._limit.publish(to_twist(*limits))
 
@@ -145,40 +174,98 @@ class Mux:
             self._waits.publish(data=waiting)
         self._changed.notify()
 
-    def _on_joy(self, message, name):
-        """Guard of the thread of one Joy subscriber."""
-        header = message._connection_header or {}
-        device = (header.get('callerid'), message.header.frame_id)
-        switched = False
+    def _awake(self, now):
+        """Tell whether what is heard now is new (with the lock held).
+
+        After the mux was asleep, it is what waited in the sockets meanwhile.
+        """
+        if self._pulse.slept(now):
+            self._send(self._arbiter.on_hung(now))
+        return not self._pulse.deaf(now)
+
+    def _on_source(self, message, topic):
+        """Guard of the thread of one source."""
+        name, refusal = topic.source.name, ''
+        device, frame, lost = topic.device_of(message)
         try:
-            profile = self._profiles.of(name, message.header.frame_id) or self._own[name]
+            offer, pressed = self._read(topic.source, message, device, frame)
             with self._changed:
-                self._press(name, device, profile.pressed(message.buttons))
-                before = self._arbiter.mode
-                self._send(self._arbiter.on_joy(
-                    name, message.axes, message.buttons, device, self._clock(), profile))
+                before, now = self._arbiter.mode, self._clock()
+                counts = self._awake(now) and topic.admits(message)
+                self._press(name, device, pressed, counts)
+                if counts:
+                    self._send(offer(now))
+                    if lost and name == self._arbiter.mode:
+                        self._send(self._arbiter.on_hold('lost', now))
                 switched = self._arbiter.mode != before
                 if switched:
                     self._tell_mode()
-        except JoyRefused as refusal:
-            # Not while the lock is held: a log that blocks must not hold up a zero.
+        except JoyRefused as error:
+            refusal, switched = error, False
+            # Not while the lock is held: it must not hold up a zero.
             rospy.logwarn_throttle(1.0, 'refused from {}: {}'.format(name, refusal))
+        topic.refuse(refusal)
         if switched:
             rospy.loginfo('driving with %s, which was touched', name)
 
-    def _press(self, name, device, pressed):
+    def _read(self, source, message, device, frame):
+        """Return (function of the time that gives a message to the arbiter, pressed actions).
+
+        :raises JoyRefused: its profile cannot be used
+        """
+        if source.kind == TWIST:
+            vectors = [(vector.x, vector.y, vector.z)
+                       for vector in (message.linear, message.angular)]
+            return lambda now: self._arbiter.on_twist(
+                source.name, *vectors, device, now), frozenset()
+        profile = self._profiles.of(source.name, frame) or source.profile
+        return lambda now: self._arbiter.on_joy(
+            source.name, message.axes, message.buttons, device, now,
+            profile), profile.pressed(message.buttons)
+
+    def _press(self, name, device, pressed, counts):
         """Do what newly pressed buttons ask for (with the lock held).
 
-        A stop counts from every source; all else from the one that drives.
+        A stop counts from every source, even from one that is not listened to; all else from the
+        one that drives.
         """
         newly = self._buttons.newly(name, device, pressed)
         if STOP_ALL in newly:
-            self._send(self._arbiter.engage_stop_all(self._clock()))
-            self._stop.publish(data=True)
+            self._engage_stop()
             self._memory.do(self._remember_stop)
-        if name == self._arbiter.mode:
+        if counts and name == self._arbiter.mode:
             for action in newly - {STOP_ALL}:
                 self._ask.publish(action=_REQUESTS[action])
+
+    def _engage_stop(self):
+        """Stop everything and say so (with the lock held)."""
+        self._send(self._arbiter.engage_stop_all(self._clock()))
+        self._stop.publish(data=True)
+
+    def _on_gates(self, must_stop, another, operator):
+        """Take in what the gates have said."""
+        with self._changed:
+            if must_stop:
+                self._engage_stop()
+            elif another:
+                self._send(self._arbiter.on_hold('gates', self._clock()))
+            for topic in self._topics.values() if operator else ():
+                if topic.ownership and topic.ownership.take(operator):
+                    self._send(self._arbiter.on_lost(topic.source.name, 'operator', self._clock()))
+        if must_stop:
+            self._memory.do(self._remember_stop)
+            rospy.logwarn('the gates hold a stop that this mux did not know of: it is in force')
+
+    def _task_allowed(self):
+        """Return whether robots on a task are (stopped, enabled), and the message is new."""
+        now = self._clock()
+        self._awake(now)
+        return self._arbiter.stop_all, self._arbiter.enabled(now), self._pulse.is_new(now)
+
+    def _facts(self):
+        """Return (the active source's topic, what is waited for)."""
+        with self._changed:
+            return (self._topics[self._arbiter.mode], self._arbiter.waits_for(self._clock()))
 
     def _on_selection(self, message):
         with self._changed:
@@ -191,10 +278,11 @@ class Mux:
         self._profiles.forget()
 
     def _on_mode(self, message):
+        wanted = message.source[:LONGEST_TEXT]
         try:
             with self._changed:
                 before = self._arbiter.mode
-                self._send(self._arbiter.on_mode(message.source, self._clock()))
+                self._send(self._arbiter.on_mode(wanted, self._clock()))
                 changed = self._arbiter.mode != before
                 if changed:
                     self._tell_mode()
@@ -203,10 +291,10 @@ class Mux:
         except KeyError:
             rospy.logwarn_throttle(
                 1.0, 'no source {!r}: the mode stays {!r}. Sources are rows of mux.yaml'.format(
-                    message.source, before))
+                    wanted, before))
             return
         if changed:
-            rospy.loginfo('driving with %s', message.source)
+            rospy.loginfo('driving with %s', wanted)
 
     def _on_limit(self, message):
         problem = None
@@ -223,12 +311,14 @@ class Mux:
     def _on_stop_all(self, request):
         """Serve ``/mux/set_stop_all``."""
         with self._changed:
+            self._awake(self._clock())
             if request.data:
-                self._send(self._arbiter.engage_stop_all(self._clock()))
-                self._stop.publish(data=True)
+                self._engage_stop()
                 answer = SetBoolResponse(True, 'everything is stopped')
             else:
                 problem = self._arbiter.release_stop_all(self._clock())
+                if not problem:
+                    self._gates.on_release()
                 self._send(None)
                 self._stop.publish(data=self._arbiter.stop_all)
                 answer = SetBoolResponse(problem is None, problem or 'released: centre the stick')
@@ -253,22 +343,25 @@ class Mux:
         with self._changed:
             while not self._closing:
                 now = self._clock()
+                self._awake(now)
+                self._pulse.beat(now)
                 self._send_due(now)
-                self._changed.wait(max(0.0, self._arbiter.next_tick(now) - self._clock()))
+                due = min(self._arbiter.next_tick(now), now + LOOP_S)
+                self._changed.wait(max(0.0, due - self._clock()))
 
     def _send_due(self, now):
         """Let the arbiter's time pass; ask a silent input node once more."""
         was_waiting = self._said_waiting
-        if self._arbiter.state == DRIVING and self._is_gone(self._arbiter.mode):
-            self._send(self._arbiter.on_lost(self._arbiter.mode, 'lost', now))
+        for name, topic in self._topics.items():
+            moving = self._arbiter.state in (READY, DRIVING)
+            if topic.has_gone() and (moving or topic.source.rests):
+                self._send(self._arbiter.on_lost(name, 'lost', now))
         self._send(self._arbiter.tick(now))
-        if self._said_waiting == 'source' and was_waiting == 'source':
-            self._suspender.resume_again()
-
-    def _is_gone(self, name):
-        """Tell whether nobody publishes a source any more: its node has ended or was killed."""
-        subscriber = self._joys.get(name)
-        return subscriber is not None and not subscriber.get_num_connections()
+        if now >= self._next_beat:
+            self._next_beat = now + BEAT_S
+            self._stop.publish(data=self._arbiter.stop_all)
+            if self._said_waiting == 'source' and was_waiting == 'source':
+                self._suspender.resume_again()
 
     def close(self):
         """Stop the robots: a zero now, more for half a second, then nothing ever again.
@@ -283,9 +376,8 @@ class Mux:
             self._closing = True
             self._twist.publish(zero)
             self._changed.notify()
-        self._diagnostics.stop()
-        self._memory.stop()
-        self._watch.stop()
+        for part in (self._diagnostics, self._memory, self._watch, self._gates, self._advice):
+            part.stop()
         uri = self._service.uri if self._service else None
         for _ in range(int(ZEROS_S * REPEAT_HZ)):
             time.sleep(1.0 / REPEAT_HZ)

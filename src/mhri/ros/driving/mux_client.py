@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The panel's side of the mux: requests to it, and its last word on everything.
 
-Publishes ``/mux_in/joy`` (``sensor_msgs/Joy``), ``/mux_in/mode_select`` (``mhri/ControlMode``),
-``/mux_in/speed_limit`` (``geometry_msgs/Twist``, latched) and ``/robot_controller/robot_select``
-(``mhri/RobotSelect``, latched). Subscribes ``/mux/mode``, ``/mux/speed_limit``, ``/mux/waits_for``.
+Publishes ``/mux_in/mode_select`` (``mhri/ControlMode``) and ``/mux_in/speed_limit``
+(``geometry_msgs/Twist``, latched); while this screen drives also ``/mux_in/joy``
+(``sensor_msgs/Joy``) and ``/robot_controller/robot_select`` (``mhri/RobotSelect``, latched).
+Subscribes ``/mux/mode``, ``/mux/speed_limit``, ``/mux/waits_for``, ``/robot_controller/stop_all``.
 Calls ``/mux/set_stop_all`` on a thread of its own.
 """
 import threading
@@ -12,9 +13,10 @@ import threading
 from geometry_msgs.msg import Twist
 import rospy
 from sensor_msgs.msg import Joy
-from std_msgs.msg import String
+from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
 
+from mhri.core.driving.limits import speed_limit_problem
 from mhri.core.screen.text import tidy_text
 from mhri.msg import ControlMode, RobotSelect
 from mhri.ros.convert import to_twist
@@ -28,31 +30,53 @@ RETRY_S = 0.5
 class MuxClient:
     """What the panel says to the mux and knows of it; every method returns at once.
 
-    :param bank: :class:`mhri.ros.driving.gates.GateBank`, which holds the robots until the mux does
     :param on_answer: called with a sentence when a stop or release was answered, on the worker
     :param on_mode: called when the mux has said its mode, on a ROS thread
+    :param pressed: whether stop-all was pressed before there was a mux to tell
     """
 
-    def __init__(self, bank, on_answer, on_mode):
-        self._bank = bank
+    def __init__(self, on_answer, on_mode, pressed=False):
         self._on_answer = on_answer
         self._on_mode = on_mode
         self._lock = threading.Lock()
         self._mode = None
         self._limits = None
         self._waits_for = None
+        self._pressed = pressed
+        self._stopped = False
         self._proxy = None
-        self._joy = PromptPublisher('/mux_in/joy', Joy)
+        self._wheel = None
+        # Held while something is published: what is given back is not in use then.
+        self._wheel_lock = threading.Lock()
         self._select_mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
         self._speed = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=1, latch=True)
-        self._select = rospy.Publisher('/robot_controller/robot_select', RobotSelect,
-                                       queue_size=10, latch=True)
         self._heard = rospy.Subscriber('/mux/mode', ControlMode, self._hear_mode, queue_size=10)
         self._topics = [
-            self._heard, self._joy, self._select_mode, self._speed, self._select,
+            self._heard, self._select_mode, self._speed,
             rospy.Subscriber('/mux/speed_limit', Twist, self._on_limits, queue_size=10),
-            rospy.Subscriber('/mux/waits_for', String, self._on_waits, queue_size=10)]
+            rospy.Subscriber('/mux/waits_for', String, self._on_waits, queue_size=10),
+            rospy.Subscriber('/robot_controller/stop_all', Bool, self._hear_stop, queue_size=10,
+                             tcp_nodelay=True)]
         self._stopper = Worker('stop_all', self._keep_stopping, RETRY_S).start()
+        if pressed:
+            self._stopper.do(self._engage)
+
+    def _hear_stop(self, message):
+        with self._lock:
+            self._stopped = message.data
+            if message.data:
+                # From here on the mux keeps it: its word alone counts.
+                self._pressed = False
+
+    @property
+    def stopped(self):
+        """Whether stop-all is in force: by the mux, or by a press that it has not confirmed yet."""
+        return self._pressed or self._stopped
+
+    @property
+    def stop_taken(self):
+        """Whether the mux has stop-all in force."""
+        return self._stopped
 
     def _hear_mode(self, message):
         with self._lock:
@@ -60,6 +84,10 @@ class MuxClient:
         self._on_mode()
 
     def _on_limits(self, message):
+        problem = speed_limit_problem(message.linear.x, message.angular.z)
+        if problem:
+            rospy.logwarn_throttle(1.0, '/mux/speed_limit: refused, {}'.format(problem))
+            return
         with self._lock:
             self._limits = (message.linear.x, message.angular.z)
 
@@ -76,9 +104,9 @@ class MuxClient:
 
     def send_stick(self, forward, turn):
         """Publish the virtual joystick: fractions in [-1, 1], forward and left positive."""
-        message = Joy(axes=[turn, forward], buttons=[])
-        message.header.stamp = rospy.Time.now()
-        self._joy.publish(message)
+        with self._wheel_lock:
+            if self._wheel is not None:
+                self._wheel.send_stick(forward, turn)
 
     def request_mode(self, name):
         """Ask for another source; whether it is in force says :meth:`state`."""
@@ -89,12 +117,34 @@ class MuxClient:
         self._speed.publish(to_twist(linear_mps, angular_rad_s))
 
     def select(self, names):
-        """Publish the robots that are checked."""
-        self._select.publish(robots=list(names))
+        """Publish the robots that are checked; the repetition of it is the operator's lease."""
+        with self._wheel_lock:
+            if self._wheel is not None:
+                self._wheel.select(names)
+
+    @property
+    def at_wheel(self):
+        """Whether stick and selection are published from here."""
+        return self._wheel is not None
+
+    def take_wheel(self):
+        """Publish stick and selection from now on (blocking); tell whether that is news."""
+        if self._wheel is not None:
+            return False
+        self._wheel = Wheel()
+        return True
+
+    def leave_wheel(self):
+        """Give stick and selection back as they are (blocking: it asks the master)."""
+        with self._wheel_lock:
+            wheel, self._wheel = self._wheel, None
+        if wheel is not None:
+            wheel.unregister()
 
     def stop_all(self):
-        """Stop every robot: from here at once, and through the mux until it is released."""
-        self._bank.press_stop()
+        """Stop every robot, through the mux; asked again until it confirms."""
+        with self._lock:
+            self._pressed = True
         self._stopper.do(self._engage)
 
     def release(self):
@@ -109,6 +159,7 @@ class MuxClient:
         """Give every topic back (blocking: it asks the master)."""
         for topic in self._topics:
             topic.unregister()
+        self.leave_wheel()
 
     def _call(self, value):
         """Call the mux over a connection that is kept open, so that it works without a master."""
@@ -132,21 +183,53 @@ class MuxClient:
         try:
             self._try(True)
         except (rospy.ServiceException, rospy.ROSException, OSError):
-            self._on_answer('the mux does not answer; the robots are held stopped from here')
+            self._on_answer('NOT STOPPED yet: the drive service does not answer; asking again')
             return
+        with self._lock:
+            if self._stopped:
+                self._pressed = False
         self._on_answer('')
 
     def _keep_stopping(self):
         """While a press is not confirmed by the mux, ask it again: it may just be restarting."""
-        if self._bank.stopped and not self._bank.stop_confirmed:
+        if self._pressed:
             self._engage()
 
     def _release(self):
         try:
             answer = self._try(False)
         except (rospy.ServiceException, rospy.ROSException, OSError):
-            self._on_answer('not released: the mux does not answer')
+            self._on_answer('not released: the drive service does not answer')
             return
         if answer.success:
-            self._bank.withdraw_press()
+            with self._lock:
+                self._pressed = False
         self._on_answer('' if answer.success else 'not released: ' + answer.message)
+
+
+class Wheel:
+    """What one screen at a time may publish: the virtual joystick and the selection.
+
+    A screen that does not drive has no publisher of them: a latched selection of yesterday would
+    be told to whoever comes up, too.
+    """
+
+    def __init__(self):
+        self._joy = PromptPublisher('/mux_in/joy', Joy)
+        self._select = rospy.Publisher('/robot_controller/robot_select', RobotSelect,
+                                       queue_size=10, latch=True)
+
+    def send_stick(self, forward, turn):
+        """Publish the virtual joystick: fractions in [-1, 1], forward and left positive."""
+        message = Joy(axes=[turn, forward], buttons=[])
+        message.header.stamp = rospy.Time.now()
+        self._joy.publish(message)
+
+    def select(self, names):
+        """Publish the robots that are checked."""
+        self._select.publish(robots=list(names))
+
+    def unregister(self):
+        """Give both back (blocking: it asks the master)."""
+        for topic in (self._select, self._joy):
+            topic.unregister()

@@ -10,15 +10,18 @@ class MuxDiagnostics:
     """Publishes ``diagnostic_msgs/DiagnosticArray`` on ``/diagnostics`` at 1 Hz.
 
     :param arbiter: read under ``lock``
-    :param suspender: :class:`mhri.ros.driving.suspender.Suspender`
+    :param topics: {source: :class:`mhri.ros.driving.source_topic.SourceTopic`}
+    :param words: {'gates': function that returns a sentence, 'suspend': one that returns the state
+        of a service, 'tasks': one that returns {words: count}}
     """
 
-    def __init__(self, arbiter, lock, suspender, clock, config):
+    def __init__(self, arbiter, lock, clock, config, topics, words):
         self._arbiter = arbiter
         self._lock = lock
-        self._suspender = suspender
         self._clock = clock
         self._config = config
+        self._topics = topics
+        self._words = words
         self._refused_before = 0
         self._done = None
 
@@ -49,6 +52,11 @@ class MuxDiagnostics:
         else:
             status.summary(DiagnosticStatus.OK, state)
         self._refused_before = total
+        status.add('dead-man buttons', 'must be held' if self._config.dead_man else
+                   'turned off by the parameter dead_man')
+        status.add('gates', self._words['gates']())
+        for kind, count in sorted(self._words['tasks']().items()):
+            status.add('tasks ' + kind, count)
         status.add('state', state)
         status.add('waits for', waits or 'nothing')
         status.add('speed limit', '{:.2f} m/s, {:.2f} rad/s'.format(linear, angular))
@@ -62,12 +70,25 @@ class MuxDiagnostics:
         with self._lock:
             ignored = dict(self._arbiter.ignored)
             active = self._arbiter.mode
-        status.summary(DiagnosticStatus.OK, 'driving with ' + active)
+            refusal = self._topics[active].refusal
+        status.summary(DiagnosticStatus.WARN if refusal else DiagnosticStatus.OK,
+                       'driving with ' + active + (': ' + refusal if refusal else ''))
         for source in self._config.sources:
             words = 'active' if source.name == active else 'ignored {} messages'.format(
                 ignored.get(source.name, 0))
             service = source.suspend_service
             if service:
-                words += '; {}: {}'.format(service, self._suspender.state(service))
+                words += '; {}: {}'.format(service, self._words['suspend'](service))
             status.add(source.name, words)
+            self._owner(status, source.name)
         return status
+
+    def _owner(self, status, name):
+        """Say who owns an exclusive source, and who was refused."""
+        with self._lock:
+            ownership = self._topics[name].ownership
+            owner, refused = (ownership.owner, dict(ownership.refused)) if ownership else (None, {})
+        if owner:
+            status.add(name + ': listened to', owner)
+        for caller, count in sorted(refused.items()):
+            status.add('{}: refused from {}'.format(name, caller), count)

@@ -16,6 +16,7 @@ from mhri.core.robots.names import topic_of
 from mhri.core.screen.views import GONE, SILENT
 from mhri.msg import RobotGate as RobotGateMessage
 from mhri.ros.convert import to_twist
+from mhri.ros.driving.motor_power import MotorPower
 from mhri.ros.graph.rospy_inside import listeners, PromptPublisher, publisher_uri
 from mhri.ros.graph.unsubscribe import unsubscribe
 from mhri.ros.robots.link_probe import LinkProbe
@@ -67,6 +68,7 @@ class RobotGate:
                              tcp_nodelay=True) for topic in robot_type.odometry]
         self._echo = rospy.Subscriber('/{}/mhri_guard/echo'.format(name), TwistStamped,
                                       self._on_echo, queue_size=1, tcp_nodelay=True)
+        self.power = MotorPower(name, robot_type)
         self._probe = LinkProbe(name, self._node_uri, self._on_round_trip)
 
     def _node_uri(self):
@@ -196,11 +198,13 @@ class RobotGate:
             stands='not_heard' if rule.stands == 'held' else rule.stands,
             topic=chosen.resolved_name if chosen else '', guarded=self._guarded,
             stop_confirmed=self._guarded and self._guard.stop_confirmed,
-            sent=to_twist(sent.linear_mps, sent.angular_rad_s), round_trip_s=self._round_trip_s)
+            sent=to_twist(sent.linear_mps, sent.angular_rad_s), power=self.power.state,
+            round_trip_s=self._round_trip_s)
 
     def close(self):
         """Give everything back (blocking: it asks the master); say the last word before."""
         self._probe.close()
+        self.power.close()
         for publisher in self._publishers:
             publisher.unregister()
         for subscriber in self._odometry + [self._echo]:

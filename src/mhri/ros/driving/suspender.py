@@ -5,6 +5,7 @@ import threading
 
 import rospy
 
+from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.srv import SetSuspended
 
 RETRY_S = 1.0
@@ -19,6 +20,7 @@ class _Caller:
 
     def __init__(self, service):
         self._service = service
+        self._api = MasterApi(rospy.get_name(), timeout_s=1.0)
         self._wish = None
         self._changed = threading.Condition()
         self.state = 'not asked yet'
@@ -46,8 +48,12 @@ class _Caller:
     def _call(self, suspended):
         """Call once; return whether the wish is settled."""
         try:
+            # rospy's proxy would write an error into the log each time that it finds nobody.
+            if not self._api.call_many([('lookupService', self._service)])[0]:
+                self.state = 'its node is not running'
+                return suspended
             answer = rospy.ServiceProxy(self._service, SetSuspended)(suspended)
-        except (rospy.ServiceException, rospy.ROSException, OSError) as error:
+        except (rospy.ServiceException, rospy.ROSException, MasterError, OSError) as error:
             self.state = 'its node is not running'
             rospy.logdebug('%s: %s', self._service, error)
             return suspended

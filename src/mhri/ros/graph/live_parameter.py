@@ -52,7 +52,8 @@ class LiveParameter:
         """
         known, value = api.call_many([('hasParam', self._name), ('getParam', self._name)])
         value = value if known else self._default
-        if value != self._value:
+        # By their words: NaN is not equal to itself, and 1 is equal to true.
+        if repr(value) != repr(self._value):
             self._value = value
-            rospy.loginfo('%s is %r now', self._name, value)
             self._apply(value)
+            rospy.loginfo('%s is %s now', self._name, repr(value)[:200])

@@ -9,7 +9,8 @@ from typing import Tuple
 from urllib.parse import urlsplit
 
 from mhri.core.robots.discovery import (
-    find_candidates, NAME_PARAMETER, parameters_of, parse_ignore_list, ROOT_PARAMETERS)
+    find_candidates, NAME_PARAMETER, named_instances, parameters_of, parse_ignore_list,
+    ROOT_PARAMETERS)
 from mhri.core.robots.robot_types import Seen
 from mhri.ros.graph.master_api import MasterApi
 from mhri.ros.resources import read_resource, resource_path, robot_types
@@ -95,12 +96,16 @@ def look_for_robots(caller_id, ignore, known=(), api=None, types=None):
         [('getSystemState',), ('getTopicTypes',), ('getParam', '/')])
     parameters = parameters or {}
     candidates = find_candidates(state or [], parameters, ignore, known, topic_types or (),
-                                 robot_types()[0] if types is None else types)
+                                 robot_types()[0] if types is None else types, with_parts=True)
     asked = [(candidate, node) for candidate in candidates
              for node in candidate.nodes[:NODES_EACH] if candidate.problem is None]
     uris = api.call_many([('lookupNode', node) for _, node in asked]) if asked else []
     answered = knock([uri for uri in uris if uri])
     alive = {candidate.name for (candidate, _), uri in zip(asked, uris) if uri in answered}
+    # What is a part of a robot that lives is none itself; a dead robot has no parts.
+    root_lives = any(item.seen.at_root and item.name in alive for item in candidates)
+    candidates = [item for item in candidates
+                  if not item.part or item.name in alive and not root_lives]
     return Found(
         live=tuple(item for item in candidates if item.name in alive),
         leftovers=tuple(item for item in candidates
@@ -141,8 +146,10 @@ def robot_facts(caller_id, names, types, seen=None):
               and 'robot_type' not in parameters_of(name, parameters)]
     if unseen:
         state, topic_types = api.call_many([('getSystemState',), ('getTopicTypes',)])
-        seen.update((item.name, item.seen) for item in find_candidates(
-            state or [], parameters, shipped_ignore_list(), (), topic_types or (), types)
-            if item.name in unseen and item.problem is None)
+        graph = (state or [], parameters, shipped_ignore_list())
+        candidates = find_candidates(*graph, (), topic_types or (), types, with_parts=True)
+        found = named_instances(*graph, topic_types or (), types)
+        found.update((item.name, item.seen) for item in candidates if item.problem is None)
+        seen.update((name, found[name]) for name in unseen if name in found)
     return {name: Facts(parameters_of(name, parameters, name in seen and seen[name].at_root),
                         seen.get(name)) for name in names}

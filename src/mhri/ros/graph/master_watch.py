@@ -7,6 +7,7 @@ nobody can find them (robot_upstart#35). Connections that exist outlive the mast
 it.
 """
 import threading
+import time
 
 import rospy
 from rospy.impl.registration import (
@@ -32,23 +33,29 @@ def log_without_master():
 
 
 class MasterWatch:
-    """Asks the master twice a second whether it is there and knows this node.
+    """Asks the master again and again whether it is there and knows this node.
 
-    ``on_lost(reason)`` is called once when two calls in a row had no answer, and
+    ``on_lost(reason)`` is called once when two calls in a row were refused, or one had no answer
+    for ``patience_s``: at most ``period_s`` plus ``patience_s`` after the master hung. And
     ``on_back(forgotten)`` once when it answers again (``forgotten``: it is another master process
     that did not know this node; registrations and ``parameters`` have been given to it anew). A
     master that was restarted between two calls counts as lost and back. Both run on the watch's own
     thread.
 
     :param parameters: {absolute name: value} which this node owns and restores
+    :param period_s: the time between two calls [s]
+    :param patience_s: the longest that a call may take [s]; one that is that slow on a busy
+        computer counts as lost, so no less than about one second
     """
 
-    def __init__(self, on_lost=None, on_back=None, parameters=None, period_s=0.5):
+    def __init__(self, on_lost=None, on_back=None, parameters=None, period_s=0.5,
+                 patience_s=1.0):
         self._on_lost = on_lost or (lambda reason: None)
         self._on_back = on_back or (lambda forgotten: None)
         self.parameters = dict(parameters or {})
         self._period_s = period_s
-        self._api = MasterApi(rospy.get_name(), timeout_s=1.0)
+        self._patience_s = patience_s
+        self._api = MasterApi(rospy.get_name(), timeout_s=patience_s)
         self._misses = 0
         self.state = PRESENT
         self._done = threading.Event()
@@ -77,10 +84,11 @@ class MasterWatch:
 
     def _run(self):
         while not self._done.wait(self._period_s) and not rospy.is_shutdown():
+            begun = time.monotonic()
             try:
                 self._look()
             except MasterError as error:
-                self._miss(str(error))
+                self._miss(str(error), time.monotonic() - begun >= self._patience_s)
 
     def _look(self):
         """Ask once; register again where needed."""
@@ -96,9 +104,9 @@ class MasterWatch:
             # know its name. The service that every rospy node has is registered with the rest.
             uri = None if uri == own else uri
         if uri is not None and uri != own:
+            rospy.signal_shutdown('name taken over')
             rospy.logwarn('another node has taken over the name %s: this one ends',
                           rospy.get_name())
-            rospy.signal_shutdown('name taken over')
             return
         if rospy.is_shutdown():
             # What the master does not know any more, this node has taken back itself.
@@ -112,16 +120,16 @@ class MasterWatch:
             self.state = PRESENT
             self._on_back(uri is None)
 
-    def _miss(self, reason):
-        """Count a call without an answer; two in a row are a lost master."""
-        self._misses += 1
+    def _miss(self, reason, hangs):
+        """Count a call without an answer; two in a row are a lost master, or one that hangs."""
+        self._misses += 2 if hangs else 1
         if self._misses >= 2 and self.state == PRESENT:
             self._lose(reason)
 
     def _lose(self, reason):
         self.state = LOST
-        rospy.logwarn('ROS master lost: %s', reason)
         self._on_lost(reason)
+        rospy.logwarn('ROS master lost: %s', reason)
 
     def _register(self):
         """Give the master everything that rospy has registered in its life.

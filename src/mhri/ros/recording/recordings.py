@@ -19,7 +19,6 @@ class Recordings:
         self.limits = RecordingLimits()
         self._lock = threading.Lock()
         self._recorders = {}
-        self._with_commands = {}
         # Told to stop while their files are still being closed, and followed by another already.
         self._closing = []
         self._stopped = set()
@@ -43,9 +42,6 @@ class Recordings:
             recorder = Recorder(robot, topics_of(robot, robot_type, choices), path, self.limits)
             self._stopped.discard(robot)
             self._recorders[robot] = recorder
-            self._with_commands.pop(robot, None)
-            if 'commands' in choices:
-                self._with_commands[robot] = recorder
         recorder.start()
 
     def stop(self, robot):
@@ -55,15 +51,6 @@ class Recordings:
             self._stopped.add(robot)
         if recorder is not None:
             recorder.stop()
-
-    def put_command(self, robot, topic, message):
-        """Write a command that this program has sent to a robot, where commands are recorded.
-
-        :param message: a ROS message
-        """
-        recorder = self._with_commands.get(robot)
-        if recorder is not None:
-            recorder.put(topic, message)
 
     def running(self):
         """Return the names of the robots that are being recorded."""

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The robots of the panel: their types, links and gates, made and mended off the GUI thread."""
+"""The robots of the panel: their types and links, made and mended off the GUI thread."""
 import threading
 import time
 from dataclasses import replace
@@ -8,39 +8,32 @@ from dataclasses import replace
 import rospy
 
 from mhri.core.robots.robot_types import resolve_robot_type, Seen
-from mhri.core.screen.views import GONE, LIVE, RobotView, SILENT, WAITING
+from mhri.core.screen.views import GONE, RobotView, WAITING
 from mhri.ros.robots.bot_feeds import BotFeeds
-from mhri.ros.driving.gate import Gate
 from mhri.ros.graph.look import robot_facts
 from mhri.ros.graph.master_api import MasterError
 from mhri.ros.robots.robot_link import RobotLink
-
-
-# A robot that is heard and does not listen is told of its publishers again this often.
-ANNOUNCE_S = 5.0
 
 
 class Fleet:
     """The links of the robots in the list.
 
     :param types: {name: RobotType}
-    :param bank: :class:`mhri.ros.driving.gates.GateBank`
+    :param gates: :class:`mhri.ros.driving.gates_client.GatesClient`
     :param worker: :class:`mhri.ros.worker.Worker` for the feeds of the windows
-    :param on_sent: see :class:`mhri.ros.driving.gate.Gate`
     """
 
-    def __init__(self, types, bank, worker, on_sent, clock=time.monotonic):
+    def __init__(self, types, gates, worker, clock=time.monotonic):
         self._types = types
-        self._bank = bank
+        self._gates = gates
         self._worker = worker
-        self._on_sent = on_sent
         self._clock = clock
         self._lock = threading.Lock()
         self._links = {}
         self._wanted = set()
         self._problems = {}
         self._seen = {}
-        self._announced = {}
+        self._stopped = False
 
     def want(self, name):
         """Take note that a robot is in the list; :meth:`connect` makes its link."""
@@ -48,13 +41,11 @@ class Fleet:
             self._wanted.add(name)
 
     def drop(self, name):
-        """Stop a robot and forget it; return its link for :meth:`RobotLink.close`, or None."""
+        """Forget a robot; return its link for :meth:`RobotLink.close`, or None."""
         with self._lock:
             self._wanted.discard(name)
             link = self._links.pop(name, None)
             self._seen.pop(name, None)
-            self._announced.pop(name, None)
-        self._bank.remove(name)
         return link
 
     def connect(self, name, facts=None):
@@ -82,14 +73,12 @@ class Fleet:
             self._seen[name] = seen
             self._links.pop(name, None)
         if old is not None:
-            self._bank.remove(name)
             old.close()
-        link = RobotLink(name, robot_type, Gate.of_type(name, robot_type, self._on_sent),
-                         BotFeeds(name, robot_type, self._worker))
+        link = RobotLink(name, robot_type, self._gates, BotFeeds(name, robot_type, self._worker))
         with self._lock:
             self._links[name] = link
-        self._bank.add(link.gate)
-        if self._bank.stopped:
+            stopped = self._stopped
+        if stopped:
             link.on_stop(True, self._clock())
 
     def _report(self, name, errors):
@@ -111,7 +100,7 @@ class Fleet:
                      or self._links[name].view().link in (WAITING, GONE)
                      or self._links[name].robot_type.name == 'generic']
             seen = {name: self._seen.get(name, Seen()) for name in names
-                    if name in self._links and self._links[name].gate.reachable()}
+                    if name in self._links and self._is_reached(name)}
         try:
             facts = robot_facts(rospy.get_name(), names, self._types, seen)
         except (MasterError, ValueError, OSError) as error:
@@ -121,39 +110,28 @@ class Fleet:
             self.connect(name, facts[name])
         with self._lock:
             links = list(self._links.values())
-        self._announce(links)
         for link in links:
             link.listen_to_guard()
 
-    def _announce(self, links):
-        """Let robots that are heard, but not reached, know who speaks to them."""
-        now = self._clock()
-        for link in links:
-            due = now - self._announced.get(link.name, link.added_at) >= ANNOUNCE_S
-            if due and link.view().link == LIVE and not (
-                    link.gate.follows and link.gate.reachable()):
-                self._announced[link.name] = now
-                self._bank.announce(link.name)
-
-    def hold_silent(self):
-        """Hold the robots that were heard and are not any more; let go those that are heard again.
-
-        Called several times a second, on a thread.
-        """
-        self._bank.drop_cut()
-        with self._lock:
-            links = list(self._links.values())
-        for link in links:
-            held = link.view().link in (SILENT, GONE) or not link.heard_since(link.gate.lost_at)
-            if held != link.gate.rule.held:
-                self._bank.hold(link.name, held)
+    def _is_reached(self, name):
+        """Tell whether the gates have somewhere to send a robot's commands."""
+        gate = self._gates.robot(name)
+        return gate is not None and bool(gate.topic)
 
     def on_stop(self, stopped, now):
         """Begin or end the proof of a stop for every robot."""
         with self._lock:
+            self._stopped = stopped
             links = list(self._links.values())
         for link in links:
             link.on_stop(stopped, now)
+
+    def on_gates(self, gates):
+        """Take in what the gates say of each robot (a list of ``mhri/RobotGate``)."""
+        with self._lock:
+            links = [(self._links[gate.name], gate) for gate in gates if gate.name in self._links]
+        for link, gate in links:
+            link.on_gate(gate)
 
     def robot_type(self, name):
         """Return the :class:`RobotType` of a robot, None before its link is made."""

@@ -5,6 +5,7 @@ import importlib
 import math
 import threading
 import time
+from dataclasses import replace
 
 from geometry_msgs.msg import TwistStamped
 import rospy
@@ -13,12 +14,14 @@ from sensor_msgs.msg import BatteryState
 from mhri.core.robots.link import link_note, link_state
 from mhri.core.robots.link_quality import LinkQuality, link_warning
 from mhri.core.robots.names import topic_of
-from mhri.core.robots.stamp_age import StampAge
+from mhri.core.robots.stamp_age import delay_of, StampAge
 from mhri.core.robots.stop_proof import StopProof
-from mhri.core.screen.views import LIVE, RobotView
+from mhri.core.screen.views import LIVE, RobotView, UNANSWERED
 from mhri.core.sensors.plausible import BATTERY, can_be
+from mhri.msg import RobotGate
 from mhri.ros.convert import header_of, motion_from_odometry, motion_from_turtle_pose
-from mhri.ros.robots.link_probe import LinkProbe
+from mhri.ros.driving.gates_client import is_driven, round_trip_s, STANDS_WORDS
+from mhri.ros.robots.hardware_stop import HardwareStop
 
 _READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
             'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
@@ -26,6 +29,8 @@ _READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odomet
 # Below a robot's namespace: the late commands that its guard kept from it.
 DROPPED = 'mhri_guard/dropped'
 DROPPED_SHOWN_S = 1.0
+# Whoever has taken commands for so long and told no odometry has none.
+MUTE_AFTER_S = 3.0
 
 
 def battery_fraction(message):
@@ -95,19 +100,20 @@ class RobotLink:
 
     :param name: the robot's namespace
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
-    :param gate: :class:`mhri.ros.driving.gate.Gate` of the robot
+    :param gates: :class:`mhri.ros.driving.gates_client.GatesClient`
     :param feeds: :class:`mhri.ros.robots.bot_feeds.BotFeeds` of its window
     """
 
-    def __init__(self, name, robot_type, gate, feeds, clock=time.monotonic):
+    def __init__(self, name, robot_type, gates, feeds, clock=time.monotonic):
         self.name = name
         self.robot_type = robot_type
-        self.gate = gate
+        self._gates = gates
         self.feeds = feeds
         self._clock = clock
         self._lock = threading.Lock()
         self.added_at = clock()
         self._heard_at = None
+        self._reached_at = None
         self._heard_wall = ''
         self._pending = None
         self._motion = None
@@ -121,15 +127,12 @@ class RobotLink:
         self._battery_feeds = [
             Feed(topic_of(name, topic), BatteryState, battery_fraction, self._on_battery)
             for topic in robot_type.battery]
-        self._probe = LinkProbe(name, self._node_uri, self._on_round_trip)
+        self._hardware_stop = HardwareStop(name, robot_type)
 
-    def _node_uri(self):
-        """Return the address of the node that tells the odometry, or None."""
-        return next((uri for uri in (feed.publisher_uri() for feed in self._feeds) if uri), None)
-
-    def _on_round_trip(self, round_trip_s):
+    def on_gate(self, gate):
+        """Take in what the gates say of this robot (``mhri/RobotGate``), on a ROS thread."""
         with self._lock:
-            self._quality.on_round_trip(round_trip_s)
+            self._quality.on_round_trip(round_trip_s(gate))
 
     def _open_feeds(self):
         """Subscribe the odometry topics of the template."""
@@ -149,8 +152,8 @@ class RobotLink:
             late_s = 0.0
             if header is not None:
                 number, stamp_s = header
-                late_s = self._ages.setdefault(feed, StampAge()).late_s(stamp_s or None, now)
-                self._quality.on_message(number, came_at - stamp_s if stamp_s else None, now)
+                late_s = self._ages.setdefault(feed, StampAge()).late_s(stamp_s, now)
+                self._quality.on_message(number, delay_of(came_at, stamp_s), now)
             self._heard_at = now
             self._pending = (feed, message)
             if self._proof is not None:
@@ -159,7 +162,8 @@ class RobotLink:
 
     def listen_to_guard(self):
         """Hear what the robot's guard drops, once it has one (blocking: it asks the master)."""
-        if self._guard_feed is None and self.gate.guarded():
+        gate = self._gates.robot(self.name)
+        if self._guard_feed is None and gate is not None and gate.guarded:
             self._guard_feed = Feed('/{}/{}'.format(self.name, DROPPED), TwistStamped,
                                     lambda message: message, self._on_dropped)
 
@@ -183,14 +187,6 @@ class RobotLink:
                 now, self._quality.read(now).round_trip_s,
                 self.robot_type.silent_after_s) if stopped else None
 
-    def heard_since(self, when):
-        """Tell whether the robot has been heard since a time; a robot that never is, always.
-
-        :param when: None: it does not matter
-        """
-        with self._lock:
-            return None in (when, self._heard_at) or self._heard_at > when
-
     @property
     def stopped_ms(self):
         """Time that the robot took to stand still at the stop in force [ms], None before that."""
@@ -205,33 +201,63 @@ class RobotLink:
             self._take()
             age = None if self._heard_at is None else now - self._heard_at
             motion, limits = self._motion, self.robot_type.limits
-            state = link_state(age, connections, self.robot_type.silent_after_s)
+            state = link_state(age, connections, self.robot_type.silent_after_s,
+                               self._takes_commands(now))
             if age is not None and (age < 1.0 or not self._heard_wall):
                 self._heard_wall = time.strftime('%H:%M:%S')
             proof = self._proof.view(now) if self._proof else None
             figures = self._quality.read(now)
         dropped = now - self._dropped_at < DROPPED_SHOWN_S
         warning = link_warning(figures, dropped) if state == LIVE else ''
-        waits = self.gate.rule.waits and state == LIVE
-        if waits:
-            warning = 'centre the stick: it was out of reach'
-        return RobotView(
+        view = RobotView(
             name=self.name, type_label=self.robot_type.label, window=self.robot_type.window,
             link=state, age_s=age,
             note=link_note(state, age, self._heard_wall, now - self.added_at) or warning,
-            figures=figures, slow=bool(warning), waits=waits,
+            figures=figures, slow=bool(warning),
             linear_mps=motion and motion.linear_mps, angular_rad_s=motion and motion.angular_rad_s,
             heading_rad=motion and motion.heading_rad, x_m=motion and motion.x_m,
-            y_m=motion and motion.y_m, battery=self._battery, selected=self.gate.rule.selected,
-            driven=self.gate.rule.driving and self.gate.reachable(), guarded=self.gate.guarded(),
+            y_m=motion and motion.y_m, battery=self._battery,
             moving=motion is not None and age < 1.0 and not motion.is_standstill(), proof=proof,
-            max_linear_mps=limits.linear_mps, max_angular_rad_s=limits.angular_rad_s)
+            hardware_stop=self._hardware_stop.stopped, max_linear_mps=limits.linear_mps,
+            max_angular_rad_s=limits.angular_rad_s)
+        return seen_by_gates(view, self._gates.robot(self.name), self._gates.answers())
+
+    def _takes_commands(self, now):
+        """Tell whether the robot has listened to commands for long enough to be heard, too."""
+        gate = self._gates.robot(self.name)
+        if gate is None or not gate.topic or not self._gates.answers():
+            self._reached_at = None
+        elif self._reached_at is None:
+            self._reached_at = now
+        return self._reached_at is not None and now - self._reached_at > MUTE_AFTER_S
 
     def close(self):
-        """Stop listening and give the velocity topics back (blocking: it asks the master)."""
-        self._probe.close()
+        """Stop listening (blocking: it asks the master)."""
+        self._hardware_stop.close()
         self.feeds.close()
         guard_feeds = [self._guard_feed] if self._guard_feed else []
         for feed in self._feeds + self._battery_feeds + guard_feeds:
             feed.unregister()
-        self.gate.unregister()
+
+
+def seen_by_gates(view, gate, answers):
+    """Return a view with what the gates say of the robot: they alone know what it is sent.
+
+    :param view: :class:`mhri.core.screen.views.RobotView`
+    :param gate: their ``mhri/RobotGate``; None where they do not know the robot
+    :param answers: whether they have been heard lately; what they said before counts for nothing
+    """
+    if not answers:
+        return replace(view, note=UNANSWERED, slow=True)
+    if gate is None:
+        return view
+    stands = STANDS_WORDS.get(gate.stands, gate.stands) if gate.obeys else ''
+    if view.proof is not None and gate.stop_confirmed:
+        view = replace(view, proof=replace(
+            view.proof, text=view.proof.text + ', held by its guard'))
+    return replace(
+        view, driven=is_driven(gate) and bool(gate.topic), guarded=gate.guarded,
+        obeys=gate.obeys, stands=gate.stands,
+        waits=gate.stands == RobotGate.JOINING, stop_latched=gate.stop_confirmed,
+        note=stands if stands and view.link == LIVE else view.note,
+        slow=view.slow or bool(stands))

@@ -13,70 +13,74 @@ from dataclasses import replace
 import rosgraph
 import rospy
 
-from mhri.core.robots.discovery import parse_ignore_list
 from mhri.core.robots.names import name_problem
-from mhri.core.driving.group_speed import pace_of
+from mhri.core.driving.control import Claim
+from mhri.core.driving.group_speed import pace_words
 from mhri.core.recording.recording import CHOICES, RECORDING
 from mhri.core.driving.selection import Selection
-from mhri.core.screen.settings import NAMESPACE, PanelSettings, parse_settings
+from mhri.core.screen.source_rows import source_rows
 from mhri.core.screen.status import status_line
 from mhri.core.screen.views import (
-    PanelView, ROS_CONNECTED, ROS_NO_MASTER, ROS_STARTING, RobotView)
+    ControlView, PanelView, ROS_CONNECTED, ROS_CUT_OFF, ROS_NO_MASTER, ROS_STARTING, RobotView)
 from mhri.ros.devices.device_client import DeviceClient
-from mhri.ros.doctor.examination import examine
 from mhri.ros.robots.fleet import Fleet
-from mhri.ros.driving.gates import GateBank
-from mhri.ros.graph.look import look_for_robots
-from mhri.ros.driving.keeper import KeeperLink
+from mhri.ros.driving.gates_client import GatesClient
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.master_watch import LOST, MasterWatch
 from mhri.ros.driving.mux_client import MuxClient
 from mhri.ros.screen.panel_diagnostics import PanelDiagnostics
+from mhri.ros.screen.panel_jobs import PanelJobs
 from mhri.ros.screen.panel_requests import PanelRequests
+from mhri.ros.screen.seat import SEAT
 from mhri.ros.recording.recordings import Recordings
-from mhri.ros.resources import read_resource, resource_path, robot_types
+from mhri.ros.resources import robot_types
 from mhri.ros.worker import Worker
 
 NODE_NAME = 'mhri_panel'
-# The robots in the panel's list, in its order.
-ROBOTS_PARAMETER = '/mhri/robots'
 FLUSH_S = 0.1
-HOLD_S = 0.2
+OTHER_SCREEN = 'another screen of this program'
 
 
 class ScreenBackend:
     """Everything that one operator can do, and all that there is to see.
 
     :param argv: the node's command line (remappings)
+    :param seat: :class:`mhri.ros.screen.seat.Seat` that the screens of this process share
     """
 
-    def __init__(self, argv=()):
+    def __init__(self, argv=(), seat=SEAT):
+        self._seat = seat
         self._argv = list(argv)
         self._types, self._type_errors = robot_types()
         self.selection = Selection()
         self.recordings = Recordings()
         self._events = queue.Queue()
-        self._bank = GateBank(on_stop=self._on_stop)
-        self._keeper = KeeperLink(self._bank)
+        self._gates = GatesClient(self._on_gates)
+        self._claim = None
         self._feeder = Worker('feeds')
-        self._fleet = Fleet(self._types, self._bank, self._feeder, self.recordings.put_command)
-        self._holder = Worker('link_watch', self._fleet.hold_silent, HOLD_S)
-        self.settings = PanelSettings()
+        self._fleet = Fleet(self._types, self._gates, self._feeder)
+        self._jobs = PanelJobs(self._types, self._events)
         self._together = False
-        self._setting_errors = ()
-        self._told_robots = None
         self._mux = None
         self._watch = None
         self._requests = None
+        self._diagnostics = None
         self._devices = None
         self._sources = ()
         self._first_limits = None
         self._first_mode = None
+        self._pressed = False
+        self._stopped_by_gates = False
         self._stop_note = ''
         self._ros = ROS_STARTING
         self._closing = threading.Event()
         self._worker = Worker('panel_jobs', self._supervise)
         self.master_uri = rosgraph.get_master_uri()
+
+    @property
+    def settings(self):
+        """The :class:`mhri.core.screen.settings.PanelSettings` in force."""
+        return self._jobs.settings
 
     def start(self):
         """Begin to look for a master; returns at once."""
@@ -98,21 +102,21 @@ class ScreenBackend:
             rospy.init_node(NODE_NAME, argv=self._argv, disable_signals=True)
         for error in self._type_errors:
             rospy.logwarn('robot type left out: %s', error)
-        mux = MuxClient(self._bank, self._on_answer, lambda: self._worker.do(self._meet_mux))
         self._watch = MasterWatch().start()
-        self._keeper.start()
-        self._bank.start()
+        self._claim = Claim(rospy.get_name())
+        self._gates.start()
+        mux = MuxClient(self._on_answer, lambda: self._worker.do(self._meet_mux), self._pressed)
+        if self._seat.holds(self):
+            mux.take_wheel()
         self._mux = mux
-        if self._bank.stopped:
-            mux.stop_all()
         if self._first_limits:
             mux.request_limits(*self._first_limits)
-        mux.select(self.selection.selected)
+        self.repeat_selection()
         self._requests = PanelRequests(self._events)
         self._devices = DeviceClient()
-        PanelDiagnostics(self).start()
+        self._diagnostics = PanelDiagnostics(self)
+        self._diagnostics.start()
         self._feeder.start()
-        self._holder.start()
         self._worker.start()
         self._worker.do(self._supervise)
         self._ros = ROS_CONNECTED
@@ -121,28 +125,9 @@ class ScreenBackend:
         """Mend what is missing: the sources of the mux, the links and types of robots."""
         if self._watch.state != LOST:
             self._meet_mux()
-            self._settle_parameters()
+            self._jobs.settle_parameters(list(self.selection.robots) if self.drives() else None)
+            self.recordings.limits = self.settings.recording_limits()
             self._fleet.supervise()
-
-    def _settle_parameters(self):
-        """Read the panel's parameters, and write the list of robots for voice and pad."""
-        robots = list(self.selection.robots)
-        calls = [('getParam', NAMESPACE)]
-        if robots != self._told_robots:
-            calls.append(('setParam', ROBOTS_PARAMETER, robots))
-        try:
-            parameters = MasterApi(rospy.get_name()).call_many(calls)[0]
-        except MasterError as error:
-            rospy.logdebug('the parameters cannot be read now: %s', error)
-            return
-        self._told_robots = robots
-        self.settings, errors = parse_settings(parameters, self.settings)
-        self.recordings.limits = self.settings.recording_limits()
-        errors = tuple(str(error) for error in errors)
-        if errors != self._setting_errors:
-            self._setting_errors = errors
-            for text in errors:
-                rospy.logwarn('%s', text)
 
     def _meet_mux(self):
         """Read the names of the mux's sources, and ask for the mode of the last run."""
@@ -153,15 +138,20 @@ class ScreenBackend:
         except MasterError as error:
             rospy.logdebug('the sources cannot be read now: %s', error)
             return
-        self._sources = tuple((row['name'], row['label']) for row in rows or ())
+        self._sources = source_rows(rows)
         mode = self._mux.state()[0]
         if self._first_mode and mode:
             if self._first_mode != mode:
                 self._mux.request_mode(self._first_mode)
             self._first_mode = None
 
-    def _on_stop(self, stopped, now):
-        self._fleet.on_stop(stopped, now)
+    def _on_gates(self, state, now):
+        """Take in the word of the gates (on a ROS thread)."""
+        self._claim.hear(state.operator, now)
+        self._fleet.on_gates(state.robots)
+        if state.stop_all != self._stopped_by_gates:
+            self._stopped_by_gates = state.stop_all
+            self._fleet.on_stop(state.stop_all, now)
 
     def _on_answer(self, text):
         self._stop_note = text
@@ -169,8 +159,8 @@ class ScreenBackend:
     # What the operator does.
 
     def send_stick(self, forward, turn):
-        """Send the virtual joystick; nothing happens before ROS is there."""
-        if self._mux:
+        """Send the virtual joystick; nothing happens before ROS is there, or while others drive."""
+        if self._mux and self.drives():
             self._mux.send_stick(forward, turn)
 
     def request_mode(self, name):
@@ -191,14 +181,56 @@ class ScreenBackend:
     def keep_together(self, together):
         """Hold all selected robots to what the slowest of them can do, or let each do its best."""
         self._together = together
+        self.repeat_selection()
 
     def select(self, names):
-        """Drive exactly these robots; those no longer among them are stopped before anything."""
-        self.selection.check(names)
-        chosen = self.selection.selected
-        self._bank.deselect_others(chosen)
-        if self._mux:
-            self._mux.select(chosen)
+        """Drive exactly these robots; nothing happens while somebody else is in control."""
+        if self.drives():
+            self.selection.check(names)
+            if self._mux:
+                self._mux.select(self.selection.selected)
+
+    def drives(self):
+        """Tell whether this screen may speak for the operator, as far as is known here."""
+        return self._seat.holds(self) and (self._claim is None or self._claim.drives)
+
+    def repeat_selection(self):
+        """Say again which robots are checked: the operator's lease, to be called at 2 Hz.
+
+        To be called by the thread that the operator's hands act on, and by no other: where that
+        hangs, the lease ends and the robots stand. A screen that has lost control drops its
+        selection: having it back, it drives nothing that was not checked since.
+        """
+        if self._mux is None or self._closing.is_set():
+            return
+        if self.drives():
+            self._mux.select(self.selection.selected)
+            self._gates.keep_together(self._together, self.settings.slow_with_link)
+        else:
+            self.selection.check(())
+            self._gates.leave_group()
+        if self.drives() != self._mux.at_wheel:
+            self._worker.do(self._settle_wheel)
+
+    def _settle_wheel(self):
+        """Have the topics of the one who drives, or give them back (on the worker)."""
+        if self.drives() and not self._closing.is_set():
+            if self._mux.take_wheel():
+                # Whatever another screen of this program selected counts no more.
+                self._mux.select(self.selection.selected)
+        elif not self._closing.is_set():
+            self._mux.leave_wheel()
+
+    def take_control(self):
+        """Become the operator in control, whoever is; everybody gets a zero."""
+        self._seat.take(self)
+        self.selection.check(())
+        self.repeat_selection()
+        self._gates.take_control(lambda done, text: done or self._events.put(('told', text)))
+
+    def set_motor_power(self, on):
+        """Cut the power of the motors of all robots that offer it (False), or give it back."""
+        self._gates.set_motor_power(on, lambda done, text: self._on_answer(text))
 
     def add(self, name, parameters=None):
         """Add a robot to the list, unchecked.
@@ -227,29 +259,11 @@ class ScreenBackend:
         if self._ros != ROS_CONNECTED:
             self._events.put(('look_failed', 'no ROS master at {}'.format(self.master_uri)))
             return
-        self._worker.do(self._look, self.selection.robots)
+        self._worker.do(self._jobs.look, self.selection.robots)
 
     def examine(self):
         """Examine network, master and robots; the result comes as ``('examined', (list, s))``."""
-        threading.Thread(target=self._examine, name='doctor', daemon=True).start()
-
-    def _examine(self):
-        begun = time.monotonic()
-        try:
-            found = examine()
-        except Exception as error:  # the guard of this thread: the operator is told what failed
-            rospy.logerr('the examination failed: %r', error)
-            found = 'the examination failed: {}'.format(error)
-        self._events.put(('examined', (found, time.monotonic() - begun)))
-
-    def _look(self, known):
-        try:
-            ignore = parse_ignore_list(read_resource('discovery.yaml'),
-                                       resource_path('discovery.yaml'))
-            self._events.put(('found', look_for_robots(
-                rospy.get_name(), ignore, known, types=self._types)))
-        except (MasterError, ValueError, OSError) as error:
-            self._events.put(('look_failed', str(error)))
+        self._jobs.examine()
 
     def talk(self, pressed):
         """Open or close the ear of the voice node (push-to-talk)."""
@@ -262,18 +276,16 @@ class ScreenBackend:
             self._devices.rumble()
 
     def stop_all(self):
-        """Stop every robot in the list, now; pressed without a master, it waits for the mux."""
+        """Stop every robot; pressed without a master, it is kept until there is one."""
+        self._pressed = True
         if self._mux:
             self._mux.stop_all()
-        else:
-            self._bank.press_stop()
 
     def release(self):
         """Give up stop-all, where the mux agrees."""
+        self._pressed = False
         if self._mux:
             self._mux.release()
-        else:
-            self._bank.withdraw_press()
 
     # What there is to see.
 
@@ -313,56 +325,76 @@ class ScreenBackend:
         return self._fleet.view(name, selected,
                                 self.recordings.status(name).state == RECORDING)
 
+    def _state_of_ros(self):
+        """Return the state of the connection, one of ``ROS_*``."""
+        if self._mux is not None and rospy.is_shutdown():
+            return ROS_CUT_OFF
+        lost = self._ros == ROS_CONNECTED and self._watch.state == LOST
+        return ROS_NO_MASTER if lost else self._ros
+
+    def _control(self):
+        """Return who is in control, a :class:`ControlView`."""
+        if self.drives():
+            return ControlView()
+        return ControlView(False, self._gates.who() if self._seat.holds(self) else OTHER_SCREEN)
+
     def view(self):
         """Return the :class:`PanelView` of this moment."""
-        ros = self._ros
-        if ros == ROS_CONNECTED and self._watch.state == LOST:
-            ros = ROS_NO_MASTER
         mode, limits, waits_for = self._mux.state() if self._mux else (None, None, None)
         selected = frozenset(self.selection.selected)
         robots = tuple(self._robot_view(name, name in selected)
                        for name in self.selection.robots)
-        share, pace = pace_of(robots, self._together, self.settings.slow_with_link)
-        self._bank.set_pace(self._together, share)
+        answers = self._mux is None or self._gates.answers()
+        gates = self._gates.state() if answers else None
+        together = self._together if gates is None else gates.together
+        share = 1.0 if gates is None else gates.share
         view = PanelView(
-            ros=ros, sources=self._sources, mode=mode, stop_all=self._bank.stopped,
-            stop_note=self._stop_note, limits=limits or self._first_limits or (0.5, 1.5),
-            robots=robots, together=self._together, pace=pace,
+            ros=self._state_of_ros(), sources=self._sources, mode=mode,
+            stop_all=self._stopped_by_gates or (self._mux.stopped if self._mux else self._pressed),
+            stop_note=self._stop_note,
+            limits=limits or self._first_limits or (0.5, 1.5),
+            robots=robots, together=together, pace=pace_words(robots, together, share),
             slowed=share < 1.0,
             camera_bits_per_s=self._fleet.camera_bits_per_s(),
-            heard=self._devices.heard() if self._devices else None)
+            heard=self._devices.heard() if self._devices else None,
+            control=self._control(), answers=answers,
+            stop_taken=answers and self._stopped_by_gates)
         status, level = status_line(view, waits_for, self.master_uri)
         return replace(view, status=status, status_level=level)
 
     def close(self, forget=False):
-        """Stop the robots (one zero each) and end.
+        """Select nothing, so that the robots stop, and end.
 
-        Takes as long as a zero needs to leave, and bags that are open need to be closed whole.
+        Takes as long as the word needs to leave, and bags that are open need to be closed whole.
 
         :param forget: give every topic back as well, in the background: for a program that lives on
         """
         if self._closing.is_set():
             return
         self._closing.set()
-        self._keeper.end()
-        self._bank.close()
+        if self._mux and self.drives():
+            self._mux.select(())
+            self._mux.send_stick(0.0, 0.0)
         self._worker.stop()
-        self._holder.stop()
         self._feeder.stop()
-        if self._watch:
-            self._watch.stop()
-        if self._devices:
-            self._devices.close()
+        self._gates.close()
+        for part in filter(None, (self._watch, self._diagnostics)):
+            part.stop()
+        for part in filter(None, (self._devices, self._mux)):
+            part.close()
         if self._mux:
-            self._mux.close()
             time.sleep(FLUSH_S)
             self.recordings.close()
             if forget:
                 threading.Thread(target=self._forget, name='forget', daemon=True).start()
+                return
+        self._seat.leave(self)
 
     def _forget(self):
         self._fleet.close()
-        self._bank.unregister()
+        self._gates.unregister()
         self._mux.unregister()
+        self._seat.leave(self)
         self._requests.unregister()
         self._devices.unregister()
+        self._diagnostics.unregister()

@@ -15,10 +15,15 @@ class PanelDiagnostics:
 
     def __init__(self, operator):
         self._operator = operator
+        self._done = None
 
     def start(self):
         """Begin publishing, on a thread of its own."""
-        publish_diagnostics({'robots': self._robots})
+        self._done = publish_diagnostics({'robots': self._robots})
+
+    def stop(self):
+        """End; returns at once."""
+        self._done.set()
 
     def _robots(self, status):
         """Fill the status of the robots in the list."""

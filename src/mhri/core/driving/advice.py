@@ -1,0 +1,60 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What keeps a source from driving, and what to do about it: a sentence for the status line."""
+from dataclasses import dataclass
+from typing import FrozenSet, Optional, Tuple
+
+from mhri.core.driving.sources import JOY, TWIST
+
+MESSAGE_TYPES = {JOY: 'sensor_msgs/Joy', TWIST: 'geometry_msgs/Twist'}
+
+
+@dataclass(frozen=True)
+class Heard:
+    """What is known of the active source's topic.
+
+    ``publishers`` are connected; ``stranger`` is (node, message type) of one that publishes another
+    type; ``spoke``: something was heard since the mode was entered; ``refused`` why the newest
+    message could not be used; ``rival`` is (node, owner) where a second publisher was refused
+    lately.
+    """
+
+    publishers: FrozenSet[str] = frozenset()
+    stranger: Optional[Tuple[str, str]] = None
+    spoke: bool = False
+    refused: str = ''
+    rival: Optional[Tuple[str, str]] = None
+
+
+def advice(source, waits_for, heard):
+    """Return the sentence, '' where nothing is to be said.
+
+    :param source: the active :class:`mhri.core.driving.sources.Source`
+    :param waits_for: as ``/mux/waits_for`` says it
+    :param heard: :class:`Heard`
+    """
+    if heard.refused:
+        return '{}: {}'.format(source.label, heard.refused)
+    if waits_for == 'source':
+        return '{}: {}'.format(source.label, _silence(source, heard))
+    if heard.rival:
+        return '{} publishes {} as well and is not listened to: {} does so'.format(
+            heard.rival[0], source.topic, heard.rival[1])
+    return ''
+
+
+def _silence(source, heard):
+    """Say why nothing is heard."""
+    if heard.stranger:
+        node, kind = heard.stranger
+        kinds = {name: key for key, name in MESSAGE_TYPES.items()}
+        remedy = 'write type: {} into its row of mux.yaml'.format(kinds[kind]) if kind in kinds \
+            else 'it needs {}'.format(MESSAGE_TYPES[source.kind])
+        return '{} publishes {} on {}: {}'.format(node, kind, source.topic, remedy)
+    if not heard.publishers:
+        return 'nobody publishes {}: start its node'.format(source.topic)
+    node = sorted(heard.publishers)[0]
+    if not heard.spoke:
+        return '{} has said nothing yet: move the stick once'.format(node)
+    return ('{} has fallen silent; if it sends changes only (joy_node without autorepeat_rate), '
+            'write holds: true into its row of mux.yaml'.format(node))

@@ -1,0 +1,58 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Who is in control, as one screen sees it: one operator at a time."""
+from typing import Optional
+
+# A screen that is not in control claims it only when nobody has had it for so long: the one that
+# had it repeats its selection every 0.5 s, and is to have it back when the gates were restarted.
+VACANT_S = 2.0
+
+
+class Claim:
+    """Whether a screen may speak for the operator; times are seconds of a monotonic clock.
+
+    States::
+
+        DRIVES  -> WATCHES  the gates name somebody else
+        WATCHES -> DRIVES   the gates name this one, or nobody for VACANT_S
+
+    A screen begins by claiming; the gates decide. While they are not heard nothing changes.
+
+    :param name: the node of this screen, as the gates call it
+    """
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._vacant_since: Optional[float] = None
+        self.drives = True
+
+    def hear(self, operator: str, now: float) -> None:
+        """Take in whom the gates call the operator; '' for nobody."""
+        if operator:
+            self.drives = operator == self._name
+        if operator or self.drives:
+            self._vacant_since = None
+        elif self._vacant_since is None:
+            self._vacant_since = now
+        elif now - self._vacant_since >= VACANT_S:
+            self.drives = True
+            self._vacant_since = None
+
+
+def operator_name(node: str) -> str:
+    """Return what a person calls a node that is in control: "panel", "panel in rqt", its name."""
+    name = node.strip('/')
+    if name.startswith('rqt'):
+        return 'panel in rqt'
+    return 'panel' if name.startswith('mhri_panel') else name
+
+
+def who_drives(node: str, computer: str = '', since: str = '') -> str:
+    """Return who is in control, for a person, e.g. "panel on lab-pc2 since 14:02".
+
+    :param node: its name
+    :param computer: that it runs on, '' where it is not known
+    :param since: local time as text, '' where it is not known
+    """
+    return operator_name(node) + (' on ' + computer if computer else '') + (
+        ' since ' + since if since else '')

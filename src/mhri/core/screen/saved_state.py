@@ -1,0 +1,205 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the screen kept from its last run, as far as it can be used: anybody may have edited it.
+
+A state is a dict of JSON values: ``robots`` (names), ``mode`` (a source), ``limits`` [m/s, rad/s],
+``together``, ``windows`` ({robot: geometry}), ``looks`` ({robot: what its window shows}) and
+``panel`` (``splitter``, ``geometry``). A geometry is [x, y, width, height, maximised] in pixels: a
+text that can be read, and no blob that Qt would have to trust.
+"""
+from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
+
+from mhri.core.driving.limits import speed_limit_problem
+from mhri.core.robots.names import name_problem
+from mhri.core.screen.text import tidy_text
+
+MOST_ROBOTS = 200
+# No screen is wider, and Qt's and X's coordinates end at 32767.
+_MOST_PX = 30_000
+_MOST_PARTS = 10
+_LONGEST_WORD = 100
+_DEEPEST = 6
+_MOST_VALUES = 500
+
+State = Dict[str, Any]
+_Reader = Callable[[Any], Any]
+# ... that tells of problems within: value, list of problems, its key.
+_PartReader = Callable[[Any, List[str], str], Any]
+
+
+def _refuse(expected: str) -> NoReturn:
+    """Refuse a value.
+
+    :raises ValueError: always
+    """
+    raise ValueError('expected ' + expected)
+
+
+def is_word(value: Any) -> bool:
+    """Tell whether a value is a short text that can be printed."""
+    return isinstance(value, str) and 0 < len(value) <= _LONGEST_WORD and value.isprintable()
+
+
+def _is_whole(value: Any, least: int, most: int) -> bool:
+    """Tell whether a value is a whole number in a range; true and false are none."""
+    return type(value) is int and least <= value <= most
+
+
+def _read_robots(value: Any) -> List[str]:
+    names = value if isinstance(value, list) else []
+    if names != value or len(names) > MOST_ROBOTS or any(
+            not isinstance(name, str) or name_problem(name) for name in names):
+        _refuse('a list of at most {} names of robots'.format(MOST_ROBOTS))
+    return names
+
+
+def _read_mode(value: Any) -> Optional[str]:
+    if value is not None and not is_word(value):
+        _refuse('the name of a source')
+    return value or None
+
+
+def read_limits(value: Any) -> List[float]:
+    """Return a pair of speed limits [m/s, rad/s].
+
+    :raises ValueError: it is none; the text says what was expected
+    """
+    if not isinstance(value, (list, tuple)) or len(value) != 2 or any(
+            type(part) not in (int, float) for part in value):
+        _refuse('two numbers, m/s and rad/s')
+    try:
+        problem = speed_limit_problem(*value)
+    except OverflowError:  # a whole number that no float can hold
+        problem = 'a speed limit beyond any number'
+    if problem:
+        raise ValueError(problem)
+    return [float(part) for part in value]
+
+
+def _read_flag(value: Any) -> bool:
+    if not isinstance(value, bool):
+        _refuse('true or false')
+    return value
+
+
+def read_geometry(value: Any) -> List[Any]:
+    """Return a geometry: [x, y, width, height, maximised], pixels.
+
+    :raises ValueError: it is none
+    """
+    if not (isinstance(value, list) and len(value) == 5 and isinstance(value[4], bool)
+            and all(_is_whole(part, -_MOST_PX, _MOST_PX) for part in value[:2])
+            and all(_is_whole(part, 1, _MOST_PX) for part in value[2:4])):
+        _refuse('x, y, width, height [px] and whether it is maximised')
+    return list(value)
+
+
+def read_sizes(value: Any) -> List[int]:
+    """Return the sizes of the parts of a splitter [px].
+
+    :raises ValueError: they are none
+    """
+    if not (isinstance(value, list) and len(value) <= _MOST_PARTS
+            and all(_is_whole(part, 0, _MOST_PX) for part in value)):
+        _refuse('the sizes of at most {} parts [px]'.format(_MOST_PARTS))
+    return list(value)
+
+
+def _count_values(value: Any, depth: int = 0) -> int:
+    """Return how many values a value of JSON is made of.
+
+    :raises ValueError: it is too deep, or has a key or text that is too long
+    """
+    if depth > _DEEPEST:
+        _refuse('fewer levels')
+    if isinstance(value, str) and len(value) > 10 * _LONGEST_WORD:
+        _refuse('shorter texts')
+    parts = list(value.values()) if isinstance(value, dict) else \
+        value if isinstance(value, list) else []
+    return 1 + sum(_count_values(part, depth + 1) for part in parts)
+
+
+def _read_look(value: Any) -> State:
+    """Return how a window looked; a lab's own window may keep what it likes, in reason."""
+    if not isinstance(value, dict) or _count_values(value) > _MOST_VALUES:
+        _refuse('a dict of at most {} values'.format(_MOST_VALUES))
+    return {**value, **{key: read(value[key]) for key, read in _LOOK.items() if key in value}}
+
+
+def _read_words(value: Any) -> List[str]:
+    if not (isinstance(value, list) and len(value) <= 50 and all(map(is_word, value))):
+        _refuse('a list of words')
+    return list(value)
+
+
+def _read_graph(value: Any) -> State:
+    if not isinstance(value, dict):
+        _refuse('a dict')
+    return {key: kept for key, kept in value.items()
+            if is_word(kept) or _is_whole(kept, 0, 3600)}
+
+
+def _read_recording(value: Any) -> State:
+    if not isinstance(value, dict):
+        _refuse('a dict')
+    return {'extras': _read_words(value.get('extras', []))}
+
+
+def _by_robot(read: _Reader) -> _PartReader:
+    """Return what reads a dict of robots, and leaves out those that cannot be read."""
+    def _read(value: Any, problems: List[str], key: str) -> State:
+        if not isinstance(value, dict):
+            _refuse('a dict of robots')
+        found = {}
+        for name, part in list(value.items())[:MOST_ROBOTS]:
+            try:
+                if not isinstance(name, str) or name_problem(name):
+                    _refuse('the name of a robot')
+                found[name] = read(part)
+            except ValueError as error:
+                problems.append('{} of {}: {}'.format(key, tidy_text(str(name), 40), error))
+        return found
+    return _read
+
+
+def _plain(read: _Reader) -> _PartReader:
+    return lambda value, problems, key: read(value)
+
+
+def _read_panel(value: Any, problems: List[str], key: str) -> State:
+    if not isinstance(value, dict):
+        _refuse('a dict')
+    return _read_parts(value, _PANEL, problems, key + '.')
+
+
+_LOOK = {'views': _read_words, 'graph': _read_graph, 'recording': _read_recording,
+         'splitter': read_sizes}
+_PANEL: Dict[str, _PartReader] = {'splitter': _plain(read_sizes), 'geometry': _plain(read_geometry)}
+_STATE: Dict[str, _PartReader] = {
+    'robots': _plain(_read_robots), 'mode': _plain(_read_mode), 'limits': _plain(read_limits),
+    'together': _plain(_read_flag), 'windows': _by_robot(read_geometry),
+    'looks': _by_robot(_read_look), 'panel': _read_panel}
+
+
+def _read_parts(value: State, readers: Dict[str, _PartReader], problems: List[str],
+                above: str) -> State:
+    """Return of a dict what its readers can read; say of the rest why not."""
+    found = {}
+    for key, read in readers.items():
+        if key in value:
+            try:
+                found[key] = read(value[key], problems, above + key)
+            except ValueError as error:
+                problems.append('{}{}: {}'.format(above, key, error))
+    return found
+
+
+def usable_state(state: Any) -> Tuple[State, Tuple[str, ...]]:
+    """Return (the part of a kept state that can be used, why not for each of the others).
+
+    :param state: whatever was read
+    """
+    if not isinstance(state, dict):
+        return {}, ('expected a dict',)
+    problems: List[str] = []
+    return _read_parts(state, _STATE, problems, ''), tuple(problems)

@@ -1,0 +1,42 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where a window is, as plain numbers: [x, y, width, height, maximised], in pixels."""
+from python_qt_binding.QtCore import QRect, Qt
+from python_qt_binding.QtGui import QGuiApplication
+
+
+def geometry_of(window):
+    """Return the geometry of a window, while it is maximised that from before."""
+    maximised = window.isMaximized()
+    usual = window.normalGeometry()
+    rect = usual if maximised and usual.isValid() else window.geometry()
+    return [rect.x(), rect.y(), rect.width(), rect.height(), maximised]
+
+
+def restore_geometry(window, geometry):
+    """Put a window where it was; return False where no screen is there any more.
+
+    It is made small enough for the screen, and moved into it.
+
+    :param geometry: of :func:`geometry_of`, checked by
+        :func:`mhri.core.screen.saved_state.read_geometry`
+    """
+    *numbers, maximised = geometry
+    rect = QRect(*numbers)
+    areas = [screen.availableGeometry() for screen in QGuiApplication.screens()]
+    area = max(areas, key=lambda area: _shared(area, rect), default=None)
+    if area is None or not _shared(area, rect):
+        return False
+    rect.setSize(rect.size().boundedTo(area.size()))
+    rect.moveLeft(max(area.left(), min(rect.left(), area.right() - rect.width() + 1)))
+    rect.moveTop(max(area.top(), min(rect.top(), area.bottom() - rect.height() + 1)))
+    window.setGeometry(rect)
+    if maximised:
+        window.setWindowState(window.windowState() | Qt.WindowMaximized)
+    return True
+
+
+def _shared(area, rect):
+    """Return how many pixels two rectangles have in common."""
+    common = area.intersected(rect)
+    return common.width() * common.height() if common.isValid() else 0

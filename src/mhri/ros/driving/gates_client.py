@@ -1,0 +1,150 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The panel's side of the gates: what they said last, and what is asked of them.
+
+Subscribes ``/gates/state`` (``mhri/GatesState``, 2 Hz and on change). Publishes
+``/gates_in/group_speed`` (``mhri/GroupSpeed``, latched). Calls ``/gates/take_control``
+(``std_srvs/Trigger``) and ``/gates/set_motor_power`` (``std_srvs/SetBool``) on a thread of its own.
+"""
+import math
+import threading
+import time
+
+import rospy
+from std_srvs.srv import SetBool, Trigger
+
+from mhri.core.driving.control import who_drives
+from mhri.msg import GatesState, GroupSpeed, RobotGate
+from mhri.ros.worker import Worker
+
+# They speak at 2 Hz: a word late by this much is a word that does not come.
+SILENT_S = 0.9
+TAKE_SERVICE, POWER_SERVICE = '/gates/take_control', '/gates/set_motor_power'
+
+
+class GatesClient:
+    """What the gates say, and whether they say anything; every method returns at once.
+
+    :param on_state: called with (``mhri/GatesState``, received at [s]) on a ROS thread, in order
+    :param clock: function that returns seconds, monotonic
+    """
+
+    def __init__(self, on_state, clock=time.monotonic):
+        self._on_state = on_state
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._state = None
+        self._robots = {}
+        self._heard_at = clock()
+        self._told = None
+        self._group = None
+        self._topics = []
+        self._worker = Worker('gates_calls')
+
+    def start(self):
+        """Begin to listen; call it after ``rospy.init_node``."""
+        self._heard_at = self._clock()
+        self._group = rospy.Publisher('/gates_in/group_speed', GroupSpeed, queue_size=1, latch=True)
+        self._topics = [self._group, rospy.Subscriber(
+            '/gates/state', GatesState, self._hear, queue_size=10, tcp_nodelay=True)]
+        self._worker.start()
+        return self
+
+    def _hear(self, message):
+        now = self._clock()
+        with self._lock:
+            self._state = message
+            self._robots = {robot.name: robot for robot in message.robots}
+            self._heard_at = now
+        self._on_state(message, now)
+
+    def answers(self):
+        """Tell whether the gates have been heard lately (a start counts as hearing them)."""
+        return self._clock() - self._heard_at <= SILENT_S
+
+    def state(self):
+        """Return the newest ``mhri/GatesState``, however old; None before the first."""
+        return self._state
+
+    def robot(self, name):
+        """Return the newest ``mhri/RobotGate`` of a robot; None where the gates do not know it."""
+        with self._lock:
+            return self._robots.get(name)
+
+    def who(self):
+        """Return who is in control, for a person; '' where the gates have named nobody."""
+        state = self._state
+        if state is None or not state.operator:
+            return ''
+        since = state.since.to_sec()
+        return who_drives(state.operator, state.computer,
+                          time.strftime('%H:%M', time.localtime(since)) if since else '')
+
+    def keep_together(self, together, slow_with_link):
+        """Say how the selected robots keep to each other, where that is news."""
+        if self._group is not None and (together, slow_with_link) != self._told:
+            self._told = (together, slow_with_link)
+            self._group.publish(together=together, slow_with_link=slow_with_link)
+
+    def leave_group(self):
+        """Say how the robots keep to each other anew when this screen drives again."""
+        self._told = None
+
+    def take_control(self, on_answer):
+        """Make this node the operator in control.
+
+        :param on_answer: called with (whether it was done, a sentence), on the worker
+        """
+        self._worker.do(self._call, TAKE_SERVICE, Trigger, 'not taken over', on_answer)
+
+    def set_motor_power(self, on, on_answer):
+        """Cut the power of the motors of every robot that offers it (False), or give it back.
+
+        :param on_answer: as of :meth:`take_control`
+        """
+        self._worker.do(self._call, POWER_SERVICE, SetBool, 'motor power unchanged', on_answer, on)
+
+    def _call(self, name, kind, failure, on_answer, *words):
+        """Call a service once, over a connection of its own; tell what came of it."""
+        try:
+            rospy.wait_for_service(name, timeout=SILENT_S)
+            answer = rospy.ServiceProxy(name, kind)(*words)
+        except (rospy.ServiceException, rospy.ROSException, OSError) as error:
+            rospy.logwarn('%s: %s', name, error)
+            on_answer(False, '{}: the drive service does not answer'.format(failure))
+            return
+        on_answer(answer.success, answer.message if answer.success else
+                  '{}: {}'.format(failure, answer.message))
+
+    def close(self):
+        """Stop the worker; returns at once."""
+        self._worker.stop()
+
+    def unregister(self):
+        """Give every topic back (blocking: it asks the master)."""
+        for topic in self._topics:
+            topic.unregister()
+
+
+def is_driven(robot):
+    """Tell whether the velocity that the gates last sent to a robot moves it.
+
+    :param robot: ``mhri/RobotGate``
+    """
+    sent = robot.sent
+    return any((sent.linear.x, sent.linear.y, sent.angular.z))
+
+
+def round_trip_s(robot):
+    """Return the round trip to a robot [s] as the gates measured it; None where it is not known.
+
+    :param robot: ``mhri/RobotGate``
+    """
+    return robot.round_trip_s if math.isfinite(robot.round_trip_s) else None
+
+
+STANDS_WORDS = {
+    RobotGate.STOPPED: '',
+    RobotGate.JOINING: 'centre the stick to drive',
+    RobotGate.NOT_HEARD: 'kept standing: the drive service does not hear it',
+}

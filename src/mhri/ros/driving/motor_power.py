@@ -1,0 +1,245 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The power of one robot's motors: cut and given back by a topic or a service of the robot."""
+import io
+import threading
+import time
+
+import genpy
+import rospy
+from std_srvs.srv import SetBool
+
+from mhri.core.driving.motor_power import MotorPowerRule
+from mhri.core.robots.names import topic_of
+from mhri.ros.messages import message_class, MessageMissing, with_field
+from mhri.ros.worker import Worker
+
+# A service that has not answered for so long [s] is called again, beside the call under way.
+PATIENCE_S = 3.0
+MOST_CALLS = 3
+# Below the robot's name at the master while its power is cut: whoever takes over knows it by that.
+PARAMETER = 'mhri_motor_power_cut'
+
+
+class NotTold(Exception):
+    """A robot could not be told; the text says why."""
+
+
+class PowerTopic:
+    """Tells a robot by a message; what was sent is not confirmed.
+
+    :param on_listener: called when a node begins to listen
+    """
+
+    confirms = False
+
+    def __init__(self, topic, spec, on_listener):
+        kind = message_class(spec.kind)
+        self._messages = {}
+        for cut, value in ((True, spec.cut), (False, spec.powered)):
+            try:
+                self._messages[cut] = with_field(kind(), spec.field, value)
+                self._messages[cut].serialize(io.BytesIO())
+            except AttributeError:
+                raise MessageMissing('{} has no field {}'.format(spec.kind, spec.field)) from None
+            except genpy.SerializationError as error:
+                raise MessageMissing('{}: {}'.format(spec.kind, error)) from None
+        self._publisher = rospy.Publisher(topic, kind, queue_size=1,
+                                          subscriber_listener=_Listeners(on_listener))
+
+    def tell(self, cut):
+        """Send it.
+
+        :raises NotTold: nobody listens
+        """
+        if not self._publisher.get_num_connections():
+            raise NotTold('nobody listens to {}'.format(self._publisher.resolved_name))
+        self._publisher.publish(self._messages[cut])
+
+    def close(self):
+        """Give the topic back (blocking: it asks the master)."""
+        self._publisher.unregister()
+
+
+class _Listeners(rospy.SubscribeListener):
+
+    def __init__(self, on_listener):
+        super().__init__()
+        self._on_listener = on_listener
+
+    def peer_subscribe(self, topic_name, topic_publish, peer_publish):
+        self._on_listener()
+
+
+class PowerService:
+    """Tells a robot by a call of ``std_srvs/SetBool``: true for power."""
+
+    confirms = True
+
+    def __init__(self, service):
+        self._name = service
+
+    def tell(self, cut):
+        """Call it (blocking, for as long as the network takes).
+
+        :raises NotTold: there is no such service, or it refuses
+        """
+        try:
+            answer = rospy.ServiceProxy(self._name, SetBool)(not cut)
+        except (rospy.ServiceException, rospy.ROSException) as error:
+            raise NotTold('{} does not answer: {}'.format(self._name, error)) from None
+        if not answer.success:
+            raise NotTold('{} refuses: {}'.format(self._name, answer.message or 'no reason given'))
+
+    def close(self):
+        """Leave nothing behind: a call has a connection of its own."""
+
+
+class MotorPower:
+    """Cuts the power of a robot's motors and gives it back; no method but :meth:`close` waits.
+
+    :param robot: the robot's name
+    :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
+    """
+
+    def __init__(self, robot, robot_type):
+        self._robot = robot
+        self._way = None
+        self._changed = threading.Condition()
+        self._calls = 0
+        self._closed = False
+        self._rule = MotorPowerRule()
+        #: Why the power cannot be cut, as a sentence; '' where it can.
+        self.problem = ''
+        try:
+            self._way = self._make_way(robot_type.motor_power)
+        except MessageMissing as error:
+            self.problem = 'the power of its motors cannot be cut: {}'.format(error)
+        # The master may hang, and must not keep a cut waiting.
+        self._notes = Worker('motor power notes ' + robot, idle_s=3600.0)
+        if self._way is not None:
+            self._notes.start().do(self._take_over)
+            threading.Thread(target=self._run, name='motor power ' + robot, daemon=True).start()
+
+    def _make_way(self, spec):
+        """Return the topic or service of a spec; None where the type names nothing."""
+        if spec is None:
+            self.problem = 'its type names nothing that takes the power from its motors'
+            return None
+        name = topic_of(self._robot, spec.name)
+        return PowerService(name) if spec.service else PowerTopic(name, spec, self._on_listener)
+
+    @property
+    def available(self):
+        """Whether the power can be cut at all; else ``problem`` says why not."""
+        return self._way is not None
+
+    @property
+    def is_cut(self):
+        """Whether the power is to stay cut, as far as it could be told."""
+        return self._rule.is_cut
+
+    @property
+    def state(self):
+        """The words of :mod:`mhri.core.driving.motor_power`; '' where nothing was asked for."""
+        with self._changed:
+            return self._rule.state
+
+    def cut(self):
+        """Take the power from the motors; tried until it succeeds, or :meth:`restore`."""
+        self._ask(True)
+
+    def restore(self):
+        """Give the power back. It moves nothing: the base has no command left to obey."""
+        self._ask(False)
+
+    def _ask(self, cut):
+        if self._way is None:
+            return
+        with self._changed:
+            self._rule.ask(cut, time.monotonic())
+            self._changed.notify()
+        self._notes.do(self._note)
+
+    def _on_listener(self):
+        """Let a base that has just come up know that its power is cut."""
+        with self._changed:
+            self._rule.tell_again(time.monotonic())
+            self._changed.notify()
+
+    def _run(self):
+        """Do what is due until closed."""
+        while True:
+            with self._changed:
+                now = time.monotonic()
+                cut = self._rule.due(now)
+                if self._closed:
+                    return
+                if cut is None or self._calls >= MOST_CALLS:
+                    self._changed.wait(self._rule.wait_s(now) if cut is None else PATIENCE_S)
+                    continue
+            self._tell(cut)
+
+    def _tell(self, cut):
+        """Tell the robot once; whoever does not answer is left behind on a thread of its own."""
+        done = threading.Event()
+        with self._changed:
+            self._calls += 1
+        threading.Thread(target=self._call, args=(cut, done), daemon=True,
+                         name='motor power call ' + self._robot).start()
+        if not done.wait(PATIENCE_S):
+            with self._changed:
+                self._rule.on_failed(cut, 'no answer for {:g} s'.format(PATIENCE_S),
+                                     time.monotonic())
+
+    def _call(self, cut, done):
+        """Tell the robot and the rule; an answer that is overtaken is told of, too."""
+        problem = None
+        try:
+            self._way.tell(cut)
+        except NotTold as error:
+            problem = str(error)
+        except Exception as error:  # the guard of this thread: the robot is not told
+            problem = repr(error)
+        with self._changed:
+            self._calls -= 1
+            if problem is None:
+                self._rule.on_told(cut, self._way.confirms, time.monotonic())
+            else:
+                self._rule.on_failed(cut, problem, time.monotonic())
+            self._changed.notify()
+        done.set()
+
+    def _parameter(self):
+        return '/{}/{}'.format(self._robot, PARAMETER)
+
+    def _take_over(self):
+        """Learn from the master whether the power was cut by one that has ended since."""
+        try:
+            was_cut = rospy.get_param(self._parameter(), False) is True
+        except (OSError, rospy.ROSException) as error:
+            rospy.logdebug('%s: the master cannot be asked: %s', self._robot, error)
+            return
+        with self._changed:
+            if was_cut and not self._rule.state:
+                self._rule.ask(True, time.monotonic())
+                self._changed.notify()
+
+    def _note(self):
+        """Leave word at the master, for whoever takes over (blocking)."""
+        try:
+            if self.is_cut:
+                rospy.set_param(self._parameter(), True)
+            elif rospy.has_param(self._parameter()):
+                rospy.delete_param(self._parameter())
+        except (OSError, KeyError, rospy.ROSException) as error:
+            rospy.logdebug('%s: the master cannot be told: %s', self._robot, error)
+
+    def close(self):
+        """Leave the power as it is, and give the topic back (blocking: it asks the master)."""
+        with self._changed:
+            self._closed = True
+            self._changed.notify()
+        self._notes.stop()
+        if self._way is not None:
+            self._way.close()

@@ -1,0 +1,57 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the mux has from the gates: the stop they remember, the operator, their sign of life."""
+import rospy
+
+from mhri.core.driving.stop_echo import StopEcho
+from mhri.msg import GatesState
+from mhri.ros.driving.neighbour import Neighbour
+from mhri.ros.graph.talkers import caller_of, link_of
+
+
+class GatesWatch:
+    """Subscribes ``/gates/state`` (``mhri/GatesState``).
+
+    The functions are called on rospy's threads or the watch's own.
+
+    :param on_state: called with (must the mux stop, is it another gates, operator or '')
+    :param is_stopped: returns whether the mux is stopped
+    :param on_silent: called when the gates have been silent for 0.9 s
+    """
+
+    def __init__(self, on_state, is_stopped, on_silent, clock):
+        self._on_state = on_state
+        self._is_stopped = is_stopped
+        self._clock = clock
+        self._echo = StopEcho()
+        self._link = None
+        self._operator = ''
+        self._subscriber = None
+        self._neighbour = Neighbour('the gates', on_silent)
+
+    def start(self):
+        """Begin to listen and to watch."""
+        self._neighbour.start()
+        self._subscriber = rospy.Subscriber('/gates/state', GatesState, self._on_message,
+                                            queue_size=1, tcp_nodelay=True)
+
+    def stop(self):
+        """End the watch; returns at once."""
+        self._neighbour.stop()
+
+    def words(self):
+        """Return what is known of the gates, in words."""
+        return self._neighbour.words()
+
+    def on_release(self):
+        """Note that the operator has released the stop at this mux."""
+        self._echo.on_release(self._clock())
+
+    def _on_message(self, message):
+        self._neighbour.beat(caller_of(message))
+        link = link_of(message)
+        another, self._link = self._link is not link, link
+        took, self._operator = message.operator != self._operator, message.operator
+        self._on_state(
+            self._echo.must_stop(message.stop_all, self._is_stopped(), self._clock()),
+            another, message.operator if took else '')

@@ -1,0 +1,235 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Mux and gates watch each other: one that hangs is noticed, and ended so that it is replaced.
+
+A node that crashes is started again by roslaunch; one that hangs is not, since nobody misses it.
+Both repeat what they say twice a second. Whichever falls silent is said to have done so, and ended
+by the other, if that can see that it will come back: it runs on this computer, and roslaunch is its
+parent.
+"""
+import os
+import signal
+import socket
+import threading
+import time
+from urllib.parse import urlsplit
+import xmlrpc.client
+
+import rospy
+
+from mhri.ros.graph.master_api import ERRORS, MasterApi, MasterError, TimedTransport
+
+SILENT_S = 0.9
+END_S = 1.8
+_LOOK_S = 0.1
+_LEARN_AGAIN_S = 1.0
+# A watch that comes round so late was stopped itself, and knows nothing of the other one.
+_OWN_SLEEP_S = 0.5
+# A shell that restarts it may be in between, and what the shell runs it by.
+_GENERATIONS = 3
+_LAUNCHERS = ('roslaunch', 'rostest')
+
+
+class Process:
+    """One process of this computer, not to be mistaken for a later one of the same number.
+
+    :param pid: its number
+    :raises OSError: there is none, or it cannot be seen
+    """
+
+    def __init__(self, pid):
+        self.pid = pid
+        self._begun, self.parent = self._look()
+
+    def _look(self):
+        """Return (when it began [ticks since the start of the computer], its parent's number)."""
+        with open('/proc/{}/stat'.format(self.pid), encoding='utf-8', errors='replace') as stream:
+            fields = stream.read().rpartition(')')[2].split()
+        return int(fields[19]), int(fields[1])
+
+    def listens_at(self, port):
+        """Tell whether it has the listening socket of a TCP port.
+
+        :raises OSError: it is another user's
+        """
+        sockets = set()
+        for name in ('/proc/net/tcp', '/proc/net/tcp6'):
+            if os.path.exists(name):
+                with open(name, encoding='ascii') as stream:
+                    rows = [line.split() for line in stream.readlines()[1:]]
+                sockets.update('socket:[{}]'.format(row[9]) for row in rows
+                               if row[3] == '0A' and int(row[1].rpartition(':')[2], 16) == port)
+        folder = '/proc/{}/fd'.format(self.pid)
+        for name in os.listdir(folder):
+            try:
+                if os.readlink(os.path.join(folder, name)) in sockets:
+                    return True
+            except FileNotFoundError:
+                continue
+        return False
+
+    def comes_back(self):
+        """Tell whether roslaunch started it, by itself or through a shell that restarts it."""
+        parent = self.parent
+        for _ in range(_GENERATIONS):
+            try:
+                with open('/proc/{}/cmdline'.format(parent), 'rb') as stream:
+                    words = stream.read().decode(errors='replace').split('\0')
+                if any(os.path.basename(word) in _LAUNCHERS for word in words[:3]):
+                    return True
+                parent = Process(parent).parent
+            except OSError:
+                return False
+        return False
+
+    def is_there(self):
+        """Tell whether it still runs, and is the same."""
+        try:
+            return self._look() == (self._begun, self.parent)
+        except OSError:
+            return False
+
+    def end(self):
+        """Kill it; return whether it was still there.
+
+        :raises OSError: it is another user's
+        """
+        if self.pid == os.getpid() or not self.is_there():
+            return False
+        os.kill(self.pid, signal.SIGKILL)
+        return True
+
+
+def process_of(uri, caller_id, timeout_s=0.5):
+    """Return the :class:`Process` behind a node's address, None where it is of another computer.
+
+    :raises OSError: the node does not answer, or its process cannot be looked at
+    """
+    parts = urlsplit(uri)
+    with socket.socket() as probe:
+        try:
+            probe.bind((parts.hostname, 0))
+        except OSError:
+            return None
+    try:
+        proxy = xmlrpc.client.ServerProxy(uri, transport=TimedTransport(timeout_s))
+        code, _, pid = proxy.getPid(caller_id)
+    except ERRORS as error:
+        raise OSError('{} does not answer: {}'.format(uri, error))
+    # In a container of its own it may have the address and not the number.
+    process = Process(pid) if code == 1 and isinstance(pid, int) else None
+    return process if process and process.listens_at(parts.port) else None
+
+
+class Neighbour:
+    """Watches one node by its heartbeat, on a thread of its own.
+
+    :param label: what it is called in words, e.g. ``the gates``
+    :param on_silent: called once when it has been silent for :data:`SILENT_S`
+    :param on_back: called when it is heard again after that
+    """
+
+    def __init__(self, label, on_silent=lambda: None, on_back=lambda: None, clock=time.monotonic):
+        self._label = label
+        self._on_silent = on_silent
+        self._on_back = on_back
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._caller = self._beat_at = None
+        self._known = None
+        self._process = None
+        self._learn_at = 0.0
+        self._looked_at = None
+        self.silent = False
+        self.ended = 0
+        self._remedy = ''
+        self._done = threading.Event()
+
+    def start(self):
+        """Begin to watch; call it after ``rospy.init_node``."""
+        threading.Thread(target=self._run, name='neighbour', daemon=True).start()
+        return self
+
+    def stop(self):
+        """End the watch; returns at once."""
+        self._done.set()
+
+    def beat(self, caller_id):
+        """Note that the node was heard; returns at once."""
+        with self._lock:
+            self._caller, self._beat_at = caller_id, self._clock()
+
+    def words(self):
+        """Return what is known of it, in words for the diagnostics."""
+        with self._lock:
+            caller, beat_at, silent = self._caller, self._beat_at, self.silent
+        if caller is None:
+            return 'not heard yet'
+        words = '{} is heard'.format(caller)
+        if silent:
+            words = '{} has been silent for {:.0f} s{}'.format(
+                caller, self._clock() - beat_at, self._remedy)
+        return words + ('; ended {} times because it hung'.format(self.ended) if self.ended else '')
+
+    def _run(self):
+        while not self._done.wait(_LOOK_S) and not rospy.is_shutdown():
+            self._look(self._clock())
+
+    def _look(self, now):
+        """Compare the last heartbeat with the time."""
+        with self._lock:
+            if self._looked_at is not None and now - self._looked_at > _OWN_SLEEP_S:
+                self._beat_at = self._beat_at and now
+            self._looked_at = now
+            caller, beat_at = self._caller, self._beat_at
+            was, self.silent = self.silent, beat_at is not None and now - beat_at > SILENT_S
+        if beat_at is None:
+            return
+        if self.silent and not was:
+            self._on_silent()
+            rospy.logwarn('%s (%s): silent for %.1f s', self._label, caller, now - beat_at)
+        elif was and not self.silent:
+            self._remedy = ''
+            self._on_back()
+            rospy.loginfo('%s (%s): heard again', self._label, caller)
+        if not self.silent:
+            self._learn(caller, beat_at, now)
+        elif now - beat_at > END_S:
+            self._end(caller)
+
+    def _learn(self, caller, beat_at, now):
+        """Find out which process it is, and once a second whether it still is that one."""
+        if now < self._learn_at:
+            return
+        self._learn_at = now + _LEARN_AGAIN_S
+        if self._known == caller and (self._process is None or self._process.is_there()):
+            return
+        try:
+            uri = MasterApi(rospy.get_name(), timeout_s=0.5).node_uri(caller)
+            self._process = process_of(uri, rospy.get_name()) if uri else None
+        except (MasterError, OSError, ValueError) as error:
+            self._process = None
+            rospy.logdebug('%s: %s', caller, error)
+            return
+        self._known = caller
+        # What was asked may have taken long: that is no silence of the one that answered.
+        with self._lock:
+            self._looked_at = self._clock()
+
+    def _end(self, caller):
+        """Kill a process that hangs, once, where it will be started again."""
+        process = self._process
+        if process is None or self._remedy:
+            return
+        if not process.comes_back():
+            self._remedy = ': end it and start it again (roslaunch would do so by itself)'
+            return
+        self._process = self._known = None
+        try:
+            ended = process.end()
+        except OSError:
+            return
+        if ended:
+            self.ended += 1
+            rospy.logerr('%s (%s, process %d) hung and was ended: roslaunch starts it again',
+                         self._label, caller, process.pid)

@@ -1,0 +1,99 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The topic of one source: who speaks there, whether it may, and whether it is still there."""
+import time
+
+from geometry_msgs.msg import Twist
+import rospy
+from sensor_msgs.msg import Joy
+
+from mhri.core.driving.ownership import Ownership
+from mhri.core.driving.sources import TWIST
+from mhri.ros.devices.input_node import LOST
+from mhri.ros.graph.talkers import caller_of, link_of, publishers
+
+# The longest text that is taken from a message.
+LONGEST_TEXT = 200
+_LATELY_S = 3.0
+
+
+class SourceTopic:
+    """Subscribes a source's topic (``sensor_msgs/Joy`` or ``geometry_msgs/Twist``).
+
+    :param source: :class:`mhri.core.driving.sources.Source`
+    :param clock: function returning seconds that never go back
+    """
+
+    def __init__(self, source, clock=time.monotonic):
+        self.source = source
+        self.ownership = Ownership() if source.exclusive else None
+        self._clock = clock
+        self._subscriber = None
+        self._links = {}
+        self._heard = None
+        self._rival = self._refusal = None
+
+    def open(self, on_message):
+        """Subscribe; ``on_message(message, self)`` is called on rospy's threads."""
+        kind = Twist if self.source.kind == TWIST else Joy
+        self._subscriber = rospy.Subscriber(self.source.topic, kind, on_message,
+                                            callback_args=self, queue_size=1, tcp_nodelay=True)
+
+    def connected(self):
+        """Return the caller ids of the publishers that are connected."""
+        return publishers(self._subscriber) if self._subscriber else set()
+
+    def admits(self, message):
+        """Tell whether a message counts, which that of a second publisher does not always."""
+        caller = caller_of(message)
+        # Its own connection may not be in rospy's list yet.
+        if self.ownership and not self.ownership.admits(caller, self.connected() | {caller}):
+            self._rival = (self._clock(), caller)
+            return False
+        self._heard = caller
+        return True
+
+    def device_of(self, message):
+        """Return (what tells this device from any other, its ``header.frame_id``, is lost).
+
+        One that was started again has the same name, but another connection.
+        """
+        caller, link = caller_of(message), link_of(message)
+        known, number = self._links.get(caller, (None, 0))
+        if link is not known:
+            number += 1
+            self._links[caller] = (link, number)
+        frame = '' if self.source.kind == TWIST else message.header.frame_id[:LONGEST_TEXT]
+        lost = frame.endswith(LOST)
+        frame = frame[:-len(LOST)] if lost else frame
+        return (caller, number, frame), frame, lost
+
+    def has_gone(self):
+        """Tell, once, that the publisher that was listened to is not connected any more."""
+        if self._heard is None or self._heard in self.connected():
+            return False
+        self._links.pop(self._heard, None)
+        self._heard = None
+        return True
+
+    def refuse(self, reason):
+        """Note why a message could not be used, '' where it could."""
+        self._refusal = (self._clock(), str(reason)[:LONGEST_TEXT]) if reason else None
+
+    @property
+    def spoke(self):
+        """Whether its publisher has been listened to."""
+        return self._heard is not None
+
+    @property
+    def refusal(self):
+        """Why the newest message could not be used, '' where it could or is long ago."""
+        said = self._refusal
+        return said[1] if said and self._clock() - said[0] < _LATELY_S else ''
+
+    @property
+    def rival(self):
+        """(node, owner) where a second publisher was refused lately, else None."""
+        said = self._rival
+        return (said[1], self.ownership.owner) if said and self._clock() - said[0] < _LATELY_S \
+            else None

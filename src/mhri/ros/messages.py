@@ -1,0 +1,45 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Message classes by the name of their ROS type, from packages that may not be installed."""
+import importlib
+import operator
+
+
+class MessageMissing(LookupError):
+    """A message type whose package is not installed here; says which."""
+
+
+def message_class(kind):
+    """Return the class of a ROS type such as ``std_msgs/Bool``.
+
+    :raises MessageMissing: its package is not installed, or has no such message
+    """
+    package, _, name = kind.partition('/')
+    try:
+        module = importlib.import_module(package + '.msg')
+    except ImportError:
+        raise MessageMissing('{} is not installed here'.format(package)) from None
+    try:
+        return getattr(module, name)
+    except AttributeError:
+        raise MessageMissing('{} has no message {}'.format(package, name)) from None
+
+
+def read_field(message, field):
+    """Return a field of a message by its dotted name.
+
+    :raises AttributeError: there is no such field
+    """
+    return operator.attrgetter(field)(message)
+
+
+def with_field(message, field, value):
+    """Return the message with one field set, by its dotted name.
+
+    :raises AttributeError: there is no such field
+    """
+    outer, _, inner = field.rpartition('.')
+    part = read_field(message, outer) if outer else message
+    read_field(part, inner)
+    setattr(part, inner, value)
+    return message

@@ -1,0 +1,53 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A robot's own emergency stop, as the robot tells it."""
+import rospy
+
+from mhri.core.robots.names import topic_of
+from mhri.ros.messages import message_class, MessageMissing, read_field
+
+
+class HardwareStop:
+    """Hears the topic that a robot type names as ``hardware_stop``.
+
+    What was heard last stands for as long as a publisher is connected: many say it once, latched.
+
+    :param robot: the robot's name
+    :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
+    """
+
+    def __init__(self, robot, robot_type):
+        self._spec = robot_type.hardware_stop
+        self._stopped = None
+        self._subscriber = None
+        self.problem = ''
+        if self._spec is None:
+            return
+        try:
+            kind = message_class(self._spec.kind)
+            read_field(kind(), self._spec.field)
+        except MessageMissing as error:
+            self.problem = 'its emergency stop cannot be read: {}'.format(error)
+        except AttributeError:
+            self.problem = 'its emergency stop cannot be read: {} has no field {}'.format(
+                self._spec.kind, self._spec.field)
+        else:
+            self._subscriber = rospy.Subscriber(topic_of(robot, self._spec.name), kind, self._hear,
+                                                queue_size=1, tcp_nodelay=True)
+            return
+        rospy.logwarn('%s: %s', robot, self.problem)
+
+    def _hear(self, message):
+        self._stopped = read_field(message, self._spec.field) in self._spec.stopped
+
+    @property
+    def stopped(self):
+        """Whether it holds the robot; None where nothing tells, or not any more."""
+        subscriber = self._subscriber
+        return self._stopped if subscriber and subscriber.get_num_connections() else None
+
+    def close(self):
+        """Stop listening (blocking: it asks the master)."""
+        subscriber, self._subscriber = self._subscriber, None
+        if subscriber is not None:
+            subscriber.unregister()

@@ -1,0 +1,109 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A settings file can never keep the screen from starting, and runs nothing."""
+import json
+import os
+import time
+
+import pytest
+from python_qt_binding.QtCore import QRect
+from python_qt_binding.QtWidgets import QApplication, QWidget
+
+from mhri.gui.screen.geometry import geometry_of, restore_geometry
+from mhri.presenters.settings_file import SettingsFile, UNUSABLE
+from mhri.standalone import Standalone
+
+GOOD = {'robots': ['bot1'], 'limits': [0.3, 0.8]}
+
+
+def state_with(**parts):
+    return json.dumps({'state': {**GOOD, **parts}})
+
+
+def start_with(path, operator):
+    """Start the screen, draw it, and close it; return the robots and limits it began with."""
+    begun = time.monotonic()
+    program = Standalone(['panel'], path)
+    program.restore()
+    program.window.show()
+    program.host.draw()
+    program.host._open('bot9')
+    operator.settle()
+    program.window.grab()
+    view = program.host.operator.view()
+    found = [robot.name for robot in view.robots], view.limits
+    program.window.close()
+    assert time.monotonic() - begun < 10.0
+    return found
+
+
+@pytest.mark.parametrize('text, whole', [
+    (state_with(limits=[float('nan'), 1.0]), False),
+    (state_with(limits=['a', 'b']).replace('"a"', '1e999'), True),
+    (state_with(limits=['a', 'b']), True), (state_with(limits=[1e308, -1]), True),
+    (state_with(panel={'splitter': [1e300, 5]}), True),
+    (state_with(panel={'splitter': [2 ** 31, 2 ** 63]}), True),
+    (state_with(windows={'bot9': [0, 0, 2 ** 31, 5, False]}), True),
+    (state_with(looks={'bot9': {'splitter': 'ff' * 50, 'views': 5}}), True),
+    (state_with(mode='x' * 100_000), True), ('[' * 100_000, False), ('{"state": 5}', False),
+    ('x' * 2_000_000, False), ('\x00\x01', False), ('null', False), ('[General]\nstate=x', False)])
+def test_the_screen_starts(tmp_path, operator, text, whole):
+    """Whole: what can be used of it is used."""
+    path = tmp_path / 'panel.json'
+    path.write_text(text)
+    robots, limits = start_with(str(path), operator)
+    assert robots == (['bot1'] if whole else [])
+    assert limits == ((0.3, 0.8) if whole and 'limits": [0.3' in text else (0.5, 1.5))
+    assert (tmp_path / ('panel.json' + UNUSABLE)).read_text() == text, 'kept aside'
+    assert start_with(str(path), operator)[0] == robots, 'and the next start needs no help'
+    assert json.loads(path.read_text())['state']['limits'] == list(limits)
+
+
+@pytest.mark.parametrize('lay', [
+    lambda path: os.mkfifo(str(path)), lambda path: path.mkdir(),
+    lambda path: path.symlink_to(path.parent / 'nowhere'),
+    lambda path: path.symlink_to('/dev/zero')])
+def test_what_is_no_file_keeps_nobody_waiting(tmp_path, operator, lay):
+    path = tmp_path / 'panel.json'
+    lay(path)
+    assert start_with(str(path), operator) == ([], (0.5, 1.5))
+
+
+def test_nothing_in_it_is_run(tmp_path, operator):
+    """An INI file as PyQt writes it for a Python object, at the path that is given."""
+    path, trace = tmp_path / 'panel.ini', tmp_path / 'ran'
+    pickled = "cposix\\nsystem\\n(S'touch {}'\\ntR.".format(trace)
+    path.write_text('[General]\nstate="@Variant(\\0\\0\\0\\x7f\\0\\0\\0\\xePyQt_PyObject\\0'
+                    '\\0\\0\\0@{})"\ngeometry=@ByteArray(x)\n'.format(pickled))
+    start_with(str(path), operator)
+    assert not trace.exists()
+
+
+def test_a_file_that_cannot_be_written_is_no_reason_to_fail(tmp_path, operator):
+    nowhere = tmp_path / 'file'
+    nowhere.write_text('')
+    start_with(str(nowhere / 'panel.json'), operator)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ['file']
+
+
+def test_a_file_is_replaced_whole(tmp_path):
+    settings = SettingsFile(str(tmp_path / 'new' / 'panel.json'))
+    assert settings.read() == {} and settings.keep_aside() is None
+    settings.write({'state': GOOD})
+    assert settings.read() == {'state': GOOD}
+    assert os.listdir(str(tmp_path / 'new')) == ['panel.json']
+
+
+@pytest.mark.parametrize('saved, expected', [
+    ([50, 60, 700, 400, False], [50, 60, 700, 400]),
+    ([-500, 60, 700, 400, False], [0, 60, 700, 400]),
+    ([50, 60, 30_000, 30_000, False], None), ([29_000, 60, 700, 400, False], False)])
+def test_a_window_comes_back_within_a_screen(operator, saved, expected):
+    widget, screen = QWidget(), QApplication.primaryScreen().availableGeometry()
+    placed = restore_geometry(widget, saved)
+    assert placed == (expected is not False)
+    if not placed:
+        return
+    assert screen.contains(widget.geometry())
+    assert widget.geometry() == (QRect(*expected) if expected else screen)
+    assert geometry_of(widget)[4] is False

@@ -1,0 +1,154 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A screen that is not drawn any more says so, over everything, and stops robots all the same."""
+import sys
+import time
+
+import pytest
+from python_qt_binding.QtWidgets import QApplication, QPushButton, QVBoxLayout, QWidget
+
+from mhri.gui.screen import theme
+from mhri.gui.screen.stale_cover import OLD_AFTER_S, SLIP_SHOWN_S, StaleCover
+from mhri.presenters.draw_guard import DrawGuard
+from mhri.presenters.panel_host import PanelHost
+from mhri.ros.screen.backend import ScreenBackend
+
+
+class Clock:
+    """A clock that is set by hand."""
+
+    now = 100.0
+
+    def __call__(self):
+        return self.now
+
+
+@pytest.fixture
+def window(operator):
+    made = QWidget()
+    made.setObjectName('window')
+    made.button = QPushButton('STOP ALL', made)
+    QVBoxLayout(made).addWidget(made.button)
+    made.resize(500, 300)
+    return operator.show(made)
+
+
+@pytest.fixture(autouse=True)
+def hook():
+    """Leave the hook for exceptions as it was."""
+    before = sys.excepthook
+    sys.excepthook = sys.__excepthook__
+    yield
+    sys.excepthook = before
+
+
+@pytest.mark.parametrize('events, seen', [
+    ((), ''), ((('drawn', 0.0),), ''), ((('drawn', OLD_AFTER_S - 0.01),), ''),
+    ((('drawn', OLD_AFTER_S + 0.01),), 'STANDS STILL'), ((('failed', 0.01),), 'STANDS STILL'),
+    ((('drawn', 0.4), ('failed', 0.1)), ''), ((('drawn', 0.4), ('failed', 0.2)), 'STANDS STILL'),
+    ((('drawn', 5.0), ('drawn', 0.1)), ''), ((('drawn', 0.1), ('slipped', 0.1)), 'NOT DRAWN'),
+    ((('slipped', SLIP_SHOWN_S), ('drawn', 0.1)), '')])
+def test_when_it_is_seen(window, events, seen):
+    """Events: what happened, and how long ago the next did."""
+    clock = Clock()
+    cover = StaleCover(window, clock)
+    for event, later_s in events:
+        getattr(cover, event)(*([] if event == 'drawn' else ['KeyError: x']))
+        clock.now += later_s
+    cover.look()
+    assert cover.isVisible() == bool(seen)
+    assert seen in cover.texts()[0] or not seen
+    cover.end()
+    assert not cover.isVisible()
+
+
+def test_it_lies_over_everything_and_lets_clicks_through(window, operator, heard):
+    pressed, clock = heard(window.button.pressed), Clock()
+    cover = StaleCover(window, clock)
+    cover.drawn()
+    plain = window.grab().toImage()
+    clock.now += 3.2
+    cover.look()
+    operator.settle()
+    assert cover.geometry() == window.rect() and '3.2 s old' in cover.texts()[1]
+    image, ink = window.grab().toImage(), theme.colour(theme.STOP, window.palette()).rgb()
+    changed = [(x, y) for x in range(0, 500, 2) for y in range(0, 300, 2)
+               if image.pixel(x, y) == ink != plain.pixel(x, y)]
+    for corner in ((0, 0), (250, 0), (0, 150), (250, 150)):
+        assert any(corner[0] <= x < corner[0] + 250 and corner[1] <= y < corner[1] + 150
+                   for x, y in changed), 'in every quarter of the window'
+    place = window.button.mapTo(window, window.button.rect().center())
+    assert window.childAt(place) is window.button
+    operator.click(window.childAt(place))
+    assert len(pressed) == 1
+    window.resize(700, 400)
+    operator.settle()
+    assert cover.geometry() == window.rect()
+
+
+class Failing(QWidget):
+    """Cannot be painted."""
+
+    def paintEvent(self, event):  # noqa: N802
+        raise KeyError('colour')
+
+
+def test_a_painting_that_fails_ends_nothing_and_is_said(window, operator):
+    guard = DrawGuard(window)
+    guard.run(lambda: None)
+    failing = Failing(window)
+    failing.setGeometry(10, 10, 50, 50)
+    failing.show()
+    operator.wait_until(guard.cover.isVisible, within_s=1.0)
+    assert 'KeyError' in guard.cover.texts()[-1]
+    failing.hide()
+    guard.run(lambda: None)
+    timer_end = time.monotonic() + SLIP_SHOWN_S + 1.0
+    while guard.cover.isVisible() and time.monotonic() < timer_end:
+        guard.run(lambda: None)
+        QApplication.processEvents()
+    assert not guard.cover.isVisible()
+    guard.end()
+
+
+@pytest.fixture
+def host(operator):
+    made = PanelHost(ScreenBackend())
+    made._add('bot1')
+    made.operator.start = lambda: None
+    made.panel.resize(1024, 600)
+    made.start()
+    operator.show(made.panel)
+    made._open('bot1')
+    yield made
+    made.close()
+
+
+def test_a_panel_whose_drawing_fails_says_so_within_a_second(host, operator, monkeypatch):
+    cover = host._guard.cover
+    operator.wait_until(lambda: cover._drawn_at is not None)
+    assert not cover.isVisible()
+    stops = []
+    monkeypatch.setattr(host.operator, 'stop_all', lambda: stops.append(1))
+    host.panel.stop_requested.connect(host.operator.stop_all)
+    begun = time.monotonic()
+    monkeypatch.setattr(host.operator, 'view', lambda: 1 / 0)
+    operator.wait_until(cover.isVisible, within_s=2.0)
+    took = time.monotonic() - begun
+    print('MEASURED said after {:.0f} ms'.format(took * 1000.0))
+    assert took < 1.0
+    assert 'ZeroDivisionError' in cover.texts()[-1]
+    operator.click(host.panel.stop_bar.stop_button)
+    assert stops == [1]
+    monkeypatch.undo()
+    operator.wait_until(lambda: not cover.isVisible(), within_s=2.0)
+
+
+def test_a_window_whose_drawing_fails_says_so_alone(host, operator, monkeypatch):
+    guard = host._hosts['bot1'].guard
+    operator.wait_until(lambda: guard.cover._drawn_at is not None)
+    monkeypatch.setattr(host.windows['bot1'], 'show_view', lambda *_: 1 / 0)
+    operator.wait_until(guard.cover.isVisible, within_s=2.0)
+    assert not host._guard.cover.isVisible()
+    monkeypatch.undo()
+    operator.wait_until(lambda: not guard.cover.isVisible(), within_s=2.0)

@@ -1,0 +1,205 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""One operator at a time, as the screens see it: two programs, two screens in one program."""
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+import unittest
+import xmlrpc.client
+
+import rosgraph
+import rospy
+import rostest
+
+HERE = os.path.dirname(os.path.realpath(__file__))
+sys.path.insert(0, os.path.join(HERE, '..'))
+
+from mhri.msg import RobotGate  # noqa: E402
+from mhri.ros.screen.backend import ScreenBackend  # noqa: E402
+from support.fake_gates import FakeGates, moving  # noqa: E402
+from support.ros_system import wait_for  # noqa: E402
+
+START_S = 60.0
+SCREEN = os.path.join(HERE, '..', 'support', 'screen_process.py')
+
+
+class Screen:
+    """A screen in a process of its own, and what it shows."""
+
+    def __init__(self, name):
+        self.name = '/' + name
+        self.shown = {}
+        self._process = subprocess.Popen(
+            [sys.executable, SCREEN, '__name:=' + name], stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE, universal_newlines=True, bufsize=1)
+        threading.Thread(target=self._read, daemon=True).start()
+
+    def _read(self):
+        for line in self._process.stdout:
+            if line.startswith('{'):
+                self.shown = json.loads(line)
+
+    def do(self, *words):
+        self._process.stdin.write(' '.join(words) + '\n')
+        self._process.stdin.flush()
+
+    def wait(self, what, condition):
+        wait_for(lambda: self.shown and condition(self.shown), START_S,
+                 '{} to show {}, not {}'.format(self.name, what, self.shown))
+
+    def kill(self):
+        self._process.kill()
+        self._process.wait()
+
+    def end(self):
+        if self._process.poll() is None:
+            self.do('end')
+            self._process.wait(20)
+
+
+class ControlTest(unittest.TestCase):
+
+    def setUp(self):
+        self.gates = FakeGates()
+        self.addCleanup(self.gates.close)
+
+    def screen(self, name):
+        screen = Screen(name)
+        self.addCleanup(screen.end)
+        screen.wait('the connection', lambda view: view['ros'] == 'connected')
+        return screen
+
+    def said_by(self, name, count):
+        return [robots for caller, robots in self.gates.selections[count:] if caller == name]
+
+    def in_control(self, screen):
+        wait_for(lambda: self.gates.state.operator == screen.name, START_S, 'control')
+        screen.wait('its control', lambda view: view['ours'])
+
+    def test_the_second_operator_is_shown_the_first_and_takes_over_when_asked(self):
+        first = self.screen('first_screen')
+        self.in_control(first)
+        first.do('add', 'bot1')
+        first.do('select', 'bot1')
+        first.wait('the selection', lambda view: view['selected'] == ['bot1'])
+        wait_for(lambda: ('/first_screen', ('bot1',)) in self.gates.selections, START_S, 'bot1')
+        self.gates.say(computer='lab-pc1', since=rospy.Time.from_sec(time.time()))
+        second = self.screen('second_screen')
+        second.wait('who drives', lambda view: not view['ours']
+                    and view['who'].startswith('first_screen on lab-pc1 since '))
+        wait_for(lambda: '/second_screen' not in publishers('/robot_controller/robot_select'),
+                 START_S, 'the topic of the selection to be given back')
+        count = len(self.gates.selections)
+        second.do('add', 'bot2')
+        second.do('select', 'bot2')
+        wait_for(lambda: len(self.said_by('/first_screen', count)) > 3, START_S, 'the lease')
+        self.assertEqual(self.said_by('/second_screen', count), [], 'it has no say')
+        self.assertEqual(second.shown['selected'], [])
+        second.do('take')
+        second.wait('its control', lambda view: view['ours'])
+        first.wait('who drives', lambda view: not view['ours']
+                   and view['who'].startswith('second_screen'))
+        self.assertEqual(self.gates.takers, ['/second_screen'])
+        first.wait('that nothing is selected', lambda view: view['selected'] == [])
+        count = len(self.gates.selections)
+        wait_for(lambda: len(self.said_by('/second_screen', count)) > 3, START_S, 'the new lease')
+        self.assertEqual(self.said_by('/first_screen', count + 1), [])
+
+    def test_the_lease_ends_where_the_thread_of_the_hands_hangs(self):
+        screen = self.screen('hanging_screen')
+        self.in_control(screen)
+        begun = time.monotonic()
+        screen.do('hang', '3')
+        wait_for(lambda: time.monotonic() - begun > 1.0, 5.0)
+        count = len(self.gates.selections)
+        wait_for(lambda: time.monotonic() - begun > 2.6, 5.0)
+        self.assertEqual(self.gates.selections[count:], [], 'nobody else may repeat it')
+        wait_for(lambda: len(self.gates.selections) > count, START_S, 'the lease again')
+
+    def test_gates_that_hang_are_said_within_a_second_in_every_row(self):
+        screen = self.screen('looking_screen')
+        self.in_control(screen)
+        screen.do('add', 'bot1')
+        screen.wait('bot1', lambda view: 'bot1' in view['robots'])
+        self.gates.say_robot('bot1', obeys=RobotGate.OPERATOR, sent=moving())
+        screen.wait('that bot1 is driven', lambda view: view['robots']['bot1'][0])
+        self.gates.hang()
+        begun = time.monotonic()
+        screen.wait('the silence', lambda view: 'does not answer' in view['robots']['bot1'][2])
+        took_s = time.monotonic() - begun
+        print('MEASURED gates hang: said in the row after {:.2f} s'.format(took_s))
+        self.assertLess(took_s, 1.0)
+        self.assertFalse(screen.shown['robots']['bot1'][0], 'what was said before counts no more')
+        self.gates.hang(False)
+        screen.wait('that they are back', lambda view: view['robots']['bot1'][0])
+        for stands, words in ((RobotGate.JOINING, 'joining'), (RobotGate.NOT_HEARD, 'not_heard')):
+            self.gates.say_robot('bot1', stands=stands)
+            screen.wait(words, lambda view: view['robots']['bot1'][1] == words)
+
+    def test_a_stop_is_called_taken_only_when_the_gates_say_so(self):
+        screen = self.screen('stopping_screen')
+        self.in_control(screen)
+        screen.do('stop')
+        screen.wait('the press', lambda view: view['stop_all'])
+        self.assertFalse(screen.shown['stop_taken'])
+        self.assertIn('not confirmed', screen.shown['status'])
+        self.gates.say(stop_all=True)
+        screen.wait('the stop', lambda view: view['stop_taken'])
+        self.gates.say(stop_all=False)
+
+    def test_a_screen_whose_node_is_ended_says_that_it_is_cut_off(self):
+        screen = self.screen('ended_screen')
+        self.in_control(screen)
+        uri = rosgraph.Master('/control_test').lookupNode('/ended_screen')
+        xmlrpc.client.ServerProxy(uri).shutdown('/control_test', 'as rosnode kill does')
+        screen.wait('that it is cut off', lambda view: view['ros'] == 'cut_off')
+        self.assertIn('cut off', screen.shown['status'])
+
+    def test_two_screens_in_one_program(self):
+        """To the gates they are one node: of the two one has a say, and closed it leaves none."""
+        one, other = ScreenBackend(['panel']), ScreenBackend(['panel'])
+        self.addCleanup(other.close)
+        self.addCleanup(one.close)
+        for screen in (one, other):
+            screen.start()
+            wait_for(lambda: screen.view().ros == 'connected', START_S, 'a screen')
+            screen.add('bot1')
+            screen.add('bot2')
+        self.assertTrue(one.view().control.ours)
+        self.assertFalse(other.view().control.ours)
+        self.assertIn('another screen', other.view().control.who)
+
+        def last(robots):
+            one.repeat_selection()
+            other.repeat_selection()
+            return bool(self.gates.selections) and self.gates.selections[-1][1] == robots
+        one.select(['bot1'])
+        wait_for(lambda: last(('bot1',)), START_S, 'the selection of the one')
+        other.select(['bot2'])
+        count = len(self.gates.selections)
+        wait_for(lambda: last(('bot1',)) and len(self.gates.selections) > count + 3, START_S)
+        self.assertFalse([robots for _, robots in self.gates.selections if 'bot2' in robots])
+        other.take_control()
+        wait_for(lambda: last(()), START_S, 'the selection to be dropped')
+        other.select(['bot2'])
+        wait_for(lambda: last(('bot2',)), START_S, 'the selection of the other')
+        self.assertEqual(one.selection.selected, ())
+        other.close(forget=True)
+        wait_for(lambda: self.gates.selections[-1][1] == (), START_S, 'its selection to end')
+        wait_for(lambda: one.view().control.ours, START_S, 'the seat of the one')
+        count = len(self.gates.selections)
+        wait_for(lambda: (one.repeat_selection(), len(self.gates.selections) > count)[-1], START_S)
+        self.assertFalse(any(robots for _, robots in self.gates.selections[count:]))
+
+
+def publishers(topic):
+    return dict(rosgraph.Master('/control_test').getSystemState()[0]).get(topic, ())
+
+
+if __name__ == '__main__':
+    rospy.init_node('control_test')
+    rostest.rosrun('mhri', 'control', ControlTest)

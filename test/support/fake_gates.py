@@ -1,0 +1,93 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A stand-in of the gates for tests of their clients: it says what a test tells it to, at 2 Hz."""
+import threading
+
+from geometry_msgs.msg import Twist
+import rospy
+from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
+
+from mhri.msg import GatesState, GroupSpeed, RobotGate, RobotSelect
+
+PERIOD_S = 0.5
+
+
+def moving(linear_mps=0.1):
+    """Return a velocity that is not zero."""
+    twist = Twist()
+    twist.linear.x = linear_mps
+    return twist
+
+
+class FakeGates:
+    """Says a ``mhri/GatesState`` and keeps what it is asked, by caller id.
+
+    ``selections`` are (caller, robots), ``groups`` (together, slow_with_link), ``takers`` and
+    ``power`` what the services were called with.
+    """
+
+    def __init__(self):
+        self.state = GatesState(share=1.0, leased=True)
+        self.selections, self.groups, self.takers, self.power = [], [], [], []
+        self._lock = threading.Lock()
+        self._silent = threading.Event()
+        self._ended = threading.Event()
+        self._publisher = rospy.Publisher('/gates/state', GatesState, queue_size=10, latch=True)
+        self._parts = [
+            rospy.Subscriber('/robot_controller/robot_select', RobotSelect, self._hear),
+            rospy.Subscriber('/gates_in/group_speed', GroupSpeed, self._hear_group),
+            self._publisher]
+        self._services = [rospy.Service('/gates/take_control', Trigger, self._take),
+                          rospy.Service('/gates/set_motor_power', SetBool, self._set_power)]
+        threading.Thread(target=self._repeat, daemon=True).start()
+
+    def _hear(self, message):
+        caller = message._connection_header['callerid']
+        self.selections.append((caller, tuple(message.robots)))
+        if not self.state.operator:
+            self.say(operator=caller)
+
+    def _hear_group(self, message):
+        self.groups.append((message.together, message.slow_with_link))
+
+    def _take(self, request):
+        caller = request._connection_header['callerid']
+        self.takers.append(caller)
+        self.say(operator=caller)
+        return TriggerResponse(success=True, message='')
+
+    def _set_power(self, request):
+        self.power.append(request.data)
+        return SetBoolResponse(success=True, message='bot1: motor power cut')
+
+    def say(self, **values):
+        """Change the state and say it at once."""
+        with self._lock:
+            for key, value in values.items():
+                setattr(self.state, key, value)
+            if not self._silent.is_set():
+                self._publisher.publish(self.state)
+
+    def say_robot(self, name, **values):
+        """Change what is said of one robot."""
+        known = {robot.name: robot for robot in self.state.robots}
+        robot = known.setdefault(name, RobotGate(name=name, round_trip_s=float('nan')))
+        for key, value in values.items():
+            setattr(robot, key, value)
+        self.say(robots=list(known.values()))
+
+    def hang(self, hangs=True):
+        """Say nothing, or speak again."""
+        (self._silent.set if hangs else self._silent.clear)()
+
+    def _repeat(self):
+        while not self._ended.wait(PERIOD_S):
+            self.say()
+
+    def close(self):
+        """Take everything back."""
+        self._ended.set()
+        for service in self._services:
+            service.shutdown()
+        for part in self._parts:
+            part.unregister()

@@ -1,0 +1,70 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Who is in control, as one screen sees it."""
+import pytest
+
+from mhri.core.driving.control import Claim, operator_name, VACANT_S, who_drives
+from mhri.core.driving.group_speed import pace_words
+from mhri.core.screen.views import LinkFigures, RobotView
+from mhri.ros.screen.seat import Seat
+
+ME, OTHER = '/mhri_panel', '/rqt_gui_py_node_12'
+
+
+@pytest.mark.parametrize('drives, heard, after', [
+    (True, [(ME, 0.0)], True),
+    (True, [('', 0.0)], True),
+    (True, [(OTHER, 0.0)], False),
+    (False, [(OTHER, 0.0)], False),
+    (False, [(ME, 0.0)], True),
+    (False, [('', 0.0)], False),
+    (False, [('', 0.0), ('', VACANT_S - 0.1)], False),
+    (False, [('', 0.0), ('', VACANT_S)], True),
+    (False, [('', 0.0), (OTHER, 1.0), ('', 1.5), ('', VACANT_S + 1.0)], False),
+    (True, [(OTHER, 0.0), ('', 1.0), ('', 1.0 + VACANT_S), (OTHER, 4.0)], False),
+])
+def test_a_claim(drives, heard, after):
+    claim = Claim(ME)
+    claim.drives = drives
+    for operator, now in heard:
+        claim.hear(operator, now)
+    assert claim.drives == after
+
+
+@pytest.mark.parametrize('node, words', [
+    ('/mhri_panel', 'panel'), ('/mhri_panel_2', 'panel'), (OTHER, 'panel in rqt'),
+    ('/night_watch', 'night_watch')])
+def test_a_node_has_a_name_for_people(node, words):
+    assert operator_name(node) == words
+
+
+def test_who_drives():
+    assert who_drives(ME, 'lab-pc2', '14:02') == 'panel on lab-pc2 since 14:02'
+    assert who_drives(ME) == 'panel'
+
+
+def test_a_seat_has_one_holder():
+    seat, one, other = Seat(), object(), object()
+    assert seat.holds(one) and not seat.holds(other)
+    seat.take(other)
+    assert seat.holds(other) and not seat.holds(one)
+    seat.leave(one)
+    assert seat.holds(other), 'only the holder leaves'
+    seat.leave(other)
+    assert seat.holds(one)
+
+
+@pytest.mark.parametrize('together, share, words', [
+    (False, 1.0, 'each does its best'),
+    (True, 1.0, 'all as slow: at most 0.22 m/s, 2.00 rad/s'),
+    (True, 0.6, '60 % of the speed: the link to far takes 250 ms'),
+])
+def test_the_pace_is_what_the_gates_say(together, share, words):
+    robots = [RobotView('far', selected=True, figures=LinkFigures(round_trip_s=0.25),
+                        max_linear_mps=1.0, max_angular_rad_s=2.0),
+              RobotView('slow', selected=True, max_linear_mps=0.22, max_angular_rad_s=2.0)]
+    assert pace_words(robots, together, share) == words
+
+
+def test_a_slow_link_that_is_not_known_here():
+    assert pace_words([], False, 0.5) == '50 % of the speed: a link is slow'

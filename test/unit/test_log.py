@@ -1,0 +1,90 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A log that nobody has to wait for: what blocks, blocks its own thread alone."""
+import logging
+import os
+import sys
+import threading
+import time
+
+import pytest
+
+from mhri.ros.graph import log
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.ros_system import wait_for  # noqa: E402
+
+
+class Terminal(logging.Handler):
+    """Takes lines while it is let."""
+
+    def __init__(self):
+        super().__init__()
+        self.flows = threading.Event()
+        self.said = []
+
+    def emit(self, record):
+        """Wait until it flows."""
+        self.flows.wait()
+        self.said.append(record.getMessage())
+
+
+@pytest.fixture(name='logger')
+def _logger():
+    logger = logging.Logger('trial')
+    yield logger
+    logger.handlers.clear()
+
+
+def test_a_blocked_terminal_holds_nobody_up_and_what_is_missing_is_said(logger):
+    terminal = Terminal()
+    patient = log.PatientHandler(terminal, size=10)
+    logger.addHandler(patient)
+    begun = time.monotonic()
+    for number in range(1000):
+        logger.warning('line %d', number)
+    assert time.monotonic() - begun < 0.5
+    assert not patient.written()
+    terminal.flows.set()
+    wait_for(patient.written, what='the log')
+    lines = [words for words in terminal.said if words.startswith('line ')]
+    missing = [int(words.split()[0]) for words in terminal.said if 'missing' in words]
+    assert lines[0] == 'line 0' and 10 <= len(lines) < 20
+    assert sum(missing) + len(lines) == 1000
+
+
+def test_a_line_says_what_was_true_when_it_was_logged(logger):
+    terminal, speeds = Terminal(), [1.0]
+    patient = log.PatientHandler(terminal)
+    logger.addHandler(patient)
+    logger.warning('speeds %s', speeds)
+    speeds.append(2.0)
+    terminal.flows.set()
+    wait_for(patient.written, what='the log')
+    assert terminal.said == ['speeds [1.0]']
+
+
+def test_every_handler_is_put_behind_its_own_queue_once(monkeypatch):
+    terminal, other = Terminal(), logging.getLogger('trial_of_install')
+    monkeypatch.setattr(log.atexit, 'register', lambda *_: None)
+    before = {name: list(logger.handlers) for name, logger in _loggers().items()}
+    try:
+        other.addHandler(terminal)
+        other.addHandler(logging.NullHandler())
+        assert log.install()
+        assert type(other.handlers[-1]).__name__ == 'PatientHandler'
+        assert log.install() == []
+        other.warning('said')
+        terminal.flows.set()
+        wait_for(lambda: terminal.said, what='the log')
+    finally:
+        for name, logger in _loggers().items():
+            logger.handlers = before.get(name, [])
+
+
+def _loggers():
+    """Return {name: logger} of all there are."""
+    named = logging.root.manager.loggerDict.items()
+    return dict([('', logging.root)] + [(name, item) for name, item in named
+                                        if isinstance(item, logging.Logger)])
