@@ -223,7 +223,8 @@ class RobotLink:
             y_m=motion and motion.y_m, battery=self._battery,
             moving=motion is not None and age < 1.0 and not motion.is_standstill(), proof=proof,
             hardware_stop=self._hardware_stop.stopped, max_linear_mps=limits.linear_mps,
-            max_angular_rad_s=limits.angular_rad_s)
+            max_angular_rad_s=limits.angular_rad_s,
+            offers_power=self.robot_type.motor_power is not None)
         return seen_by_gates(view, self._gates.robot(self.name), self._gates.answers())
 
     def _takes_commands(self, now):
@@ -256,12 +257,21 @@ def seen_by_gates(view, gate, answers):
     if gate is None:
         return view
     stands = STANDS_WORDS.get(gate.stands, gate.stands) if gate.obeys else ''
-    if view.proof is not None and gate.stop_confirmed:
-        view = replace(view, proof=replace(
-            view.proof, text=view.proof.text + ', held by its guard'))
-    return replace(
+    return with_stop_words(replace(
         view, driven=is_driven(gate) and bool(gate.topic), guarded=gate.guarded,
-        obeys=gate.obeys, stands=gate.stands,
+        obeys=gate.obeys, stands=gate.stands, power=gate.power,
         waits=gate.stands == RobotGate.JOINING, stop_latched=gate.stop_confirmed,
         note=stands if stands and view.link == LIVE else view.note,
-        slow=view.slow or bool(stands))
+        slow=view.slow or bool(stands)))
+
+
+def with_stop_words(view):
+    """Return a view that says what else keeps the robot from moving, beside the proof of a stop."""
+    words = ['its own emergency stop is pressed'] if view.hardware_stop else []
+    words += ['motor power ' + view.power] if view.power else []
+    if view.proof is not None:
+        words = [view.proof.text] + (['held by its guard'] if view.stop_latched else []) + words
+        return replace(view, proof=replace(view.proof, text=', '.join(words)))
+    if not words:
+        return view
+    return replace(view, slow=True, note='; '.join(words + ([view.note] if view.note else [])))
