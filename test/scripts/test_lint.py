@@ -4,6 +4,7 @@
 import ast
 import os
 from pathlib import Path
+import shutil
 import subprocess
 import sys
 
@@ -88,13 +89,30 @@ def test_shell_files_parse():
         assert run(['bash', '-n', path]) == (0, '')
 
 
+def catkin_lint(folder):
+    """Return (exit status, output): the same whether nodelet is installed here or not."""
+    (folder / 'known').mkdir()
+    packages = REPO / 'test' / 'support' / 'robot_packages'
+    (folder / 'known' / 'nodelet').symlink_to(packages / 'nodelet')
+    return run(['env', '-u', 'ROS_PACKAGE_PATH', 'catkin_lint', '--strict', '-W2',
+                '--package-path', folder / 'known', folder / 'mhri'])
+
+
 def test_catkin_lint(tmp_path):
     # It wants the folder to be called as the package is, which a checkout need not be.
     (tmp_path / 'mhri').symlink_to(REPO)
-    status, output = run(['env', '-u', 'ROS_PACKAGE_PATH', 'catkin_lint', '--strict', '-W2',
-                          tmp_path / 'mhri'])
+    status, output = catkin_lint(tmp_path)
     assert status == 0, output
     assert 'checked 1 packages and found 0 problems' in output
+
+
+def test_catkin_lint_would_speak_up(tmp_path):
+    shutil.copytree(str(REPO), str(tmp_path / 'mhri'),
+                    ignore=lambda _, names: {'build', '.git', 'test'} & set(names))
+    manifest = tmp_path / 'mhri' / 'package.xml'
+    manifest.write_text(manifest.read_text().replace('<exec_depend>nodelet</exec_depend>', ''))
+    status, output = catkin_lint(tmp_path)
+    assert status != 0 and "needs exec_depend on 'nodelet'" in output
 
 
 def test_python_3_8_syntax():
