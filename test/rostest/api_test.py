@@ -38,7 +38,7 @@ def running(node):
     types = dict(master.getTopicTypes())
     found = {('publishes', name, types[name]) for name, nodes in publishers
              if node in nodes and name not in EVERYWHERE}
-    found |= {('subscribes', name, types[name]) for name, nodes in subscribers
+    found |= {('subscribes', name, types.get(name)) for name, nodes in subscribers
               if node in nodes and name not in EVERYWHERE}
     found |= {('serves', name, SERVICES.get(name.rpartition('/')[2], 'std_srvs/SetBool'))
               for name, nodes in services

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 
+from geometry_msgs.msg import TwistStamped
 import rosgraph
 import rospy
 import rostest
@@ -152,6 +153,23 @@ class GatesGuardTest(GatesCase):
         self.state.wait_robot(name, lambda gate: not gate.round_trip_s < 0.1, 'a hung node', 20.0)
         guard.send(signal.SIGCONT)
         self.state.wait(lambda state: state.share == 1.0, 'the full speed')
+
+    def test_a_stranger_at_the_guard_is_said_and_shut_out_again(self):
+        name, receiver, _ = self.guarded()
+        echo, heard = '/{}/mhri_guard/echo'.format(name), []
+        ear = rospy.Subscriber(echo, TwistStamped, heard.append, queue_size=1)
+        self.addCleanup(ear.unregister)
+        mouth = rospy.Publisher('/{}/mhri_guard/command'.format(name), TwistStamped, queue_size=1)
+        self.addCleanup(mouth.unregister)
+        self.drive(receiver, 0.2)
+        wait_for(lambda: heard and mouth.get_num_connections(), what='the guard')
+        message = TwistStamped()
+        message.header.frame_id = 'stranger:1:' + heard[-1].header.frame_id.split(':')[2]
+        mouth.publish(message)
+        self.state.wait(lambda state: any(name in line for line in state.refused),
+                        'the word of somebody else')
+        self.centre(name, receiver)
+        wait_for(lambda: self.drive(receiver, 0.1) == (0.1, 0.0), what='it to be driven again')
 
     def test_a_parameter_that_cannot_be_is_refused(self):
         done = subprocess.run([sys.executable, GUARD, '_lease_s:=-1', '__name:=wrong'],

@@ -63,7 +63,7 @@ class Gates:
         self._session = '{:x}'.format(time.time_ns())
         self._strangers = {}
         self._states = []
-        self._neighbour = Neighbour('the mux')
+        self._neighbour = Neighbour('the mux', lambda: self.on_change(), lambda: self.on_change())
         self._mux = MuxInForce(self._refuse, self._on_new_mux)
         self._roster = Roster(types, self._open, self._close_gate)
 
@@ -274,7 +274,9 @@ class Gates:
         """Open the gate of a robot, in place of the one it had (on the roster's thread)."""
         self._close_gate(name)
         gate = RobotGate(name, robot_type, self._session, self._command, self._lock,
-                         self._on_foreign_stop, self._clock)
+                         self._on_foreign_stop,
+                         lambda robot: self._refuse('somebody', robot + '/mhri_guard/command'),
+                         self._clock)
         with self._lock:
             now = self._clock()
             if self._closed:

@@ -42,10 +42,11 @@ class RobotGate:
     :param session: names this run of the gates, see :class:`GuardLink`
     :param command: the operator's command that was heard last, None before any
     :param lock: held by the ears' callbacks
-    :param on_foreign_stop: called where the robot says that another run of the gates stopped it
+    :param on_foreign_stop: called with the robot where another run of the gates has stopped it
+    :param on_displaced: called with the robot where somebody else has spoken to its guard
     """
 
-    def __init__(self, name, robot_type, session, command, lock, on_foreign_stop,
+    def __init__(self, name, robot_type, session, command, lock, on_foreign_stop, on_displaced,
                  clock=time.monotonic):
         self.name = name
         self.robot_type = robot_type
@@ -54,6 +55,8 @@ class RobotGate:
         self._lock = lock
         self._session = session
         self._on_foreign_stop = on_foreign_stop
+        self._on_displaced = on_displaced
+        self._sessions = 0
         self._guard = GuardLink(session)
         self._guarded = False
         self._heard_at = None
@@ -96,11 +99,23 @@ class RobotGate:
             if not self._guard.on_echo(message.header.frame_id, now):
                 return
             session, _, _, stopped = parse_id(message.header.frame_id)
-            if stopped and session != self._session and self.rule.state != STOPPED:
+            ours = session.startswith(self._session)
+            if stopped and not ours and self.rule.state != STOPPED:
                 self._on_foreign_stop(self.name)
             self._look_at_guard(now)
-            if stopped != (self.rule.state == STOPPED) and self.rule.sent.is_zero():
+            if self._guard.displaced:
+                self._begin_session(now)
+            # A stop that another session has latched is said again until it is ours to release.
+            if self.rule.sent.is_zero() and (stopped != (self.rule.state == STOPPED)
+                                             or stopped and not ours):
                 self._send_to_guard(ZERO, now)
+
+    def _begin_session(self, now):
+        """Speak to the guard anew: another sender has taken its ear, and ours is not heard."""
+        self._sessions += 1
+        self._guard = GuardLink('{}-{}'.format(self._session, self._sessions))
+        self._on_displaced(self.name)
+        self.send(self.rule.join(now) or ZERO)
 
     def _look_at_guard(self, now):
         """Let the robot wait for neutral where its guard has come or gone."""

@@ -1,0 +1,62 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Mux and gates that hang: each is noticed by the other, ended, and started again by roslaunch."""
+import os
+import signal
+import sys
+import time
+
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.ros_system import System, wait_for  # noqa: E402
+
+
+def process_of(name):
+    """Return the process number of a node that answers, or None."""
+    import rosgraph
+    from mhri.ros.graph.master_api import TimedTransport
+    import xmlrpc.client
+    try:
+        uri = rosgraph.Master('/hung_test').lookupNode(name)
+        proxy = xmlrpc.client.ServerProxy(uri, transport=TimedTransport(0.3))
+        return proxy.getPid('/hung_test')[2]
+    except (OSError, rosgraph.MasterException, xmlrpc.client.Error):
+        return None
+
+
+@pytest.fixture(scope='module')
+def state():
+    import rospy
+    from support.fake_mux import FakeOperator, StateEar
+    with System() as system:
+        system.start_master()
+        rospy.init_node('hung_test', disable_signals=True)
+        system.launch('mhri.launch', 'gui:=none', 'inputs:=none', 'required:=false')
+        FakeOperator().check()
+        ear = StateEar()
+        ear.wait(lambda message: message.mux_heard, 'mux and gates', 30.0)
+        yield ear
+        rospy.signal_shutdown('done')
+
+
+@pytest.mark.parametrize('name', ['/mhri_gates', '/mux'])
+def test_who_hangs_is_replaced_within_3_s(state, name):
+    # Long enough for each to have learnt which process the other one is.
+    state.wait(lambda message: message.mux_heard, 'both to be heard', 20.0)
+    time.sleep(2.5)
+    hung = wait_for(lambda: process_of(name), 10.0, 'the node')
+    os.kill(hung, signal.SIGSTOP)
+    since = time.monotonic()
+    if name == '/mux':
+        state.wait(lambda message: not message.mux_heard, 'the word that it is silent', 5.0)
+        print('\nMEASURED {} hung: said after {:.2f} s'.format(name, time.monotonic() - since))
+        assert time.monotonic() - since < 1.5, 'promised: 1 s'
+    wait_for(lambda: process_of(name) not in (None, hung), 15.0, 'another process of ' + name,
+             poll_s=0.02)
+    taken = time.monotonic() - since
+    print('\nMEASURED {} hung: replaced after {:.2f} s'.format(name, taken))
+    assert taken < 4.0, 'promised: 3 s'
+    state.wait(lambda message: message.mux_heard and state.at > since + taken, 'all to be well',
+               20.0)
