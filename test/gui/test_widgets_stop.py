@@ -131,3 +131,43 @@ def test_its_size_never_changes(bar, operator):
         bar.show_stop(*shown)
         assert bar.sizeHint().height() == before
     assert before >= 36
+
+
+def test_the_stop_button_held_for_two_seconds_cuts_the_power(bar, operator, heard, monkeypatch):
+    """Also where the page that says what is stopped has taken its place meanwhile."""
+    cut = heard(bar.power_cut_requested)
+    bar._held.setInterval(200)
+    QTest.mousePress(bar.stop_button, Qt.LeftButton)
+    bar.show_stop(True, '')
+    operator.wait_until(lambda: cut)
+    QTest.mouseRelease(bar, Qt.LeftButton)
+    assert cut == [()]
+
+
+def test_the_stop_button_let_go_before_cuts_nothing(bar, operator, heard):
+    cut, ended = heard(bar.power_cut_requested), heard(bar.stop_button.let_go)
+    QTest.mousePress(bar.stop_button, Qt.LeftButton)
+    bar.show_stop(True, '')
+    QTest.mouseRelease(bar, Qt.LeftButton)
+    assert ended == [()] and not bar._held.isActive() and cut == []
+
+
+def test_the_second_step_cuts_the_power_where_there_is_such_a_thing(stopped, operator, heard):
+    cut = heard(stopped.power_cut_requested)
+    assert not stopped.power_button.isVisible()
+    stopped.show_power(True)
+    operator.click(stopped.power_button)
+    assert cut == [()]
+    operator.click(stopped.release_button)
+    assert not stopped.power_button.isVisible(), 'the release has the room'
+
+
+@pytest.mark.parametrize('was_stopped', [False, True])
+def test_a_screen_that_is_cut_off_has_no_stop_button_that_looks_alive(bar, was_stopped):
+    bar.show_stop(was_stopped, '')
+    bar.show_cut_off(True)
+    assert not bar.stop_button.isVisible()
+    assert 'cut off' in bar._headline.text() and 'restart' in bar._note_line.text()
+    assert not bar.release_button.isEnabled()
+    bar.show_cut_off(False)
+    assert bar.stop_button.isVisible() != was_stopped

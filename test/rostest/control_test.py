@@ -48,8 +48,10 @@ class Screen:
         self._process.stdin.flush()
 
     def wait(self, what, condition):
-        wait_for(lambda: self.shown and condition(self.shown), START_S,
-                 '{} to show {}, not {}'.format(self.name, what, self.shown))
+        try:
+            wait_for(lambda: self.shown and condition(self.shown), START_S)
+        except AssertionError:
+            raise AssertionError('{} does not show {}: {}'.format(self.name, what, self.shown))
 
     def kill(self):
         self._process.kill()
@@ -125,7 +127,8 @@ class ControlTest(unittest.TestCase):
         self.in_control(screen)
         screen.do('add', 'bot1')
         screen.wait('bot1', lambda view: 'bot1' in view['robots'])
-        self.gates.say_robot('bot1', obeys=RobotGate.OPERATOR, sent=moving())
+        self.gates.say_robot('bot1', obeys=RobotGate.OPERATOR, sent=moving(),
+                             topic='/bot1/cmd_vel')
         screen.wait('that bot1 is driven', lambda view: view['robots']['bot1'][0])
         self.gates.hang()
         begun = time.monotonic()

@@ -70,7 +70,8 @@ class RobotView:
     ``waits`` is true while it is left out until the stick has been centred, ``stop_latched`` once
     its guard has confirmed the stop. ``hardware_stop`` is true while the robot's own emergency stop
     holds it, None where nothing tells. ``power`` says in words what was done to the power of its
-    motors (:mod:`mhri.core.driving.motor_power`), '' where nothing was.
+    motors (:mod:`mhri.core.driving.motor_power`), '' where nothing was, ``offers_power`` whether
+    anything can be.
     """
 
     name: str
@@ -100,6 +101,7 @@ class RobotView:
     stands: str = ''
     stop_latched: bool = False
     power: str = ''
+    offers_power: bool = False
     hardware_stop: Optional[bool] = None
 
 

@@ -42,6 +42,7 @@ class StopBar(QWidget):
         super().__init__(parent)
         self._stopped = False
         self._cut_off = False
+        self._offered = False
         self._note = ''
         self._words = NOBODY_HEARD
         self._asked = Pending(ANSWER_WITHIN_S)
@@ -152,6 +153,12 @@ class StopBar(QWidget):
         if changed:
             self._show()
 
+    def show_power(self, offered):
+        """Show whether the power of any motors can be cut from here."""
+        if offered != self._offered:
+            self._offered = offered
+            self._show()
+
     def show_cut_off(self, cut_off):
         """Show that nothing that is pressed on this screen reaches anything any more."""
         if cut_off != self._cut_off:
@@ -203,7 +210,7 @@ class StopBar(QWidget):
         self.confirm_button.setVisible(confirming)
         self._second.setCurrentIndex(1 if confirming else 0)
         self.release_button.setEnabled(not releasing and not self._cut_off)
-        self.power_button.setVisible(not confirming and not self._cut_off)
+        self.power_button.setVisible(self._offered and not confirming and not self._cut_off)
         self.update()
 
     def paintEvent(self, event):  # noqa: N802

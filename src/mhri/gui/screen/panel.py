@@ -169,6 +169,7 @@ class PanelWidget(QWidget):
         self.speed_limits.show_limits(view.limits)
         self.speed_limits.show_pace(view.together, view.pace, view.slowed)
         self.stop_bar.show_cut_off(view.ros == ROS_CUT_OFF)
+        self.stop_bar.show_power(any(robot.offers_power for robot in view.robots))
         self.stop_bar.show_stop(view.stop_all, view.stop_note, stop_words(
             view.robots, view.stop_taken, view.answers))
         self.status_line.show_status(view.status, view.status_level)

@@ -36,6 +36,7 @@ class GatesClient:
         self._state = None
         self._robots = {}
         self._heard_at = clock()
+        self._first = threading.Event()
         self._told = None
         self._group = None
         self._topics = []
@@ -57,6 +58,11 @@ class GatesClient:
             self._robots = {robot.name: robot for robot in message.robots}
             self._heard_at = now
         self._on_state(message, now)
+        self._first.set()
+
+    def wait_first(self):
+        """Wait until they have said something, where they are there; not on the GUI thread."""
+        self._first.wait(SILENT_S)
 
     def answers(self):
         """Tell whether the gates have been heard lately (a start counts as hearing them)."""

@@ -22,6 +22,7 @@ from mhri.msg import RobotGate
 from mhri.ros.convert import header_of, motion_from_odometry, motion_from_turtle_pose
 from mhri.ros.driving.gates_client import is_driven, round_trip_s, STANDS_WORDS
 from mhri.ros.robots.hardware_stop import HardwareStop
+from mhri.ros.sensors.refusals import Refusals
 
 _READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
             'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
@@ -61,6 +62,7 @@ class Feed:
         self._class = message_class
         self._read = read
         self._on_message = on_message
+        self._refusals = Refusals(topic, time.monotonic)
         # Not a queue of one: what is left out here must not look like a loss of the link.
         self._subscriber = rospy.Subscriber(topic, message_class, self._hear, queue_size=20,
                                             tcp_nodelay=True)
@@ -69,10 +71,9 @@ class Feed:
         self._on_message(self, message, time.monotonic())
 
     def value(self, message):
-        """Return the value in a message."""
-        if isinstance(message, rospy.AnyMsg):
-            message = self._class().deserialize(message._buff)
-        return self._read(message)
+        """Return the value in a message, None where its bytes are none."""
+        message = self._refusals.read(message, self._class)
+        return None if message is None else self._read(message)
 
     def header(self, message):
         """Return (number, stamp [s]) of a message, or None where it has no header."""
@@ -156,8 +157,8 @@ class RobotLink:
                 self._quality.on_message(number, delay_of(came_at, stamp_s), now)
             self._heard_at = now
             self._pending = (feed, message)
-            if self._proof is not None:
-                self._take()
+            # Bytes that are no message prove nothing, and neither does what was said before them.
+            if self._proof is not None and self._take():
                 self._proof.on_motion(self._motion, now, late_s)
 
     def listen_to_guard(self):
@@ -174,11 +175,14 @@ class RobotLink:
         self._battery = feed.value(message)
 
     def _take(self):
-        """Read the newest message, where it has not been read yet."""
-        if self._pending is not None:
-            feed, message = self._pending
-            self._pending = None
-            self._motion = feed.value(message)
+        """Read the newest message, where it was not read yet; tell whether it says a motion."""
+        if self._pending is None:
+            return False
+        feed, message = self._pending
+        self._pending = None
+        motion = feed.value(message)
+        self._motion = motion or self._motion
+        return motion is not None
 
     def on_stop(self, stopped, now):
         """Begin (or end) the proof of a stop."""
@@ -219,7 +223,8 @@ class RobotLink:
             y_m=motion and motion.y_m, battery=self._battery,
             moving=motion is not None and age < 1.0 and not motion.is_standstill(), proof=proof,
             hardware_stop=self._hardware_stop.stopped, max_linear_mps=limits.linear_mps,
-            max_angular_rad_s=limits.angular_rad_s)
+            max_angular_rad_s=limits.angular_rad_s,
+            offers_power=self.robot_type.motor_power is not None)
         return seen_by_gates(view, self._gates.robot(self.name), self._gates.answers())
 
     def _takes_commands(self, now):
@@ -252,12 +257,21 @@ def seen_by_gates(view, gate, answers):
     if gate is None:
         return view
     stands = STANDS_WORDS.get(gate.stands, gate.stands) if gate.obeys else ''
-    if view.proof is not None and gate.stop_confirmed:
-        view = replace(view, proof=replace(
-            view.proof, text=view.proof.text + ', held by its guard'))
-    return replace(
+    return with_stop_words(replace(
         view, driven=is_driven(gate) and bool(gate.topic), guarded=gate.guarded,
-        obeys=gate.obeys, stands=gate.stands,
+        obeys=gate.obeys, stands=gate.stands, power=gate.power,
         waits=gate.stands == RobotGate.JOINING, stop_latched=gate.stop_confirmed,
         note=stands if stands and view.link == LIVE else view.note,
-        slow=view.slow or bool(stands))
+        slow=view.slow or bool(stands)))
+
+
+def with_stop_words(view):
+    """Return a view that says what else keeps the robot from moving, beside the proof of a stop."""
+    words = ['its own emergency stop is pressed'] if view.hardware_stop else []
+    words += ['motor power ' + view.power] if view.power else []
+    if view.proof is not None:
+        words = [view.proof.text] + (['held by its guard'] if view.stop_latched else []) + words
+        return replace(view, proof=replace(view.proof, text=', '.join(words)))
+    if not words:
+        return view
+    return replace(view, slow=True, note='; '.join(words + ([view.note] if view.note else [])))

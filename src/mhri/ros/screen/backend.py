@@ -106,7 +106,9 @@ class ScreenBackend:
         self._claim = Claim(rospy.get_name())
         self._gates.start()
         mux = MuxClient(self._on_answer, lambda: self._worker.do(self._meet_mux), self._pressed)
-        if self._seat.holds(self):
+        # A topic that is given back at once leaves its subscribers knocking for a while.
+        self._gates.wait_first()
+        if self.drives():
             mux.take_wheel()
         self._mux = mux
         if self._first_limits:
@@ -114,8 +116,7 @@ class ScreenBackend:
         self.repeat_selection()
         self._requests = PanelRequests(self._events)
         self._devices = DeviceClient()
-        self._diagnostics = PanelDiagnostics(self)
-        self._diagnostics.start()
+        self._diagnostics = PanelDiagnostics(self).start()
         self._feeder.start()
         self._worker.start()
         self._worker.do(self._supervise)
@@ -195,11 +196,10 @@ class ScreenBackend:
         return self._seat.holds(self) and (self._claim is None or self._claim.drives)
 
     def repeat_selection(self):
-        """Say again which robots are checked: the operator's lease, to be called at 2 Hz.
+        """Say again which robots are checked: the operator's lease, at 2 Hz.
 
-        To be called by the thread that the operator's hands act on, and by no other: where that
-        hangs, the lease ends and the robots stand. A screen that has lost control drops its
-        selection: having it back, it drives nothing that was not checked since.
+        Only for the thread that the operator's hands act on: where that hangs, the lease ends. A
+        screen that has lost control drops its selection: nothing comes back unasked.
         """
         if self._mux is None or self._closing.is_set():
             return
@@ -290,7 +290,7 @@ class ScreenBackend:
     # What there is to see.
 
     def take_events(self):
-        """Return what has come of :meth:`look` since the last call, as a list of tuples."""
+        """Return what has come since the last call, as a list of tuples."""
         events = []
         while not self._events.empty():
             events.append(self._events.get_nowait())
@@ -397,4 +397,3 @@ class ScreenBackend:
         self._seat.leave(self)
         self._requests.unregister()
         self._devices.unregister()
-        self._diagnostics.unregister()

@@ -20,6 +20,7 @@ class PanelDiagnostics:
     def start(self):
         """Begin publishing, on a thread of its own."""
         self._done = publish_diagnostics({'robots': self._robots})
+        return self
 
     def stop(self):
         """End; returns at once."""
