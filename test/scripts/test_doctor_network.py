@@ -25,7 +25,7 @@ HOST_IP = machines.HOST_IP
 # An address that the host has, and of whose network the robot knows nothing.
 INNER_IP = '198.51.100.1'
 TWIST, ODOMETRY, BOOL = 'geometry_msgs/Twist', 'nav_msgs/Odometry', 'std_msgs/Bool'
-PANEL = ('--publish', '/bot1/cmd_vel', TWIST, '--subscribe', '/bot1/odom', ODOMETRY)
+GATES = ('--publish', '/bot1/cmd_vel', TWIST, '--subscribe', '/bot1/odom', ODOMETRY)
 START_S = 60.0
 
 
@@ -104,24 +104,24 @@ def seeded(ward, request):
 
 
 def test_healthy_robot_reaches_back(ward, seeded):
-    seeded('/mhri_panel', HOST_IP, *PANEL)
+    seeded('/mhri_gates', HOST_IP, *GATES)
     wait_for(lambda: ward.examine()[0] == {}, START_S, 'nothing wrong')
     fine = {item['check']: item for item in ward.examine()[1]}
     assert 'reaches this computer back' in fine['reaches_back']['problem']
 
 
-def test_panel_that_the_robot_cannot_reach_back(ward, seeded):
+def test_gates_that_the_robot_cannot_reach_back(ward, seeded):
     """From here it answers; the robot is sent to an address that it has no way to."""
-    seeded('/mhri_panel', INNER_IP, *PANEL)
+    seeded('/mhri_gates', INNER_IP, *GATES)
     item = ward.found('one_way')
-    assert item['about'] == 'bot1' and '/bot1/cmd_vel of /mhri_panel' in item['problem']
+    assert item['about'] == 'bot1' and '/bot1/cmd_vel of /mhri_gates' in item['problem']
     assert 'export ROS_IP=' + HOST_IP in item['remedy'] and item['shows'] and item['sure']
 
 
-def test_panel_that_tells_nobodys_address(ward, seeded):
-    seeded('/mhri_panel', '10.77.0.99', *PANEL)
+def test_gates_that_tells_nobodys_address(ward, seeded):
+    seeded('/mhri_gates', '10.77.0.99', *GATES)
     item = ward.found('node_address')
-    assert item['about'] == '/mhri_panel'
+    assert item['about'] == '/mhri_gates'
     assert item['remedy'].startswith('here: export ROS_IP={}, '.format(HOST_IP))
     assert 'not "rosnode cleanup"' in item['remedy'] and item['sure'] == ''
 
@@ -136,7 +136,7 @@ def test_node_of_the_robot_that_tells_its_other_address(ward, seeded):
 
 
 def test_robot_that_is_unplugged_is_gone_and_not_wrong(ward, seeded):
-    seeded('/mhri_panel', HOST_IP, *PANEL)
+    seeded('/mhri_gates', HOST_IP, *GATES)
     wait_for(lambda: ward.examine()[0] == {}, START_S, 'nothing wrong')
     ward.robot.unplug()
     try:

@@ -91,8 +91,9 @@ def test_every_package_of_the_manifest_is_in_debians_list(checkout):
     listed = listed[listed.index('DEBIAN_RUN=('):listed.index('UBUNTU_RUN=(')].split()
     needed = [line.split('>')[1].split('<')[0] for line in manifest.splitlines()
               if line.strip().startswith(('<exec_depend', '<depend', '<test_depend'))]
-    # Not in Debian (rqt), or there under another name.
-    renamed = {'rqt_gui': None, 'rqt_gui_py': None, 'libturbojpeg': 'libturbojpeg0',
+    # Not in Debian (rqt), for a robot alone, or there under another name.
+    renamed = {'nodelet': None, 'rqt_gui': None, 'rqt_gui_py': None,
+               'libturbojpeg': 'libturbojpeg0',
                'message_runtime': 'ros-message-runtime',
                'topic_tools': 'topic-tools'}
 

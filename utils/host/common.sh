@@ -33,7 +33,7 @@ DEBIAN_RUN=(
   xvfb xauth hostname util-linux
 )
 DEBIAN_TEST=(
-  librostest-dev python3-rostest topic-tools python3-pytest python3-flake8
+  librostest-dev python3-rostest python3-roslib topic-tools python3-pytest python3-flake8
   python3-flake8-docstrings python3-mccabe python3-pip python3-psutil catkin-lint shellcheck
   xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server openssl iproute2 nftables
 )
