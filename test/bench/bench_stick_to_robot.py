@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Latency from a stick event to the command at the robot, beside a chain of existing nodes.
 
-mhri: Joy -> mux -> gates -> Twist at the robot, selected in the real panel. Beside it, on the same machine and
-with rounds taken in turn: Twist -> topic_tools mux -> a topic_tools relay for each robot -> Twist,
-the same two hops made of C++ nodes from the distribution (without limits, watch on freshness,
-selection or stop). Every figure is in milliseconds, over all robots and events.
+mhri: Joy -> mux -> gates -> Twist at the robot, selected in the real panel. Beside it, on the same
+machine and with rounds taken in turn: Twist -> topic_tools mux -> a topic_tools relay for each
+robot -> Twist, the same two hops made of C++ nodes from the distribution (without limits, watch on
+freshness, selection or stop). Every figure is in milliseconds, over all robots and events.
 
 Last the case of the contract: four robots, each with its window on the screen in which its camera
 (RGB, 640x480, 30 Hz) and the graph of its motion run. First they are simulated on this machine,

@@ -3,6 +3,7 @@
 """A screen that is not drawn any more says so, over everything, and stops robots all the same."""
 import sys
 import time
+import traceback
 
 import pytest
 from python_qt_binding.QtWidgets import QApplication, QPushButton, QVBoxLayout, QWidget
@@ -33,12 +34,29 @@ def window(operator):
     return operator.show(made)
 
 
-@pytest.fixture(autouse=True)
-def hook():
-    """Leave the hook for exceptions as it was."""
+class PyqtgraphsHook:
+    """As pyqtgraph's own, which it sets when it is imported: known by its module alone."""
+
+    __module__ = 'pyqtgraph.exceptionHandling'
+
+    def __call__(self, kind, value, trace):
+        traceback.print_exception(kind, value, trace)
+
+
+class Told(list):
+    """Somebody else's hook for exceptions."""
+
+    def __call__(self, *what):
+        self.append(what)
+
+
+@pytest.fixture(autouse=True, params=['Python', 'pyqtgraph', 'another'])
+def hook(request):
+    """Begin with each of the hooks that may be there, and leave the one that was."""
     before = sys.excepthook
-    sys.excepthook = sys.__excepthook__
-    yield
+    sys.excepthook = {'Python': sys.__excepthook__, 'another': Told(),
+                      'pyqtgraph': PyqtgraphsHook()}[request.param]
+    yield sys.excepthook
     sys.excepthook = before
 
 
@@ -93,7 +111,7 @@ class Failing(QWidget):
         raise KeyError('colour')
 
 
-def test_a_painting_that_fails_ends_nothing_and_is_said(window, operator):
+def test_a_painting_that_fails_ends_nothing_and_is_said(window, operator, hook, capfd):
     guard = DrawGuard(window)
     guard.run(lambda: None)
     failing = Failing(window)
@@ -101,6 +119,8 @@ def test_a_painting_that_fails_ends_nothing_and_is_said(window, operator):
     failing.show()
     operator.wait_until(guard.cover.isVisible, within_s=1.0)
     assert 'KeyError' in guard.cover.texts()[-1]
+    assert capfd.readouterr().err.count('Traceback') <= 1
+    assert not isinstance(hook, Told) or hook
     failing.hide()
     guard.run(lambda: None)
     timer_end = time.monotonic() + SLIP_SHOWN_S + 1.0

@@ -19,6 +19,7 @@ from support.ros_system import System, wait_for  # noqa: E402
 INPUTS = ('mhri_joy', 'mhri_pedal', 'mhri_voice')
 # Behind what is installed: the message that takes the power from a TurtleBot2's motors.
 MESSAGES = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'support', 'messages')
+SERVICES = {'set_suspended': 'mhri/SetSuspended', 'take_control': 'std_srvs/Trigger'}
 EVERYWHERE = ('/rosout', '/clock')
 ROW = re.compile(r'^\| (publishes|subscribes|serves) \| `([^`]+)` \| (?:`([^`]+)`|[^|]+) \|', re.M)
 
@@ -39,8 +40,8 @@ def running(node):
              if node in nodes and name not in EVERYWHERE}
     found |= {('subscribes', name, types[name]) for name, nodes in subscribers
               if node in nodes and name not in EVERYWHERE}
-    found |= {('serves', name, 'mhri/SetSuspended' if name.endswith('/set_suspended')
-               else 'std_srvs/SetBool') for name, nodes in services
+    found |= {('serves', name, SERVICES.get(name.rpartition('/')[2], 'std_srvs/SetBool'))
+              for name, nodes in services
               if node in nodes and not name.endswith(('/get_loggers', '/set_logger_level'))}
     return found
 
@@ -67,6 +68,7 @@ class ApiTest(unittest.TestCase):
         cls.system.env['PYTHONPATH'] = os.pathsep.join(
             (os.environ.get('PYTHONPATH', ''), MESSAGES))
         cls.system.node('mux', '__name:=mux')
+        cls.system.node('gates')
         for name in INPUTS:
             cls.system.node(name, '__name:=' + name)
         for number, kind in enumerate(('turtlebot2', 'turtlebot3_burger')):
@@ -83,21 +85,31 @@ class ApiTest(unittest.TestCase):
         self.assertEqual(running('/mux'), documented('mux'))
 
     def test_panel(self):
+        self.page_is_true('mhri_panel')
+
+    def test_gates(self):
+        self.page_is_true('mhri_gates')
+
+    def page_is_true(self, node):
+        """Hold a node's page, its placeholders filled in, against the node."""
         turtlebot2 = robot_types()[0]['turtlebot2']
         wanted = set()
-        for direction, name, kind in documented('mhri_panel'):
+        for direction, name, kind in documented(node):
             if '<command>' in name:
                 wanted |= {(direction, '/bot1/' + topic, kind) for topic in turtlebot2.command}
             elif '<odometry>' in name:
                 wanted.add((direction, '/bot1/odom', 'nav_msgs/Odometry'))
+            elif '<motor_power>' in name:
+                power = turtlebot2.motor_power
+                wanted.add((direction, '/bot1/' + power.name, power.kind))
             elif '<imu>' in name:
                 wanted.add((direction, '/bot1/' + turtlebot2.imu[0], kind))
             else:
                 wanted.add((direction, name.replace('<robot>', 'bot1'), kind))
         try:
-            wait_for(lambda: running('/mhri_panel') == wanted, 25, 'the panel')
+            wait_for(lambda: running('/' + node) == wanted, 25, node)
         except AssertionError:
-            self.assertEqual(running('/mhri_panel'), wanted)
+            self.assertEqual(running('/' + node), wanted)
 
     def test_input_nodes(self):
         for name in INPUTS:

@@ -40,7 +40,10 @@ class Handover(unittest.TestCase):
 
     def mux(self, *arguments):
         """Start a mux and wait until it hears and is heard."""
-        rospy.set_param('/mux/stop_all', False)
+        # What an argument has set stays at the master.
+        for name in filter(rospy.has_param, ('/mux/' + key for key in (
+                'stop_all', 'config', 'enabling', 'automatic_switching', 'dead_man'))):
+            rospy.delete_param(name)
         self.process = start_mux('__name:=mux', *arguments)
         self.addCleanup(self.end)
         self.twists = twist_recorder()
@@ -85,7 +88,7 @@ class Handover(unittest.TestCase):
         self.mux()
         self.select.publish(robots=['bot1'])
         self.drive()
-        begun = self.joy.last_sent
+        begun = time.monotonic()
         self.select.publish(robots=['bot1', 'bot2'])
         first = self.twists.wait(rests, begun)
         self.assertLess(measured('zero after a robot joined', first.at - begun), 0.2)
@@ -147,7 +150,8 @@ class Handover(unittest.TestCase):
         self.waits.wait(lambda _: self.waits.last() == '')
         for frame in ('', 'profile:xbox'):
             with self.pad.frame(frame):
-                self.pad.hold(NEUTRAL, held())
+                begun = self.pad.hold(NEUTRAL, held())
+                wait_until(lambda start=begun: self.pad.last_sent > start + 0.1, 'nothing sent')
                 self.waits.wait(lambda _: self.waits.last() == '')
                 begun = self.pad.hold(PS3_UP, held())
                 self.twists.wait(moves, begun)
@@ -164,8 +168,10 @@ class Handover(unittest.TestCase):
         self.twists.wait(rests, begun)
         self.waits.wait(lambda _: self.waits.last() == 'neutral')
         wait_until(lambda: time.monotonic() - begun > 1.1, 'no time passes')
-        begun = self.pad.hold(PS3_UP)
-        self.assert_held_until_neutral(begun, self.pad, PS3_UP)
+        back = self.pad.hold(PS3_UP)
+        wait_until(lambda: self.pad.last_sent > back + 0.7, 'nothing sent')
+        self.assertFalse([item for item in self.twists.since(back) if moves(item.value)])
+        self.drive(self.pad, PS3_UP)
 
     def test_buttons(self):
         """Stop counts from every source, all else from the one that drives; once each press."""
@@ -215,7 +221,11 @@ class Handover(unittest.TestCase):
             self.joy.hold(NEUTRAL)
             self.pedal.hold(NEUTRAL, (1,))
             self.drive()
-            begun = self.pedal.hold(NEUTRAL, (0,)) if end == 'released' else self.pedal.silence()
+            if end == 'released':
+                self.pedal.hold(NEUTRAL, (0,))
+            else:
+                self.pedal.silence()
+            begun = time.monotonic()
             first = self.twists.wait(rests, begun)
             self.assertLess(measured('zero after the enabling pedal was ' + end, first.at - begun),
                             0.2 if end == 'released' else 0.45)

@@ -3,11 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The power of a robot's motors, by topic and by service; and what its own emergency stop says."""
 import os
+import subprocess
 import sys
 import threading
 import time
 import unittest
 
+import rosgraph
 import rospy
 import rostest
 from std_msgs.msg import Bool, UInt8
@@ -119,14 +121,29 @@ class MotorPowerTest(unittest.TestCase):
     def test_a_base_that_comes_up_later_is_told(self):
         power = self.power(robot_type='turtlebot3')
         power.cut()
-        wait_for(lambda: power.state.startswith('failed: nobody listens to /{}/motor_power'.format(
-            self.name)), what='the reason')
+        why = 'failed: no robot listens to /{}/motor_power'.format(self.name)
+        wait_for(lambda: power.state == why, what='the reason')
         for _ in range(2):
             base = self.base('motor_power', Bool, 'data')
             wait_for(lambda: base.heard, what='the cut')
             self.assertEqual(set(base.heard), {False})
             wait_for(lambda: power.state == 'cut sent', what='the words')
             base.close()
+
+    def test_somebody_who_merely_listens_is_no_robot(self):
+        topic = '/{}/motor_power'.format(self.name)
+        echo = subprocess.Popen(['rostopic', 'echo', topic], stdout=subprocess.DEVNULL)
+        self.addCleanup(echo.wait)
+        self.addCleanup(echo.terminate)
+        power = self.power(robot_type='turtlebot3')
+        wait_for(lambda: any(
+            node.startswith('/rostopic_') for name, nodes in rosgraph.Master(
+                rospy.get_name()).getSystemState()[1] if name == topic for node in nodes),
+                 what='rostopic', poll_s=0.05)
+        power.cut()
+        wait_for(lambda: power.state == 'failed: no robot listens to ' + topic, what='the reason')
+        base = self.base('motor_power', Bool, 'data')
+        wait_for(lambda: base.heard == [False] and power.state == 'cut sent', what='the cut')
 
     def test_power_is_never_given_unasked(self):
         power, base = self.power(robot_type='turtlebot3'), self.base('motor_power', Bool, 'data')

@@ -10,6 +10,7 @@ import time
 import unittest
 
 from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import Twist
 from rostest_tools import (
     FORWARD, measured, moves, NEUTRAL, Recorder, rests, start_mux, Stick, twist_recorder,
     wait_until)
@@ -17,6 +18,8 @@ import rospy
 import rostest
 from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
+
+from mhri.msg import ControlMode
 
 SERVICE = '/mux/set_stop_all'
 
@@ -43,10 +46,10 @@ class MuxEnd(unittest.TestCase):
         for recorder in (self.twists, self.stops, self.waits):
             recorder.close()
 
-    def _start(self, *arguments, output=None):
+    def _start(self, *arguments, **options):
         """Start a mux and wait until it drives, or would."""
         begun = time.monotonic()
-        mux = start_mux(*arguments, output=output)
+        mux = start_mux(*arguments, **options)
         self.muxes.append(mux)
         self.stops.wait(lambda value: True, begun)
         self.waits.wait(lambda value: True, begun)
@@ -227,6 +230,46 @@ class MuxEnd(unittest.TestCase):
         older.wait()
         measured('hung mux gone after', time.monotonic() - woken)
         self.assertFalse([item for item in self.twists.since(begun) if moves(item.value)])
+
+    def test_an_input_node_that_is_not_there_fills_no_log(self):
+        """It is looked for every second, for as long as its mode is in force."""
+        select = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
+        with tempfile.TemporaryDirectory() as folder:
+            self._start(env={'ROS_LOG_DIR': folder})
+            wait_until(select.get_num_connections, 'the mux does not listen')
+            select.publish(source='ps3joy')
+            asked = time.monotonic()
+            wait_until(lambda: time.monotonic() - asked > 3.0, 'no time passes')
+            logs = ''
+            for name in os.listdir(folder):
+                with open(os.path.join(folder, name), encoding='utf-8') as stream:
+                    logs += stream.read()
+        self.assertIn('/mux_in/ps3joy', logs, 'what rospy registers is in it')
+        self.assertNotIn('lookup service failed', logs)
+
+    def test_a_name_of_a_megabyte_is_cut_where_it_comes_in(self):
+        select = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
+        mux = self._start()
+        wait_until(select.get_num_connections, 'the mux does not listen')
+        select.publish(source=1000000 * 'x')
+        wait_until(lambda: 'no source' in mux.said(), 'it is not said')
+        self.assertLess(len(mux.said()), 5000)
+
+    def test_a_speed_limit_that_is_no_number_goes_nowhere(self):
+        limits = Recorder('/mux/speed_limit', Twist, lambda limit: (limit.linear.x,
+                                                                    limit.angular.z))
+        self.addCleanup(limits.close)
+        ask = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=10)
+        self._start()
+        wait_until(ask.get_num_connections, 'the mux does not listen')
+        for linear, angular in ((float('nan'), 1.0), (1e308, 1.0), (0.3, float('inf')),
+                                (-1.0, 1.0), (0.3, float('nan')), (0.25, 1.25)):
+            message = Twist()
+            message.linear.x, message.angular.z = linear, angular
+            asked = time.monotonic()
+            ask.publish(message)
+            limits.wait(lambda value: True, asked)
+        self.assertEqual({item.value for item in limits.since(0.0)}, {(0.5, 1.5), (0.25, 1.25)})
 
     def test_a_terminal_that_takes_nothing_holds_up_nothing(self):
         """Ctrl-S: whatever is said, the zeros come, the stop is answered, and the mux ends."""

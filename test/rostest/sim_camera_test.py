@@ -188,6 +188,44 @@ class SimCameraTest(unittest.TestCase):
                                           '/colour/' + RGB + '/compressed'])
         self.assertEqual(rospy.get_published_topics('/nothing'), [])
 
+    def test_topics_that_close_at_the_end_are_no_fault(self):
+        """Rospy closes them before it says that it is shut down, whatever is being drawn."""
+        slips, ended = [], threading.Event()
+        self.addCleanup(setattr, threading, 'excepthook', threading.excepthook)
+        threading.excepthook = slips.append
+        template = RobotType('test', 'test', 'turtlebot', Limits(1.0, 1.0), rgb=(RGB,))
+
+        def pose():
+            camera.stop()
+            ended.set()
+            raise rospy.ROSException('publish() to a closed topic')
+        camera = SimCamera('ending', template, PLAN, pose, lambda: NOBODY)
+        camera.start()
+        self.hear('/ending/' + RGB, Image)
+        self.assertTrue(ended.wait(PATIENCE_S))
+        wait_for(lambda: 'camera' not in [thread.name for thread in threading.enumerate()],
+                 PATIENCE_S, 'the end of the thread')
+        self.assertEqual(slips, [])
+
+    def test_stop_waits_for_the_frame_under_way(self):
+        drawing, finished = threading.Event(), []
+        template = RobotType('test', 'test', 'turtlebot', Limits(1.0, 1.0), rgb=(RGB,))
+
+        def pose():
+            drawing.set()
+            rospy.rostime.wallsleep(0.1)
+            finished.append(True)
+            return POSE
+        camera = SimCamera('stopping', template, PLAN, pose, lambda: NOBODY)
+        camera.start()
+        self.hear('/stopping/' + RGB, Image)
+        self.assertTrue(drawing.wait(PATIENCE_S))
+        camera.stop()
+        before = len(finished)
+        self.assertGreater(before, 0)
+        rospy.rostime.wallsleep(0.3)
+        self.assertEqual(len(finished), before)
+
     def test_other_depth_format_is_refused(self):
         with self.assertRaisesRegex(ValueError, 'png, rvl'):
             self.start('odd', 'zip')

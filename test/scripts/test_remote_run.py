@@ -14,6 +14,7 @@ import pytest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from support.ros_system import System, wait_for  # noqa: E402
+from support.stand_ins import workspace  # noqa: E402
 
 SCRIPT = REPO / 'utils' / 'remote' / 'turtle_remote.sh'
 PACKAGES = REPO / 'test' / 'support' / 'robot_packages'
@@ -33,8 +34,8 @@ class Remote:
         self.env = dict(
             system.env, HOME=str(folder), TURTLEBOT_BASE='kobuki', TURTLEBOT_3D_SENSOR='kinect',
             TURTLEBOT_SIMULATION='false', LDS_MODEL='LDS-01', ROS_NAMESPACE='TurtleBot7',
-            ROS_PACKAGE_PATH='{}:{}'.format(PACKAGES, system.env.get('ROS_PACKAGE_PATH', '')),
-            ROS_MASTER_URI='http://elsewhere:1', ROS_IP='203.0.113.9', **{name: value})
+            ROS_MASTER_URI='http://elsewhere:1', ROS_IP='203.0.113.9', **{name: value},
+            **workspace(folder, PACKAGES))
         for name in ('TURTLEBOT3_MODEL', 'ROS_HOSTNAME'):
             self.env.pop(name, None)
         self.processes = []
@@ -143,9 +144,8 @@ def test_turtlebot3(remote, master):
 
 def test_turtlebot3_of_an_older_release(remote, master):
     """Its launch file knows no model, and its camera has a launch file of its own."""
-    process = remote.start(
-        'bot3', '--type', 'turtlebot3_waffle_pi',
-        ROS_PACKAGE_PATH='{}:{}'.format(OLDER, remote.env['ROS_PACKAGE_PATH']))
+    process = remote.start('bot3', '--type', 'turtlebot3_waffle_pi',
+                           **workspace(remote.folder, OLDER, PACKAGES))
     await_topics(process, master, '/bot3/odom', '/bot3/raspicam_node/image/compressed')
     assert parameter(master, '/bot3/robot_model') == 'waffle_pi'
     assert parameter(master, '/bot3/turtlebot3_core/tf_prefix') == 'bot3'

@@ -15,6 +15,7 @@ import subprocess
 import psutil
 
 from support.ros_system import wait_for
+from support.stand_ins import workspace
 
 CLONE_NEWNET = 0x40000000
 HOST_IP = '10.77.0.1'
@@ -23,7 +24,7 @@ PASSWORD = 'turtles all the way'
 USER = 'turtle'
 PACKAGES = Path(__file__).resolve().parent / 'robot_packages'
 # What a robot's setup.bash says; the rest of the environment is that of a fresh login.
-SETUP_VARIABLES = ('PATH', 'PYTHONPATH', 'LD_LIBRARY_PATH', 'CMAKE_PREFIX_PATH', 'ROS_DISTRO',
+SETUP_VARIABLES = ('PATH', 'PYTHONPATH', 'LD_LIBRARY_PATH', 'ROS_DISTRO',
                    'ROS_ETC_DIR', 'ROS_ROOT', 'ROS_VERSION', 'ROS_PYTHON_VERSION')
 HOLD = ['setpriv', '--pdeathsig', 'KILL', 'unshare', '--net', '--mount', '--pid', '--uts', '--fork',
         '--kill-child', '--mount-proc', 'sleep', 'infinity']
@@ -148,14 +149,13 @@ class Robot:
         self._write_setup()
 
     def _write_setup(self):
-        lines = ['export {}={!r}'.format(name, os.environ[name]) for name in SETUP_VARIABLES
-                 if os.environ.get(name)]
-        lines += ["export ROS_PACKAGE_PATH='{}:{}'".format(
-            PACKAGES, os.environ.get('ROS_PACKAGE_PATH', '')),
-            'export ROS_HOME={!r}'.format(str(self.home / '.ros')),
-            'export TURTLEBOT_BASE=kobuki TURTLEBOT_3D_SENSOR=kinect TURTLEBOT_SIMULATION=false']
         setup = self.home / 'catkin_ws' / 'devel' / 'setup.bash'
         setup.parent.mkdir(parents=True)
+        exported = {name: os.environ[name] for name in SETUP_VARIABLES if os.environ.get(name)}
+        exported.update(workspace(setup.parent, PACKAGES), ROS_HOME=str(self.home / '.ros'))
+        lines = ['export {}={!r}'.format(name, value) for name, value in exported.items()]
+        lines.append(
+            'export TURTLEBOT_BASE=kobuki TURTLEBOT_3D_SENSOR=kinect TURTLEBOT_SIMULATION=false')
         setup.write_text('\n'.join(lines) + '\n')
         (self.home / '.bashrc').write_text(
             'case $- in *i*) ;; *) return ;; esac\nexport ROS_NAMESPACE=TurtleBot7 '

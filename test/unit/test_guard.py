@@ -109,10 +109,18 @@ SCRIPTS = {
         5.18 echo f = A:11:*''',
     'a stop needs no echo': '''
         0.00 A!:1: 0 0 = 0 0
-        0.01 echo a = -:0:*!
+        0.01 echo a = A:1:*!
         0.02 A:2:a 0.3 0 = none stopped
         0.03 A:3:a 0 0 = 0 0
         0.04 echo b = A:3:*''',
+    'stops that stood in the network are answered once': '''
+        0.00 echo a = -:0:*
+        5.00 A!:1:a 0 0 = 0 0
+        5.00 A!:2:a 0 0 = none
+        5.00 echo b = A:2:*!
+        5.01 A!:3:b 0 0 = 0 0
+        5.02 Z!:1: 0 0 = none
+        5.03 A:4:b 0 0 = 0 0''',
     'a stop survives the loss of the link': '''
         0.00 echo a = -:0:*
         0.01 A!:1:a 0 0 = 0 0

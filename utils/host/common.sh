@@ -35,7 +35,7 @@ DEBIAN_RUN=(
 DEBIAN_TEST=(
   librostest-dev python3-rostest topic-tools python3-pytest python3-flake8
   python3-flake8-docstrings python3-mccabe python3-pip python3-psutil catkin-lint shellcheck
-  xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server openssl iproute2
+  xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server openssl iproute2 nftables
 )
 # For the fast group of the tests alone; so called on Ubuntu, too.
 FAST=(
@@ -50,6 +50,7 @@ UBUNTU_RUN=(
 UBUNTU_TEST=(
   python3-pytest python3-flake8 python3-mccabe python3-pip python3-psutil python3-catkin-lint
   shellcheck xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server openssl iproute2
+  nftables
 )
 
 say() { printf 'mhri: %s\n' "$(unarmed "$*")"; }

@@ -31,6 +31,25 @@ def _note_slip(kind, value, trace):
             _COVERS.discard(cover)
 
 
+def watch_slips():
+    """Let exceptions that nobody caught be said on the screen, and logged once each.
+
+    What was there before goes on, but for Python's own hook and pyqtgraph's, which print each one:
+    a painting that fails would print thousands.
+    """
+    before = sys.excepthook
+    if getattr(before, 'of_mhri', False):
+        return
+    silent = before is sys.__excepthook__ or str(before.__module__).startswith('pyqtgraph')
+
+    def hook(kind, value, trace):
+        _note_slip(kind, value, trace)
+        if not silent:
+            before(kind, value, trace)
+    hook.of_mhri = True
+    sys.excepthook = hook
+
+
 class DrawGuard:
     """Draws one window, and covers it while that fails.
 
@@ -42,8 +61,7 @@ class DrawGuard:
         self._logged_at = -math.inf
         self.cover = StaleCover(window)
         _COVERS.add(self.cover)
-        if sys.excepthook is sys.__excepthook__:
-            sys.excepthook = _note_slip
+        watch_slips()
 
     def run(self, job, *args):
         """Draw; return whether that went well."""

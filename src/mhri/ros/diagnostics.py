@@ -6,6 +6,8 @@ import threading
 import diagnostic_updater
 import rospy
 
+from mhri.ros.graph.quiet import quiet_repeats
+
 
 def publish_diagnostics(tasks):
     """Publish ``diagnostic_msgs/DiagnosticArray`` on ``/diagnostics`` once a second until shutdown.
@@ -13,6 +15,8 @@ def publish_diagnostics(tasks):
     :param tasks: {name: function that fills a ``DiagnosticStatusWrapper`` and returns it}
     :returns: a ``threading.Event``; set, it ends them earlier
     """
+    # Every node of mhri comes by here.
+    quiet_repeats()
     updater = diagnostic_updater.Updater()
     updater.setHardwareID('mhri')
     for name, task in tasks.items():

@@ -25,6 +25,8 @@ from mhri.sim.camera import Camera, CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, 
 
 RGB_HZ = 30
 DEPTH_EVERY = 2
+# No frame takes longer, but on a machine that is overloaded.
+FRAME_S = 0.5
 JPEG_QUALITY = 80
 DEPTH_FORMATS = ('png', 'rvl')
 
@@ -101,6 +103,7 @@ class SimCamera:
         self._pose_source = pose_source
         self._others_source = others_source
         self._done = threading.Event()
+        self._thread = None
         prefix, frame_id = '/' + name + '/', name + '/camera_rgb_optical_frame'
         self._rgb = _Stream(prefix + template.rgb[0], 'compressed', 'rgb8', frame_id,
                             compress) if template.rgb else None
@@ -114,11 +117,14 @@ class SimCamera:
             # OpenCV's own threads would spin on every core, in the way of the physics' next step.
             cv2.setNumThreads(1)
             rospy.on_shutdown(self.stop)
-            threading.Thread(target=self._run, name='camera', daemon=True).start()
+            self._thread = threading.Thread(target=self._run, name='camera', daemon=True)
+            self._thread.start()
 
     def stop(self):
-        """End after the frame that is under way."""
+        """End, and wait for the frame that is under way: the topics may close afterwards."""
         self._done.set()
+        if self._thread not in (None, threading.current_thread()):
+            self._thread.join(FRAME_S)
 
     def _run(self):
         """Publish at absolute times; frames that could not be made in time are left out."""
@@ -131,8 +137,9 @@ class SimCamera:
                 tick += 1 + missed
                 due += period_s * (1 + missed)
         except rospy.ROSException:
-            # The topics close while a frame is under way: that is how a shutdown looks from here.
-            if not rospy.is_shutdown():
+            # The topics close while a slow frame is under way, a little before rospy says that it
+            # is shut down.
+            if not (self._done.is_set() or rospy.is_shutdown()):
                 raise
 
     def _frame(self, with_depth):

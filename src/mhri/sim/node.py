@@ -9,6 +9,7 @@ topic of the template, and what takes the power from its motors. Frames are ``<r
 ``<robot>/base_link``, ``<robot>/imu_link`` and ``<robot>/laser`` (REP-105).
 """
 import math
+import threading
 import time
 
 from geometry_msgs.msg import PoseStamped, TransformStamped, Twist
@@ -137,13 +138,15 @@ class SimRobot:
 
     def run(self):
         """Live until shutdown, in steps of 10 ms; steps that were missed are skipped."""
-        ticks = Ticks(1.0 / RATE_HZ)
+        ticks, ending = Ticks(1.0 / RATE_HZ), threading.Event()
+        rospy.on_shutdown(ending.set)
         try:
-            while not rospy.is_shutdown():
+            while not (ending.is_set() or rospy.is_shutdown()):
                 self._step(*ticks.wait())
         except rospy.ROSException:
-            # The topics close while a step is under way: that is how a shutdown looks from here.
-            if not rospy.is_shutdown():
+            # The topics close while a step is under way, a little before rospy says that it is shut
+            # down.
+            if not (ending.is_set() or rospy.is_shutdown()):
                 raise
         finally:
             self._world.leave()

@@ -9,14 +9,18 @@ import genpy
 import rospy
 from std_srvs.srv import SetBool
 
+from mhri.core.driving.listeners import first_obeying
 from mhri.core.driving.motor_power import MotorPowerRule
 from mhri.core.robots.names import topic_of
+from mhri.ros.graph.rospy_inside import listeners, PromptPublisher
 from mhri.ros.messages import message_class, MessageMissing, with_field
 from mhri.ros.worker import Worker
 
 # A service that has not answered for so long [s] is called again, beside the call under way.
 PATIENCE_S = 3.0
 MOST_CALLS = 3
+# While the power is cut it is looked this often whether somebody new listens [s].
+LOOK_S = 0.2
 # Below the robot's name at the master while its power is cut: whoever takes over knows it by that.
 PARAMETER = 'mhri_motor_power_cut'
 
@@ -26,14 +30,13 @@ class NotTold(Exception):
 
 
 class PowerTopic:
-    """Tells a robot by a message; what was sent is not confirmed.
-
-    :param on_listener: called when a node begins to listen
-    """
+    """Tells a robot by a message; what was sent is not confirmed."""
 
     confirms = False
 
-    def __init__(self, topic, spec, on_listener):
+    def __init__(self, robot, spec):
+        self._robot = robot
+        self._links = ()
         kind = message_class(spec.kind)
         self._messages = {}
         for cut, value in ((True, spec.cut), (False, spec.powered)):
@@ -44,31 +47,25 @@ class PowerTopic:
                 raise MessageMissing('{} has no field {}'.format(spec.kind, spec.field)) from None
             except genpy.SerializationError as error:
                 raise MessageMissing('{}: {}'.format(spec.kind, error)) from None
-        self._publisher = rospy.Publisher(topic, kind, queue_size=1,
-                                          subscriber_listener=_Listeners(on_listener))
+        self._publisher = PromptPublisher(topic_of(robot, spec.name), kind)
 
     def tell(self, cut):
         """Send it.
 
-        :raises NotTold: nobody listens
+        :raises NotTold: no node of the robot listens
         """
-        if not self._publisher.get_num_connections():
-            raise NotTold('nobody listens to {}'.format(self._publisher.resolved_name))
-        self._publisher.publish(self._messages[cut])
+        self._links = self._publisher.links()
+        if first_obeying(self._robot, [listeners(self._links)]) is None:
+            raise NotTold('no robot listens to {}'.format(self._publisher.resolved_name))
+        self._publisher.publish_urgent(self._messages[cut])
+
+    def has_news(self):
+        """Tell whether others listen than were told last."""
+        return self._publisher.links() is not self._links
 
     def close(self):
         """Give the topic back (blocking: it asks the master)."""
         self._publisher.unregister()
-
-
-class _Listeners(rospy.SubscribeListener):
-
-    def __init__(self, on_listener):
-        super().__init__()
-        self._on_listener = on_listener
-
-    def peer_subscribe(self, topic_name, topic_publish, peer_publish):
-        self._on_listener()
 
 
 class PowerService:
@@ -90,6 +87,11 @@ class PowerService:
             raise NotTold('{} does not answer: {}'.format(self._name, error)) from None
         if not answer.success:
             raise NotTold('{} refuses: {}'.format(self._name, answer.message or 'no reason given'))
+
+    @staticmethod
+    def has_news():
+        """Tell that whoever was told still knows: it has confirmed it."""
+        return False
 
     def close(self):
         """Leave nothing behind: a call has a connection of its own."""
@@ -126,8 +128,8 @@ class MotorPower:
         if spec is None:
             self.problem = 'its type names nothing that takes the power from its motors'
             return None
-        name = topic_of(self._robot, spec.name)
-        return PowerService(name) if spec.service else PowerTopic(name, spec, self._on_listener)
+        return PowerService(topic_of(self._robot, spec.name)) if spec.service else PowerTopic(
+            self._robot, spec)
 
     @property
     def available(self):
@@ -161,22 +163,20 @@ class MotorPower:
             self._changed.notify()
         self._notes.do(self._note)
 
-    def _on_listener(self):
-        """Let a base that has just come up know that its power is cut."""
-        with self._changed:
-            self._rule.tell_again(time.monotonic())
-            self._changed.notify()
-
     def _run(self):
         """Do what is due until closed."""
         while True:
             with self._changed:
-                now = time.monotonic()
-                cut = self._rule.due(now)
                 if self._closed:
                     return
+                now = time.monotonic()
+                if self._rule.is_cut and self._way.has_news():
+                    # A base that has just come up does not know.
+                    self._rule.tell_again(now)
+                cut = self._rule.due(now)
                 if cut is None or self._calls >= MOST_CALLS:
-                    self._changed.wait(self._rule.wait_s(now) if cut is None else PATIENCE_S)
+                    looks = cut is not None or self._rule.is_cut
+                    self._changed.wait(LOOK_S if looks else self._rule.wait_s(now))
                     continue
             self._tell(cut)
 

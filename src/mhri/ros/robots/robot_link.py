@@ -22,6 +22,7 @@ from mhri.msg import RobotGate
 from mhri.ros.convert import header_of, motion_from_odometry, motion_from_turtle_pose
 from mhri.ros.driving.gates_client import is_driven, round_trip_s, STANDS_WORDS
 from mhri.ros.robots.hardware_stop import HardwareStop
+from mhri.ros.sensors.refusals import Refusals
 
 _READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
             'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
@@ -61,6 +62,7 @@ class Feed:
         self._class = message_class
         self._read = read
         self._on_message = on_message
+        self._refusals = Refusals(topic, time.monotonic)
         # Not a queue of one: what is left out here must not look like a loss of the link.
         self._subscriber = rospy.Subscriber(topic, message_class, self._hear, queue_size=20,
                                             tcp_nodelay=True)
@@ -69,10 +71,9 @@ class Feed:
         self._on_message(self, message, time.monotonic())
 
     def value(self, message):
-        """Return the value in a message."""
-        if isinstance(message, rospy.AnyMsg):
-            message = self._class().deserialize(message._buff)
-        return self._read(message)
+        """Return the value in a message, None where its bytes are none."""
+        message = self._refusals.read(message, self._class)
+        return None if message is None else self._read(message)
 
     def header(self, message):
         """Return (number, stamp [s]) of a message, or None where it has no header."""
@@ -156,8 +157,8 @@ class RobotLink:
                 self._quality.on_message(number, delay_of(came_at, stamp_s), now)
             self._heard_at = now
             self._pending = (feed, message)
-            if self._proof is not None:
-                self._take()
+            # Bytes that are no message prove nothing, and neither does what was said before them.
+            if self._proof is not None and self._take():
                 self._proof.on_motion(self._motion, now, late_s)
 
     def listen_to_guard(self):
@@ -174,11 +175,14 @@ class RobotLink:
         self._battery = feed.value(message)
 
     def _take(self):
-        """Read the newest message, where it has not been read yet."""
-        if self._pending is not None:
-            feed, message = self._pending
-            self._pending = None
-            self._motion = feed.value(message)
+        """Read the newest message, where it was not read yet; tell whether it says a motion."""
+        if self._pending is None:
+            return False
+        feed, message = self._pending
+        self._pending = None
+        motion = feed.value(message)
+        self._motion = motion or self._motion
+        return motion is not None
 
     def on_stop(self, stopped, now):
         """Begin (or end) the proof of a stop."""

@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The proof of a stop against odometry that lies, on the topics of a robot."""
+import collections
+import os
+import sys
+import threading
+import time
+import unittest
+
+from nav_msgs.msg import Odometry
+import rospy
+import rostest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
+
+from mhri.core.screen.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED  # noqa: E402
+from mhri.ros.driving.gates_client import GatesClient  # noqa: E402
+from mhri.ros.resources import robot_types  # noqa: E402
+from mhri.ros.robots.bot_feeds import BotFeeds  # noqa: E402
+from mhri.ros.robots.robot_link import RobotLink  # noqa: E402
+from mhri.ros.worker import Worker  # noqa: E402
+from support.ros_system import wait_for  # noqa: E402
+
+PERIOD_S = 0.02
+LATE_S = 0.6
+NAN = float('nan')
+
+
+class Teller:
+    """A robot's odometry at 50 Hz: as it is told to lie, on time or late."""
+
+    def __init__(self, name):
+        self.sideways_mps = self.creeps_mps = self.late_s = 0.0
+        self._x = 0.0
+        self._queue = collections.deque()
+        self._done = threading.Event()
+        self._publisher = rospy.Publisher('/{}/odom'.format(name), Odometry, queue_size=10)
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _run(self):
+        while not self._done.wait(PERIOD_S):
+            self._x += self.creeps_mps * PERIOD_S
+            message = Odometry()
+            message.header.stamp = rospy.Time.from_sec(time.time())
+            message.pose.pose.position.x = self._x
+            message.pose.pose.orientation.w = 1.0
+            message.twist.twist.linear.y = self.sideways_mps
+            self._queue.append((time.monotonic(), message))
+            while self._queue and time.monotonic() - self._queue[0][0] >= self.late_s:
+                self._publisher.publish(self._queue.popleft()[1])
+
+    def close(self):
+        self._done.set()
+        self._thread.join()
+        self._publisher.unregister()
+
+
+class StopProofTest(unittest.TestCase):
+
+    number = 0
+
+    def setUp(self):
+        StopProofTest.number += 1
+        self.name = 'bot{}'.format(self.number)
+        self.teller = Teller(self.name)
+        self.addCleanup(self.teller.close)
+        self.link = RobotLink(
+            self.name, robot_types()[0]['generic'], GatesClient(lambda *_: None),
+            BotFeeds(self.name, robot_types()[0]['generic'], Worker('feeds').start()))
+        self.addCleanup(self.link.close)
+        wait_for(lambda: self.link.view().link == 'live', what='the odometry')
+        # What is usual on this link has to be known first.
+        heard = time.monotonic()
+        wait_for(lambda: time.monotonic() - heard > 1.5, what='the link to be known', poll_s=0.1)
+
+    def stop(self):
+        self.stopped_at = time.monotonic()
+        self.link.on_stop(True, self.stopped_at)
+
+    def proof(self):
+        return self.link.view().proof
+
+    def test_a_robot_at_rest(self):
+        self.stop()
+        wait_for(lambda: self.proof().state == PROOF_STOPPED, what='the proof')
+        print('MEASURED proof of a robot at rest: {:.0f} ms, "{}"'.format(
+            1e3 * (time.monotonic() - self.stopped_at), self.proof().text))
+
+    def refuted(self, words):
+        """Look on until it is said that the stop is not confirmed; it was never said to be."""
+        seen = set()
+
+        def not_confirmed():
+            proof = self.proof()
+            seen.add(proof.state)
+            return proof.state == PROOF_NOT_CONFIRMED and proof.text
+        self.assertIn(words, wait_for(not_confirmed, what='the doubt', poll_s=0.01))
+        self.assertNotIn(PROOF_STOPPED, seen)
+
+    def test_one_that_slides(self):
+        self.teller.sideways_mps = 0.5
+        self.stop()
+        self.refuted('moves at 0.50 m/s')
+
+    def test_one_that_says_rest_and_moves(self):
+        self.teller.creeps_mps = 0.5
+        self.stop()
+        self.refuted('its pose moves at ')
+
+    def test_one_that_says_nothing_that_can_be(self):
+        self.teller.sideways_mps = NAN
+        self.stop()
+        self.refuted('its odometry is not possible')
+
+    def test_one_that_is_heard_late(self):
+        """What is heard first was measured before the stop."""
+        self.teller.late_s = LATE_S
+        wait_for(lambda: self.link.view().age_s > LATE_S / 2, what='the delay', poll_s=0.01)
+        wait_for(lambda: self.link.view().age_s < 0.1, what='the first late word', poll_s=0.001)
+        self.stop()
+        wait_for(lambda: self.proof().state == PROOF_STOPPED, what='the proof', poll_s=0.001)
+        took_s = time.monotonic() - self.stopped_at
+        print('MEASURED proof by odometry that is {:g} s late: {:.0f} ms, "{}"'.format(
+            LATE_S, 1e3 * took_s, self.proof().text))
+        self.assertGreater(took_s, LATE_S)
+
+
+if __name__ == '__main__':
+    rospy.init_node('stop_proof_test')
+    rostest.rosrun('mhri', 'stop_proof', StopProofTest)

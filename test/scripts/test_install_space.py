@@ -1,0 +1,97 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""``catkin_make install`` for real, into a prefix of its own, and what runs from there."""
+import os
+import subprocess
+import sys
+
+from conftest import REPO
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.ros_system import System, wait_for  # noqa: E402
+
+# The folders that are installed as they are.
+SHARED = ('launch', 'resource', 'utils')
+PATIENCE_S = 60.0
+
+
+@pytest.fixture(scope='module')
+def prefix(tmp_path_factory):
+    """Return the prefix; the checkout is only read."""
+    folder = tmp_path_factory.mktemp('install')
+    subprocess.run(
+        ['catkin_make', 'install', '-C', str(folder), '--source', str(REPO),
+         '-DPYTHON_EXECUTABLE=/usr/bin/python3', '-DCATKIN_ENABLE_TESTING=OFF',
+         '-DCMAKE_INSTALL_PREFIX={}'.format(folder / 'prefix')],
+        env=bare(), check=True, stdin=subprocess.DEVNULL)
+    return folder / 'prefix'
+
+
+def bare():
+    """Return this environment without any workspace."""
+    return {name: value for name, value in os.environ.items()
+            if name not in ('CMAKE_PREFIX_PATH', 'PYTHONPATH', 'ROS_PACKAGE_PATH')}
+
+
+@pytest.fixture(scope='module')
+def system(prefix):
+    """Return a master, and an environment that knows the prefix alone."""
+    with System(adopt=False) as made:
+        settings = bare()
+        settings.update({name: made.env[name] for name in (
+            'ROS_MASTER_URI', 'ROS_IP', 'ROS_HOME', 'ROS_LOG_DIR', 'PYTHONUNBUFFERED')})
+        sourced = subprocess.run(
+            ['bash', '-c', '. "$1/setup.bash"; env -0', 'bash', str(prefix)], env=settings,
+            check=True, stdout=subprocess.PIPE, universal_newlines=True).stdout
+        made.env.clear()
+        made.env.update(line.split('=', 1) for line in sourced.split('\0') if line)
+        made.env['QT_QPA_PLATFORM'] = 'offscreen'
+        made.start_master()
+        yield made
+
+
+def test_every_file_is_there_and_what_runs_may_run(prefix):
+    share = prefix / 'share' / 'mhri'
+    for path in [path for part in SHARED for path in (REPO / part).rglob('*') if path.is_file()
+                 and '__pycache__' not in path.parts]:
+        copy = share / path.relative_to(REPO)
+        assert copy.read_bytes() == path.read_bytes()
+        assert os.access(str(copy), os.X_OK) == os.access(str(path), os.X_OK), copy
+    for path in (REPO / 'scripts').iterdir():
+        assert os.access(str(prefix / 'lib' / 'mhri' / path.name), os.X_OK), path.name
+    assert (share / 'plugin.xml').is_file() and (share / 'package.xml').is_file()
+
+
+def test_python_finds_the_installed_package_alone(prefix, system):
+    said = subprocess.run(
+        ['/usr/bin/python3', '-c', 'import mhri.nodes.mux, mhri.gui.screen.panel, mhri.msg\n'
+         'for name in ("nodes", "gui", "msg"): print(getattr(mhri, name).__file__ or "")'],
+        env=system.env, check=True, stdout=subprocess.PIPE, universal_newlines=True).stdout
+    assert said.count(str(prefix)) == 3 and str(REPO) not in said, said
+
+
+def nodes(system):
+    done = subprocess.run(['rosnode', 'list'], env=system.env, stdout=subprocess.PIPE,
+                          universal_newlines=True)
+    return done.stdout.split()
+
+
+@pytest.mark.parametrize('executable, arguments, node', [
+    ('mux', [], '/mux'), ('panel', ['--fresh'], '/mhri_panel')])
+def test_it_runs_from_there(prefix, system, executable, arguments, node):
+    process = system.start('rosrun', 'mhri', executable, *arguments)
+
+    def registered():
+        with open(process.log) as log:
+            assert process.poll() is None, log.read()
+        return node in nodes(system)
+    wait_for(registered, PATIENCE_S, node, poll_s=0.2)
+    with open('/proc/{}/cmdline'.format(process.pid)) as file:
+        command = file.read()
+    assert str(prefix) in command and str(REPO) not in command
+    process.terminate()
+    assert process.wait(20) in (0, -15, 143)
+    with open(process.log) as log:
+        assert 'Traceback' not in log.read()
