@@ -81,8 +81,6 @@ def others_of(*started):
     found = {'screen': screen, 'bench': psutil.Process()}
     for name, popen in started:
         found[name] = psutil.Process(popen.pid)
-        found.update(('keeper', child)
-                     for number, child in enumerate(found[name].children(recursive=True)))
     return found
 
 
@@ -164,18 +162,18 @@ def main():
         system.start_master()
         import rospy
         rospy.init_node('bench', disable_signals=True)
-        mux = system.node('mux', '__name:=mux')
+        mux, gates = system.node('mux', '__name:=mux'), system.node('gates')
         system.launch('sim.launch', 'n:={}'.format(len(NAMES)))
         measurement = Measurement(system, seconds)
-        alone = measurement.take('the robots alone', others_of(('mux', mux)))
+        alone = measurement.take('the robots alone', others_of(('mux', mux), ('gates', gates)))
         panel = panel_with(system, ['imu'])
         graphs = measurement.take('three windows with graphs', others_of(
-            ('mux', mux), ('panel', panel)))
+            ('mux', mux), ('gates', gates), ('panel', panel)))
         panel.terminate()
         panel.wait(20)
         panel = panel_with(system, ['imu', 'rgb'])
         streams = measurement.take('three windows with graphs and RGB', others_of(
-            ('mux', mux), ('panel', panel)))
+            ('mux', mux), ('gates', gates), ('panel', panel)))
         rates = measurement.rates
         robot = [per_frame(streams[name] - alone[name], rates[name]) for name in NAMES]
         shown = per_frame(streams['panel'] - graphs['panel'], sum(rates.values()))

@@ -81,7 +81,7 @@ def test_record_selected_records_each_and_says_how_it_ended(session, ask):
 
 
 def test_commands_of_the_robot_itself_are_recorded_where_asked_for(session):
-    """The robot's velocity topic cannot be subscribed; what the gate sent is written instead."""
+    """Whoever merely listens to the robot's velocity topic changes nothing."""
     from mhri.presenters.demo import Grip
     from rosbag import Bag
     name = 'bot1'
@@ -99,6 +99,21 @@ def test_commands_of_the_robot_itself_are_recorded_where_asked_for(session):
     with Bag(recordings.status(name).path) as bag:
         sent = [message.linear.x for _, message, _ in bag.read_messages(['/bot1/teleop/input'])]
     assert max(sent) > 0.1 and sent[-1] == 0.0, 'the command and the zero that ended it'
+
+
+def test_a_robot_that_is_removed_is_recorded_no_more_and_the_screen_says_so(session):
+    recordings = session.operator.recordings
+    session.operator.record('bot3', '', ())
+    session.until(lambda: recordings.status('bot3').messages > 10)
+    session.host.panel.robot_list.activate('bot3')
+    session.hands.click('remove_button')
+    session.until(lambda: recordings.status('bot3').state == 'ended', what='the end')
+    assert recordings.running() == ()
+    path = recordings.status('bot3').path
+    session.until(lambda: session.host.panel.look_label.text().startswith('bot3: saved'))
+    assert os.path.exists(path) and path.endswith('.bag'), 'closed whole'
+    session.host._add('bot3')
+    session.until(lambda: session.operator.robot_view('bot3').link == 'live')
 
 
 def test_motion_capture_ages_and_bandwidth_show(session):

@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """One operator at a time, as the screens see it: two programs, two screens in one program."""
+import gc
 import json
 import os
 import subprocess
@@ -11,6 +12,8 @@ import time
 import unittest
 import xmlrpc.client
 
+from diagnostic_msgs.msg import DiagnosticArray
+import psutil
 import rosgraph
 import rospy
 import rostest
@@ -197,6 +200,41 @@ class ControlTest(unittest.TestCase):
         count = len(self.gates.selections)
         wait_for(lambda: (one.repeat_selection(), len(self.gates.selections) > count)[-1], START_S)
         self.assertFalse(any(robots for _, robots in self.gates.selections[count:]))
+
+    def test_ten_screens_that_were_closed_leave_nothing(self):
+        """As plugins of rqt, which lives on: no thread, no handle, and no status of theirs."""
+        statuses = []
+        subscriber = rospy.Subscriber(
+            '/diagnostics', DiagnosticArray, lambda message: statuses.extend(
+                one.name for one in message.status if one.name.endswith(': robots')))
+        self.addCleanup(subscriber.unregister)
+
+        def open_and_close():
+            screen = ScreenBackend(['panel'])
+            screen.start()
+            wait_for(lambda: screen.view().ros == 'connected', START_S, 'a screen')
+            screen.add('bot1')
+            wait_for(lambda: screen.robot_view('bot1').type_label, START_S, 'its robot')
+            screen.close(forget=True)
+
+        def held():
+            gc.collect()
+            return len(threading.enumerate()), psutil.Process().num_fds()
+        open_and_close()
+        time.sleep(1.5)
+        before = held()
+        for _ in range(10):
+            open_and_close()
+        try:
+            wait_for(lambda: held()[0] <= before[0] + 3 and held()[1] <= before[1] + 5, 20.0,
+                     'what is ending to have ended', 0.1)
+        finally:
+            print('MEASURED ten screens closed: threads {} -> {}, handles {} -> {}'.format(
+                before[0], held()[0], before[1], held()[1]),
+                sorted(thread.name for thread in threading.enumerate()))
+        del statuses[:]
+        time.sleep(2.5)
+        self.assertEqual(statuses, [])
 
 
 def publishers(topic):

@@ -19,8 +19,7 @@ import pytest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from support import machines  # noqa: E402
-from support.lab import COMMANDS, GUARDED, HOST_SCRIPTS, Lab, LONG_S  # noqa: E402
-from support.lab import Operator, START_S  # noqa: E402
+from support.lab import GUARDED, HOST_SCRIPTS, Lab, LONG_S, Operator, START_S  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
 WHY_NOT = machines.why_not()
@@ -224,14 +223,6 @@ def latencies_ms(operator, rows, turns=300):
     return sorted(times)
 
 
-def keepers_of(name):
-    """Return the names of the gate keepers that are registered for a robot."""
-    import rosgraph
-    publishers = dict(rosgraph.Master('/lab').getSystemState()[0])
-    return {node for node in publishers.get('/{}/{}'.format(name, COMMANDS[name]), ())
-            if node.startswith('/mhri_gate_keeper')}
-
-
 def say_latencies(name, when, times):
     print('MEASURED stick to {}, {}: p50 {:.1f} ms, p99 {:.1f} ms, {} changes'.format(
         name, when, times[len(times) // 2], times[len(times) * 99 // 100], len(times)))
@@ -243,7 +234,6 @@ def test_robot_stops_without_its_link_and_is_usable_with_it(lab, operator, name,
     rows, others = lab.observer(name), lab.observer(other)
     operator.drive(name, other)
     say_latencies(other, 'all links up', latencies_ms(operator, others))
-    keepers = keepers_of(name)
     cut = time.monotonic()
     robot.unplug()
     try:
@@ -269,43 +259,40 @@ def test_robot_stops_without_its_link_and_is_usable_with_it(lab, operator, name,
               back, strayed))
     assert stopped < STOP_S[name]
     assert strayed < 0.01, 'a stale command moved it'
-    # Without a guard, what the keeper had sent was taken back, which costs it its connection.
-    if name in GUARDED:
-        assert keepers_of(name) == keepers
-    else:
-        wait_for(lambda: keepers_of(name) - keepers and not keepers_of(name) & keepers, START_S,
-                 'another gate keeper', poll_s=0.2)
-        operator.drive(name, other)
     assert during[len(during) // 2] < 50.0, other + ' goes by the stick as before'
     assert all(terminal.process.poll() is None for terminal in lab.terminals[-2:])
     operator.stick.hold(0.0, 0.0)
     wait_for(operator.witnesses[name].at_rest, 20, name + ' to rest', poll_s=0.05)
 
 
+@pytest.mark.parametrize('outage_s', [0.2, 0.4, 0.55, 1.0, 2.0, 15.0])
 @pytest.mark.parametrize('name', ['bot1', 'bot2'])
-def test_an_outage_too_short_to_be_noticed_brings_no_motion_back(lab, operator, name):
-    """The robot has stopped by itself, the host has not missed it yet: nothing is taken back."""
+def test_what_an_outage_brings_back_moves_nothing(lab, operator, name, outage_s):
+    """A stick that is held through it, too: let go where the outage is too short to be noticed."""
     robot, rows = lab.robots[name], lab.observer(name)
     operator.drive(name)
     wait_for(lambda: rows(3)[-1][1] > 0.05, 20, 'commands to ' + name)
     cut = time.monotonic()
     robot.unplug()
     try:
-        wait_for(lambda: time.monotonic() > cut + 0.3, poll_s=0.005)
-        operator.stick.hold(0.0, 0.0)
-        wait_for(lambda: time.monotonic() > cut + 0.55, poll_s=0.005)
+        wait_for(lambda: time.monotonic() > cut + min(0.3, 0.5 * outage_s), poll_s=0.005)
+        if outage_s < 1.0:
+            operator.stick.hold(0.0, 0.0)
+        wait_for(lambda: time.monotonic() > cut + outage_s, 20, poll_s=0.005)
     finally:
         robot.plug()
     mended = time.monotonic()
     wait_for(lambda: first_standstill(rows(), cut), 20, name + ' to stop', poll_s=0.05)
     wait_for(operator.witnesses[name].live, START_S, 'word of ' + name, poll_s=0.05)
-    wait_for(lambda: time.monotonic() > mended + 3.0, 20, 'the rest of the backlog')
+    wait_for(lambda: time.monotonic() > mended + 4.0, 20, 'the rest of the backlog')
     stopped = first_standstill(rows(), cut)
     strayed = path_m(rows(), stopped)
-    print('MEASURED link of {} ({}) cut for {:.2f} s: stands still after {:.0f} ms, moved {:.3f} m '
-          'by itself after that'.format(name, 'guarded' if name in GUARDED else 'no guard',
-                                        mended - cut, 1e3 * (stopped - cut), strayed))
+    print('MEASURED link of {} ({}) cut for {:.2f} s, stick {}: stands still after {:.0f} ms, '
+          'moved {:.3f} m by itself after that'.format(
+              name, 'guarded' if name in GUARDED else 'no guard', mended - cut,
+              'let go' if outage_s < 1.0 else 'held', 1e3 * (stopped - cut), strayed))
     assert strayed < 0.02, 'a stale command moved it'
+    operator.stick.hold(0.0, 0.0)
     operator.drive(name)
     operator.stick.hold(0.0, 0.0)
     wait_for(operator.witnesses[name].at_rest, 20, name + ' to rest', poll_s=0.05)

@@ -26,7 +26,7 @@ def main():
     speaker = GatesSpeaker(gates.read, gates.mux_heard)
     gates.on_change = speaker.on_change
     rospy.on_shutdown(gates.close)
-    MasterWatch().start()
+    MasterWatch(period_s=0.25, patience_s=1.1).start()
     gates.start()
     speaker.start()
     for error in errors:

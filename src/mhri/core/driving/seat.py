@@ -77,6 +77,7 @@ class ControlSeat:
 
     def on_gone(self, caller):
         """Take note that a publisher of the selection has gone."""
+        self.refused.pop(caller, None)
         if caller == self._operator:
             self._operator, self._chosen, self._lapsed, self.since = '', (), False, None
 

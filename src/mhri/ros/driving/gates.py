@@ -36,6 +36,9 @@ from mhri.ros.driving.roster import Roster
 from mhri.ros.graph.rospy_inside import caller_of, link_of, on_publisher_gone
 
 TICK_S = 0.05
+# Whoever was refused is named for so long [s], and so many of them at once.
+REFUSED_S = 30.0
+MOST_STRANGERS = 32
 
 
 class Gates:
@@ -96,7 +99,8 @@ class Gates:
             refused = ['{}: robot_select, {} times'.format(name, count)
                        for name, count in self._seat.refused.items()]
             refused += ['{}: {}, {} times'.format(caller, topic, count)
-                        for (caller, topic), count in self._strangers.items()]
+                        for (caller, topic), (count, at) in self._strangers.items()
+                        if self._clock() - at < REFUSED_S]
             return dict(operator=self._seat.operator, since=self._seat.since,
                         leased=self._seat.state == 'leased', mux=self._mux.caller,
                         stop_all=bool(self._stop), together=self._together, share=self._share,
@@ -119,9 +123,11 @@ class Gates:
     def _refuse(self, caller, topic):
         """Count who is not believed; the names are bounded."""
         key = (caller, topic)
-        if key in self._strangers or len(self._strangers) < 32:
-            self._strangers[key] = self._strangers.get(key, 0) + 1
-            self.on_change()
+        with self._lock:
+            if len(self._strangers) >= MOST_STRANGERS and key not in self._strangers:
+                self._strangers.pop(next(iter(self._strangers)))
+            self._strangers[key] = (self._strangers.get(key, (0,))[0] + 1, self._clock())
+        self.on_change()
 
     def _on_twist(self, message):
         """Forward; the one path on which every microsecond counts."""

@@ -51,7 +51,8 @@ class MuxInForce:
         caller = caller_of(message)
         if caller != self._caller:
             self._ask.set()
-            self._on_refused(caller, topic)
+            if self._caller:
+                self._on_refused(caller, topic)
             return False
         link = link_of(message)
         if self._links.get(topic) is not link:
