@@ -260,7 +260,8 @@ class Mux:
         """Return whether robots on a task are (stopped, enabled), and the message is new."""
         now = self._clock()
         self._awake(now)
-        return self._arbiter.stop_all, self._arbiter.enabled(now), self._pulse.is_new(now)
+        return (self._closing or self._arbiter.stop_all, self._arbiter.enabled(now),
+                self._pulse.is_new(now))
 
     def _facts(self):
         """Return (the active source's topic, what is waited for)."""
