@@ -4,6 +4,7 @@
 import ast
 import os
 from pathlib import Path
+import re
 import shutil
 import subprocess
 import sys
@@ -13,8 +14,15 @@ import pytest
 REPO = Path(__file__).resolve().parents[2]
 # mhri_test.sh installs there what the system does not package.
 TOOLS = REPO / 'build' / '.ws' / 'tools'
+INSTALLED = '''<package format="2">
+  <name>{}</name>
+  <version>1.0.0</version>
+  <description>Stands for an installed package.</description>
+  <maintainer email="lab@example.org">A lab</maintainer>
+  <license>BSD-3-Clause</license>
+</package>
+'''
 PYTHON_TREES = ('src', 'test', 'utils', 'scripts')
-
 # The modules of core/ that mypy --strict passes: those annotated since are added, none goes.
 TYPED = ('devices/publish_throttle.py', 'recording/bag_format.py', 'voice/sound.py')
 
@@ -92,29 +100,37 @@ def test_shell_files_parse():
         assert run(['bash', '-n', path]) == (0, '')
 
 
-def catkin_lint(folder):
-    """Return (exit status, output): the same whether nodelet is installed here or not."""
-    (folder / 'known').mkdir()
-    packages = REPO / 'test' / 'support' / 'robot_packages'
-    (folder / 'known' / 'nodelet').symlink_to(packages / 'nodelet')
-    return run(['env', '-u', 'ROS_PACKAGE_PATH', 'catkin_lint', '--strict', '-W2',
-                '--package-path', folder / 'known', folder / 'mhri'])
+def catkin_lint(tmp_path, manifest=None):
+    """Return (exit status, output): judged as where every package that mhri names is installed.
+
+    What is installed here, what rosdep knows and what was looked up before makes no difference: of
+    an unknown package nothing is asked, so that a lint without these passes where others fail.
+    """
+    manifest = manifest or (REPO / 'package.xml').read_text(encoding='utf-8')
+    installed = tmp_path / 'installed'
+    # Those of the system have a hyphen in their names, or no manifest.
+    for name in set(re.findall(r'depend[^>]*>([a-z_0-9]+)<', manifest)) | {'nodelet'}:
+        (installed / name).mkdir(parents=True)
+        (installed / name / 'package.xml').write_text(INSTALLED.format(name))
+    # It wants the folder to be called as the package is, which a checkout need not be.
+    package = tmp_path / 'mhri'
+    shutil.copytree(str(REPO), str(package), ignore=shutil.ignore_patterns('build', '.*'))
+    (package / 'package.xml').write_text(manifest, encoding='utf-8')
+    return run(['env', 'ROS_HOME={}'.format(tmp_path), 'ROS_PACKAGE_PATH={}'.format(installed),
+                'ROS_DISTRO=noetic', 'catkin_lint', '--offline', '--strict', '-W2', package])
 
 
 def test_catkin_lint(tmp_path):
-    # It wants the folder to be called as the package is, which a checkout need not be.
-    (tmp_path / 'mhri').symlink_to(REPO)
     status, output = catkin_lint(tmp_path)
     assert status == 0, output
     assert 'checked 1 packages and found 0 problems' in output
 
 
 def test_catkin_lint_would_speak_up(tmp_path):
-    shutil.copytree(str(REPO), str(tmp_path / 'mhri'),
-                    ignore=lambda _, names: {'build', '.git', 'test'} & set(names))
-    manifest = tmp_path / 'mhri' / 'package.xml'
-    manifest.write_text(manifest.read_text().replace('<exec_depend>nodelet</exec_depend>', ''))
-    status, output = catkin_lint(tmp_path)
+    """Of a package that a launch file needs and package.xml does not name, installed or not."""
+    manifest = (REPO / 'package.xml').read_text(encoding='utf-8')
+    status, output = catkin_lint(tmp_path, manifest.replace(
+        '<exec_depend>nodelet</exec_depend>', ''))
     assert status != 0 and "needs exec_depend on 'nodelet'" in output
 
 
