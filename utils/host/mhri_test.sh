@@ -68,7 +68,8 @@ parse_arguments() {
 
 # Tools that Debian and Ubuntu do not package, in the workspace, at fixed versions.
 install_tools() {
-  local tools=(vermin==1.6.0)
+  local tools=(vermin==1.6.0 mypy==1.14.1 mypy_extensions==1.0.0 typing_extensions==4.12.2
+    tomli==2.0.1)
   # Ubuntu 20.04 has no package of it.
   [ "$(os_family)" = debian ] || tools+=(flake8-docstrings==1.6.0 pydocstyle==6.3.0)
   [ "$(cat "$WS/tools/installed" 2>/dev/null)" != "${tools[*]}" ] || return 0

@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """When an input device's state is published: on change, but not too often, and again while held."""
+from typing import Generic, Optional, TypeVar
+
+State = TypeVar('State')
 
 # At most so often; what changes in between is coalesced and its newest state sent.
 MIN_PERIOD_S = 0.01
@@ -8,29 +11,29 @@ MIN_PERIOD_S = 0.01
 REPEAT_S = 0.05
 
 
-class Pacer:
+class Pacer(Generic[State]):
     """Holds the newest state of a device and says when to publish it.
 
     Times are seconds of a clock that never goes back. The newest state is never dropped: it is
     returned by the first :meth:`take` at or after its time.
     """
 
-    def __init__(self):
-        self._newest = None
+    def __init__(self) -> None:
+        self._newest: Optional[State] = None
         self._changed = False
-        self._sent_at = None
+        self._sent_at: Optional[float] = None
 
-    def offer(self, state):
+    def offer(self, state: State) -> None:
         """Take in a state (anything but None); it replaces one that was not published yet."""
         self._newest = state
         self._changed = True
 
     @property
-    def holding_back(self):
+    def holding_back(self) -> bool:
         """Whether a change waits for its time."""
         return self._changed
 
-    def due_in(self, now):
+    def due_in(self, now: float) -> float:
         """Return how long until something is to be published [s], 0.0: now.
 
         Without any state it is the time of a repetition, so that a caller has something to wait by.
@@ -42,7 +45,7 @@ class Pacer:
         period_s = MIN_PERIOD_S if self._changed else REPEAT_S
         return max(0.0, self._sent_at + period_s - now)
 
-    def take(self, now):
+    def take(self, now: float) -> Optional[State]:
         """Return the state to publish now, or None where it is not time for one."""
         if self._newest is None or self.due_in(now) > 0.0:
             return None

@@ -10,6 +10,7 @@ length and bytes of its data are what came over the wire (TCPROS has the same fr
 are, byte for byte, those that ``rosbag.Bag`` writes.
 """
 import struct
+from typing import Dict, Iterable, List, Optional, Sequence, Tuple
 
 VERSION_LINE = b'#ROSBAG V2.0\n'
 _FILE_HEADER_LENGTH = 4096
@@ -21,23 +22,23 @@ _UNPACK_U32 = struct.Struct('<I').unpack_from
 _NS = 10 ** 9
 
 
-def _header(fields):
+def _header(fields: Iterable[Tuple[bytes, bytes]]) -> bytes:
     """Return a record header: pairs of a name and a value, both bytes."""
     text = b''.join(_PACK_U32(len(key) + 1 + len(value)) + key + b'=' + value
                     for key, value in fields)
     return _PACK_U32(len(text)) + text
 
 
-def _record(op, fields, data):
+def _record(op: int, fields: List[Tuple[bytes, bytes]], data: bytes) -> bytes:
     header = _header([(b'op', bytes([op]))] + fields)
     return header + _PACK_U32(len(data)) + data
 
 
-def _time_bytes(time_ns):
+def _time_bytes(time_ns: int) -> bytes:
     return _PACK_TIME(*divmod(time_ns, _NS))
 
 
-def file_header(index_pos=0, connections=0, chunks=0):
+def file_header(index_pos: int = 0, connections: int = 0, chunks: int = 0) -> bytes:
     """Return the first record, of fixed length; zeros while the file has no index yet."""
     header = _header([(b'op', bytes([_OP_FILE_HEADER])), (b'index_pos', _PACK_U64(index_pos)),
                       (b'conn_count', _PACK_U32(connections)),
@@ -54,7 +55,7 @@ class Connection:
         and ``message_definition`` must be among them
     """
 
-    def __init__(self, number, fields):
+    def __init__(self, number: int, fields: Dict[str, str]) -> None:
         self.number = number
         encoded = [(key.encode(), value.encode()) for key, value in fields.items()]
         data = _header(encoded)
@@ -73,20 +74,21 @@ class Chunk:
     ``size`` is that of its records [bytes]; ``messages`` their number.
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.size = 0
         self.messages = 0
-        self._parts = []
-        self._index = {}
-        self._last_ns = self._least_ns = self._greatest_ns = None
+        self._parts: List[bytes] = []
+        self._index: Dict[int, List[bytes]] = {}
+        self._last_ns: Optional[int] = None
+        self._least_ns = self._greatest_ns = 0
         self._ordered = True
 
-    def introduce(self, connection):
+    def introduce(self, connection: Connection) -> None:
         """Add the record of a connection, before the first message that it brings to the file."""
         self._parts.append(connection.record)
         self.size += len(connection.record)
 
-    def add(self, connection, time_ns, frame):
+    def add(self, connection: Connection, time_ns: int, frame: bytes) -> None:
         """Add one message.
 
         :param time_ns: the receipt time [ns since 1970], > 0
@@ -104,7 +106,7 @@ class Chunk:
         self.size += len(connection.message_head) + 8 + len(frame)
         self.messages += 1
 
-    def _new_time(self, time_ns):
+    def _new_time(self, time_ns: int) -> None:
         if self._last_ns is None:
             self._least_ns = self._greatest_ns = time_ns
         elif time_ns < self._last_ns:
@@ -114,7 +116,7 @@ class Chunk:
         self._last_ns = time_ns
         self._time_bytes = _time_bytes(time_ns)
 
-    def finish(self, position):
+    def finish(self, position: int) -> Tuple[bytes, bytes]:
         """Return (its bytes with its index, its entry in the index of the file).
 
         :param position: where in the file it will stand [bytes]
@@ -138,7 +140,7 @@ class Chunk:
         return b''.join(parts), info
 
 
-def _sorted_entries(entries):
+def _sorted_entries(entries: List[bytes]) -> List[bytes]:
     """Return index entries by time: a simulated clock may run backwards, readers search by time."""
     pairs = sorted(zip(entries[::2], entries[1::2]),
                    key=lambda pair: struct.unpack('<II', pair[0]))
@@ -153,11 +155,11 @@ class FrameSplitter:
 
     LONGEST = 10 ** 9
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.wanted = 0
-        self._parts = []
+        self._parts: List[bytes] = []
 
-    def split(self, data):
+    def split(self, data: bytes) -> Sequence[bytes]:
         """Return the frames that are whole with these bytes.
 
         :raises ValueError: a length that no message has (the limit of roscpp, 1 GB)
@@ -176,8 +178,9 @@ class FrameSplitter:
             return (data,)
         return self._cut(data, length)
 
-    def _cut(self, data, length):
-        frames, start = [], 0
+    def _cut(self, data: bytes, length: int) -> List[bytes]:
+        frames: List[bytes] = []
+        start = 0
         while length - start >= 4:
             size = _UNPACK_U32(data, start)[0]
             if size > self.LONGEST:
