@@ -26,7 +26,7 @@ from std_srvs.srv import SetBool
 
 from mhri.msg import GatesState, TeamTwist
 from mhri.ros.driving.neighbour import Neighbour
-from mhri.ros.graph.talkers import caller_of
+from mhri.ros.graph.rospy_inside import caller_of
 
 
 class Gates:

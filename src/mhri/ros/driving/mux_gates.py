@@ -6,7 +6,7 @@ import rospy
 from mhri.core.driving.stop_echo import StopEcho
 from mhri.msg import GatesState
 from mhri.ros.driving.neighbour import Neighbour
-from mhri.ros.graph.talkers import caller_of, link_of
+from mhri.ros.graph.rospy_inside import caller_of, link_of
 
 
 class GatesWatch:

@@ -10,7 +10,7 @@ from sensor_msgs.msg import Joy
 from mhri.core.driving.ownership import Ownership
 from mhri.core.driving.sources import TWIST
 from mhri.ros.devices.input_node import LOST
-from mhri.ros.graph.talkers import caller_of, link_of, publishers
+from mhri.ros.graph.rospy_inside import caller_of, link_of, publishers
 
 # The longest text that is taken from a message.
 LONGEST_TEXT = 200

@@ -236,6 +236,12 @@ def listeners(connections):
     return {connection.endpoint_id for connection in connections}
 
 
+def publishers(subscriber):
+    """Return the caller ids of the publishers that are connected to a ``rospy.Subscriber``."""
+    impl = subscriber.impl
+    return {link.callerid_pub for link in (impl.connections if impl else ())}
+
+
 def publisher_uri(subscriber):
     """Return the XML-RPC address of a node that publishes what is subscribed, or None."""
     impl = subscriber.impl
