@@ -270,6 +270,16 @@ def on_publisher_gone(subscriber, call):
     impl.remove_connection = remove_connection
 
 
+def ended_by_hand():
+    """Return a function that tells whether somebody has ended this node by ``rosnode kill``.
+
+    Not the master, which ends the older of two nodes with one name. Call it after ``init_node``.
+    """
+    reasons = []
+    rospy.core.add_preshutdown_hook(reasons.append)
+    return lambda: any('user request' in reason for reason in reasons)
+
+
 def close_poller(impl):
     """Close the epoll handle that rospy leaves in a cycle of references (ros_comm issue 2373)."""
     if impl is not None and impl.closed:
