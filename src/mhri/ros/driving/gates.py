@@ -212,7 +212,7 @@ class Gates:
 
     def _on_take(self, request):
         """Put the caller in control; every robot gets a zero, and neutral is asked for."""
-        caller = request._connection_header['callerid']
+        caller = caller_of(request)
         with self._lock:
             now = self._clock()
             self._seat.take(caller, now)

@@ -17,8 +17,8 @@ from mhri.core.screen.views import GONE, SILENT
 from mhri.msg import RobotGate as RobotGateMessage
 from mhri.ros.convert import to_twist
 from mhri.ros.driving.motor_power import MotorPower
-from mhri.ros.graph.rospy_inside import listeners, PromptPublisher, publisher_uri
-from mhri.ros.graph.unsubscribe import unsubscribe
+from mhri.ros.graph.rospy_inside import (
+    listeners, PromptPublisher, publisher_uri, unsubscribe)
 from mhri.ros.robots.link_probe import LinkProbe
 
 # A link that has confirmed nothing for so long is lost: the robot is held, with one zero behind the
