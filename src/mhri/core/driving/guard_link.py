@@ -13,6 +13,7 @@ zero is dropped until then. So a gate says zero until :attr:`GuardLink.stop_conf
 """
 import collections
 import re
+from typing import Deque, Optional, Tuple
 
 # An echo comes every 0.1 s; three in a row may be lost.
 ECHO_S = 0.35
@@ -24,12 +25,12 @@ _SESSION = re.compile(r'[A-Za-z0-9_-]{1,32}\Z')
 _NOBODY = '-'
 
 
-def format_id(session, number, token, stop=False):
+def format_id(session: str, number: int, token: str, stop: bool = False) -> str:
     """Return the frame_id of a command; one with an empty token is good as a stop only."""
     return '{}{}:{}:{}'.format(session, '!' if stop else '', number, token)
 
 
-def parse_id(text):
+def parse_id(text: str) -> Optional[Tuple[str, int, str, bool]]:
     """Return (session, number, token, stop) of a frame_id, or None where it is none.
 
     ``stop`` is true for a command that stops and for an echo of a robot that is stopped.
@@ -49,22 +50,22 @@ class GuardLink:
     :raises ValueError: the session is something else
     """
 
-    def __init__(self, session):
+    def __init__(self, session: str) -> None:
         if not _SESSION.match(session) or session == _NOBODY:
             raise ValueError('the session is {!r}: give at most 32 of A-Z, a-z, 0-9, _ and -'
                              .format(session[:40]))
         self._session = session
         self._number = 0
         self._token = ''
-        self._echo_at = None
+        self._echo_at: Optional[float] = None
         self._was_alive = False
-        self._sent = collections.deque()
-        self._round_trip_s = None
+        self._sent: Deque[Tuple[int, float]] = collections.deque()
+        self._round_trip_s: Optional[float] = None
         self.obeyed_number = 0
         self.displaced = False
         self.stop_confirmed = False
 
-    def on_echo(self, frame_id, now):
+    def on_echo(self, frame_id: str, now: float) -> bool:
         """Take in the frame_id of an echo; return False where it is none, and nothing changes."""
         echo = parse_id(frame_id)
         if echo is None or not echo[2]:
@@ -81,17 +82,17 @@ class GuardLink:
                 self._round_trip_s = now - at
         return True
 
-    def alive(self, now):
+    def alive(self, now: float) -> bool:
         """Tell whether an echo came within the last 0.35 s."""
         self._was_alive = self._echo_at is not None and now - self._echo_at <= ECHO_S
         return self._was_alive
 
     @property
-    def was_alive(self):
+    def was_alive(self) -> bool:
         """What :meth:`alive` said last: a link that was alive and is not has been lost."""
         return self._was_alive
 
-    def next_id(self, stop, now):
+    def next_id(self, stop: bool, now: float) -> str:
         """Return the frame_id for the next command, which has to be sent.
 
         Its token is empty before the first echo: the guard obeys it then if it is a stop.
@@ -101,11 +102,11 @@ class GuardLink:
         self._sent.append((self._number, now))
         return format_id(self._session, self._number, self._token, stop)
 
-    def obeyed(self, number):
+    def obeyed(self, number: int) -> bool:
         """Tell whether the guard has obeyed a command of this session so late or later."""
         return 0 < number <= self.obeyed_number
 
-    def round_trip_s(self, now):
+    def round_trip_s(self, now: float) -> Optional[float]:
         """Return the time from a command to the echo that says it was obeyed [s], or None.
 
         The newest one that is known, or what the oldest of the last 2 s has waited already, if
@@ -116,6 +117,6 @@ class GuardLink:
             return self._round_trip_s
         return max(now - self._sent[0][1], self._round_trip_s or 0.0)
 
-    def _forget(self, now):
+    def _forget(self, now: float) -> None:
         while self._sent and now - self._sent[0][1] > _WAIT_S:
             self._sent.popleft()
