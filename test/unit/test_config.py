@@ -77,6 +77,13 @@ def test_close_refuses_what_nobody_asked_for():
     Section({}, 'f').close()
 
 
+@pytest.mark.parametrize('key', [0, False, None, 0.0])
+def test_a_key_that_counts_as_nothing_is_named_as_well(key):
+    with pytest.raises(ConfigError, match='^f: {}: unknown key$'.format(key)) as error:
+        Section({key: 1}, 'f').close()
+    assert error.value.key == str(key)
+
+
 @pytest.mark.parametrize('text', [
     '', '[]', 'a', '3', 'a: [', '\t- a', 'a: b: c', '{a', '!!python/x y'])
 def test_not_a_mapping_names_the_file(text):

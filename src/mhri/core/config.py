@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Configuration text turned into checked values: unknown keys are refused by name."""
 import reprlib
+from typing import Dict, List, NoReturn, Optional, Tuple, TypeVar, Union, overload
 
 import yaml
+
+Default = TypeVar('Default')
 
 # What a configuration may be at most. Those that are shipped have 2 kB, 300 values, 6 levels.
 MAX_BYTES = 1000 * 1000
@@ -18,7 +21,7 @@ _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 80
 _SHORT.maxlevel = 2
 
 
-def shown(value):
+def shown(value: object) -> str:
     """Return any value as it is written in an error: like ``repr``, but of 600 characters at most.
 
     Lists and mappings are cut after a few items, texts and numbers in their middle.
@@ -29,7 +32,7 @@ def shown(value):
         return 'a number of too many digits'
 
 
-def _cut(text, most, tail):
+def _cut(text: str, most: int, tail: int) -> str:
     """Return a printable text of ``most`` characters at most, its last ``tail`` kept."""
     if len(text) > 2 * most:  # before it is looked at character by character
         text = text[:most] + text[-most:]
@@ -50,7 +53,7 @@ class ConfigError(ValueError):
     The message is one printable line of :data:`MAX_ERROR` characters at most.
     """
 
-    def __init__(self, origin, key, problem):
+    def __init__(self, origin: str, key: str, problem: str) -> None:
         self.origin = origin
         self.key = key
         self.problem = problem
@@ -63,7 +66,7 @@ class ConfigError(ValueError):
 class Section:
     """One mapping of a configuration, read key by key; :meth:`close` refuses what was not read."""
 
-    def __init__(self, mapping, origin, path=''):
+    def __init__(self, mapping: object, origin: str, path: str = '') -> None:
         if not isinstance(mapping, dict):
             raise ConfigError(origin, path, 'expected a mapping of keys to values, got {}'.format(
                 shown(mapping)))
@@ -71,18 +74,18 @@ class Section:
         self._path = path
         self._left = dict(mapping)
 
-    def key(self, name):
+    def key(self, name: object) -> str:
         """Return the dotted name of a key, as it is written in error messages."""
-        return '{}.{}'.format(self._path, name) if self._path else name
+        return '{}.{}'.format(self._path, name) if self._path else str(name)
 
-    def error(self, name, problem):
+    def error(self, name: object, problem: str) -> ConfigError:
         """Return (not raise) a :class:`ConfigError` for one key of this section."""
         return ConfigError(self.origin, self.key(name), problem)
 
-    def __contains__(self, name):
+    def __contains__(self, name: str) -> bool:
         return self._left.get(name) is not None
 
-    def take(self, name, default=_REQUIRED):
+    def take(self, name: str, default: object = _REQUIRED) -> object:
         """Return the raw value of a key; a missing one is an error unless there is a default."""
         value = self._left.pop(name, None)
         if value is not None:
@@ -91,32 +94,57 @@ class Section:
             raise self.error(name, 'is missing')
         return default
 
-    def text(self, name, default=_REQUIRED):
+    @overload
+    def text(self, name: str) -> str: ...
+
+    @overload
+    def text(self, name: str, default: Default) -> Union[str, Default]: ...
+
+    def text(self, name: str, default: object = _REQUIRED) -> object:
         """Return a string."""
         value = self.take(name, default)
         if value is not default and not isinstance(value, str):
             raise self.error(name, 'expected text, got {}'.format(shown(value)))
         return value
 
-    def flag(self, name, default=_REQUIRED):
+    @overload
+    def flag(self, name: str) -> bool: ...
+
+    @overload
+    def flag(self, name: str, default: Default) -> Union[bool, Default]: ...
+
+    def flag(self, name: str, default: object = _REQUIRED) -> object:
         """Return a boolean."""
         value = self.take(name, default)
         if value is not default and not isinstance(value, bool):
             raise self.error(name, 'expected true or false, got {}'.format(shown(value)))
         return value
 
-    def number(self, name, low, high, default=_REQUIRED):
+    @overload
+    def number(self, name: str, low: float, high: float) -> float: ...
+
+    @overload
+    def number(self, name: str, low: float, high: float,
+               default: Default) -> Union[float, Default]: ...
+
+    def number(self, name: str, low: float, high: float, default: object = _REQUIRED) -> object:
         """Return a finite float in [low, high]."""
         value = self.take(name, default)
         if value is default:
             return value
-        good = isinstance(value, (int, float)) and not isinstance(value, bool)
-        if not good or not low <= value <= high:
+        if not isinstance(value, (int, float)) or isinstance(value, bool) \
+                or not low <= value <= high:
             raise self.error(name, 'expected a number from {:g} to {:g}, got {}'.format(
                 low, high, shown(value)))
         return float(value)
 
-    def index(self, name, default=_REQUIRED):
+    @overload
+    def index(self, name: str) -> int: ...
+
+    @overload
+    def index(self, name: str, default: Default) -> Union[int, Default]: ...
+
+    def index(self, name: str, default: object = _REQUIRED) -> object:
         """Return a whole number >= 0 (an axis or a button)."""
         value = self.take(name, default)
         if value is default:
@@ -125,7 +153,13 @@ class Section:
             raise self.error(name, 'expected a whole number from 0 up, got {}'.format(shown(value)))
         return value
 
-    def texts(self, name, default=_REQUIRED):
+    @overload
+    def texts(self, name: str) -> Tuple[str, ...]: ...
+
+    @overload
+    def texts(self, name: str, default: Default) -> Union[Tuple[str, ...], Default]: ...
+
+    def texts(self, name: str, default: object = _REQUIRED) -> object:
         """Return a tuple of strings; one string alone counts as a list of one."""
         value = self.take(name, default)
         if value is default:
@@ -136,18 +170,24 @@ class Section:
             raise self.error(name, 'expected a list of texts, got {}'.format(shown(value)))
         return tuple(value)
 
-    def section(self, name, default=_REQUIRED):
+    @overload
+    def section(self, name: str) -> 'Section': ...
+
+    @overload
+    def section(self, name: str, default: Default) -> Union['Section', Default]: ...
+
+    def section(self, name: str, default: object = _REQUIRED) -> object:
         """Return a sub-section, or the default where the key is missing."""
         value = self.take(name, default)
         if value is default:
             return value
         return self.sub_section(name, value)
 
-    def sub_section(self, name, value):
+    def sub_section(self, name: str, value: object) -> 'Section':
         """Return a value that was taken from a key as a sub-section."""
         return Section(value, self.origin, self.key(name))
 
-    def sections(self, name):
+    def sections(self, name: str) -> List['Section']:
         """Return the sub-sections of a list of mappings."""
         value = self.take(name)
         if not isinstance(value, list):
@@ -155,7 +195,7 @@ class Section:
         return [Section(item, self.origin, '{}[{}]'.format(self.key(name), number))
                 for number, item in enumerate(value)]
 
-    def named_sections(self, name):
+    def named_sections(self, name: str) -> Dict[str, 'Section']:
         """Return {key: sub-section} of a mapping of mappings; {} where the key is missing."""
         value = self.take(name, {})
         if not isinstance(value, dict):
@@ -163,26 +203,26 @@ class Section:
         return {str(key): Section(item, self.origin, '{}.{}'.format(self.key(name), key))
                 for key, item in value.items()}
 
-    def close(self):
+    def close(self) -> None:
         """Raise for the keys that nothing asked for: most often a spelling mistake."""
         if self._left:
             name = sorted(self._left, key=str)[0]
             raise self.error(name, 'unknown key')
 
 
-class _Loader(yaml.SafeLoader):
+class _Loader(yaml.SafeLoader):  # type: ignore[misc]  # mypy does not look into yaml
     """Reads YAML as ``SafeLoader`` does, but gives up before a text costs much time or memory.
 
     An alias counts as all the values that it stands for: nine lists of nine aliases each, one in
     the other, are 387 million values in 200 bytes.
     """
 
-    def __init__(self, stream):
+    def __init__(self, stream: str) -> None:
         super().__init__(stream)
         self._depth = self._values = self._words = 0
-        self._sizes = {}
+        self._sizes: Dict[str, int] = {}
 
-    def compose_node(self, parent, index):
+    def compose_node(self, parent: Optional[yaml.Node], index: object) -> yaml.Node:
         """Count the value that comes next, and those in it."""
         event = self.peek_event()
         alias = isinstance(event, yaml.AliasEvent)
@@ -201,7 +241,7 @@ class _Loader(yaml.SafeLoader):
             self._sizes[event.anchor] = self._values - begun
         return node
 
-    def construct_object(self, node, deep=False):
+    def construct_object(self, node: yaml.Node, deep: bool = False) -> object:
         """Return the value of a node; what its tag cannot mean is an error of the file."""
         scalar = isinstance(node, yaml.ScalarNode)
         if scalar and len(node.value) > MAX_DIGITS and node.tag in _MEASURED:
@@ -212,22 +252,23 @@ class _Loader(yaml.SafeLoader):
             self._refuse('{} is no {}'.format(
                 shown(node.value) if scalar else 'this', node.tag.rpartition(':')[2]), node)
 
-    def scan_plain_spaces(self, indent, start_mark):
+    def scan_plain_spaces(self, indent: int, start_mark: yaml.Mark) -> List[str]:
         """Count the words of texts without quotes."""
         self._words += 1
         if self._words > MAX_WORDS:
             raise yaml.scanner.ScannerError(
                 None, None, 'more than {} words'.format(MAX_WORDS), start_mark)
-        return super().scan_plain_spaces(indent, start_mark)
+        spaces: List[str] = super().scan_plain_spaces(indent, start_mark)
+        return spaces
 
-    def _refuse(self, problem, what):
+    def _refuse(self, problem: str, what: Union[yaml.Event, yaml.Node]) -> NoReturn:
         raise yaml.constructor.ConstructorError(None, None, problem, what.start_mark)
 
 
 _MEASURED = {'tag:yaml.org,2002:' + kind for kind in ('int', 'float', 'timestamp')}
 
 
-def parse_yaml(text, origin):
+def parse_yaml(text: str, origin: str) -> Section:
     """Return the top section of a YAML text; takes less than a second, whatever the text.
 
     :raises ConfigError: the text is not YAML, larger than this module's limits, or not a mapping
@@ -246,7 +287,7 @@ def parse_yaml(text, origin):
     return Section(data, origin)
 
 
-def too_large(origin):
+def too_large(origin: str) -> ConfigError:
     """Return (not raise) the :class:`ConfigError` of a file larger than :data:`MAX_BYTES`."""
     return ConfigError(origin, '', 'is larger than {} MB; a configuration of mhri is a few kB: is '
                        'this the right file?'.format(MAX_BYTES // 1000000))

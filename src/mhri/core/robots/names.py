@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Robot names: one segment of a ROS name, so that a robot is one namespace."""
 import re
+from typing import Optional
 
 _LEGAL = re.compile(r'[A-Za-z][A-Za-z0-9_]*\Z')
 _GLOBAL = re.compile(r'(/[A-Za-z][A-Za-z0-9_]*)+\Z')
@@ -11,7 +12,7 @@ RESERVED = frozenset(('gates', 'gates_in', 'mhri', 'mhri_gates', 'mhri_tasks', '
                       'panel_in', 'robot_controller'))
 
 
-def name_problem(name):
+def name_problem(name: str) -> Optional[str]:
     """Say why a text cannot be a robot's name; return None where it can.
 
     A robot is a namespace of one segment: a letter, then letters, digits and ``_``
@@ -36,22 +37,22 @@ def name_problem(name):
     return None
 
 
-def is_global_name(name):
+def is_global_name(name: str) -> bool:
     """Tell whether a text is an absolute ROS name, e.g. ``/mux_in/joy``."""
     return bool(_GLOBAL.match(name))
 
 
-def is_base_name(name):
+def is_base_name(name: str) -> bool:
     """Tell whether a text is one legal segment of a ROS name."""
     return bool(_LEGAL.match(name))
 
 
-def tidy_name(text):
+def tidy_name(text: str) -> str:
     """Return what the user most likely meant: no space around it, no slash in front or behind."""
     return text.strip().strip('/')
 
 
-def topic_of(robot, topic):
+def topic_of(robot: str, topic: str) -> str:
     """Return the absolute name of a topic of a robot's template.
 
     A topic is relative to the robot's namespace, as names in ROS are; one that begins with a slash
