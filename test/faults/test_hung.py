@@ -3,6 +3,7 @@
 """Mux and gates that hang: each is noticed by the other, ended, and started again by roslaunch."""
 import os
 import signal
+import subprocess
 import sys
 import time
 
@@ -39,6 +40,16 @@ def state():
         ear.wait(lambda message: message.mux_heard, 'mux and gates', 30.0)
         yield ear
         rospy.signal_shutdown('done')
+
+
+def test_gates_that_somebody_kills_come_back(state):
+    ended = wait_for(lambda: process_of('/mhri_gates'), 10.0, 'the node')
+    since = time.monotonic()
+    subprocess.run(['rosnode', 'kill', '/mhri_gates'], check=True, stdout=subprocess.DEVNULL)
+    wait_for(lambda: process_of('/mhri_gates') not in (None, ended), 15.0, 'other gates')
+    print('\nMEASURED rosnode kill /mhri_gates: others after {:.2f} s'.format(
+        time.monotonic() - since))
+    state.wait(lambda message: message.mux_heard and state.at > since + 1.0, 'all to be well', 20.0)
 
 
 @pytest.mark.parametrize('name', ['/mhri_gates', '/mux'])

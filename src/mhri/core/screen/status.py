@@ -47,8 +47,7 @@ def _stopped(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
 
 def _no_mux(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
     if view.mode is None:
-        return 'the mux is not running: nothing can be driven until it is (rosrun mhri mux)', \
-            ATTENTION
+        return 'what decides who drives is not running: close this and start mhri again', ATTENTION
     return None
 
 
@@ -85,8 +84,12 @@ def _driving(view: PanelView, waits_for: Optional[str]) -> _Line:
     """Say who is driven, by what, and what it waits for."""
     mode = view.mode or ''
     label = dict(view.sources).get(mode, mode)
+    if not view.dead_man:
+        label += ' (no dead-man button)'
     count = sum(robot.selected for robot in view.robots)
     who = '{} of {} robots'.format(count, len(view.robots))
+    if view.advice and waits_for == 'source':
+        return '{}  \u2013  {}'.format(who, view.advice), ATTENTION
     words = {'neutral': 'centre the stick to drive',
              'source': 'nothing is heard from it yet',
              'enabling': 'press the enabling pedal to drive',
