@@ -12,8 +12,7 @@ import pytest
 from mhri.core.camera.depth_codec import decode_depth, encode_depth, parse_format
 from mhri.core.camera.depth_colour import DepthColour, colour_at
 from mhri.core.camera.images import FrameError
-from mhri.core.camera.image_message import RawImage
-from mhri.core.camera.raw_image import decode_raw_depth
+from mhri.core.camera.raw_image import RawImage, decode_raw_depth
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
@@ -31,6 +30,25 @@ def same(found, expected):
 
 def png(pixels):
     return cv2.imencode('.png', pixels)[1].tobytes()
+
+
+def test_two_cameras_do_not_see_each_others_depth():
+    """Each has a thread of its own and may be quantised differently; here they take turns."""
+    near, far = (encode_depth(np.full((1, 1), 2.0, np.float32), 'rvl', depth_max_m=most)
+                 for most in (5.0, 10.0))
+
+    def turn(frame, event, _):
+        if event == 'line' and frame.f_code.co_filename == decode_depth.__code__.co_filename:
+            decode_depth(*far)
+        return turn
+
+    before = sys.gettrace()
+    sys.settrace(turn)
+    try:
+        depth, _, _ = decode_depth(*near)
+    finally:
+        sys.settrace(before)
+    assert depth[0, 0] == pytest.approx(2.0, abs=0.01)
 
 
 @pytest.mark.parametrize('codec', ['png', 'rvl'])

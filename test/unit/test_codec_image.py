@@ -13,11 +13,10 @@ import pytest
 from mhri.core.camera import jpeg
 from mhri.core.camera.images import FrameError, check_size, fit
 from mhri.core.camera.image_codec import decode_compressed, read_size
-from mhri.core.camera.raw_image import decode_raw
+from mhri.core.camera.raw_image import RawImage, decode_raw
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.camera.image_message import RawImage  # noqa: E402
 from support.pictures import colour_picture  # noqa: E402
 
 RED = (220, 30, 20)

@@ -6,6 +6,7 @@ from typing import Optional
 import cv2
 import numpy as np
 
+
 # ROS names a Bayer pattern by its first two pixels, OpenCV by the second row's second and third:
 # each is the other's opposite (cv_bridge.cpp, "Deal with Bayer").
 _CONVERSIONS = {'bayer_rggb': cv2.COLOR_BayerBG2RGB, 'bayer_bggr': cv2.COLOR_BayerRG2RGB,

@@ -8,13 +8,15 @@ bytes: int32 (0), float A, float B, little-endian; then a 16-bit grey png, or fo
 int32 rows and the RVL stream. For 16UC1 the numbers are millimetres and A and B mean nothing; for
 32FC1 they are inverse depth: q = A / depth + B, depth = A / (q - B), 0 invalid.
 """
+from functools import lru_cache
 import math
 import struct
+from typing import Optional, Tuple
 
 import cv2
 import numpy as np
 
-from mhri.core.camera.images import FrameError, check_size
+from mhri.core.camera.images import Data, FrameError, Size, check_size
 from mhri.core.camera.image_codec import decode_with_opencv, read_size
 from mhri.core.camera.raw_image import metres, shrink_depth
 from mhri.core.camera.rvl import decode_rvl, encode_rvl
@@ -26,7 +28,7 @@ QUANTIZATION_M = 100.0
 PNG_LEVEL = 1
 
 
-def decode_depth(fmt, data, view=None):
+def decode_depth(fmt: str, data: Data, view: Optional[Size] = None) -> Tuple[np.ndarray, Size, str]:
     """Decode the data of a ``sensor_msgs/CompressedImage`` of compressed depth.
 
     :param fmt: its ``format``
@@ -50,7 +52,7 @@ def decode_depth(fmt, data, view=None):
     return (np.take(_depth_table(a, b), pixels),) + rest
 
 
-def parse_format(fmt):
+def parse_format(fmt: str) -> Tuple[str, str]:
     """Return (encoding '16UC1', '32FC1' or '' where it is not told, codec 'png' or 'rvl').
 
     :raises FrameError: the format is not one of compressed depth
@@ -68,27 +70,23 @@ def parse_format(fmt):
     return encoding, codec
 
 
-def _is_quantised(a, b):
+def _is_quantised(a: float, b: float) -> bool:
     """Tell whether A and B can be those of inverse depth: older writers left them unset."""
     return math.isfinite(a) and math.isfinite(b) and 1e-6 < a < 1e9 and -1e9 < b <= 1.0
 
 
-_table = {}
-
-
-def _depth_table(a, b):
+@lru_cache(maxsize=1)
+def _depth_table(a: float, b: float) -> np.ndarray:
     """Return the metres of each of the 65536 values; the last one asked for is kept."""
-    if _table.get('for') != (a, b):
-        values = np.arange(65536, dtype=np.float32) - np.float32(b)
-        with np.errstate(divide='ignore', invalid='ignore'):
-            depth = np.float32(a) / values
-        depth[0] = np.nan
-        depth[~((depth > 0) & np.isfinite(depth))] = np.nan
-        _table.update({'for': (a, b), 'depth': depth})
-    return _table['depth']
+    values = np.arange(65536, dtype=np.float32) - np.float32(b)
+    with np.errstate(divide='ignore', invalid='ignore'):
+        depth = np.float32(a) / values
+    depth[0] = np.nan
+    depth[~((depth > 0) & np.isfinite(depth))] = np.nan
+    return depth
 
 
-def _decode_png(payload):
+def _decode_png(payload: memoryview) -> np.ndarray:
     """Return the uint16 pixels of a grey 16-bit png."""
     kind, _ = read_size(payload, 'compressedDepth png')
     if kind != 'png':
@@ -100,7 +98,7 @@ def _decode_png(payload):
     return pixels
 
 
-def _decode_rvl(payload):
+def _decode_rvl(payload: memoryview) -> np.ndarray:
     """Return the uint16 pixels of an rvl payload."""
     if len(payload) < _RVL_SIZE.size:
         raise FrameError('compressedDepth rvl: truncated, {} bytes'.format(len(payload)))
@@ -109,7 +107,8 @@ def _decode_rvl(payload):
     return decode_rvl(payload[_RVL_SIZE.size:], columns * rows).reshape(rows, columns)
 
 
-def encode_depth(depth, codec='png', depth_max_m=DEPTH_MAX_M, quantization_m=QUANTIZATION_M):
+def encode_depth(depth: np.ndarray, codec: str = 'png', depth_max_m: float = DEPTH_MAX_M,
+                 quantization_m: float = QUANTIZATION_M) -> Tuple[str, bytes]:
     """Return (format, data) of a ``sensor_msgs/CompressedImage`` as the plugin would write them.
 
     :param depth: (h, w) uint16 [mm], 0 invalid; or float32 [m], NaN, infinite or <= 0 invalid

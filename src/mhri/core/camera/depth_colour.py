@@ -7,9 +7,12 @@ can be read with any of the usual colour deficiencies, and unlike cividis it hol
 because to some people any single grey is near some colour of the map.
 """
 import math
+from typing import Optional, Tuple
 
 import cv2
 import numpy as np
+
+from mhri.core.camera.images import Range
 
 SMOOTH_S = 1.0
 LEAST_SPAN_M = 0.5
@@ -18,7 +21,7 @@ _HATCH = ((96, 96, 96), (160, 160, 160))
 _HATCH_PERIOD = 8
 
 
-def _colours():
+def _colours() -> np.ndarray:
     """Return viridis from far (0) to near (255) as cv2's table: 256 x 1 x 3, in RGB order."""
     ramp = np.arange(256, dtype=np.uint8).reshape(256, 1)
     return np.ascontiguousarray(cv2.applyColorMap(ramp, cv2.COLORMAP_VIRIDIS)[..., ::-1])
@@ -27,7 +30,7 @@ def _colours():
 _TABLE = _colours()
 
 
-def colour_at(depth_m, depth_range_m):
+def colour_at(depth_m: float, depth_range_m: Range) -> Tuple[int, ...]:
     """Return the (r, g, b) in which a depth [m] is shown, for a scale beside the picture."""
     near, far = depth_range_m
     index = round(255 * (far - depth_m) / (far - near))
@@ -42,13 +45,13 @@ class DepthColour:
         :data:`LEAST_SPAN_M` wide
     """
 
-    def __init__(self, fixed_range_m=None):
+    def __init__(self, fixed_range_m: Optional[Range] = None) -> None:
         self._fixed = fixed_range_m
-        self._range = None
-        self._at = None
-        self._hatch = None
+        self._range: Optional[Range] = None
+        self._at = 0.0
+        self._hatch: Optional[np.ndarray] = None
 
-    def colour(self, depth_m, now):
+    def colour(self, depth_m: np.ndarray, now: float) -> Tuple[np.ndarray, Optional[Range]]:
         """Return (rgb uint8 (h, w, 3), (near, far) [m] or None where nothing was ever valid).
 
         :param depth_m: float32 (h, w), NaN invalid
@@ -66,7 +69,7 @@ class DepthColour:
         cv2.copyTo(self._hatched(depth_m.shape), cv2.bitwise_not(valid), rgb)
         return rgb, depth_range
 
-    def _follow(self, depth_m, now):
+    def _follow(self, depth_m: np.ndarray, now: float) -> Optional[Range]:
         """Return the range after one more picture."""
         step = max(1, math.isqrt(depth_m.size // _SAMPLES))
         sample = depth_m[::step, ::step]
@@ -84,7 +87,7 @@ class DepthColour:
         self._range, self._at = (near, far), now
         return self._range
 
-    def _hatched(self, shape):
+    def _hatched(self, shape: Tuple[int, ...]) -> np.ndarray:
         """Return a picture of nothing but hatch."""
         if self._hatch is None or self._hatch.shape[:2] != shape:
             y, x = np.indices(shape)

@@ -8,12 +8,13 @@ format only tells of a Bayer mosaic, and in which order a png's colours were wri
 not the usual one.
 """
 import struct
+from typing import Optional, Tuple
 
 import cv2
 import numpy as np
 
 from mhri.core.camera.bayer import bayer_encoding, debayered
-from mhri.core.camera.images import FrameError, check_size, fit
+from mhri.core.camera.images import Data, FrameError, Size, check_size, fit
 from mhri.core.camera.jpeg import decode_jpeg
 
 _PNG = b'\x89PNG\r\n\x1a\n'
@@ -25,7 +26,8 @@ _BARE = frozenset([0x01, *range(0xd0, 0xd8)])
 _FRAME = frozenset(range(0xc0, 0xd0)) - {0xc4, 0xc8, 0xcc}
 
 
-def decode_compressed(fmt, data, view=None):
+def decode_compressed(fmt: str, data: Data,
+                      view: Optional[Size] = None) -> Tuple[np.ndarray, Size, str]:
     """Decode the data of a ``sensor_msgs/CompressedImage``.
 
     A jpeg has no check sum: damage in the middle of it shows as a smear and is not an error; a
@@ -47,7 +49,7 @@ def decode_compressed(fmt, data, view=None):
     return rgb, full, kind
 
 
-def _decode_mosaic(fmt, kind, data):
+def _decode_mosaic(fmt: str, kind: str, data: Data) -> Optional[np.ndarray]:
     """Return the RGB picture of a compressed Bayer mosaic; None where it is none.
 
     At its full size: reduced, the colours of its pixels would be one grey.
@@ -60,7 +62,7 @@ def _decode_mosaic(fmt, kind, data):
     return debayered(mosaic, encoding) if mosaic.ndim == 2 else None
 
 
-def _decode_colours(fmt, kind, data, full, factor):
+def _decode_colours(fmt: str, kind: str, data: Data, full: Size, factor: int) -> np.ndarray:
     """Return the RGB picture of a coded picture, a jpeg so many times smaller."""
     rgb = decode_jpeg(data, full, factor) if kind == 'jpeg' else None
     if rgb is None:
@@ -72,7 +74,7 @@ def _decode_colours(fmt, kind, data, full, factor):
     return rgb
 
 
-def _is_rgb_order(fmt):
+def _is_rgb_order(fmt: str) -> bool:
     """Tell whether the writer of a png handed over RGB where the coder takes BGR.
 
     The plugin reads a png of 'rgb8' so that does not say 'compressed bgr8'; a jpeg it takes at its
@@ -82,18 +84,19 @@ def _is_rgb_order(fmt):
     return encoding.startswith('rgb') and 'compressed' in rest and 'bgr' not in rest
 
 
-def _factor(full, target):
+def _factor(full: Size, target: Size) -> int:
     """Return how many times smaller a jpeg may be decoded: 1, 2, 4 or 8."""
     return next(factor for factor in sorted(_REDUCED, reverse=True)
                 if factor == 1 or (target[0] * factor <= full[0] and target[1] * factor <= full[1]))
 
 
-def interpolation(picture, target):
+def interpolation(picture: np.ndarray, target: Size) -> int:
     """Return the cheapest interpolation that does not flicker at this reduction."""
-    return cv2.INTER_AREA if picture.shape[1] >= 2 * target[0] else cv2.INTER_LINEAR
+    way: int = cv2.INTER_AREA if picture.shape[1] >= 2 * target[0] else cv2.INTER_LINEAR
+    return way
 
 
-def decode_with_opencv(what, data, flags):
+def decode_with_opencv(what: str, data: Data, flags: int) -> np.ndarray:
     """Call ``cv2.imdecode``; return its array.
 
     :raises FrameError: it could not make a picture of the data
@@ -108,7 +111,7 @@ def decode_with_opencv(what, data, flags):
     return picture
 
 
-def read_size(data, fmt=''):
+def read_size(data: Data, fmt: str = '') -> Tuple[str, Size]:
     """Return ('jpeg' or 'png', (width, height)) from the header of a coded picture.
 
     :param fmt: what the message calls it, for the error's text
@@ -125,7 +128,7 @@ def read_size(data, fmt=''):
         fmt or 'compressed image', head[:4].hex()))
 
 
-def _png_size(data):
+def _png_size(data: Data) -> Size:
     """Return (width, height) of a png that is whole at both ends."""
     if len(data) < 33 or b'IEND' not in bytes(data[-64:]):
         raise FrameError('png: truncated at {} bytes'.format(len(data)))
@@ -134,9 +137,10 @@ def _png_size(data):
     return size
 
 
-def _jpeg_size(data):
+def _jpeg_size(data: Data) -> Size:
     """Return (width, height) of a jpeg that is whole at both ends."""
-    size, place = None, 2
+    size: Optional[Size] = None
+    place = 2
     try:
         while True:
             marker = data[place + 1]

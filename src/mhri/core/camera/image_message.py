@@ -7,38 +7,28 @@ data), ``sensor_msgs/Image`` is (header, height, width, string encoding, is_bige
 data), the header (seq, stamp, string frame_id). It is read where it lies: no picture is copied.
 """
 import struct
-from typing import Any, NamedTuple
+from typing import Any, Optional, Tuple
 
 from mhri.core.camera.depth_codec import decode_depth
-from mhri.core.camera.images import DEPTH, RGB, Frame, FrameError
+from mhri.core.camera.depth_colour import DepthColour
+from mhri.core.camera.images import DEPTH, RGB, Data, Frame, FrameError, Size
 from mhri.core.camera.image_codec import decode_compressed
-from mhri.core.camera.raw_image import decode_raw, decode_raw_depth
+from mhri.core.camera.raw_image import RawImage, decode_raw, decode_raw_depth
 
 COMPRESSED_TYPE = 'sensor_msgs/CompressedImage'
 RAW_TYPE = 'sensor_msgs/Image'
 _LONGEST_NAME = 4096
 
 
-class RawImage(NamedTuple):
-    """The fields of a ``sensor_msgs/Image`` that say how to read it; ``data`` is not a copy."""
-
-    height: int
-    width: int
-    encoding: str
-    is_bigendian: int
-    step: int
-    data: Any
-
-
 class _Wire:
     """Reads the fields of a serialised message in order."""
 
-    def __init__(self, what, data):
+    def __init__(self, what: str, data: Data) -> None:
         self._what = what
         self._data = memoryview(data)
         self._place = 0
 
-    def numbers(self, form):
+    def numbers(self, form: str) -> Tuple[Any, ...]:
         """Return the tuple of a struct format."""
         try:
             values = struct.unpack_from(form, self._data, self._place)
@@ -48,7 +38,7 @@ class _Wire:
         self._place += struct.calcsize(form)
         return values
 
-    def array(self):
+    def array(self) -> memoryview:
         """Return a uint8[] as a view."""
         (length,) = self.numbers('<I')
         if self._place + length > len(self._data):
@@ -57,7 +47,7 @@ class _Wire:
         self._place += length
         return self._data[self._place - length:self._place]
 
-    def text(self):
+    def text(self) -> str:
         """Return a string."""
         value = self.array()
         if len(value) > _LONGEST_NAME:
@@ -65,7 +55,7 @@ class _Wire:
         return bytes(value).decode('utf-8', 'replace')
 
 
-def read_compressed(data):
+def read_compressed(data: Data) -> Tuple[str, memoryview]:
     """Return (format, data) of a serialised ``sensor_msgs/CompressedImage``.
 
     :raises FrameError: it ends early
@@ -76,7 +66,7 @@ def read_compressed(data):
     return wire.text(), wire.array()
 
 
-def read_raw(data):
+def read_raw(data: Data) -> RawImage:
     """Return the :class:`RawImage` of a serialised ``sensor_msgs/Image``.
 
     :raises FrameError: it ends early
@@ -90,7 +80,8 @@ def read_raw(data):
     return RawImage(height, width, encoding, is_bigendian, step, wire.array())
 
 
-def read_picture(kind, message_type, data, view, colour, received_s):
+def read_picture(kind: str, message_type: str, data: Data, view: Optional[Size],
+                 colour: DepthColour, received_s: float) -> Tuple[Frame, str]:
     """Return (:class:`Frame`, transport in words) of a serialised message.
 
     :param kind: 'rgb' or 'depth'
@@ -106,7 +97,8 @@ def read_picture(kind, message_type, data, view, colour, received_s):
     return _read_depth(message_type, data, view, colour, received_s)
 
 
-def _read_rgb(message_type, data, view, received_s):
+def _read_rgb(message_type: str, data: Data, view: Optional[Size],
+              received_s: float) -> Tuple[Frame, str]:
     if message_type == RAW_TYPE:
         rgb, full = decode_raw(read_raw(data), view)
         transport = 'raw'
@@ -115,7 +107,8 @@ def _read_rgb(message_type, data, view, received_s):
     return Frame(RGB, rgb, None, full, None, received_s), transport
 
 
-def _read_depth(message_type, data, view, colour, received_s):
+def _read_depth(message_type: str, data: Data, view: Optional[Size], colour: DepthColour,
+                received_s: float) -> Tuple[Frame, str]:
     if message_type == RAW_TYPE:
         depth, full = decode_raw_depth(read_raw(data), view)
         transport = 'raw'

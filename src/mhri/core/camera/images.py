@@ -2,10 +2,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures as plain values: what a camera feed hands to whoever shows them."""
 from dataclasses import dataclass
-from typing import Any, Optional, Tuple
+from typing import Optional, Tuple, Union
+
+import numpy as np
+
 
 RGB = 'rgb'
 DEPTH = 'depth'
+
+#: a message or a part of it, as it came over the wire
+Data = Union[bytes, bytearray, memoryview]
+#: width and height [pixels]
+Size = Tuple[int, int]
+#: the nearest and the farthest [m]
+Range = Tuple[float, float]
 
 # 8K video is 33 million pixels. What claims to be larger is taken for a corrupted header, so that
 # no frame can make the program allocate gigabytes.
@@ -28,10 +38,10 @@ class Frame:
     """
 
     kind: str
-    rgb: Any
-    depth_m: Any = None
-    full_size: Tuple[int, int] = (0, 0)
-    depth_range_m: Optional[Tuple[float, float]] = None
+    rgb: np.ndarray
+    depth_m: Optional[np.ndarray] = None
+    full_size: Size = (0, 0)
+    depth_range_m: Optional[Range] = None
     received_s: float = 0.0
 
 
@@ -57,7 +67,7 @@ class StreamStatus:
     stale: bool = False
 
 
-def check_size(what, width, height):
+def check_size(what: str, width: int, height: int) -> None:
     """Refuse a picture without pixels, or with more than :data:`MAX_PIXELS`.
 
     :param what: how the picture calls itself, for the error's text
@@ -67,7 +77,7 @@ def check_size(what, width, height):
         raise FrameError('{}: refused, its header says {} x {} pixels'.format(what, width, height))
 
 
-def fit(full, view):
+def fit(full: Size, view: Optional[Size]) -> Size:
     """Return the size at which to show a picture: within the view, same shape, never enlarged.
 
     :param full: (width, height) of the picture [pixels], > 0

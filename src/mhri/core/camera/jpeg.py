@@ -8,8 +8,11 @@ library is called through ctypes, which lets other threads run meanwhile; every 
 handle of its own, so that any thread may call. Interface: turbojpeg.h, 1.5 and later.
 """
 import ctypes
+from typing import Optional
 
 import numpy as np
+
+from mhri.core.camera.images import Data, Size
 
 _NAMES = ('libturbojpeg.so.0', 'libturbojpeg.so', 'libturbojpeg.dylib')
 _RGB = 0             # TJPF_RGB
@@ -18,7 +21,7 @@ _HALF_BOTH_WAYS = 2  # TJSAMP_420: colour at half the size, as cv2 writes it
 _KEEP_BUFFER = 1024  # TJFLAG_NOREALLOC
 
 
-def _load():
+def _load() -> Optional[ctypes.CDLL]:
     """Return the library with its functions declared, None where it is not installed."""
     for name in _NAMES:
         try:
@@ -47,12 +50,12 @@ def _load():
 _LIBRARY = _load()
 
 
-def available():
+def available() -> bool:
     """Tell whether the library is there."""
     return _LIBRARY is not None
 
 
-def decode_jpeg(data, full, factor=1):
+def decode_jpeg(data: Data, full: Size, factor: int = 1) -> Optional[np.ndarray]:
     """Decode a jpeg.
 
     As with any decoder, damage in the middle of the data shows as a smear.
@@ -82,7 +85,7 @@ def decode_jpeg(data, full, factor=1):
         _LIBRARY.tjDestroy(decompressor)
 
 
-def encode_jpeg(rgb, quality=80):
+def encode_jpeg(rgb: np.ndarray, quality: int = 80) -> bytes:
     """Return a picture as the bytes of a jpeg.
 
     :param rgb: uint8 (h, w, 3)
@@ -91,17 +94,20 @@ def encode_jpeg(rgb, quality=80):
     return _encode_by_library(np.ascontiguousarray(rgb), quality) or _encode_by_cv2(rgb, quality)
 
 
-def _encode_by_cv2(rgb, quality):
+def _encode_by_cv2(rgb: np.ndarray, quality: int) -> bytes:
     """Return the bytes as OpenCV writes them."""
     # Its import takes a second on a busy machine: not for whoever only asks for the library.
     import cv2
-    return cv2.imencode('.jpg', cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR),
-                        [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
+    coded: bytes = cv2.imencode('.jpg', cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR),
+                                [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
+    return coded
 
 
-def _encode_by_library(rgb, quality):
+def _encode_by_library(rgb: np.ndarray, quality: int) -> Optional[bytes]:
     """Return the bytes, or None where the library is not there or cannot."""
-    compressor = _LIBRARY.tjInitCompress() if _LIBRARY is not None else None
+    if _LIBRARY is None:
+        return None
+    compressor = _LIBRARY.tjInitCompress()
     if not compressor:
         return None
     try:

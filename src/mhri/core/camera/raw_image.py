@@ -5,11 +5,13 @@
 Encodings: http://docs.ros.org/en/noetic/api/sensor_msgs/html/image__encodings_8h_source.html and
 REP-118 for depth.
 """
+from typing import NamedTuple, Optional, Tuple
+
 import cv2
 import numpy as np
 
 from mhri.core.camera.bayer import BAYER
-from mhri.core.camera.images import FrameError, check_size, fit
+from mhri.core.camera.images import Data, FrameError, Size, check_size, fit
 from mhri.core.camera.image_codec import interpolation
 
 # Encoding: (type of one element, elements per pixel, how cv2 makes RGB of it; None: RGB already).
@@ -29,7 +31,18 @@ _DEPTH = {'16UC1': ('u2', 1), 'mono16': ('u2', 1), '32FC1': ('f4', 1)}
 MM_PER_M = 1000.0
 
 
-def decode_raw(image, view=None):
+class RawImage(NamedTuple):
+    """The fields of a ``sensor_msgs/Image`` that say how to read it; ``data`` is not a copy."""
+
+    height: int
+    width: int
+    encoding: str
+    is_bigendian: int
+    step: int
+    data: Data
+
+
+def decode_raw(image: RawImage, view: Optional[Size] = None) -> Tuple[np.ndarray, Size]:
     """Return (rgb uint8 (h, w, 3), (width, height) as sent) of a raw colour or grey picture.
 
     :param image: :class:`RawImage`-like: height, width, encoding, is_bigendian, step, data
@@ -55,7 +68,7 @@ def decode_raw(image, view=None):
     return np.ascontiguousarray(_reduce(pixels, target)), full
 
 
-def decode_raw_depth(image, view=None):
+def decode_raw_depth(image: RawImage, view: Optional[Size] = None) -> Tuple[np.ndarray, Size]:
     """Return (depth [m] float32 (h, w), NaN invalid; (width, height) as sent) of a raw picture.
 
     16UC1 is in millimetres, 0 invalid; 32FC1 in metres, NaN, infinite or <= 0 invalid (REP-118).
@@ -71,7 +84,7 @@ def decode_raw_depth(image, view=None):
     return metres(shrink_depth(pixels, view)), (image.width, image.height)
 
 
-def metres(pixels):
+def metres(pixels: np.ndarray) -> np.ndarray:
     """Return depth [m] as float32 with NaN for invalid, from uint16 [mm] or float32 [m]."""
     if pixels.dtype.kind == 'u':
         return np.take(MM_TABLE, pixels)
@@ -79,7 +92,7 @@ def metres(pixels):
         return np.where((pixels > 0) & (pixels < np.inf), pixels, np.float32(np.nan))
 
 
-def _mm_table():
+def _mm_table() -> np.ndarray:
     """Return the metres of every possible pixel in millimetres."""
     table = np.arange(65536, dtype=np.float32) / np.float32(MM_PER_M)
     table[0] = np.nan
@@ -89,7 +102,7 @@ def _mm_table():
 MM_TABLE = _mm_table()
 
 
-def _pixels(image, kind, channels):
+def _pixels(image: RawImage, kind: str, channels: int) -> np.ndarray:
     """Return the pixels in this machine's byte order: (h, w), or (h, w, channels)."""
     what = 'raw image ' + image.encoding
     check_size(what, image.width, image.height)
@@ -107,14 +120,14 @@ def _pixels(image, kind, channels):
     return pixels.astype(stored.newbyteorder('='), copy=False)
 
 
-def _reduce(pixels, target):
+def _reduce(pixels: np.ndarray, target: Size) -> np.ndarray:
     """Return the picture at the target size."""
     if (pixels.shape[1], pixels.shape[0]) == target:
         return pixels
     return cv2.resize(pixels, target, interpolation=interpolation(pixels, target))
 
 
-def shrink_depth(pixels, view):
+def shrink_depth(pixels: np.ndarray, view: Optional[Size]) -> np.ndarray:
     """Return depth pixels of any unit at the size that fits a view (None: as they are).
 
     Nothing is mixed: a pixel between a near and a far one, or an invalid one, would be a lie.

@@ -8,15 +8,18 @@ nibble, the lowest first, with 8 added while more follow; nibbles fill 32-bit li
 from the top. All numbers are read and written at once here, with numpy; only the heads of the runs
 are followed one by one.
 """
+from typing import Tuple
+
 import numpy as np
 
-from mhri.core.camera.images import FrameError
+
+from mhri.core.camera.images import Data, FrameError
 
 _LONGEST = 10  # nibbles of a number below 2^30
 _PART = 65_536  # nibbles read at once: what is worked on stays in the cache
 
 
-def _pairs():
+def _pairs() -> np.ndarray:
     """Return what the last nibble of a number makes with the one before it: [16 * last + before].
 
     One below 8 before it ends another number.
@@ -28,7 +31,7 @@ def _pairs():
 _PAIRS = _pairs()
 
 
-def decode_rvl(payload, pixels):
+def decode_rvl(payload: Data, pixels: int) -> np.ndarray:
     """Return the uint16 array of so many pixels that an RVL stream holds.
 
     :param payload: bytes of the stream, without any header
@@ -59,7 +62,7 @@ def decode_rvl(payload, pixels):
     return image[:pixels]
 
 
-def _read_numbers(payload):
+def _read_numbers(payload: Data) -> np.ndarray:
     """Return every number of a stream as int32, in order.
 
     :raises FrameError: a number is longer than any that is written
@@ -77,11 +80,11 @@ def _read_numbers(payload):
     return np.concatenate(parts) if parts else np.empty(0, np.int32)
 
 
-def _too_long():
+def _too_long() -> FrameError:
     return FrameError('rvl: corrupted, a number of more than {} digits'.format(_LONGEST))
 
 
-def _read_part(nibbles, begin, end):
+def _read_part(nibbles: np.ndarray, begin: int, end: int) -> np.ndarray:
     """Return the numbers whose last nibble is in a part of the nibbles."""
     last, before, earlier = (nibbles[begin - back:end - back] for back in range(3))
     ends = np.flatnonzero(last < 8)
@@ -100,7 +103,7 @@ def _read_part(nibbles, begin, end):
     return numbers
 
 
-def _heads(numbers, pixels):
+def _heads(numbers: memoryview, pixels: int) -> Tuple[np.ndarray, int]:
     """Return where the heads of the runs are among the numbers, and where the last run ends."""
     heads = []
     place, left = 0, pixels
@@ -117,7 +120,7 @@ def _heads(numbers, pixels):
     return np.array(heads, np.intp), place
 
 
-def encode_rvl(image):
+def encode_rvl(image: np.ndarray) -> bytes:
     """Return the RVL stream of a uint16 array of any shape, as bytes."""
     pixels = np.ascontiguousarray(image, np.uint16).ravel()
     valid = pixels != 0
@@ -140,7 +143,7 @@ def encode_rvl(image):
     return _write_numbers(numbers)
 
 
-def _write_numbers(numbers):
+def _write_numbers(numbers: np.ndarray) -> bytes:
     """Return the stream of int32 numbers >= 0."""
     lengths = np.ones(len(numbers), np.intp)
     for digits in range(1, _LONGEST):
@@ -157,4 +160,5 @@ def _write_numbers(numbers):
         nibbles[places] = (rest & 7) | (more << 3)
         places, left, rest = places[more] + 1, left[more] - 1, rest[more] >> 3
     packed = (nibbles[0::2] << 4) | nibbles[1::2]
-    return packed.view('>u4').astype('<u4').tobytes()
+    stream: bytes = packed.view('>u4').astype('<u4').tobytes()
+    return stream

@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Rate and bandwidth of a stream over the last two seconds."""
-import collections
+from collections import deque
+from typing import Deque, Tuple
 
 WINDOW_S = 2.0
 _MOST = 2000
@@ -10,20 +11,20 @@ _MOST = 2000
 class StreamMeter:
     """Counts what arrives; not thread-safe, times are passed in."""
 
-    def __init__(self, window_s=WINDOW_S):
+    def __init__(self, window_s: float = WINDOW_S) -> None:
         self._window_s = window_s
-        self._came = collections.deque(maxlen=_MOST)
+        self._came: Deque[Tuple[float, int]] = deque(maxlen=_MOST)
 
-    def add(self, now, size):
+    def add(self, now: float, size: int) -> None:
         """Note a message of so many bytes."""
         self._came.append((now, size))
         self._prune(now)
 
-    def _prune(self, now):
+    def _prune(self, now: float) -> None:
         while self._came and self._came[0][0] < now - self._window_s:
             self._came.popleft()
 
-    def read(self, now):
+    def read(self, now: float) -> Tuple[float, float]:
         """Return (messages per second, bits per second); the rate is 0 with fewer than two."""
         self._prune(now)
         if not self._came:

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Which of a camera's topics to listen to: compressed first, raw where there is nothing else."""
-from typing import NamedTuple
+from typing import Iterable, List, Mapping, NamedTuple, Optional
 
 from mhri.core.camera.images import DEPTH, RGB
 from mhri.core.camera.image_message import COMPRESSED_TYPE, RAW_TYPE
@@ -21,7 +21,7 @@ class Offer(NamedTuple):
     topic: str
 
 
-def find_offers(kind, topics, published):
+def find_offers(kind: str, topics: Iterable[str], published: Mapping[str, str]) -> List[Offer]:
     """Return the :class:`Offer` list of a camera, best first.
 
     A topic of another type than its name promises is no offer.
@@ -35,12 +35,12 @@ def find_offers(kind, topics, published):
             if published.get(topic + ending) == message_type]
 
 
-def choose_offer(offers, transport):
+def choose_offer(offers: Iterable[Offer], transport: str) -> Optional[Offer]:
     """Return the best offer of a transport ('auto': of any), or None."""
     return next((offer for offer in offers if transport in (AUTO, offer.transport)), None)
 
 
-def may_carry(kind, transport, topic):
+def may_carry(kind: str, transport: str, topic: str) -> bool:
     """Tell whether a full topic is one of a transport ('auto': of any)."""
     if transport == AUTO:
         return True

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the doctor sees and what it says: plain values between the looking and the judging."""
 from dataclasses import dataclass, field, replace
-from typing import Dict, Optional, Tuple
+from typing import Any, Collection, Dict, Iterable, List, Optional, Tuple
 
 FAULT, WARNING, FINE = 'fault', 'warning', 'fine'
 SEVERITIES = (FAULT, WARNING, FINE)
@@ -70,23 +70,23 @@ class Computer:
     python_paths: Tuple[str, ...] = ()
     packages: Dict[str, str] = field(default_factory=dict)
 
-    def addresses_of(self, host):
+    def addresses_of(self, host: str) -> Tuple[str, ...]:
         """Return the IPv4 addresses of a host name or address, () where it is unknown."""
         if is_ipv4(host):
             return (host,)
         return self.resolved.get(host) or ()
 
-    def is_own(self, host):
+    def is_own(self, host: str) -> bool:
         """Tell whether a host name or address means this computer."""
         return any(is_loopback(address) or address in self.addresses
                    for address in self.addresses_of(host))
 
-    def good_ip(self):
+    def good_ip(self) -> Optional[str]:
         """Return the address that robots should be told, None where there is only loopback."""
         outward = [address for address in self.addresses if not is_loopback(address)]
         return self.route_ip or (outward[0] if outward else None)
 
-    def own_host(self):
+    def own_host(self) -> Tuple[str, str]:
         """Return (host that programs started here advertise, the variable that says so or '')."""
         for key in ('ROS_HOSTNAME', 'ROS_IP'):
             if self.variables.get(key):
@@ -120,26 +120,28 @@ class Graph:
     subscribers: Dict[str, Tuple[str, ...]] = field(default_factory=dict)
     services: Dict[str, Tuple[str, ...]] = field(default_factory=dict)
     types: Dict[str, str] = field(default_factory=dict)
-    parameters: Dict = field(default_factory=dict)
+    parameters: Dict[str, Any] = field(default_factory=dict)
 
-    def nodes(self):
+    def nodes(self) -> List[str]:
         """Return the names of all nodes, sorted."""
         return sorted({node for group in (self.publishers, self.subscribers, self.services)
                        for nodes in group.values() for node in nodes})
 
-    def of(self, names):
+    def of(self, names: Collection[str]) -> 'Graph':
         """Return the part of it that some nodes have."""
-        return replace(self, **{key: {
-            topic: kept for topic, nodes in getattr(self, key).items()
-            for kept in [tuple(node for node in nodes if node in names)] if kept}
-            for key in ('publishers', 'subscribers', 'services')})
+        def part(group: Dict[str, Tuple[str, ...]]) -> Dict[str, Tuple[str, ...]]:
+            return {topic: kept for topic, nodes in group.items()
+                    for kept in [tuple(node for node in nodes if node in names)] if kept}
 
-    def state(self):
+        return replace(self, publishers=part(self.publishers), subscribers=part(self.subscribers),
+                       services=part(self.services))
+
+    def state(self) -> List[List[Any]]:
         """Return it as ``getSystemState`` does."""
         return [[[name, list(nodes)] for name, nodes in group.items()]
                 for group in (self.publishers, self.subscribers, self.services)]
 
-    def topics_of(self, node):
+    def topics_of(self, node: str) -> Tuple[Tuple[str, ...], Tuple[str, ...]]:
         """Return (topics it publishes, topics it subscribes), as registered."""
         return (tuple(sorted(name for name, nodes in self.publishers.items() if node in nodes)),
                 tuple(sorted(name for name, nodes in self.subscribers.items() if node in nodes)))
@@ -223,20 +225,20 @@ class Facts:
     template_errors: Tuple[str, ...] = ()
     caller_id: str = '/mhri_doctor'
 
-    def with_later(self, graph, nodes):
+    def with_later(self, graph: Graph, nodes: Dict[str, Node]) -> 'Facts':
         """Return these facts with the second look."""
         return replace(self, later=graph, later_nodes=nodes)
 
-    def answering(self, name):
+    def answering(self, name: str) -> Optional[Node]:
         """Return a node that answers, or None."""
         node = self.nodes.get(name)
         return node if node is not None and node.state == ANSWERS else None
 
-    def is_remote(self, node):
+    def is_remote(self, node: Node) -> bool:
         """Tell whether a node is on another computer, as far as its address says."""
         return bool(node.host) and not self.computer.is_own(node.host)
 
-    def several_computers(self):
+    def several_computers(self) -> bool:
         """Tell whether more than this computer takes part."""
         if self.master.state != STRANGER and not self.computer.is_own(self.master.host) \
                 and self.computer.addresses_of(self.master.host):
@@ -244,19 +246,19 @@ class Facts:
         return any(self.is_remote(node) for node in self.nodes.values())
 
 
-def is_ipv4(text):
+def is_ipv4(text: str) -> bool:
     """Tell whether a text is an IPv4 address in four decimal parts."""
     parts = text.split('.')
     return len(parts) == 4 and all(part.isdigit() and len(part) < 4 and int(part) < 256
                                    for part in parts)
 
 
-def is_loopback(address):
+def is_loopback(address: str) -> bool:
     """Tell whether an address or name reaches only the computer that uses it."""
     return address in ('localhost', '::1') or (is_ipv4(address) and address.startswith('127.'))
 
 
-def listed(names, most=4):
+def listed(names: Iterable[str], most: int = 4) -> str:
     """Return names as a person lists them: 'a, b and 3 more'."""
     names = list(names)
     if len(names) <= most:

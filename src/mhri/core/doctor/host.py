@@ -1,9 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The doctor on the computer it runs on: ROS variables, folders, workspace, packages, master."""
+from typing import Dict, List, Optional, Tuple
+
 from mhri.core.doctor.facts import (
-    ANSWERS, FAULT, FINE, Finding, HOST, is_ipv4, is_loopback, listed, MASTER, REFUSED, STRANGER,
-    UNRESOLVED, WARNING)
+    ANSWERS, Computer, Facts, FAULT, FINE, Finding, Folder, HOST, is_ipv4, is_loopback, listed,
+    Master, MASTER, REFUSED, STRANGER, UNRESOLVED, WARNING)
 
 MB = 1000 * 1000
 # As the recorder has them: it warns below the first and stops at the second.
@@ -11,7 +13,7 @@ LOW_BYTES, FULL_BYTES = 1000 * MB, 256 * MB
 _NO_DATA = 'robots and topics are listed, but no data arrives, or in one direction only'
 
 
-def find_on_host(facts):
+def find_on_host(facts: Facts) -> List[Finding]:
     """Return the findings about this computer."""
     found = (_variables(facts) + _folders(facts.computer) + _workspace(facts.computer)
              + _packages(facts.computer) + [
@@ -22,12 +24,12 @@ def find_on_host(facts):
     return found
 
 
-def _fine_if_none(found, check, about, words):
+def _fine_if_none(found: List[Finding], check: str, about: str, words: str) -> List[Finding]:
     """Return findings, or that there are none in words."""
     return found or [Finding(FINE, check, about, words)]
 
 
-def _export(facts):
+def _export(facts: Facts) -> str:
     """Return the command that tells other computers the right address of this one."""
     several = facts.several_computers()
     address = facts.computer.good_ip() if several else '127.0.0.1'
@@ -37,7 +39,7 @@ def _export(facts):
         'start the programs again'.format(address)
 
 
-def _variables(facts):
+def _variables(facts: Facts) -> List[Finding]:
     """Judge ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME."""
     computer = facts.computer
     found = []
@@ -58,7 +60,7 @@ def _variables(facts):
         host, ' (loopback: this computer alone)' if is_loopback(host) else ''))
 
 
-def _known_uri(facts):
+def _known_uri(facts: Facts) -> str:
     """Return the URI of a master that answers, or a place for it."""
     if facts.master.state == ANSWERS:
         return facts.master.uri
@@ -66,7 +68,7 @@ def _known_uri(facts):
         'http://<address of the computer with the panel>:11311',))[0]
 
 
-def _address_problem(facts, host, variable):
+def _address_problem(facts: Facts, host: str, variable: str) -> Optional[Finding]:
     """Return the finding about the address that programs here advertise, or None."""
     computer = facts.computer
     odd = '://' in host or ':' in host or host != host.strip() or (
@@ -94,7 +96,7 @@ def _address_problem(facts, host, variable):
     return Finding(FAULT, check, HOST, problem, _NO_DATA, _export(facts))
 
 
-def _both(facts):
+def _both(facts: Facts) -> List[Finding]:
     """Judge two variables that say different things."""
     name, address = (facts.computer.variables.get(key) for key in ('ROS_HOSTNAME', 'ROS_IP'))
     if not (name and address) or name == address \
@@ -104,7 +106,7 @@ def _both(facts):
                     'things; ROS_HOSTNAME counts'.format(name, address), _NO_DATA, _export(facts))]
 
 
-def _unset(facts):
+def _unset(facts: Facts) -> List[Finding]:
     """Judge that neither variable is set: then the computer's name is told to everybody."""
     computer = facts.computer
     addresses = computer.addresses_of(computer.name)
@@ -120,9 +122,9 @@ def _unset(facts):
     return []
 
 
-def _folders(computer):
+def _folders(computer: Computer) -> List[Finding]:
     """Judge the folders that are written to; two on one disk are one finding."""
-    found = {}
+    found: Dict[Tuple[str, str], Finding] = {}
     for folder in computer.folders:
         problem = _folder_problem(folder)
         if problem:
@@ -131,11 +133,11 @@ def _folders(computer):
         _free(folder) for folder in computer.folders))
 
 
-def _free(folder):
+def _free(folder: Folder) -> str:
     return '{:,.0f} MB free in {} ({})'.format(folder.free_bytes / MB, folder.path, folder.what)
 
 
-def _folder_problem(folder):
+def _folder_problem(folder: Folder) -> Optional[Finding]:
     """Return the finding about one folder, or None."""
     clean = 'rosclean check; rosclean purge   # removes old logs; move recordings (*.bag) away'
     if folder.problem:
@@ -153,7 +155,7 @@ def _folder_problem(folder):
     return None
 
 
-def _workspace(computer):
+def _workspace(computer: Computer) -> List[Finding]:
     """Judge whether the workspace with mhri is sourced, and only that one."""
     if computer.package_path is None:
         return [Finding(
@@ -175,7 +177,7 @@ def _workspace(computer):
     return [Finding(FINE, 'workspace', HOST, 'mhri is used from {}'.format(computer.package_path))]
 
 
-def _packages(computer):
+def _packages(computer: Computer) -> List[Finding]:
     """Judge what mhri depends on."""
     missing = {name: problem for name, problem in computer.packages.items() if problem}
     return _fine_if_none([
@@ -194,7 +196,7 @@ SLOWER_WITHOUT = {'libturbojpeg': 'a jpeg picture takes three times as long'}
 _SYSTEM = {'libturbojpeg': 'libturbojpeg0-dev'}
 
 
-def package_of(name, computer):
+def package_of(name: str, computer: Computer) -> str:
     """Return the package of the system that brings a ROS package."""
     if name.startswith('python3-'):
         return name
@@ -205,7 +207,7 @@ def package_of(name, computer):
                           name.replace('_', '-'))
 
 
-def use_other(master):
+def use_other(master: Master) -> str:
     """Return the command that turns to another master, one for each there is."""
     return '   # or: '.join('export ROS_MASTER_URI={}'.format(uri) for uri in master.elsewhere[:4])
 
@@ -213,7 +215,7 @@ def use_other(master):
 _NOTHING = 'no robot is found, programs end with "unable to communicate with master"'
 
 
-def find_on_master(facts):
+def find_on_master(facts: Facts) -> List[Finding]:
     """Return the findings about the master alone."""
     master, computer = facts.master, facts.computer
     if master.uri_problem:

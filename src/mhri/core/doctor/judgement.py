@@ -1,17 +1,21 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The doctor's judgement: from what was seen (:mod:`mhri.core.doctor.facts`) to findings."""
-from mhri.core.doctor.facts import ANSWERS, FAULT, FINE, SEVERITIES, WARNING
+from typing import Any, Dict, Iterable, List, Mapping, Sequence, Set
+
+from mhri.core.doctor.facts import ANSWERS, Facts, FAULT, FINE, Finding, SEVERITIES, WARNING
 from mhri.core.doctor.host import find_on_host, find_on_master
 from mhri.core.doctor.links import find_on_links, missing_links
 from mhri.core.doctor.nodes import find_on_nodes, odd_nodes, robot_of
-from mhri.core.doctor.robots import find_on_robots, hidden_listeners, robots_of
+from mhri.core.doctor.robots import find_on_robots, hidden_listeners, Robot, robots_of
 from mhri.core.doctor.system import find_on_system, hung
+from mhri.core.robots.discovery import IgnoreList
+from mhri.core.robots.robot_types import RobotType
 
 _MARKS = {FAULT: '[X] fault', WARNING: '/!\\ warning', FINE: '(o) fine'}
 
 
-def diagnose(facts, types, ignore):
+def diagnose(facts: Facts, types: Mapping[str, RobotType], ignore: IgnoreList) -> List[Finding]:
     """Return the :class:`Finding` list of an examination: faults first, then warnings, then fine.
 
     :param facts: :class:`mhri.core.doctor.facts.Facts`
@@ -25,7 +29,7 @@ def diagnose(facts, types, ignore):
     return sorted(_of_wanted(facts, found), key=lambda item: SEVERITIES.index(item.severity))
 
 
-def _of_wanted(facts, found):
+def _of_wanted(facts: Facts, found: List[Finding]) -> List[Finding]:
     """Leave out what is about robots that were not asked for."""
     if not facts.wanted:
         return found
@@ -33,7 +37,7 @@ def _of_wanted(facts, found):
     return [item for item in found if item.about.lstrip('/').split('/')[0] not in others]
 
 
-def odd_ones(facts, robots):
+def odd_ones(facts: Facts, robots: Iterable[Robot]) -> Set[str]:
     """Return the names of the nodes to ask a second time, before anything is said about them.
 
     What is just coming or going looks wrong for a moment.
@@ -47,12 +51,12 @@ def odd_ones(facts, robots):
     return odd
 
 
-def exit_status(findings):
+def exit_status(findings: Sequence[Finding]) -> int:
     """Return 1 where something is wrong, else 0."""
     return int(any(item.severity != FINE for item in findings))
 
 
-def as_lines(findings, took_s):
+def as_lines(findings: Sequence[Finding], took_s: float) -> List[str]:
     """Return the report as lines of text for a person."""
     lines = []
     for item in findings:
@@ -67,7 +71,7 @@ def as_lines(findings, took_s):
     return [''.join(char if char.isprintable() else '?' for char in line) for line in lines]
 
 
-def as_dict(findings, took_s):
+def as_dict(findings: Sequence[Finding], took_s: float) -> Dict[str, Any]:
     """Return the report for scripts: ``faults``, ``warnings``, ``took_s`` and ``findings``."""
     return {
         'faults': sum(1 for item in findings if item.severity == FAULT),

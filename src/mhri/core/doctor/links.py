@@ -1,9 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The doctor on connections: who should hear whom and does not, and why; message definitions."""
-from mhri.core.doctor.facts import FAULT, FINE, Finding, HOST, listed, SYSTEM, WARNING
+from typing import Dict, Iterator, List, Mapping, Set, Tuple
+
+from mhri.core.doctor.facts import (
+    Facts, FAULT, FINE, Finding, Graph, HOST, listed, Node, SYSTEM, WARNING)
 from mhri.core.doctor.host import package_of
 from mhri.core.doctor.nodes import robot_of
+
+# Topic, name of its publisher, name of its subscriber.
+_Link = Tuple[str, str, str]
+# From one computer to another.
+_Way = Tuple[str, str]
 
 ANY = '*'
 # The packages whose messages mhri itself reads; a robot may well have others of its own.
@@ -14,12 +22,13 @@ _REBUILD = 'rosmsg md5 {0}   # on both computers; the same release of its packag
     'cd <catkin workspace> && catkin_make, and start both programs again'
 
 
-def find_on_links(facts):
+def find_on_links(facts: Facts) -> List[Finding]:
     """Return the findings about connections and message definitions."""
     return _connections(facts) + _definitions(facts)
 
 
-def expected_links(facts, nodes, graph):
+def expected_links(facts: Facts, nodes: Mapping[str, Node],
+                   graph: Graph) -> Iterator[Tuple[str, Node, Node]]:
     """Yield (topic, publisher, subscriber) that should be connected: all say so, both answer."""
     for topic, publishers in sorted(graph.publishers.items()):
         for publisher in publishers:
@@ -34,13 +43,13 @@ def expected_links(facts, nodes, graph):
                     yield topic, sender, listener
 
 
-def is_connected(topic, sender, listener):
+def is_connected(topic: str, sender: Node, listener: Node) -> bool:
     """Tell whether a publisher counts a subscriber among its connections."""
     return any(link.out and link.topic == topic and link.peer == listener.name
-               for link in sender.connections)
+               for link in sender.connections or ())
 
 
-def missing_links(facts, nodes, graph):
+def missing_links(facts: Facts, nodes: Mapping[str, Node], graph: Graph) -> Set[_Link]:
     """Return the (topic, publisher name, subscriber name) that should be connected and are not."""
     alive = {name: node for name, node in nodes.items() if facts.answering(name)}
     return {(topic, sender.name, listener.name)
@@ -48,14 +57,14 @@ def missing_links(facts, nodes, graph):
             if not is_connected(topic, sender, listener)}
 
 
-def _present_hosts(facts):
+def _present_hosts(facts: Facts) -> Set[Tuple[str, str, str, str]]:
     """Return the (host of publisher, host of subscriber, publisher, subscriber) with a link."""
     return {(sender.host, listener.host, sender.name, listener.name)
             for topic, sender, listener in expected_links(facts, facts.nodes, facts.graph)
             if is_connected(topic, sender, listener)}
 
 
-def _connections(facts):
+def _connections(facts: Facts) -> List[Finding]:
     """Say why those are not connected that were not in both looks."""
     missing = missing_links(facts, facts.nodes, facts.graph)
     if facts.later is None:
@@ -65,10 +74,11 @@ def _connections(facts):
         missing &= missing_links(facts, both, facts.later)
     present = _present_hosts(facts)
     hosts = {(source, target) for source, target, _, _ in present}
-    ways, found = {}, []
+    ways: Dict[_Way, List[_Link]] = {}
+    found = []
     for topic, publisher, subscriber in sorted(missing):
         sender, listener = facts.nodes[publisher], facts.nodes[subscriber]
-        said = sender.publications[topic], listener.subscriptions[topic]
+        said = (sender.publications or {})[topic], (listener.subscriptions or {})[topic]
         if said[0] != said[1] and ANY not in said:
             found.append(_type_differs(topic, publisher, subscriber, said))
         elif sender.host == listener.host or (sender.host, listener.host) in hosts:
@@ -80,7 +90,7 @@ def _connections(facts):
     return found + _back(facts, present, ways)
 
 
-def _type_differs(topic, publisher, subscriber, said):
+def _type_differs(topic: str, publisher: str, subscriber: str, said: Tuple[str, str]) -> Finding:
     return Finding(
         FAULT, 'type_differs', publisher, '{} publishes {} as {}, but {} expects {}'.format(
             publisher, topic, said[0], subscriber, said[1]),
@@ -89,7 +99,7 @@ def _type_differs(topic, publisher, subscriber, said):
             topic, topic, topic))
 
 
-def _not_connected(facts, topic, publisher, subscriber, kind):
+def _not_connected(facts: Facts, topic: str, publisher: str, subscriber: str, kind: str) -> Finding:
     """The way is open, the names of the types agree: the definitions do not."""
     return Finding(
         FAULT, 'definition_differs', publisher, '{} does not get {} from {}, though others are '
@@ -99,7 +109,7 @@ def _not_connected(facts, topic, publisher, subscriber, kind):
         'concluded: neither the network nor the name of the type is the reason')
 
 
-def _no_way(facts, hosts, links):
+def _no_way(facts: Facts, hosts: _Way, links: List[_Link]) -> Finding:
     """Nothing goes from one computer to another although it should: the network, or its name."""
     source, target = hosts
     own = facts.computer.is_own(source)
@@ -119,10 +129,11 @@ def _no_way(facts, hosts, links):
         'seen at its connections: the robot cannot be asked to try')
 
 
-def _back(facts, present, ways):
+def _back(facts: Facts, present: Set[Tuple[str, str, str, str]],
+          ways: Dict[_Way, List[_Link]]) -> List[Finding]:
     """Say for each remote robot whether it was seen to reach this computer."""
     found = []
-    robots = {}
+    robots: Dict[str, Set[str]] = {}
     for node in facts.nodes.values():
         if facts.answering(node.name) and facts.is_remote(node) and robot_of(node.name):
             robots.setdefault(robot_of(node.name), set()).add(node.name)
@@ -139,9 +150,11 @@ def _back(facts, present, ways):
     return found
 
 
-def _definitions(facts):
+def _definitions(facts: Facts) -> List[Finding]:
     """Compare the md5 sums: publishers with this computer, and with each other."""
-    found, kinds, topics = [], {}, {}
+    found = []
+    kinds: Dict[Tuple[str, str], List[str]] = {}
+    topics: Dict[str, Dict[str, Tuple[str, str]]] = {}
     for stream in facts.streams:
         if not stream.md5sum or stream.callerid != stream.node:
             continue

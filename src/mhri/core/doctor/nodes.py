@@ -1,37 +1,41 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The doctor on the nodes: which answer, which are dead, which share a name."""
+from typing import Callable, Collection, Dict, Iterable, List, Set, Tuple, TypeVar
+
 from mhri.core.doctor.facts import (
-    ANSWERS, FAULT, FINE, Finding, is_ipv4, is_loopback, listed, MASTER, REFUSED, SILENT, STRANGER,
-    SYSTEM, UNRESOLVED, WARNING)
+    ANSWERS, Facts, FAULT, FINE, Finding, Graph, is_ipv4, is_loopback, listed, MASTER, Node,
+    REFUSED, SILENT, STRANGER, SYSTEM, UNRESOLVED, WARNING)
 
 CLEAN_UP = 'rosnode cleanup   # answer y: it takes dead nodes off the master'
 _GHOST = 'a robot or node is listed that is not there; others try in vain to reach it'
 # What every node of rospy and roscpp has, and so proves nothing about which node it is.
 COMMON = ('/rosout', '/rosout_agg', '/clock')
+# What nodes are put together by: it can be sorted.
+_Key = TypeVar('_Key', str, Tuple[str, ...])
 
 
-def robot_of(node):
+def robot_of(node: str) -> str:
     """Return the namespace of a node, '' where it has none."""
     namespace, _, rest = node.lstrip('/').partition('/')
     return namespace if rest else ''
 
 
-def start_robot(facts, name):
+def start_robot(facts: Facts, name: str) -> str:
     """Return the command that starts a real robot under a name."""
     computer, master = facts.computer, facts.master.host
     address = computer.good_ip() if computer.is_own(master) else master
     return 'on the robot: turtle_remote.sh {} {}'.format(address or '<IP of this computer>', name)
 
 
-def _other_name(facts, name):
+def _other_name(facts: Facts, name: str) -> str:
     """Return how two programs come to have a name each."""
     robot = robot_of(name)
     return 'give each robot a name of its own ({})'.format(start_robot(facts, robot + '_2')) \
         if robot else 'give one of them another name (__name:={}_2)'.format(name.lstrip('/'))
 
 
-def find_on_nodes(facts, known=()):
+def find_on_nodes(facts: Facts, known: Collection[str] = ()) -> List[Finding]:
     """Return the findings about reachability, registrations and names of the nodes.
 
     :param known: names of nodes that hang, as is told elsewhere
@@ -49,19 +53,19 @@ def find_on_nodes(facts, known=()):
     return found
 
 
-def _by(nodes, key):
+def _by(nodes: Iterable[Node], key: Callable[[Node], _Key]) -> List[Tuple[_Key, List[Node]]]:
     """Return {key(node): [node]} sorted by key."""
-    groups = {}
+    groups: Dict[_Key, List[Node]] = {}
     for node in nodes:
         groups.setdefault(key(node), []).append(node)
     return sorted(groups.items())
 
 
-def _in_state(facts, *states):
+def _in_state(facts: Facts, *states: str) -> List[Node]:
     return [node for _, node in sorted(facts.nodes.items()) if node.state in states]
 
 
-def _about(nodes, host=''):
+def _about(nodes: List[Node], host: str = '') -> str:
     """Return what a finding about some nodes is about: their robot, else their computer."""
     robots = {robot_of(node.name) for node in nodes}
     if len(robots) == 1 and '' not in robots:
@@ -69,11 +73,11 @@ def _about(nodes, host=''):
     return nodes[0].name if len(nodes) == 1 else host or SYSTEM
 
 
-def _names(nodes):
+def _names(nodes: List[Node]) -> str:
     return listed(node.name for node in nodes)
 
 
-def _dead(facts):
+def _dead(facts: Facts) -> List[Finding]:
     """Registered, the computer is there, but no program listens: crashed or killed."""
     nodes = [node for node in _in_state(facts, REFUSED) if not true_address(facts, node)]
     return [Finding(
@@ -83,7 +87,7 @@ def _dead(facts):
         for (host, _), group in _by(nodes, lambda node: (node.host, robot_of(node.name)))]
 
 
-def _hosts(facts, known):
+def _hosts(facts: Facts, known: Collection[str]) -> List[Finding]:
     """Computers that do not answer, or whose name is unknown."""
     found = []
     silent = [node for node in _in_state(facts, SILENT)
@@ -118,7 +122,7 @@ def _hosts(facts, known):
     return found
 
 
-def _seen_at(facts, node):
+def _seen_at(facts: Facts, node: Node) -> Set[str]:
     """Return the addresses that a node is connected from, by those that it has its topics of."""
     return {link.address for other in facts.nodes.values() if facts.answering(other.name)
             for link in other.connections or ()
@@ -126,9 +130,9 @@ def _seen_at(facts, node):
             and not is_loopback(link.address)}
 
 
-def _beside(facts, node):
+def _beside(facts: Facts, node: Node) -> Set[str]:
     """Return the addresses of other nodes that answer, of the same robot or computer's name."""
-    def machine(host):
+    def machine(host: str) -> str:
         """Return the name of a computer without its domain, '' of an address."""
         return '' if is_ipv4(host) else host.partition('.')[0]
 
@@ -140,7 +144,7 @@ def _beside(facts, node):
             and (robot and robot_of(other.name) == robot or name and machine(other.host) == name)}
 
 
-def true_address(facts, node):
+def true_address(facts: Facts, node: Node) -> str:
     """Return the address that a node which does not answer ought to tell, '' where it is unknown.
 
     Where it is seen to be connected from another address than it tells, that is it. Else, where
@@ -155,7 +159,7 @@ def true_address(facts, node):
     return '' if beside & told else min(beside, default='')
 
 
-def _wrong_address(facts):
+def _wrong_address(facts: Facts) -> List[Finding]:
     """Nodes that live, as far as can be seen, but tell others an address that is not theirs."""
     nodes = [node for node in _in_state(facts, SILENT, REFUSED)
              if true_address(facts, node)
@@ -178,7 +182,7 @@ def _wrong_address(facts):
     return found
 
 
-def _strangers(facts):
+def _strangers(facts: Facts) -> List[Finding]:
     """Another program answers at the address: the node has died, its port was taken."""
     found = [Finding(
         FAULT, 'node_stranger', node.name, 'what answers at {} is no ROS node: {}'.format(
@@ -192,7 +196,7 @@ def _strangers(facts):
     return found
 
 
-def _taken(facts):
+def _taken(facts: Facts) -> Dict[str, str]:
     """Return {dead node: the node that answers at its address}."""
     taken = {stream.node: stream.callerid for stream in facts.streams
              if stream.callerid and stream.callerid != stream.node}
@@ -203,14 +207,14 @@ def _taken(facts):
     return taken
 
 
-def _knows_nothing(graph, node):
+def _knows_nothing(graph: Graph, node: Node) -> bool:
     """Tell whether whatever answers at a node's address knows none of that node's topics."""
     published, subscribed = graph.topics_of(node.name)
     topics = set(published + subscribed) - set(COMMON)
     return node.state == ANSWERS and bool(topics) and topics <= set(stale_topics(graph, node))
 
 
-def _loopback(facts):
+def _loopback(facts: Facts) -> List[Finding]:
     """Nodes that tell others a loopback address where there are several computers."""
     if not facts.several_computers():
         return []
@@ -229,12 +233,12 @@ def _loopback(facts):
             for host, group in _by(nodes, lambda node: node.host)]
 
 
-def _second(facts):
+def _second(facts: Facts) -> Tuple[Graph, Dict[str, Node]]:
     """Return (graph, nodes) of the second look, or of the first where there was none."""
     return facts.later or facts.graph, facts.later_nodes
 
 
-def stale_topics(graph, node):
+def stale_topics(graph: Graph, node: Node) -> List[str]:
     """Return the registered topics of which a node itself knows nothing, sorted."""
     published, subscribed = graph.topics_of(node.name)
     stale = set()
@@ -245,15 +249,17 @@ def stale_topics(graph, node):
     return sorted(stale - set(COMMON))
 
 
-def _stale(facts):
+def _stale(facts: Facts) -> List[Finding]:
     """Registrations that outlived what they stand for, though the node lives."""
     graph, later = _second(facts)
     taken = _taken(facts)
     found = []
     for name in sorted(facts.nodes):
         node = facts.answering(name)
+        if node is None or name in taken:
+            continue
         again = later.get(name, node)
-        if node is None or name in taken or again.state != ANSWERS:
+        if again.state != ANSWERS:
             continue
         stale = [topic for topic in stale_topics(facts.graph, node)
                  if topic in stale_topics(graph, again)]
@@ -267,7 +273,7 @@ def _stale(facts):
     return found
 
 
-def _fought(facts):
+def _fought(facts: Facts) -> List[Finding]:
     """Nodes that were registered elsewhere while they were looked at."""
     return [Finding(
         WARNING, 'name_fought', name, 'it changed from {} to {} while it was looked at'.format(
@@ -279,9 +285,10 @@ def _fought(facts):
         if node.uri_later and node.uri and node.uri_later != node.uri]
 
 
-def _double_links(node):
+def _double_links(node: Node) -> Set[Tuple[str, str]]:
     """Return the (topic, peer) that a publisher is connected to more than once."""
-    seen, double = set(), set()
+    seen: Set[Tuple[str, str]] = set()
+    double: Set[Tuple[str, str]] = set()
     for link in node.connections or ():
         if link.out:
             key = (link.topic, link.peer)
@@ -289,14 +296,14 @@ def _double_links(node):
     return double
 
 
-def _own(facts, name):
+def _own(facts: Facts, name: str) -> bool:
     """Tell whether a name is that of a doctor."""
     return name == facts.caller_id or name.startswith('/mhri_doctor')
 
 
-def _doubles(facts):
+def _doubles(facts: Facts) -> List[Finding]:
     """Two subscribers of one name at one publisher: two programs share the name."""
-    names = {}
+    names: Dict[str, Set[str]] = {}
     for node in facts.nodes.values():
         again = facts.later_nodes.get(node.name)
         if again is None:
@@ -314,13 +321,13 @@ def _doubles(facts):
         for peer, topics in sorted(names.items())]
 
 
-def _forgotten(facts):
+def _forgotten(facts: Facts) -> List[Finding]:
     """Nodes that others are connected to, but that the master does not know (any more)."""
     graph, later = _second(facts)
     if facts.later is None:
         return []
     known = set(facts.graph.nodes()) | set(graph.nodes())
-    seen = {}
+    seen: Dict[str, Set[str]] = {}
     for node in facts.nodes.values():
         again = later.get(node.name)
         if again is None:
@@ -337,7 +344,7 @@ def _forgotten(facts):
         for peer, names in sorted(seen.items())]
 
 
-def odd_nodes(facts):
+def odd_nodes(facts: Facts) -> Set[str]:
     """Return the names of the nodes to look at again before anything is said about them."""
     known = set(facts.graph.nodes())
     odd = set()

@@ -4,11 +4,12 @@
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from statistics import median
-from typing import Dict, Tuple
+from typing import Any, Dict, Iterable, List, Mapping, Set, Tuple
 
+from mhri.core.config import ConfigError
 from mhri.core.robots.discovery import (
-    Candidate, find_candidates, NAME_PARAMETER, parameters_of, ROOT_PARAMETERS)
-from mhri.core.doctor.facts import ANSWERS, FAULT, FINE, Finding, listed, WARNING
+    Candidate, find_candidates, IgnoreList, NAME_PARAMETER, parameters_of, ROOT_PARAMETERS)
+from mhri.core.doctor.facts import ANSWERS, Facts, FAULT, FINE, Finding, Graph, listed, WARNING
 from mhri.core.doctor.nodes import start_robot
 from mhri.core.doctor.system import gates
 from mhri.core.robots.names import topic_of
@@ -30,28 +31,28 @@ class Robot:
 
     candidate: Candidate
     template: RobotType
-    parameters: Dict = field(default_factory=dict)
-    errors: Tuple = ()
+    parameters: Dict[str, Any] = field(default_factory=dict)
+    errors: Tuple[ConfigError, ...] = ()
 
-    def topics(self, *keys):
+    def topics(self, *keys: str) -> List[str]:
         """Return the absolute names of the topics under some keys of its template, in order."""
         return [topic_of(self.candidate.name, topic)
                 for key in keys for topic in getattr(self.template, key)]
 
-    def parameter(self, key):
+    def parameter(self, key: str) -> str:
         """Return the absolute name of one of its parameters, ``key`` as in its messages."""
         path = key.partition('[')[0].replace('.', '/')
         if self.candidate.seen.at_root and path in ROOT_PARAMETERS:
             return '/' + path
         return '/{}/{}'.format(self.candidate.name, path)
 
-    def list_topics(self):
+    def list_topics(self) -> str:
         """Return the command that lists its topics, and perhaps those of others."""
         return 'rostopic list' if self.candidate.seen.at_root else \
             'rostopic list | grep /{}/'.format(self.candidate.name)
 
 
-def robots_of(graph, types, ignore):
+def robots_of(graph: Graph, types: Mapping[str, RobotType], ignore: IgnoreList) -> List[Robot]:
     """Return the :class:`Robot` list of a graph, sorted by name.
 
     :param types: {name: :class:`mhri.core.robots.robot_types.RobotType`} with at least ``generic``
@@ -66,7 +67,8 @@ def robots_of(graph, types, ignore):
     return robots
 
 
-def find_on_robots(facts, types, robots):
+def find_on_robots(facts: Facts, types: Mapping[str, RobotType],
+                   robots: List[Robot]) -> List[Finding]:
     """Return the findings about the robots, a list of :class:`Robot`."""
     found = _absent(facts, [robot.candidate for robot in robots])
     for robot in robots:
@@ -89,7 +91,7 @@ def find_on_robots(facts, types, robots):
     return found
 
 
-def _left_over(facts, candidate):
+def _left_over(facts: Facts, candidate: Candidate) -> List[str]:
     """Return the parameters of a robot, those with others below them once."""
     own = [candidate.name] if isinstance(facts.graph.parameters.get(candidate.name), dict) else []
     if not candidate.seen.at_root:
@@ -98,7 +100,7 @@ def _left_over(facts, candidate):
             if key in facts.graph.parameters] + own
 
 
-def _absent(facts, candidates):
+def _absent(facts: Facts, candidates: Iterable[Candidate]) -> List[Finding]:
     """Robots that were asked for, or are in the panel's list, and are not on the graph."""
     there = {candidate.name for candidate in candidates}
     mhri = facts.graph.parameters.get('mhri')
@@ -116,7 +118,7 @@ def _absent(facts, candidates):
     return found
 
 
-def _robot(facts, types, robot):
+def _robot(facts: Facts, types: Mapping[str, RobotType], robot: Robot) -> List[Finding]:
     """Return the findings about one robot that has nodes."""
     name, nodes = robot.candidate.name, robot.candidate.nodes
     found = _type(robot, types)
@@ -130,7 +132,7 @@ def _robot(facts, types, robot):
     return found
 
 
-def _type(robot, types):
+def _type(robot: Robot, types: Mapping[str, RobotType]) -> List[Finding]:
     """Judge ``robot_type`` and the other parameters."""
     name, found = robot.candidate.name, []
     key = robot.parameter('robot_type')
@@ -152,7 +154,7 @@ def _type(robot, types):
     return found
 
 
-def _velocity(facts, robot):
+def _velocity(facts: Facts, robot: Robot) -> List[Finding]:
     """Judge who listens to the robot's velocity topics and who publishes them."""
     name, topics = robot.candidate.name, robot.topics('command')
     alive = {topic: [node for node in facts.graph.subscribers.get(topic, ())
@@ -175,7 +177,7 @@ def _velocity(facts, robot):
     return found + _hidden(facts, name, chosen, alive[chosen])
 
 
-def _foreign(name, topic, nodes):
+def _foreign(name: str, topic: str, nodes: List[str]) -> Finding:
     """Say who drives a robot past the gates, or tries to."""
     words = '{} {} {}, past the gates'.format(
         listed(nodes), 'publishes' if len(nodes) == 1 else 'publish', topic)
@@ -192,17 +194,17 @@ def _foreign(name, topic, nodes):
             ' '.join(nodes)))
 
 
-def _uri(text):
+def _uri(text: str) -> str:
     return text.rstrip('/')
 
 
-def _hidden(facts, name, topic, listeners):
+def _hidden(facts: Facts, name: str, topic: str, listeners: Iterable[str]) -> List[Finding]:
     """Programs that send velocity and that the master does not know of."""
     known = {_uri(facts.nodes[node].uri) for node in facts.graph.publishers.get(topic, ())}
     if facts.later is not None:
         known |= {_uri(facts.nodes[node].uri_later or facts.nodes[node].uri)
                   for node in facts.later.publishers.get(topic, ()) if node in facts.nodes}
-    peers = {}
+    peers: Dict[str, Set[str]] = {}
     for listener in listeners:
         again = facts.later_nodes.get(listener)
         if again is None:
@@ -219,7 +221,7 @@ def _hidden(facts, name, topic, listeners):
         for peer in sorted(peers)]
 
 
-def hidden_listeners(facts, topics):
+def hidden_listeners(facts: Facts, topics: Iterable[str]) -> Set[str]:
     """Return the nodes to look at twice: they have velocity from somebody unknown."""
     odd = set()
     for topic in topics:
@@ -231,7 +233,7 @@ def hidden_listeners(facts, topics):
     return odd
 
 
-def _topics(facts, robot):
+def _topics(facts: Facts, robot: Robot) -> List[Finding]:
     """Judge the types of the robot's topics against those of its template."""
     name, template, found = robot.candidate.name, robot.template, []
     kinds = (('command', TWIST), ('odometry', template.odometry_type)) + _TYPES
@@ -250,7 +252,7 @@ def _topics(facts, robot):
     return found
 
 
-def _odometry(facts, robot):
+def _odometry(facts: Facts, robot: Robot) -> List[Finding]:
     """Judge whether the robot says how it moves."""
     name, topics = robot.candidate.name, robot.topics('odometry')
     publishers = {topic: facts.graph.publishers.get(topic, ()) for topic in topics}
@@ -278,7 +280,7 @@ def _odometry(facts, robot):
     return found
 
 
-def clock_offset(samples):
+def clock_offset(samples: Iterable[Tuple[float, float]]) -> Tuple[float, float]:
     """Return (offset [s], uncertainty [s]) of a sender's clock, positive where it is ahead.
 
     A stamp is older than its arrival by the way, which is never negative: the fastest message is
@@ -293,7 +295,7 @@ def clock_offset(samples):
     return -delays[0], max(0.005, scatter, 0.1 if len(delays) < 5 else 0.0)
 
 
-def _clock(facts, robot):
+def _clock(facts: Facts, robot: Robot) -> List[Finding]:
     """Judge the offset of the robot's clock by the stamps of its odometry and IMU."""
     name, topics = robot.candidate.name, robot.topics('odometry', 'imu')
     samples = [sample for stream in facts.streams if stream.topic in topics

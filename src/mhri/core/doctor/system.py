@@ -1,7 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The doctor on mhri's own nodes: mux, gates, operators, topics that one node alone may have."""
-from mhri.core.doctor.facts import FAULT, FINE, Finding, listed, SILENT, SYSTEM, WARNING
+from typing import Dict, Iterable, List
+
+from mhri.core.doctor.facts import (
+    Facts, FAULT, FINE, Finding, listed, SILENT, Stream, SYSTEM, WARNING)
 from mhri.core.doctor.host import use_other
 
 TWIST, SELECT, MODE = ('/robot_controller/twist', '/robot_controller/robot_select', '/mux/mode')
@@ -14,7 +17,7 @@ _MUX_ALONE = ((TWIST, 'the operator\'s velocity'), (TASK_TWIST, 'the velocities 
 _NOTHING = 'robots are selected, the stick is moved, and nothing happens'
 
 
-def find_on_system(facts):
+def find_on_system(facts: Facts) -> List[Finding]:
     """Return the findings about the nodes on the host."""
     found = _mux(facts) + _gates(facts) + _operators(facts) + _sim_time(facts)
     if all(item.severity == FINE for item in found):
@@ -27,31 +30,31 @@ def find_on_system(facts):
     return found
 
 
-def _publishers(facts, topic):
+def _publishers(facts: Facts, topic: str) -> List[str]:
     """Return the nodes that publish a topic, but for those that do not answer."""
     return [node for node in facts.graph.publishers.get(topic, ())
             if node not in facts.nodes or facts.answering(node)]
 
 
-def muxes(facts):
+def muxes(facts: Facts) -> List[str]:
     """Return the names of the muxes that run."""
     return _publishers(facts, MODE)
 
 
-def gates(facts):
+def gates(facts: Facts) -> List[str]:
     """Return the names of the gates that run: they say their state, and hear the mux."""
     return [node for node in _publishers(facts, GATES_STATE)
             if node in facts.graph.subscribers.get(TWIST, ())]
 
 
-def hung(facts):
+def hung(facts: Facts) -> Dict[str, str]:
     """Return {name: topic it is known by} of mux and gates that are there and do not answer."""
     return {node: topic for topic in (MODE, GATES_STATE)
             for node in facts.graph.publishers.get(topic, ())
             if node in facts.nodes and facts.nodes[node].state == SILENT}
 
 
-def _silent(facts, topic, check, words, start):
+def _silent(facts: Facts, topic: str, check: str, words: str, start: str) -> List[Finding]:
     """Say which of those that make a topic hang."""
     found = []
     for name in sorted(name for name, known_by in hung(facts).items() if known_by == topic):
@@ -64,7 +67,7 @@ def _silent(facts, topic, check, words, start):
     return found
 
 
-def _mux_missing(facts):
+def _mux_missing(facts: Facts) -> Finding:
     """Say that no mux runs; where another master has one, this may be the wrong master."""
     nor = '' if gates(facts) else ', and no gates'
     if facts.master.elsewhere:
@@ -79,12 +82,12 @@ def _mux_missing(facts):
         'rosrun mhri mux   # or everything: roslaunch mhri mhri.launch')
 
 
-def _end_all_but(wanted, names):
+def _end_all_but(wanted: str, names: Iterable[str]) -> str:
     """Return the command that leaves one of several nodes, the one of the usual name if it is."""
     return 'rosnode kill {}'.format(' '.join(sorted(names, key=lambda name: name != wanted)[1:]))
 
 
-def _mux(facts):
+def _mux(facts: Facts) -> List[Finding]:
     """Judge how many muxes there are, and who else speaks in their place."""
     running = muxes(facts)
     found = _silent(facts, MODE, 'mux_silent', ', so no stick and no task reaches the gates',
@@ -108,7 +111,7 @@ def _mux(facts):
     return found
 
 
-def _gates(facts):
+def _gates(facts: Facts) -> List[Finding]:
     """Judge the node that speaks to robots: how many there are, whether it lives, what it says."""
     running = gates(facts)
     found = _silent(facts, GATES_STATE, 'gates_silent', ': nothing speaks to robots',
@@ -136,7 +139,7 @@ def _gates(facts):
     return found
 
 
-def _heard(facts, stream):
+def _heard(facts: Facts, stream: Stream) -> List[Finding]:
     """Judge what the gates say of themselves."""
     found = []
     # The stamp of another computer may be off; that nothing comes at all is told by any clock.
@@ -161,7 +164,7 @@ def _heard(facts, stream):
     return found
 
 
-def _operators(facts):
+def _operators(facts: Facts) -> List[Finding]:
     """Judge how many programs select robots, or send the virtual joystick."""
     found = []
     panels, sticks = _publishers(facts, SELECT), _publishers(facts, STICK)
@@ -180,7 +183,7 @@ def _operators(facts):
     return found
 
 
-def _sim_time(facts):
+def _sim_time(facts: Facts) -> List[Finding]:
     """Judge simulated time without anybody who tells it."""
     if facts.graph.parameters.get('use_sim_time') is not True or _publishers(facts, '/clock'):
         return []

@@ -1,7 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Does a robot stop by itself when commands cease? The trial, step by step, and its verdict."""
+from typing import List, Optional
+
 from mhri.core.doctor.facts import FAULT, FINE, Finding, WARNING
+from mhri.core.robots.link import Motion
 
 WAITING, DRIVING, LISTENING, DONE = 'waiting', 'driving', 'listening', 'done'
 # Outcomes of a trial.
@@ -27,50 +30,51 @@ class WatchdogTrial:
     set when DONE, ``stopped_s`` the time from the last command to standstill [s].
     """
 
-    def __init__(self, now, turn_rad_s=TURN_RAD_S):
+    def __init__(self, now: float, turn_rad_s: float = TURN_RAD_S) -> None:
         self.phase = WAITING
-        self.outcome = None
-        self.stopped_s = None
+        self.outcome: Optional[str] = None
+        self.stopped_s: Optional[float] = None
         self._turn_rad_s = turn_rad_s
         self._begun = now
-        self._moved_at = None
-        self._last_sent = None
-        self._rest = []
+        self._moved_at: Optional[float] = None
+        self._last_sent = now
+        self._rest: List[float] = []
 
-    def step(self, now, motion, heard_at):
+    def step(self, now: float, motion: Optional[Motion], heard_at: float) -> Optional[float]:
         """Take the newest motion; return the turn to send now [rad/s], None for silence.
 
         :param motion: :class:`mhri.core.robots.link.Motion`, None where nothing was heard yet
         :param heard_at: when it was heard [s]
         """
-        fresh = motion is not None and now - heard_at <= FRESH_S
+        if not now - heard_at <= FRESH_S:
+            motion = None
         if self.phase == WAITING:
-            self._wait(now, motion, fresh)
+            self._wait(now, motion)
         elif self.phase == DRIVING:
-            self._drive(now, motion, fresh)
+            self._drive(now, motion)
         elif self.phase == LISTENING:
-            self._listen(now, motion, fresh, heard_at)
+            self._listen(now, motion, heard_at)
         if self.phase == DRIVING:
             self._last_sent = now
             return self._turn_rad_s
         return None
 
-    def _end(self, outcome):
+    def _end(self, outcome: str) -> None:
         self.phase, self.outcome = DONE, outcome
 
-    def _enter(self, phase, now):
+    def _enter(self, phase: str, now: float) -> None:
         self.phase, self._begun, self._rest = phase, now, []
 
-    def _wait(self, now, motion, fresh):
-        if fresh and not motion.is_standstill():
+    def _wait(self, now: float, motion: Optional[Motion]) -> None:
+        if motion is not None and not motion.is_standstill():
             self._end(MOVED_BEFORE)
-        elif fresh:
+        elif motion is not None:
             self._enter(DRIVING, now)
         elif now - self._begun > START_S:
             self._end(MUTE)
 
-    def _drive(self, now, motion, fresh):
-        if not fresh:
+    def _drive(self, now: float, motion: Optional[Motion]) -> None:
+        if motion is None:
             self._end(LOST)
         elif self._moved_at is None and not motion.is_standstill():
             self._moved_at = now
@@ -79,8 +83,8 @@ class WatchdogTrial:
         elif self._moved_at is None and now - self._begun > START_S:
             self._end(NOT_MOVED)
 
-    def _listen(self, now, motion, fresh, heard_at):
-        if not fresh:
+    def _listen(self, now: float, motion: Optional[Motion], heard_at: float) -> None:
+        if motion is None:
             self._end(LOST)
         elif not motion.is_standstill():
             self._rest = []
@@ -93,9 +97,9 @@ class WatchdogTrial:
             self._end(RUNS_ON)
 
 
-def verdict(robot, outcome, stopped_s=None):
+def verdict(robot: str, outcome: str, stopped_s: Optional[float] = None) -> Finding:
     """Return the :class:`Finding` of a trial."""
-    if outcome == STOPS:
+    if outcome == STOPS and stopped_s is not None:
         words = 'stood still {:.2f} s after the last command'.format(stopped_s)
         sure = 'measured once, by its own odometry'
         if stopped_s <= SLOW_S:
@@ -117,7 +121,7 @@ def verdict(robot, outcome, stopped_s=None):
         robot))
 
 
-def unknown(robot, words, remedy):
+def unknown(robot: str, words: str, remedy: str) -> Finding:
     """Return the :class:`Finding` that nothing is known of a robot's watchdog."""
     return Finding(WARNING, 'watchdog_unknown', robot, words,
                    'nobody knows whether it stops when the network is lost', remedy)

@@ -3,10 +3,12 @@
 """What is recorded, under which name, and what is said about it."""
 from collections import deque
 from dataclasses import dataclass
+from datetime import datetime
 import re
-from typing import Tuple
+from typing import Callable, Collection, Deque, Mapping, Match, Optional, Tuple
 
 from mhri.core.robots.names import topic_of
+from mhri.core.robots.robot_types import RobotType
 
 # States of a recording; each is reached from the one before, the last two end it.
 OFF = 'off'              # not started
@@ -72,10 +74,10 @@ class RecordingLimits:
 class RateMeter:
     """Messages per second over the last second or two, from a count that is looked at often."""
 
-    def __init__(self):
-        self._seen = deque(maxlen=40)
+    def __init__(self) -> None:
+        self._seen: Deque[Tuple[float, int]] = deque(maxlen=40)
 
-    def rate_hz(self, now_s, count):
+    def rate_hz(self, now_s: float, count: int) -> float:
         """Return the rate, 0 until there are two looks at least 0.2 s apart."""
         if not self._seen or now_s - self._seen[-1][0] >= 0.05:
             self._seen.append((now_s, count))
@@ -85,7 +87,7 @@ class RateMeter:
         return (count - self._seen[0][1]) / span_s if span_s >= 0.2 else 0.0
 
 
-def topics_of(robot, robot_type, choices=()):
+def topics_of(robot: str, robot_type: RobotType, choices: Collection[str] = ()) -> Tuple[str, ...]:
     """Return the topics to record of a robot, absolute, without repetition.
 
     Of each list of a template every candidate is taken: one that does not exist brings nothing.
@@ -115,12 +117,12 @@ def topics_of(robot, robot_type, choices=()):
     return tuple(dict.fromkeys(topics))
 
 
-def ros_home(env):
+def ros_home(env: Mapping[str, str]) -> str:
     """Return the folder of ROS: ``$ROS_HOME``, by default ``~/.ros``."""
     return env.get('ROS_HOME') or '{}/.ros'.format(env.get('HOME', '').rstrip('/'))
 
 
-def default_name(robot, when):
+def default_name(robot: str, when: datetime) -> str:
     """Return ``<robot>_<date-time>.bag``.
 
     :param when: a :class:`datetime.datetime` in local time
@@ -128,13 +130,13 @@ def default_name(robot, when):
     return '{}_{:%Y-%m-%d-%H-%M-%S}.bag'.format(robot, when)
 
 
-def expand(text, env):
+def expand(text: str, env: Mapping[str, str]) -> str:
     """Return a path with ``~``, ``$NAME`` and ``${NAME}`` replaced.
 
     :param env: {name: value} of the environment
     :raises PathRefused: a variable that is not set; a home folder of somebody else
     """
-    def value(match):
+    def value(match: Match[str]) -> str:
         name = match.group(1) or match.group(2)
         if name not in env:
             raise PathRefused('${} is not set'.format(name))
@@ -148,7 +150,8 @@ def expand(text, env):
     return text
 
 
-def split_path(text, env, is_folder):
+def split_path(text: str, env: Mapping[str, str],
+               is_folder: Callable[[str], bool]) -> Tuple[str, str]:
     """Return (folder, name) of what the operator typed; the name is '' where only a folder is.
 
     A path that is a folder, or ends in a slash, is a folder; anything else is a file, and gets
@@ -181,7 +184,7 @@ def split_path(text, env, is_folder):
     return folder or '/', name
 
 
-def system_folder(real_folder):
+def system_folder(real_folder: str) -> Optional[str]:
     """Return the folder of the system that a (real) folder is in, or None where files may be."""
     for top in _NO_FILES_IN:
         if real_folder == top or real_folder.startswith(top + '/'):
@@ -189,12 +192,12 @@ def system_folder(real_folder):
     return None
 
 
-def numbered(name, number):
+def numbered(name: str, number: int) -> str:
     """Return the name, or for 1, 2, ... with ``-1``, ``-2``, ... before its ending."""
     return name if not number else '{}-{}.bag'.format(name[:-len('.bag')], number)
 
 
-def fallback_note(text, reason, path):
+def fallback_note(text: str, reason: str, path: str) -> str:
     """Say that a path could not be used, and what is used instead."""
     shown = ''.join(char if char.isprintable() else '?' for char in text.strip())
     if len(shown) > 80:
@@ -205,7 +208,7 @@ def fallback_note(text, reason, path):
 _FALLBACK = re.compile(r'cannot write to ".*": (.*); saving to /.* instead(?:; )?', re.DOTALL)
 
 
-def read_fallback(note):
+def read_fallback(note: str) -> Tuple[str, str]:
     """Return (why the path could not be used, the rest of a note); ('', note) where it could.
 
     The opposite of :func:`fallback_note`, for who shows the path elsewhere.
@@ -216,14 +219,15 @@ def read_fallback(note):
     return found.group(1), note[:found.start()] + note[found.end():]
 
 
-def size_text(count):
+def size_text(count: float) -> str:
     """Return a number of bytes in words, e.g. ``0.8 MB``, ``12 kB``."""
     if count < 99500:
         return '{:.0f} kB'.format(count / 1e3)
     return '{:.1f} GB'.format(count / 1e9) if count >= 1e9 else '{:.1f} MB'.format(count / 1e6)
 
 
-def warning_of(limits, free_bytes, queue_bytes) -> Tuple[str, bool]:
+def warning_of(limits: RecordingLimits, free_bytes: Optional[int],
+               queue_bytes: int) -> Tuple[str, bool]:
     """Return (words about the disk, whether to stop); ('', False) while all is well.
 
     :param free_bytes: space left on the disk, None where unknown

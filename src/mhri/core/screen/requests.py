@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What a pad button, a voice or a lab's node may ask the panel for (``mhri/PanelRequest``)."""
+from typing import Collection, Sequence, Tuple
+
 SELECT, DESELECT, ONLY = 'select', 'deselect', 'only'
 SELECT_ALL, SELECT_NONE = 'select_all', 'select_none'
 NEXT, PREVIOUS = 'next', 'previous'
@@ -13,7 +15,7 @@ class RequestRefused(ValueError):
     """A request that the panel does not carry out; the text says why, for a person."""
 
 
-def check_request(action, names, robots):
+def check_request(action: str, names: Sequence[str], robots: Sequence[str]) -> None:
     """Refuse a request that cannot be carried out.
 
     :param names: the robots it names
@@ -30,7 +32,8 @@ def check_request(action, names, robots):
         raise RequestRefused('{} needs the name of a robot'.format(action))
 
 
-def selection_after(action, names, robots, selected):
+def selection_after(action: str, names: Sequence[str], robots: Sequence[str],
+                    selected: Collection[str]) -> Tuple[str, ...]:
     """Return the robots that are selected after a request, in the order of the list.
 
     ``next`` and ``previous`` go round and select one robot alone: that after the last selected one,

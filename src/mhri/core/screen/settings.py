@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What a lab sets of the panel with parameters: the camera budget and the disk's reserves."""
 from dataclasses import dataclass
+from typing import Any, Dict, List, Tuple
 
 from mhri.core.config import ConfigError, Section
 from mhri.core.recording.recording import MB, RecordingLimits
@@ -25,7 +26,7 @@ class PanelSettings:
     record_stop_free_mb: float = 256.0
     slow_with_link: bool = False
 
-    def recording_limits(self):
+    def recording_limits(self) -> RecordingLimits:
         """Return the :class:`RecordingLimits` that these settings ask for."""
         return RecordingLimits(warn_free_bytes=round(self.record_warn_free_mb * MB),
                                stop_free_bytes=round(self.record_stop_free_mb * MB))
@@ -38,7 +39,7 @@ _RANGES = {'thumbnail_hz': (0.1, 60.0), 'thumbnail_width_px': (32.0, 4096.0),
 _FLAGS = ('slow_with_link',)
 
 
-def _read(section, key):
+def _read(section: Section, key: str) -> Any:
     """Return one setting, its default where it is not given.
 
     :raises ConfigError: it cannot be used
@@ -49,7 +50,9 @@ def _read(section, key):
     return type(default)(section.number(key, *_RANGES[key], default))
 
 
-def parse_settings(parameters, before=PanelSettings()):
+def parse_settings(parameters: Any,
+                   before: PanelSettings = PanelSettings()
+                   ) -> Tuple[PanelSettings, List[ConfigError]]:
     """Return (PanelSettings, [ConfigError]); what cannot be used stays as it was.
 
     :param parameters: what the parameter server has below the namespace: a dict, or None
@@ -60,7 +63,7 @@ def parse_settings(parameters, before=PanelSettings()):
         section = Section({} if parameters is None else parameters, NAMESPACE)
     except ConfigError as error:
         return before, [error]
-    values = {}
+    values: Dict[str, Any] = {}
     for key in (*_RANGES, *_FLAGS):
         try:
             values[key] = _read(section, key)

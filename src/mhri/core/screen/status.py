@@ -1,16 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The one line at the bottom of the panel: the one thing that matters now."""
+from typing import Optional, Tuple
+
 from mhri.core.screen.stop_words import stop_words
 from mhri.core.screen.views import (
-    GONE, ROS_CONNECTED, ROS_CUT_OFF, ROS_STARTING, SILENT, UNANSWERED)
+    GONE, PanelView, ROS_CONNECTED, ROS_CUT_OFF, ROS_STARTING, SILENT, UNANSWERED)
 
 CALM = 'calm'
 ATTENTION = 'attention'
 STOPPED = 'stopped'
+# A sentence and its level.
+_Line = Tuple[str, str]
 
 
-def status_line(view, waits_for, master_uri=''):
+def status_line(view: PanelView, waits_for: Optional[str], master_uri: str = '') -> _Line:
     """Say who is driven, by what, and what it waits for; or what keeps it all from working.
 
     :param view: :class:`mhri.core.screen.views.PanelView`, its status not yet filled
@@ -24,7 +28,7 @@ def status_line(view, waits_for, master_uri=''):
     return _driving(view, waits_for)
 
 
-def _no_ros(view, _, master_uri):
+def _no_ros(view: PanelView, _: Optional[str], master_uri: str) -> Optional[_Line]:
     if view.ros == ROS_STARTING:
         return 'connecting to ROS', CALM
     if view.ros == ROS_CUT_OFF:
@@ -35,31 +39,31 @@ def _no_ros(view, _, master_uri):
     return None
 
 
-def _stopped(view, _, __):
+def _stopped(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
     if view.stop_all:
         return stop_words(view.robots, view.stop_taken, view.answers).sentence, STOPPED
     return None
 
 
-def _no_mux(view, _, __):
+def _no_mux(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
     if view.mode is None:
         return 'what decides who drives is not running: close this and start mhri again', ATTENTION
     return None
 
 
-def _no_gates(view, _, __):
+def _no_gates(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
     if not view.answers:
         return UNANSWERED + ': no robot can be driven, and those that were stand', ATTENTION
     return None
 
 
-def _not_ours(view, _, __):
+def _not_ours(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
     if not view.control.ours:
         return 'only looking on: {} drives'.format(view.control.who or 'somebody else'), CALM
     return None
 
 
-def _no_robots(view, _, __):
+def _no_robots(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
     if not view.robots:
         return 'no robots yet: look for connected bots, or add one by its name', CALM
     if not any(robot.selected for robot in view.robots):
@@ -67,7 +71,7 @@ def _no_robots(view, _, __):
     return None
 
 
-def _lost_robot(view, _, __):
+def _lost_robot(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
     for robot in view.robots:
         if robot.selected and robot.link == SILENT:
             return '{} has sent {}'.format(robot.name, robot.note), ATTENTION
@@ -76,9 +80,10 @@ def _lost_robot(view, _, __):
     return None
 
 
-def _driving(view, waits_for):
+def _driving(view: PanelView, waits_for: Optional[str]) -> _Line:
     """Say who is driven, by what, and what it waits for."""
-    label = dict(view.sources).get(view.mode, view.mode)
+    mode = view.mode or ''
+    label = dict(view.sources).get(mode, mode)
     if not view.dead_man:
         label += ' (no dead-man button)'
     count = sum(robot.selected for robot in view.robots)
@@ -88,7 +93,7 @@ def _driving(view, waits_for):
     words = {'neutral': 'centre the stick to drive',
              'source': 'nothing is heard from it yet',
              'enabling': 'press the enabling pedal to drive',
-             'dead_man': 'hold the dead-man button to drive'}.get(waits_for)
+             'dead_man': 'hold the dead-man button to drive'}.get(waits_for or '')
     if words:
         return '{}  \u2013  {}  \u2013  {}'.format(who, label, words), \
             ATTENTION if waits_for in ('source', 'neutral') else CALM

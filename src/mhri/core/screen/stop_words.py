@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What may be said of a stop that is in force: never more than is proved."""
-from typing import NamedTuple, Tuple
+from typing import Iterable, NamedTuple, Sequence, Tuple
 
-from mhri.core.screen.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED
+from mhri.core.screen.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED, RobotView
 
 IN_FORCE = 'STOP ALL in force'
 # More names than this are a number.
@@ -32,7 +32,7 @@ NOBODY_HEARD = StopWords((IN_FORCE,), 'no command goes out until you release it'
                          'stop all is in force; release it to drive again')
 
 
-def stop_words(robots, taken=True, answers=True):
+def stop_words(robots: Iterable[RobotView], taken: bool = True, answers: bool = True) -> StopWords:
     """Say how far the stop of some robots is proved.
 
     A robot that has never been heard, and is not being proved, has no part in it.
@@ -58,7 +58,7 @@ def stop_words(robots, taken=True, answers=True):
                      'everything is stopped; release stop all to drive again')
 
 
-def _not_confirmed(names):
+def _not_confirmed(names: Sequence[str]) -> StopWords:
     """Name those that are not proved to stand still."""
     who = _listed(names)
     shortest = min(who, _counted(names), key=len)
@@ -70,7 +70,7 @@ def _not_confirmed(names):
         'stop all is in force; {} NOT CONFIRMED: go and look'.format(who))
 
 
-def _stopping(names, count):
+def _stopping(names: Sequence[str], count: int) -> StopWords:
     """Name those whose proof is still to come."""
     who = _listed(names)
     return StopWords(
@@ -80,11 +80,11 @@ def _stopping(names, count):
         'stop all is in force; still stopping {}'.format(who))
 
 
-def _listed(names):
+def _listed(names: Sequence[str]) -> str:
     """Return the names, or how many there are."""
     return ', '.join(names) if len(names) <= _MOST_NAMES else _counted(names)
 
 
-def _counted(names):
+def _counted(names: Sequence[str]) -> str:
     """Return how many robots there are."""
     return '{} robot{}'.format(len(names), '' if len(names) == 1 else 's')

@@ -8,9 +8,10 @@ the rate of the samples was: a spike of one sample is seen at a window of a minu
 """
 from dataclasses import dataclass
 import math
-from typing import Dict
+from typing import Dict, Iterable, Optional, Sequence, Tuple, Union
 
 import numpy as np
+
 
 BIN_S = 1.0 / 30.0
 LONGEST_S = 60.0
@@ -20,6 +21,8 @@ POINTS = 300
 BIGGEST = 1e9
 # A line is not drawn across a silence longer than this.
 GAP_S = 0.5
+# Numbers in rows, as an array or not.
+_Rows = Union[np.ndarray, Sequence[float], Sequence[Sequence[float]]]
 
 LINEAR = 'linear'
 YAW_RATE = 'yaw_rate'
@@ -37,7 +40,7 @@ class BinRing:
     :param keys: names of the values; those of ORIENTATION are angles, which wrap around
     """
 
-    def __init__(self, keys):
+    def __init__(self, keys: Iterable[str]) -> None:
         self.keys = tuple(keys)
         # One more than the longest window needs: both ends are cut through a bin.
         self._size = math.ceil(LONGEST_S / BIN_S) + 2
@@ -46,9 +49,9 @@ class BinRing:
         self._first, self._last = np.full(self._size, np.nan), np.full(self._size, np.nan)
         self._bins = np.full(self._size, -1, dtype=np.int64)
         self._newest = -1
-        self.latest = None
+        self.latest: Optional[np.ndarray] = None
 
-    def add(self, times_s, rows):
+    def add(self, times_s: _Rows, rows: _Rows) -> None:
         """Take samples.
 
         :param times_s: array (n,), ascending, of one clock that never goes back; a sample older
@@ -81,7 +84,7 @@ class BinRing:
         self._newest = int(bins[-1])
         self.latest = rows[-1]
 
-    def copy(self):
+    def copy(self) -> 'BinRing':
         """Return a ring that keeps what there is now."""
         other = BinRing.__new__(BinRing)
         other.__dict__.update(self.__dict__)
@@ -89,7 +92,7 @@ class BinRing:
             setattr(other, name, getattr(self, name).copy())
         return other
 
-    def curve(self, key, now_s, window_s):
+    def curve(self, key: str, now_s: float, window_s: float) -> Tuple[np.ndarray, np.ndarray]:
         """Return (x, y) of one value: x seconds before ``now_s`` (<= 0), NaN where the line breaks.
 
         Bins are put together by their number and not by their age, so that a peak keeps its shape
@@ -113,7 +116,8 @@ class BinRing:
         return _broken(x, y, key in ORIENTATION, group * BIN_S)
 
 
-def _points(first, last, low, high):
+def _points(first: np.ndarray, last: np.ndarray, low: np.ndarray,
+            high: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
     """Return the line through least and greatest values, in the order in which the line climbs."""
     middle = low + high
     climbs = np.concatenate(([True], np.diff(middle) >= 0.0))
@@ -124,7 +128,8 @@ def _points(first, last, low, high):
     return x[keep], y[keep]
 
 
-def _broken(x, y, wraps, step_s):
+def _broken(x: np.ndarray, y: np.ndarray, wraps: bool,
+            step_s: float) -> Tuple[np.ndarray, np.ndarray]:
     """Put a NaN where nothing came for long, and where an angle goes around."""
     breaks = np.diff(x) > max(GAP_S, 2.0 * step_s)
     if wraps:
@@ -144,17 +149,17 @@ class Series:
     now_s: float
     rings: Dict[str, BinRing]
 
-    def curve(self, key, window_s):
+    def curve(self, key: str, window_s: float) -> Tuple[np.ndarray, np.ndarray]:
         """Return (x, y) of a key as :meth:`BinRing.curve` does; both empty without samples."""
         return self.rings[key].curve(key, self.now_s, window_s)
 
-    def latest(self, key):
+    def latest(self, key: str) -> Optional[float]:
         """Return the newest value of a key, None before the first one; NaN where it had none."""
         ring = self.rings[key]
         return None if ring.latest is None else float(ring.latest[ring.keys.index(key)])
 
 
-def roll_pitch_yaw(quaternions):
+def roll_pitch_yaw(quaternions: np.ndarray) -> np.ndarray:
     """Return the angles [rad] of orientations as an array (n, 3); turns about z, y, x in turn.
 
     :param quaternions: array (n, 4) of x, y, z, w; what is not of unit length is scaled, and one of
@@ -170,7 +175,7 @@ def roll_pitch_yaw(quaternions):
         np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))))
 
 
-def round_step(least):
+def round_step(least: float) -> float:
     """Return the first of ... 0.1, 0.2, 0.5, 1, 2, 5 ... that is not less than a number > 0."""
     decade = 10.0 ** math.floor(math.log10(least))
     return next(part * decade for part in (1.0, 2.0, 5.0, 10.0) if least <= part * decade * 1.0001)
@@ -183,13 +188,13 @@ class AxisRange:
     :param shrink_after_s: how long less has to be enough before it shrinks [s]
     """
 
-    def __init__(self, least, shrink_after_s=4.0):
+    def __init__(self, least: float, shrink_after_s: float = 4.0) -> None:
         self._least = least
         self._shrink_after_s = shrink_after_s
         self._range = (-least, least)
-        self._ample_since = None
+        self._ample_since: Optional[float] = None
 
-    def follow(self, low, high, now_s):
+    def follow(self, low: float, high: float, now_s: float) -> Tuple[float, float]:
         """Return the limits for the least and greatest value on show (NaN: none); 0 is within."""
         low, high = (0.0 if math.isnan(value) else value for value in (low, high))
         wanted = self._around(min(low, 0.0), max(high, 0.0))
@@ -204,7 +209,7 @@ class AxisRange:
             self._range, self._ample_since = wanted, None
         return self._range
 
-    def _around(self, low, high):
+    def _around(self, low: float, high: float) -> Tuple[float, float]:
         """Return round limits with some room around values; a side without values stays small."""
         reach = max(-low, high, self._least)
         step = round_step(reach / 5.0)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Where speech begins and ends in a stream of sound: energy over a floor that follows the noise."""
 from collections import deque
+from typing import Deque
 
 import numpy as np
 
@@ -27,7 +28,7 @@ _FLOOR_S = 3.0
 _FLOOR_PERCENT = 20.0
 
 
-def loudness_db(block):
+def loudness_db(block: bytes) -> float:
     """Return how loud a block of 16 bit samples is [dB of one step]; -10.0 for digital silence."""
     samples = np.frombuffer(block, dtype='<i2').astype(np.float32)
     if not samples.size:
@@ -44,10 +45,10 @@ class Endpointer:
     no part of it any more) or QUIET.
     """
 
-    def __init__(self):
-        self._lead = deque(maxlen=int(LEAD_S / BLOCK_S) + _BEGIN_OF)
-        self._loud = deque(maxlen=_BEGIN_OF)
-        self._levels = deque(maxlen=int(_FLOOR_S / BLOCK_S))
+    def __init__(self) -> None:
+        self._lead: Deque[bytes] = deque(maxlen=int(LEAD_S / BLOCK_S) + _BEGIN_OF)
+        self._loud: Deque[bool] = deque(maxlen=_BEGIN_OF)
+        self._levels: Deque[float] = deque(maxlen=int(_FLOOR_S / BLOCK_S))
         self._floor_db = _LOWEST_DB
         self._speaking = False
         self._silent_s = 0.0
@@ -55,25 +56,25 @@ class Endpointer:
         self._until_floor = 0
 
     @property
-    def speaking(self):
+    def speaking(self) -> bool:
         """Whether an utterance is open."""
         return self._speaking
 
     @property
-    def silent_s(self):
+    def silent_s(self) -> float:
         """For how long the open utterance has been silent [s]."""
         return self._silent_s
 
     @property
-    def floor_db(self):
+    def floor_db(self) -> float:
         """What counts as silence [dB of one step of 16 bit]."""
         return self._floor_db
 
-    def lead(self):
+    def lead(self) -> bytes:
         """Return the sound from shortly before the beginning on."""
         return b''.join(self._lead)
 
-    def feed(self, block):
+    def feed(self, block: bytes) -> str:
         """Take in one block; return BEGIN, GO_ON, END or QUIET."""
         level = loudness_db(block)
         self._follow(level)
@@ -87,7 +88,7 @@ class Endpointer:
         self._silent_s = self._spoken_s = 0.0
         return BEGIN
 
-    def _go_on(self, level):
+    def _go_on(self, level: float) -> str:
         """Judge a block of an open utterance."""
         self._spoken_s += BLOCK_S
         self._silent_s = 0.0 if level > self._floor_db + _STILL_DB else self._silent_s + BLOCK_S
@@ -100,7 +101,7 @@ class Endpointer:
         self._until_floor = 0
         return END
 
-    def _follow(self, level):
+    def _follow(self, level: float) -> None:
         """Let the floor follow the noise; five times a second is often enough."""
         self._levels.append(level)
         self._until_floor -= 1

@@ -1,13 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The grammar of the robots that are there: what the recogniser looks for, and what it means."""
-from dataclasses import dataclass
-from typing import Tuple
+from dataclasses import dataclass, replace
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple
 
-from mhri.core.voice.language import GROUP_ACTIONS, ROBOT_ACTIONS
+from mhri.core.voice.language import GROUP_ACTIONS, Language, ROBOT_ACTIONS
 from mhri.core.voice.names import call_robots, number_words
 
 DRIVE, PACE, PANEL, MODE, STOP, WAKE = 'drive', 'pace', 'panel', 'mode', 'stop', 'wake'
+_Words = Tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Command:
     woken: bool = False
 
     @property
-    def words(self):
+    def words(self) -> str:
         """The command in one line, e.g. 'forward little', 'select bot1 bot2', 'use pedal'."""
         if self.kind in (STOP, WAKE):
             return self.kind
@@ -35,7 +36,7 @@ class Command:
         return ' '.join([first] + [self.manner] * bool(self.manner) + list(self.robots))
 
 
-def _after(words, phrases):
+def _after(words: _Words, phrases: Iterable[str]) -> Iterator[_Words]:
     """Yield what follows each of the phrases that the words begin with."""
     for phrase in phrases:
         start = tuple(phrase.split())
@@ -43,7 +44,7 @@ def _after(words, phrases):
             yield words[len(start):]
 
 
-def _any_of(phrases):
+def _any_of(phrases: Iterable[str]) -> str:
     """Write alternatives in JSGF."""
     return '(' + ' | '.join(sorted(set(phrases))) + ')'
 
@@ -56,7 +57,8 @@ class Grammar:
     :param knows: function that tells whether the model's dictionary has a word
     """
 
-    def __init__(self, language, robots, knows):
+    def __init__(self, language: Language, robots: Iterable[Any],
+                 knows: Callable[[str], bool]) -> None:
         self.language = language
         self._fixed = self._fixed_phrases()
         taken = {word for phrase in self._fixed for word in phrase.split()}
@@ -67,14 +69,14 @@ class Grammar:
         self.called, self.notes = call_robots(
             robots, lambda word: word in language.pronunciations or knows(word), taken,
             language.wake_words)
-        self._robots = {}
+        self._robots: Dict[str, str] = {}
         for number, (name, phrases) in enumerate(self.called.items(), 1):
             for prefix in ('',) + language.numbers:
                 self._robots[' '.join([prefix, number_words(number)]).strip()] = name
         self._robots.update({phrase: name for name, phrases in self.called.items()
                              for phrase in phrases})
 
-    def _fixed_phrases(self):
+    def _fixed_phrases(self) -> Tuple[str, ...]:
         """Return every phrase that does not depend on the robots."""
         language = self.language
         tables = [language.manner, language.robots, language.requests, language.sources]
@@ -84,7 +86,7 @@ class Grammar:
         return tuple(phrases) + language.wake_words + language.stop + language.use
 
     @property
-    def words(self):
+    def words(self) -> List[str]:
         """Every word of the grammar, sorted: what the recogniser's dictionary has to hold."""
         language = self.language
         phrases = (self._fixed + tuple(self._robots) + language.joiners + language.please
@@ -92,11 +94,11 @@ class Grammar:
         return sorted({word for phrase in phrases for word in phrase.split()})
 
     @property
-    def robots(self):
+    def robots(self) -> Tuple[str, ...]:
         """The robots that can be called, in the panel's order."""
         return tuple(self.called)
 
-    def jsgf(self):
+    def jsgf(self) -> str:
         """Return the grammar in the JSpeech Grammar Format; its public rule is ``said``."""
         language = self.language
         manners = [phrase for phrases in language.manner.values() for phrase in phrases]
@@ -128,7 +130,7 @@ class Grammar:
                   .format(please, before, after)]
         return '\n'.join(rules) + '\n'
 
-    def parse(self, text):
+    def parse(self, text: str) -> Optional[Command]:
         """Return the :class:`Command` that words mean, or None where they mean none.
 
         A word of ``stop`` anywhere stops, but for the phrases of the grammar that have it inside
@@ -140,7 +142,7 @@ class Grammar:
             return Command(STOP)
         return command
 
-    def _parse_whole(self, words):
+    def _parse_whole(self, words: _Words) -> Optional[Command]:
         """Parse without the spotting of stop."""
         for rest in _after(words, self.language.wake_words):
             if not rest:
@@ -150,7 +152,7 @@ class Grammar:
                 return command
         return self._parse_command(words, False)
 
-    def _parse_command(self, words, woken):
+    def _parse_command(self, words: _Words, woken: bool) -> Optional[Command]:
         """Parse what follows the wake word."""
         for start in list(_after(words, self.language.please)) + [words]:
             for phrase in (None,) + self.language.please:
@@ -160,48 +162,48 @@ class Grammar:
                 body = start[:len(start) - size]
                 command = self._drive(body) or self._request(body)
                 if command:
-                    return Command(*command, woken=woken)
+                    return replace(command, woken=woken)
         return None
 
-    def _drive(self, words):
-        """Return (kind, action, manner) of a motion, or None."""
+    def _drive(self, words: _Words) -> Optional[Command]:
+        """Return the command of a motion, or None."""
         language = self.language
         for direction, (verbs, names) in language.drive.items():
             for rest in list(_after(words, verbs)) + [words]:
                 for end in _after(rest, names):
                     if not end:
-                        return DRIVE, direction
+                        return Command(DRIVE, direction)
                     for manner, phrases in language.manner.items():
                         if ' '.join(end) in phrases:
-                            return DRIVE, direction, manner
+                            return Command(DRIVE, direction, manner)
         for rest in [words] + [end for verbs, _ in language.drive.values()
                                for end in _after(words, verbs)]:
             for pace in ('faster', 'slower'):
                 if ' '.join(rest) in language.manner[pace]:
-                    return PACE, pace
+                    return Command(PACE, pace)
         return None
 
-    def _request(self, words):
-        """Return (kind, action, manner, robots) of what is not a motion, or None."""
+    def _request(self, words: _Words) -> Optional[Command]:
+        """Return the command of what is not a motion, or None."""
         language = self.language
         text = ' '.join(words)
         for kind, table in ((PANEL, language.requests),
                             (PANEL, {key: language.robots[key] for key in GROUP_ACTIONS})):
             for action, phrases in table.items():
                 if text in phrases:
-                    return kind, action
+                    return Command(kind, action)
         for rest in _after(words, language.use):
             for source, phrases in language.sources.items():
                 if ' '.join(rest) in phrases:
-                    return MODE, source
+                    return Command(MODE, source)
         for action in ROBOT_ACTIONS:
             for rest in _after(words, language.robots[action]):
                 robots = self._named(rest)
                 if robots:
-                    return PANEL, action, '', robots
+                    return Command(PANEL, action, '', robots)
         return None
 
-    def _named(self, words):
+    def _named(self, words: _Words) -> Tuple[str, ...]:
         """Return the robots that words name, one or two of them, or ()."""
         text = ' '.join(words)
         if text in self._robots:

@@ -3,9 +3,9 @@
 """What can be said, as data: ``resource/voice/<language>.yaml``, checked."""
 import re
 from dataclasses import dataclass
-from typing import Dict, Tuple
+from typing import Dict, Iterable, Optional, Pattern, Tuple
 
-from mhri.core.config import parse_yaml
+from mhri.core.config import parse_yaml, Section
 
 DIRECTIONS = ('forward', 'backward', 'left', 'right')
 MANNERS = ('little', 'faster', 'slower')
@@ -65,7 +65,7 @@ class Language:
     push_to_talk_s: float
 
 
-def parse_language(text, origin):
+def parse_language(text: str, origin: str) -> Language:
     """Return the :class:`Language` that a YAML text describes.
 
     :raises ConfigError: names the file and the key that is wrong
@@ -94,7 +94,8 @@ def parse_language(text, origin):
     return language
 
 
-def _phrases(section, key, default=None):
+def _phrases(section: Section, key: str,
+             default: Optional[Tuple[str, ...]] = None) -> Tuple[str, ...]:
     """Read a list of phrases; at least one where there is no default."""
     phrases = section.texts(key) if default is None else section.texts(key, default)
     if default is None and not phrases:
@@ -106,14 +107,14 @@ def _phrases(section, key, default=None):
     return phrases
 
 
-def _table(section, keys):
+def _table(section: Section, keys: Iterable[str]) -> Dict[str, Tuple[str, ...]]:
     """Read {key: phrases} of fixed keys."""
     table = {key: _phrases(section, key) for key in keys}
     section.close()
     return table
 
 
-def _drive(section):
+def _drive(section: Section) -> Dict[str, Tuple[Tuple[str, ...], Tuple[str, ...]]]:
     """Read the verbs and words of each direction."""
     drive = {}
     for direction in DIRECTIONS:
@@ -124,7 +125,8 @@ def _drive(section):
     return drive
 
 
-def _free_table(section, key, form, expected):
+def _free_table(section: Section, key: str, form: Pattern[str],
+                expected: str) -> Dict[str, Tuple[str, ...]]:
     """Read {any key: texts of a form}, e.g. the sources of a lab."""
     value = section.take(key, {})
     if not isinstance(value, dict):
@@ -141,7 +143,7 @@ def _free_table(section, key, form, expected):
     return table
 
 
-def _motion(section):
+def _motion(section: Section) -> Motion:
     """Read the speeds and times of spoken commands."""
     motion = Motion(
         fraction=section.number('fraction', 0.01, 1.0), step=section.number('step', 0.01, 1.0),
@@ -154,7 +156,7 @@ def _motion(section):
     return motion
 
 
-def _listening(section):
+def _listening(section: Section) -> Dict[str, float]:
     """Read how long a wake word and a push-to-talk count."""
     times = {'wake_window_s': section.number('wake_window_s', 0.0, 10.0),
              'push_to_talk_s': section.number('push_to_talk_s', 1.0, 60.0)}

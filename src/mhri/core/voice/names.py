@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """How robots are called: by a name that can be spoken, and by their number in the panel."""
 import re
+from typing import Any, Callable, Container, Dict, Iterable, List, Mapping, Optional, Tuple
 
 from mhri.core.robots.names import name_problem
 
@@ -13,10 +14,12 @@ _VOWELS = frozenset('aeiouy')
 _ONES = ('zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen '
          'fifteen sixteen seventeen eighteen nineteen').split()
 _TENS = 'twenty thirty forty fifty sixty seventy eighty ninety'.split()
+# Tells whether the dictionary has a word.
+_Knows = Callable[[str], bool]
 _PARTS = re.compile(r'[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+')
 
 
-def number_words(number):
+def number_words(number: int) -> str:
     """Return how a whole number from 0 to 99 is spoken, e.g. 'twenty one'.
 
     :raises ValueError: it is outside
@@ -29,18 +32,19 @@ def number_words(number):
     return ' '.join([_TENS[tens - 2]] + ([_ONES[ones]] if ones else []))
 
 
-def _split(letters, knows):
+def _split(letters: str, knows: _Knows) -> Optional[List[str]]:
     """Return dictionary words that make up a text, as few and as even as can be, or None."""
     if knows(letters):
         return [letters]
     cuts = [(letters[:at], letters[at:]) for at in range(3, len(letters) - 2)]
     both = [cut for cut in cuts if knows(cut[0]) and knows(cut[1])]
     if both:
-        return list(max(both, key=lambda cut: min(len(cut[0]), len(cut[1]))))
+        first, second = max(both, key=lambda cut: min(len(cut[0]), len(cut[1])))
+        return [first, second]
     return None
 
 
-def _word_or_letters(part, knows):
+def _word_or_letters(part: str, knows: _Knows) -> Optional[List[str]]:
     """Return the words or letters that one part of a name is spoken as, or None."""
     spelled = list(part) if len(part) <= _SPELLED and all(map(knows, part)) else None
     if spelled and not _VOWELS.intersection(part):
@@ -49,7 +53,7 @@ def _word_or_letters(part, knows):
     return _split(part, knows) or spelled
 
 
-def _digits(text):
+def _digits(text: str) -> List[str]:
     """Return the ways in which digits are spoken, the usual one first."""
     one_by_one = ' '.join(_ONES[int(digit)] for digit in text)
     if len(text) > 2 or text[0] == '0':
@@ -58,7 +62,7 @@ def _digits(text):
     return [whole] if whole == one_by_one else [whole, one_by_one]
 
 
-def spoken_names(name, knows):
+def spoken_names(name: str, knows: _Knows) -> Tuple[str, ...]:
     """Return the phrases that one robot's name is spoken as; () where it cannot be.
 
     Words of the dictionary stay words (``bot1``: "bot one", ``turtlebot_2``: "turtle bot two"),
@@ -66,7 +70,7 @@ def spoken_names(name, knows):
 
     :param knows: function that tells whether the dictionary has a word
     """
-    ways = [[]]
+    ways: List[List[str]] = [[]]
     for part in _PARTS.findall(name):
         if part.isdigit():
             spoken = _digits(part)
@@ -77,7 +81,8 @@ def spoken_names(name, knows):
     return tuple(' '.join(way) for way in ways if way)
 
 
-def call_robots(robots, knows, taken, wake_words=()):
+def call_robots(robots: Iterable[Any], knows: _Knows, taken: Container[str],
+                wake_words: Container[str] = ()) -> Tuple[Dict[str, Tuple[str, ...]], List[str]]:
     """Return how the robots of the panel's list can be called.
 
     :param robots: names in the panel's order; what is no robot's name is left out
@@ -85,7 +90,8 @@ def call_robots(robots, knows, taken, wake_words=()):
     :param wake_words: a name may have these in it ("robot one"), but not be one
     :returns: ({name: phrases}, [sentence about a robot that goes by its number alone])
     """
-    called, notes = {}, []
+    called: Dict[str, Tuple[str, ...]] = {}
+    notes: List[str] = []
     listed = [name for name in robots if isinstance(name, str) and not name_problem(name)]
     listed = list(dict.fromkeys(listed))[:MOST_ROBOTS]
     phrases = {name: spoken_names(name, knows) for name in listed}
@@ -97,7 +103,8 @@ def call_robots(robots, knows, taken, wake_words=()):
     return called, notes
 
 
-def _problem(name, phrases, taken, wake_words):
+def _problem(name: str, phrases: Mapping[str, Tuple[str, ...]], taken: Container[str],
+             wake_words: Container[str]) -> Optional[str]:
     """Say why a robot's name cannot be used, or return None."""
     own = phrases[name]
     if not own:

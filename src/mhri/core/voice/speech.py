@@ -3,9 +3,10 @@
 """What a spoken command may do: the rules between what was heard and what is carried out."""
 import math
 from dataclasses import dataclass
-from typing import Optional
+from typing import Optional, Tuple
 
 from mhri.core.voice.grammar import Command, DRIVE, MODE, PACE, PANEL, STOP, WAKE
+from mhri.core.voice.language import Language
 
 # axes[0] left +1, axes[1] forward +1, as the contract has it.
 _AXES = {'forward': (0.0, 1.0), 'backward': (0.0, -1.0), 'left': (1.0, 0.0), 'right': (-1.0, 0.0)}
@@ -45,30 +46,31 @@ class VoiceRules:
     :param language: :class:`mhri.core.voice.language.Language`
     """
 
-    def __init__(self, language):
+    def __init__(self, language: Language) -> None:
         self._language = language
         self.reset()
 
-    def reset(self):
+    def reset(self) -> None:
         """Forget everything: at rest, first speed, nobody woke it."""
         self._fraction = self._language.motion.fraction
-        self._pressed = self._released = None
+        self._pressed: Optional[float] = None
+        self._released: Optional[float] = None
         self.rest()
 
-    def rest(self):
+    def rest(self) -> None:
         """Stand still, and forget what was about to happen."""
-        self._direction = None
+        self._direction: Optional[str] = None
         self._until = -math.inf
         self._woken_until = -math.inf
-        self._stop_due = None
+        self._stop_due: Optional[float] = None
         self._stopped_at = -math.inf
 
     @property
-    def fraction(self):
+    def fraction(self) -> float:
         """What a drive uses of the operator's speed limit."""
         return self._fraction
 
-    def stick(self, now):
+    def stick(self, now: float) -> Tuple[float, float]:
         """Return (left, forward) as fractions of the speed limit; (0.0, 0.0) at rest."""
         if self._direction is None or now >= self._until:
             self._direction = None
@@ -76,13 +78,13 @@ class VoiceRules:
         left, forward = _AXES[self._direction]
         return left * self._fraction, forward * self._fraction
 
-    def next_change(self, now):
+    def next_change(self, now: float) -> float:
         """Return how long until the stick or a pending stop changes by itself [s]; or inf."""
         times = [self._until] if self.stick(now) != REST else []
         times += [] if self._stop_due is None else [self._stop_due]
         return max(0.0, min(times) - now) if times else math.inf
 
-    def push_to_talk(self, held, now):
+    def push_to_talk(self, held: bool, now: float) -> None:
         """Note that push-to-talk is held, or let go; held counts for ``push_to_talk_s``."""
         if not held:
             if self._pressed is not None and self._released is None:
@@ -93,20 +95,20 @@ class VoiceRules:
         else:
             self._held_until = now + self._language.push_to_talk_s
 
-    def _held_at(self, when):
+    def _held_at(self, when: float) -> bool:
         """Tell whether push-to-talk was held at a time."""
         if self._pressed is None or when < self._pressed:
             return False
         end = self._held_until if self._released is None else min(self._released, self._held_until)
         return when <= end
 
-    def talking(self, began):
+    def talking(self, began: float) -> bool:
         """Tell whether push-to-talk counts for an utterance that began at a time."""
         return self._held_at(began) or self._held_at(began + _LATE_PRESS_S)
 
     # What the spotter hears while it is spoken.
 
-    def spotted_stop(self, now, recording_possible):
+    def spotted_stop(self, now: float, recording_possible: bool) -> bool:
         """Stand still at once; return whether stop-all is due at once as well.
 
         :param recording_possible: the words before were the wake word, and the voice is what
@@ -121,7 +123,7 @@ class VoiceRules:
             return False
         return True
 
-    def take_due_stop(self, now):
+    def take_due_stop(self, now: float) -> bool:
         """Return True once when a stop-all that waited has become due."""
         if self._stop_due is None or now < self._stop_due:
             return False
@@ -130,7 +132,8 @@ class VoiceRules:
 
     # What the recogniser makes of a whole utterance.
 
-    def hear(self, text, command, confidence, began, now):
+    def hear(self, text: str, command: Optional[Command], confidence: float, began: float,
+             now: float) -> Heard:
         """Judge an utterance; return :class:`Heard`.
 
         :param text: the words, '' where they fit nothing
@@ -142,36 +145,37 @@ class VoiceRules:
         window, self._woken_until = self._woken_until, -math.inf
         heard = Heard(text, command.words if command else '', confidence=confidence)
         problem = self._problem(command, confidence, began, window)
-        if problem is None and command.kind in (DRIVE, PACE) and self._stopped_at >= began:
-            problem = 'a stop was heard in it'
         recorder = command is not None and command.action == 'stop_recording'
         hidden = (confidence >= SURE_OF_STOP
                   and any(word in self._language.stop for word in text.split()))
-        if (waiting and not (recorder and problem is None)) or (problem and hidden):
+        if (waiting and not (recorder and not problem)) or (problem and hidden):
             return self._stopped(heard, now)
-        if problem is not None:
+        if command is None or problem:
             return _refused(heard, problem)
         return self._carry_out(heard, command, now)
 
-    def _problem(self, command, confidence, began, window):
-        """Say why an utterance is not obeyed, or return None."""
+    def _problem(self, command: Optional[Command], confidence: float, began: float,
+                 window: float) -> str:
+        """Say why an utterance is not obeyed; '' where it is."""
         if command is None:
             return 'no command'
         if command.kind == STOP:
-            return None if confidence >= SURE_OF_STOP else 'not sure enough'
+            return '' if confidence >= SURE_OF_STOP else 'not sure enough'
         if not confidence >= SURE:  # A confidence that is no number is none.
             return 'not sure enough'
-        if command.woken or began <= window or self.talking(began):
-            return None
-        return 'no wake word: say "{}" first, or hold push-to-talk'.format(
-            self._language.wake_words[0])
+        if not (command.woken or began <= window or self.talking(began)):
+            return 'no wake word: say "{}" first, or hold push-to-talk'.format(
+                self._language.wake_words[0])
+        if command.kind in (DRIVE, PACE) and self._stopped_at >= began:
+            return 'a stop was heard in it'
+        return ''
 
-    def _stopped(self, heard, now):
+    def _stopped(self, heard: Heard, now: float) -> Heard:
         self.rest()
         self._stopped_at = now
         return Heard(heard.text, STOP, True, '', heard.confidence, Command(STOP))
 
-    def _carry_out(self, heard, command, now):
+    def _carry_out(self, heard: Heard, command: Command, now: float) -> Heard:
         """Obey a command that nothing speaks against."""
         if command.kind == STOP:
             return self._stopped(heard, now)
@@ -190,13 +194,13 @@ class VoiceRules:
             words = '{} {:.2f}'.format(words, self._fraction)
         return Heard(heard.text, words, True, '', heard.confidence, act)
 
-    def _pace(self, pace):
+    def _pace(self, pace: str) -> None:
         """Change the speed by one step."""
         motion = self._language.motion
         step = motion.step if pace == 'faster' else -motion.step
         self._fraction = max(motion.lowest, min(motion.highest, self._fraction + step))
 
-    def _drive(self, command, now):
+    def _drive(self, command: Command, now: float) -> None:
         """Begin a motion, or go on with it."""
         motion = self._language.motion
         if command.manner in ('faster', 'slower'):
@@ -205,5 +209,5 @@ class VoiceRules:
         self._until = now + (motion.little_s if command.manner == 'little' else motion.lasts_s)
 
 
-def _refused(heard, reason):
+def _refused(heard: Heard, reason: str) -> Heard:
     return Heard(heard.text, heard.command, False, reason, heard.confidence)
