@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The panel without a screen: its backend, asked for its view 20 times a second, to be attacked.
 
-``backend_process.py LOG``; a line of the standard input is ``select NAME...`` or ``take``. A line
-of the log is: when [s, CLOCK_MONOTONIC], how long one round took [s], events, the status.
+``backend_process.py LOG``; a line of the standard input is ``select NAME...``,
+``take``, ``mode SOURCE`` or ``limits LINEAR ANGULAR``. A line of
+the log is: when [s, CLOCK_MONOTONIC], how long one round took [s], events, the status.
 """
 import sys
 import threading
@@ -43,6 +44,10 @@ def obey(backend, word, *names):
     """Do what one line says."""
     if word == 'take':
         backend.take_control()
+    elif word == 'mode':
+        backend.request_mode(*names)
+    elif word == 'limits':
+        backend.request_limits(*map(float, names))
     else:
         for name in names:
             backend.add(name)

@@ -84,15 +84,12 @@ class RobotLog:
 class UnderFire:
     """The system; use it as a context manager."""
 
-    def __init__(self, robots=ROBOTS, backend=True):
+    def __init__(self, robots=ROBOTS):
         self.system = System()
         self.names = list(robots)
         self.processes, self.robots = [], {}
         self.stops = []
-        self._backend = backend
         self._stop = None
-        self._deflected = False
-        self._since = time.monotonic()
 
     def __enter__(self):
         import rospy
@@ -106,11 +103,9 @@ class UnderFire:
         self.stick = self.speaker(os.path.join(HERE, '..', 'rostest', 'stick_process.py'),
                                   '/mux_in/pedal')
         self.start('stick', self.stick)
-        if self._backend:
-            self.start_operator()
+        self.start_operator()
         self._stop = rospy.ServiceProxy('/mux/set_stop_all', SetBool, persistent=True)
         self._stop.wait_for_service(20.0)
-        self.mode()
         return self
 
     def __exit__(self, failure, *_):
@@ -162,47 +157,33 @@ class UnderFire:
         """Tell the operator's backend to do something."""
         self.operator.stdin.write(' '.join(words) + '\n')
 
-    def mode(self):
-        """Ask for the legitimate stick, and for the speed limit of before."""
-        import rospy
-        from geometry_msgs.msg import Twist
-        from mhri.msg import ControlMode
-        if not hasattr(self, '_mode'):
-            self._mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=1,
-                                         latch=True)
-            self._limit = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=1, latch=True)
-        self._mode.publish('pedal')
-        limit = Twist()
-        limit.linear.x, limit.angular.z = 0.5, 1.5
-        self._limit.publish(limit)
-
     def hold(self, forward):
         """Hold the stick so far ahead from now on."""
-        if self._deflected and not forward:
-            self._since = time.monotonic()
-        self._deflected = bool(forward)
         self.stick.stdin.write('0.0 {!r}\n'.format(forward))
 
     def moving(self):
         """Tell whether all robots were told to move."""
         return all(log.moves() for log in self.robots.values())
 
-    def drive(self, timeout_s=15.0, retake=True):
-        """Drive all robots, as an operator would who wants to: centre, push, and again."""
+    def drive(self, timeout_s=15.0):
+        """Drive all robots, as an operator would who wants to: centre, push, and again.
+
+        The operator asks for stick and speed limit anew, and from the second time on for control.
+        """
         deadline = time.monotonic() + timeout_s
         tries = 0
         while not self.moving():
             assert time.monotonic() < deadline, 'cannot be driven: {}'.format(
                 {name: log.told[-2:] for name, log in self.robots.items()})
             tries += 1
-            if retake and self._backend:
-                if tries % 3 == 0:
-                    self.order('take')
-                self.order('select', *self.names)
-            self.mode()
+            if tries % 3 == 0:
+                self.order('take')
+            self.order('select', *self.names)
+            self.order('mode', 'pedal')
+            self.order('limits', '0.5', '1.5')
             self.hold(0.0)
-            time.sleep(0.1)
-            self._call(False)
+            time.sleep(0.15)
+            self.call_stop(False)
             time.sleep(0.2)
             self.hold(0.5)
             until = time.monotonic() + 0.8
@@ -210,7 +191,8 @@ class UnderFire:
                 time.sleep(0.01)
         return tries
 
-    def _call(self, stopped):
+    def call_stop(self, stopped):
+        """Engage or release STOP ALL; return the mux's answer."""
         import rospy
         try:
             return self._stop(stopped)
@@ -230,7 +212,7 @@ class UnderFire:
         for _ in range(2):
             self.drive()
             since = time.monotonic()
-            self._call(True)
+            self.call_stop(True)
             wait_for(lambda: not any(log.moves() for log in self.robots.values()), 2.0,
                      'every robot to be told to stand')
             # The first zero behind which nothing but zeros comes.
