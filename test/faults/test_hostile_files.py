@@ -28,7 +28,7 @@ from mhri.core.screen.source_rows import source_rows  # noqa: E402
 from mhri.core.voice.language import parse_language  # noqa: E402
 from mhri.presenters.settings_file import SettingsError, SettingsFile  # noqa: E402
 
-EDITS = 4000 if is_long() else 150
+EDITS = 4000 if is_long() else 60
 LONGEST_S, LONGEST_ERROR = 1.0, 300
 RESOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'resource')
 STATE = {'robots': ['bot1', 'bot2'], 'mode': 'pedal', 'limits': [0.5, 1.5], 'together': True,

@@ -84,9 +84,10 @@ class RobotLog:
 class UnderFire:
     """The system; use it as a context manager."""
 
-    def __init__(self, robots=ROBOTS):
+    def __init__(self, robots=ROBOTS, stick_hz=50, robot_hz=20):
         self.system = System()
         self.names = list(robots)
+        self._stick_hz, self._robot_hz = stick_hz, robot_hz
         self.processes, self.robots = [], {}
         self.stops = []
         self._stop = None
@@ -100,8 +101,8 @@ class UnderFire:
         self.gates = self.start('gates', self.system.node('gates'))
         for name in self.names:
             self.robot(name)
-        self.stick = self.speaker(os.path.join(HERE, '..', 'rostest', 'stick_process.py'),
-                                  '/mux_in/pedal')
+        self.stick = self.speaker(os.path.join(HERE, '..', 'rostest', 'speaker_process.py'),
+                                  'joy', '/mux_in/pedal')
         self.start('stick', self.stick)
         self.start_operator()
         self._stop = rospy.ServiceProxy('/mux/set_stop_all', SetBool, persistent=True)
@@ -126,15 +127,15 @@ class UnderFire:
         self.processes.append(process)
         return process
 
-    def robot(self, name, *args):
+    def robot(self, name):
         """Start one robot, known to everybody by its template."""
         import rospy
         rospy.set_param('/{}/robot_type'.format(name), 'generic')
         path = os.path.join(self.system.home, name + '.log')
         self.robots[name] = RobotLog(path)
         return self.start(name, self.system.start(
-            sys.executable, os.path.join(HERE, 'logged_robot.py'), name, path, *args,
-            '__ns:=/' + name))
+            sys.executable, os.path.join(HERE, 'logged_robot.py'), name, path,
+            str(self._robot_hz), '__ns:=/' + name))
 
     def speaker(self, *command):
         """Start a program that is told things on its standard input."""
@@ -159,7 +160,7 @@ class UnderFire:
 
     def hold(self, forward):
         """Hold the stick so far ahead from now on."""
-        self.stick.stdin.write('0.0 {!r}\n'.format(forward))
+        self.stick.stdin.write('{} 0 0.0 {!r}\n'.format(self._stick_hz, forward))
 
     def moving(self):
         """Tell whether all robots were told to move."""
