@@ -26,18 +26,22 @@ def work(fire, seconds):
     import rospy
     from geometry_msgs.msg import Twist
     from sensor_msgs.msg import Joy
-    deadline, selections = time.monotonic() + seconds, itertools.cycle(
-        [ROBOTS, ROBOTS[:1], ROBOTS, ROBOTS[1:], ()])
+    deadline, selected = time.monotonic() + seconds, ROBOTS
+    selections = itertools.cycle([ROBOTS[:1], ROBOTS, ROBOTS[1:], (), ROBOTS])
     for number in itertools.count():
         if time.monotonic() > deadline:
             return number
-        # Twice a second in life: the lease. Every 2.5 s another selection.
-        if number % 2 == 0:
-            fire.order('select', *next(selections))
-        fire.hold(0.5 if number % 4 else 0.0)
-        if number % 60 == 0:
+        # Twice a second in life: the lease. Every 20 s another selection and a centred stick.
+        if number % 40 == 20:
+            selected = next(selections)
+        fire.order('select', *selected)
+        if number % 40 in (0, 20):
+            fire.hold(0.0)
+        elif number % 40 in (8, 28):
+            fire.hold(0.5)
+        if number % 120 == 0:
             fire.call_stop(True)
-        elif number % 60 == 4:
+        elif number % 120 == 4:
             fire.call_stop(False)
         if number % 20 == 10:
             fire.order('mode', 'pedal')

@@ -142,9 +142,8 @@ class UnderFire:
         path = os.path.join(self.system.home, os.path.basename(command[0]) + '.out')
         with open(path, 'ab') as output:
             popen = subprocess.Popen(
-                (sys.executable,) + command, env=dict(
-                    self.system.env, PYTHONPATH=os.pathsep.join(sys.path)),
-                stdin=subprocess.PIPE, stdout=output, stderr=subprocess.STDOUT, text=True, bufsize=1)
+                (sys.executable,) + command, env=self.system.env, stdin=subprocess.PIPE,
+                stdout=output, stderr=subprocess.STDOUT, text=True, bufsize=1)
         popen.log = path
         return popen
 
