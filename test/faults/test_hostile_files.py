@@ -32,8 +32,8 @@ EDITS = 4000 if is_long() else 60
 LONGEST_S, LONGEST_ERROR = 1.0, 300
 RESOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'resource')
 STATE = {'robots': ['bot1', 'bot2'], 'mode': 'pedal', 'limits': [0.5, 1.5], 'together': True,
-         'windows': {'bot1': [0, 0, 640, 480, False]}, 'looks': {'bot1': {'views': ['graph'],
-         'splitter': [100, 200], 'graph': {'seconds': 10}}},
+         'windows': {'bot1': [0, 0, 640, 480, False]},
+         'looks': {'bot1': {'views': ['graph'], 'splitter': [100, 200], 'graph': {'seconds': 10}}},
          'panel': {'splitter': [200, 300], 'geometry': [0, 0, 800, 600, False]}}
 
 

@@ -79,7 +79,8 @@ class Hostile:
             least, most = 0, 2 ** _UNSIGNED[kind] - 1
         else:
             least, most = -2 ** _RANGES[kind], 2 ** _RANGES[kind] - 1
-        return self.random.choice((least, most, 0 if least else 1, self.random.randint(least, most)))
+        return self.random.choice((
+            least, most, 0 if least else 1, self.random.randint(least, most)))
 
     def count(self):
         """Return how many items an array shall have."""

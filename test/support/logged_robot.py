@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A light robot without a watchdog: it keeps what it was told last, and writes each word down.
 
-``logged_robot.py NAME LOG [HZ]``: subscribes ``/NAME/cmd_vel`` and publishes ``/NAME/odom``, at 20 Hz
-where nothing else is said. A line of the log is: when [s, CLOCK_MONOTONIC], linear, angular.
+``logged_robot.py NAME LOG [HZ]``: subscribes ``/NAME/cmd_vel`` and publishes ``/NAME/odom``, at
+20 Hz where nothing else is said. A line of the log is: when [s, CLOCK_MONOTONIC], linear, angular.
 """
 import sys
 import time
