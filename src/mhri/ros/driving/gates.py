@@ -24,7 +24,7 @@ from std_msgs.msg import Bool
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 from mhri.core.driving.gate import common_limits
-from mhri.core.driving.seat import ControlSeat
+from mhri.core.driving.seat import ControlSeat, MOST_ROBOTS
 from mhri.core.robots.link_quality import link_share
 from mhri.core.robots.names import name_problem
 from mhri.msg import GroupSpeed, RobotSelect, TeamTwist
@@ -204,6 +204,9 @@ class Gates:
                     self._check()
             else:
                 self.on_change()
+        if len(message.robots) > MOST_ROBOTS:
+            rospy.logwarn_throttle(10.0, '{} selects {} names: no more than {} robots count'.format(
+                caller_of(message), len(message.robots), MOST_ROBOTS))
 
     def _on_operator_gone(self, caller):
         with self._lock:

@@ -73,6 +73,9 @@ class RobotGate:
                                       self._on_echo, queue_size=1, tcp_nodelay=True)
         self.power = MotorPower(name, robot_type)
         self._probe = LinkProbe(name, self._node_uri, self._on_round_trip)
+        if len(robot_type.command) > MOST_TOPICS:
+            rospy.logwarn('%s has %d velocity topics: the first %d are used', name,
+                          len(robot_type.command), MOST_TOPICS)
 
     def _node_uri(self):
         """Return the address of a node on the robot, or None."""

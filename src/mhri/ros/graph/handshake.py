@@ -6,6 +6,10 @@ rospy reads the header of a new connection on the thread that accepts connection
 takes (``TCPServer.run`` of ``rospy/impl/tcpros_base.py``): one connection that says nothing locks
 every later subscriber and service call out, for ever. Here each header is waited for on a thread of
 its own, for :data:`LIMIT_S`; rospy's code gets the connection once the whole header is there.
+
+And of a connection of our own that broke in the middle of a message, or brought bytes that are
+none, rospy keeps what it has read: it takes that for the beginning of the next header, finds that
+it is none, and never connects again (``TCPROSTransport.read_header``). Here each begins afresh.
 """
 import collections
 import logging
@@ -34,15 +38,17 @@ def _check():
     """
     accepts = getattr(getattr(tcpros_base, 'TCPServer', None), 'run', None)
     reads = getattr(getattr(tcpros_base, 'TCPROSServer', None), '_tcp_server_callback', None)
+    header = getattr(getattr(tcpros_base, 'TCPROSTransport', None), 'read_header', None)
     wanted = ((accepts, ('self',), {'accept', 'inbound_handler'}),
+              (header, ('self',), {'read_buff', 'read_ros_handshake_header'}),
               (reads, ('self', 'sock', 'client_addr'), {'read_ros_handshake_header'}))
     for function, arguments, used in wanted:
         code = getattr(function, '__code__', None)
         if code is None or code.co_varnames[:code.co_argcount] != arguments \
                 or not used <= set(code.co_names):
-            raise ImportError('rospy.impl.tcpros_base is not that of ROS Noetic (TCPServer.run or '
-                              'TCPROSServer._tcp_server_callback): mhri.ros.graph.handshake has to '
-                              'be adapted to it')
+            raise ImportError('rospy.impl.tcpros_base is not that of ROS Noetic (TCPServer.run, '
+                              'TCPROSServer._tcp_server_callback or TCPROSTransport.read_header): '
+                              'mhri.ros.graph.handshake has to be adapted to it')
 
 
 _check()
@@ -133,10 +139,23 @@ def _header_problem(connection, deadline):
         time.sleep(_LOOK_AGAIN_S)
 
 
+def _begin_headers_afresh():
+    """Let a connection that is made anew forget what came of the one before."""
+    read = tcpros_base.TCPROSTransport.read_header
+
+    def read_header(self):
+        """Read the header of a connection, and nothing that came before it."""
+        self.read_buff.seek(0)
+        self.read_buff.truncate()
+        read(self)
+    tcpros_base.TCPROSTransport.read_header = read_header
+
+
 def limit_handshakes():
     """Let every connection to this process's TCPROS port have :data:`LIMIT_S` for its header.
 
-    Call it once, before or after ``rospy.init_node``; more often does nothing more.
+    Its own connections begin each header afresh. Call it once, before or after ``rospy.init_node``;
+    more often does nothing more.
     """
     server_class = tcpros_base.TCPROSServer
     read = server_class._tcp_server_callback
@@ -150,6 +169,7 @@ def limit_handshakes():
         self.mhri_doorman.receive(connection, address)
     callback.limited = True
     server_class._tcp_server_callback = callback
+    _begin_headers_afresh()
     running = tcpros_base._tcpros_server
     if running is not None and running.tcp_ros_server is not None:
         # In rqt another plugin has started it: it keeps the callback that it began with.

@@ -1,0 +1,404 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every topic, service, port and parameter of the driving path under fire, while robots are driven.
+
+Nothing dies, nothing moves but for the legitimate stick, STOP ALL works within 50 ms after each
+batch, what is logged and what memory is taken stays bounded. ``MHRI_SEED`` repeats a run,
+``MHRI_LONG=1`` is the long form (twenty times as much).
+"""
+import os
+import socket
+import struct
+import sys
+import time
+from urllib.parse import urlsplit
+import xmlrpc.client
+
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.hostile import Hostile, is_long, seed_of  # noqa: E402
+from support.ros_system import wait_for  # noqa: E402
+from support.under_fire import ROBOTS, STOP_S, table, UNDER_WAY_S, UnderFire  # noqa: E402
+
+FACTOR = 20 if is_long() else 1
+MESSAGES = 40 * FACTOR
+# A line a second for each kind of mishap, in each of the programs, and what drive() makes them say.
+MOST_LINES, MOST_LINES_PER_S = 80, 20.0
+GROWTH_MB = 60.0
+
+JOY, TWIST, TEAM = 'sensor_msgs/Joy', 'geometry_msgs/Twist', 'mhri/TeamTwist'
+TOPICS = (
+    ('/mux_in/pedal', JOY), ('/mux_in/joy', JOY), ('/mux_in/ps3joy', JOY), ('/mux_in/voice', JOY),
+    ('/mux_in/mode_select', 'mhri/ControlMode'), ('/mux_in/speed_limit', TWIST),
+    ('/mux_in/task', TEAM), ('/gates/state', 'mhri/GatesState'),
+    ('/robot_controller/robot_select', 'mhri/RobotSelect'), ('/robot_controller/twist', TWIST),
+    ('/robot_controller/task_twist', TEAM), ('/robot_controller/stop_all', 'std_msgs/Bool'),
+    ('/gates_in/group_speed', 'mhri/GroupSpeed'), ('/bot1/odom', 'nav_msgs/Odometry'),
+    ('/bot1/mhri_guard/echo', 'geometry_msgs/TwistStamped'),
+    ('/mux/mode', 'mhri/ControlMode'), ('/mux/speed_limit', TWIST),
+    ('/mux/waits_for', 'std_msgs/String'), ('/panel_in/request', 'mhri/PanelRequest'),
+    ('/mhri_voice/heard', 'mhri/Heard'))
+# Anybody's word counts where it is a good one: these are no attacks.
+SOURCES = ('joy', 'ps3joy', 'voice')
+
+
+@pytest.fixture(scope='module')
+def fire():
+    with UnderFire() as system:
+        system.hostile = Hostile(seed_of(20261122))
+        system.drive()
+        # What is loaded at the first message of each kind, and the first stop, is no growth.
+        system.stop_all()
+        system.begun, system.begun_at = system.sizes(), time.monotonic()
+        system.sent = {}
+        yield system
+        print('\nMEASURED sent: {} messages, {} calls, {} connections, {} parameters'.format(*(
+            system.sent.get(kind, 0) for kind in ('messages', 'calls', 'connections',
+                                                  'parameters'))))
+        print('MEASURED stop-all, {} times: median {:.1f} ms, longest {:.1f} ms'.format(
+            len(system.stops), 1000 * sorted(system.stops)[len(system.stops) // 2],
+            1000 * max(system.stops)))
+        table(system.begun, system.sizes())
+
+
+def class_of(ros_type):
+    import genpy
+    import roslib.message
+    return {'time': genpy.Time, 'duration': genpy.Duration}.get(ros_type) or \
+        roslib.message.get_message_class(ros_type)
+
+
+def count(fire, kind, number=1):
+    fire.sent[kind] = fire.sent.get(kind, 0) + number
+
+
+def is_attack(topic, message):
+    """Tell whether a message is nothing that anybody may ask for."""
+    import math
+    if topic == '/mux_in/pedal':
+        return len(message.axes) < 2 or not all(map(math.isfinite, message.axes[:2]))
+    if topic == '/mux_in/mode_select':
+        return message.source not in SOURCES
+    if topic == '/mux_in/task':
+        return not set(message.robots) & set(ROBOTS)
+    return True
+
+
+def plausible(kind, random):
+    """Return what a stranger would say who knows the system, None where it is anybody's right."""
+    message = kind()
+    if hasattr(message, 'linear'):
+        message.linear.x, message.angular.z = 0.3, random.uniform(-1.0, 1.0)
+    elif kind._type == TEAM:
+        message.robots = list(ROBOTS)
+        message.twists = [plausible(class_of(TWIST), random) for _ in ROBOTS]
+    elif kind._type == 'mhri/RobotSelect':
+        message.robots = [random.choice(ROBOTS)]
+    elif kind._type == 'mhri/GatesState':
+        message.operator, message.mux = random.choice((('/attacker', '/mux'), ('', '')))
+        message.leased = message.mux_heard = True
+    elif kind._type == 'sensor_msgs/Joy':
+        message.axes, message.buttons = [random.uniform(-1.0, 1.0) for _ in range(8)], [1] * 12
+    return message
+
+
+def torn_class(kind, hostile):
+    class Torn(kind):
+        """Says that it is of a type, and is not."""
+
+        def serialize(self, buff):
+            buff.write(hostile.torn())
+    return Torn
+
+
+def speak(fire, topic, kind, number):
+    """Send hostile messages on one topic."""
+    import rospy
+    hostile, random = fire.hostile, fire.hostile.random
+    publisher = rospy.Publisher(topic, kind, queue_size=1000)
+    # rospy waits for 1 s, 2 s and so on before it connects to the same node again.
+    wait_for(publisher.get_num_connections, 6.0, 'somebody to listen to ' + topic)
+    torn = torn_class(kind, hostile)
+    for _ in range(number):
+        chance = random.random()
+        message = torn() if chance < 0.2 else plausible(kind, random) if chance < 0.4 else \
+            hostile.message(kind, class_of)
+        if chance >= 0.2 and not is_attack(topic, message):
+            continue
+        try:
+            publisher.publish(message)
+            count(fire, 'messages')
+        except rospy.ROSSerializationException:
+            pass
+        time.sleep(0.002)
+    time.sleep(0.05)
+    publisher.unregister()
+
+
+def under_attack(fire, attack):
+    """Attack while everything drives, and again under STOP ALL; hold everybody to the promises."""
+    lines, begun = fire.lines(), time.monotonic()
+    fire.drive()
+    attack()
+    took = fire.stop_all()
+    print('MEASURED stop-all behind it: {:.1f} ms'.format(1000 * took))
+    attack()
+    fire.check_alive()
+    fire.check_stands(fire.stopped_at)
+    fire.check_straight()
+    seconds = time.monotonic() - begun
+    for name, number in fire.lines().items():
+        assert number - lines[name] <= MOST_LINES + MOST_LINES_PER_S * seconds, \
+            '{} wrote {} lines in {:.1f} s'.format(name, number - lines[name], seconds)
+    assert took <= STOP_S
+
+
+# Each alone in the long form, so that what did harm is known by its name.
+BATCHES = [[row] for row in TOPICS] if is_long() else [TOPICS[first::6] for first in range(6)]
+
+
+@pytest.mark.parametrize('batch', BATCHES, ids=lambda batch: ' '.join(row[0] for row in batch))
+def test_topics(fire, batch):
+    def attack():
+        for topic, ros_type in batch:
+            speak(fire, topic, class_of(ros_type), MESSAGES // 2)
+    under_attack(fire, attack)
+
+
+def test_who_sent_bytes_that_are_no_message_is_heard_again(fire):
+    """rospy took what was left of them for the header of the next connection, and gave up."""
+    import rospy
+    kind, heard = class_of(TWIST), []
+    ear = rospy.Subscriber('/mux/speed_limit', kind, lambda message: heard.append(message.linear.x))
+    publisher = rospy.Publisher('/mux_in/speed_limit', kind, queue_size=1)
+    wait_for(publisher.get_num_connections, 5.0, 'a connection')
+    publisher.publish(torn_class(kind, Fixed(b'\x55' * 20))())
+    good = kind()
+    good.linear.x = 0.375
+    begun = time.monotonic()
+    while 0.375 not in heard:
+        assert time.monotonic() - begun < 8.0, 'it is not heard any more'
+        publisher.publish(good)
+        time.sleep(0.05)
+    print('MEASURED heard again after {:.1f} s'.format(time.monotonic() - begun))
+    ear.unregister()
+    publisher.unregister()
+
+
+class Fixed:
+    """Tears all messages the same way."""
+
+    def __init__(self, data):
+        self._data = data
+
+    def torn(self):
+        return self._data
+
+
+def test_a_released_stick_stays_released(fire):
+    """All topics at once, with the stick centred: nobody moves."""
+    fire.drive()
+    fire.hold(0.0)
+    time.sleep(UNDER_WAY_S)
+    since = time.monotonic()
+    for topic, ros_type in TOPICS:
+        speak(fire, topic, class_of(ros_type), 4 * FACTOR)
+    fire.check_alive()
+    fire.check_stands(since)
+
+
+def service_uri(name):
+    import rosgraph
+    return urlsplit(rosgraph.Master('/attacker').lookupService(name))
+
+
+def torn_call(uri, header, body, wait_s=0.2):
+    """Speak to a service's port as nobody should."""
+    with socket.create_connection((uri.hostname, uri.port), 1.0) as link:
+        link.settimeout(wait_s)
+        try:
+            link.sendall(header + body)
+            link.recv(4096)
+        except OSError:
+            pass
+
+
+def handshake(**fields):
+    """Return the bytes of a TCPROS header."""
+    lines = ['{}={}'.format(key, value).encode('utf-8', 'replace')
+             for key, value in fields.items()]
+    body = b''.join(struct.pack('<I', len(line)) + line for line in lines)
+    return struct.pack('<I', len(body)) + body
+
+
+def test_services(fire):
+    import rosgraph
+    hostile = fire.hostile
+    names = [name for name, nodes in rosgraph.Master('/attacker').getSystemState()[2]
+             if set(nodes) & {'/mux', '/mhri_gates', '/mhri_panel'}]
+    assert len(names) >= 6, names
+
+    def attack():
+        for name in names:
+            uri = service_uri(name)
+            for _ in range(3 * FACTOR):
+                good = handshake(callerid='/attacker', service=name, md5sum='*')
+                # Never a good request behind a good header: anybody may lift a stop.
+                tail = struct.pack('<I', hostile.random.choice((2 ** 32 - 1, 2 ** 31, 99))) \
+                    + hostile.torn()
+                bad = handshake(callerid=hostile.text(), service=hostile.text(),
+                                md5sum=hostile.text(), probe=hostile.text(), type=hostile.text())
+                for header, body in ((good, tail), (bad, tail), (b'', hostile.torn())):
+                    torn_call(uri, header, body, 0.05)
+                    count(fire, 'calls')
+    under_attack(fire, attack)
+
+
+def test_anybody_may_take_control_and_nothing_moves_by_it(fire):
+    import rospy
+    from std_srvs.srv import SetBool, Trigger
+    fire.drive()
+    for _ in range(3):
+        rospy.ServiceProxy('/gates/take_control', Trigger)()
+        rospy.ServiceProxy('/gates/set_motor_power', SetBool)(True)
+        count(fire, 'calls', 2)
+    time.sleep(UNDER_WAY_S)
+    fire.check_stands(time.monotonic() - 0.02)
+    took = fire.stop_all()
+    assert took <= STOP_S
+    fire.check_straight()
+
+
+def node_uris():
+    import rosgraph
+    master = rosgraph.Master('/attacker')
+    return {name: urlsplit(master.lookupNode(name)) for name in ('/mux', '/mhri_gates')}
+
+
+def test_ports(fire):
+    """Bytes that are no handshake, connections that say nothing, absurd calls of the slave API."""
+    hostile, silent = fire.hostile, []
+
+    def attack():
+        for name, uri in node_uris().items():
+            proxy = xmlrpc.client.ServerProxy(uri.geturl())
+            tcpros = proxy.requestTopic('/attacker', '/rosout', [['TCPROS']])[2]
+            for _ in range(5 * FACTOR):
+                for port in (uri.port, tcpros[2]):
+                    link = socket.create_connection((uri.hostname, port), 1.0)
+                    link.settimeout(0.02)
+                    try:
+                        link.sendall(hostile.torn() if hostile.random.random() < 0.7 else handshake(
+                            callerid=hostile.text(), topic='/rosout', md5sum=hostile.text()))
+                    except OSError:
+                        pass
+                    # Some hang on and say no more.
+                    (silent.append if len(silent) < 30 else lambda one: one.close())(link)
+                    count(fire, 'connections')
+                call(proxy, hostile)
+                count(fire, 'calls')
+    under_attack(fire, attack)
+    for link in silent:
+        link.close()
+
+
+def call(proxy, hostile):
+    """Call the slave API with what is none of its words (nor ``shutdown``, which anybody may)."""
+    method = hostile.random.choice(('requestTopic', 'publisherUpdate', 'paramUpdate', 'getBusStats',
+                                    'getPid', 'no_such_method', 'getSubscriptions'))
+    try:
+        getattr(proxy, method)(*[hostile.value(2) for _ in range(hostile.random.randrange(5))])
+    except (xmlrpc.client.Error, OSError, OverflowError, ValueError, TypeError):
+        pass
+
+
+KEYS = (
+    '/mhri/robots', '/bot1', '/bot1/robot_type', '/bot1/robot_model', '/bot1/mhri',
+    '/bot1/mhri/limits', '/bot1/mhri/limits/linear_mps', '/bot1/mhri/command',
+    '/bot1/mhri/odometry',
+    '/bot1/mhri/odometry_type', '/bot1/mhri/motor_power', '/bot1/mhri/hardware_stop',
+    '/bot1/mhri/silent_after_s', '/bot1/mhri/label', '/bot2/mhri/imu', '/mux', '/mux/sources',
+    '/mux/stop_all', '/mux/enabling', '/mux/dead_man', '/mhri', '/mhri_panel', '/mhri/panel',
+    '/mhri/panel/thumbnail_hz', '/mhri/panel/record_warn_free_mb', '/robot_name', '/robot_type',
+    '/robot_model', '/tf_prefix', '/mhri_gates', '/run_id')
+
+
+def set_parameter(fire, key, value):
+    import rospy
+    try:
+        rospy.set_param(key, value)
+        count(fire, 'parameters')
+    except (OverflowError, xmlrpc.client.Error, rospy.ROSException, TypeError):
+        pass  # it could not be sent
+
+
+def restore_parameters(kept):
+    import rospy
+    for key in set(rospy.get_param_names()) - set(kept):
+        try:
+            rospy.delete_param(key)
+        except (KeyError, rospy.ROSException, xmlrpc.client.Error):
+            pass  # it went with another
+    for name in ROBOTS:
+        rospy.set_param('/' + name, {'robot_type': 'generic'})
+    for key, value in kept.items():
+        rospy.set_param(key, value)
+
+
+def test_parameters(fire):
+    """Values of every type and shape under every name that is read while it runs."""
+    import rospy
+    hostile = fire.hostile
+    kept = {key: rospy.get_param(key) for key in rospy.get_param_names()}
+
+    def attack():
+        for key in KEYS:
+            for _ in range(FACTOR):
+                set_parameter(fire, key, hostile.value())
+            time.sleep(0.01)
+        # The gates and the panel look once a second.
+        time.sleep(1.2)
+        restore_parameters(kept)
+        time.sleep(1.2)
+    under_attack(fire, attack)
+
+
+COMMANDS = [['no name!'], ['cmd_vel'] * 2000, [''], ['/'], ['cmd_vel', 'cmd_vel'], ['\u00e9'],
+            ['a' * 5000], ['//x']]
+
+
+@pytest.mark.parametrize('command', COMMANDS if is_long() else COMMANDS[:2])
+def test_a_robot_whose_topics_cannot_be_leaves_the_others_alone(fire, command):
+    """Parameter of one robot; the other one is driven, and so is this one when it is mended."""
+    import rospy
+    rospy.set_param('/bot1/mhri/command', command)
+    time.sleep(1.3)
+    fire.check_alive()
+    since = time.monotonic()
+    fire.hold(0.0)
+    time.sleep(0.1)
+    fire.call_stop(False)
+    fire.order('select', *ROBOTS)
+    time.sleep(0.3)
+    fire.hold(0.5)
+    until = time.monotonic() + 2.0
+    while not fire.robots['bot2'].moves() and time.monotonic() < until:
+        time.sleep(0.01)
+    assert any(any(word[1:]) for word in fire.robots['bot2'].after(since)), 'bot2 is not driven'
+    rospy.delete_param('/bot1/mhri/command')
+    time.sleep(1.2)
+    fire.drive()
+
+
+def test_memory_is_flat(fire):
+    """Behind all of it: what a message took was given back."""
+    time.sleep(1.0)
+    for name, (memory, threads, descriptors) in fire.sizes().items():
+        before = fire.begun[name]
+        assert memory - before[0] <= GROWTH_MB, '{}: {:.1f} MB more'.format(
+            name, memory - before[0])
+        assert threads - before[1] <= 8 and descriptors - before[2] <= 24, \
+            '{}: {} threads, {} descriptors before, {} and {} now'.format(
+                name, *before[1:], threads, descriptors)

@@ -1,0 +1,82 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""An hour of work in three minutes: stick, selection, stops, odometry and comings at 20 times.
+
+Memory, threads and descriptors of mux, gates and the panel's backend stay as they were. The long
+form (``MHRI_LONG=1``) is the hour, the short one four minutes of it.
+"""
+import itertools
+import os
+import sys
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.hostile import is_long  # noqa: E402
+from support.under_fire import ROBOTS, table, UnderFire  # noqa: E402
+
+TIMES = 20
+WARM_S, SOAK_S = (30.0, 180.0) if is_long() else (4.0, 12.0)
+# Python takes memory in pieces of 256 kB; logs of the robots are read by this process, not those.
+GROWTH_MB, MORE_THREADS, MORE_DESCRIPTORS = (5.0 if is_long() else 8.0), 4, 8
+
+
+def work(fire, seconds):
+    """Do what an operator does in ``TIMES`` times as long; return how often."""
+    import rospy
+    from geometry_msgs.msg import Twist
+    from sensor_msgs.msg import Joy
+    deadline, selected = time.monotonic() + seconds, ROBOTS
+    selections = itertools.cycle([ROBOTS[:1], ROBOTS, ROBOTS[1:], (), ROBOTS])
+    for number in itertools.count():
+        if time.monotonic() > deadline:
+            return number
+        # Twice a second in life: the lease. Every 20 s another selection and a centred stick.
+        if number % 40 == 20:
+            selected = next(selections)
+        fire.order('select', *selected)
+        if number % 40 in (0, 20):
+            fire.hold(0.0)
+        elif number % 40 in (8, 28):
+            fire.hold(0.5)
+        if number % 120 == 0:
+            fire.call_stop(True)
+        elif number % 120 == 4:
+            fire.call_stop(False)
+        if number % 20 == 10:
+            fire.order('mode', 'pedal')
+            fire.order('limits', '0.{}'.format(number % 9 + 1), '1.0')
+        if number % 40 == 0:
+            # Somebody comes, listens, says something, and goes.
+            ear = rospy.Subscriber('/robot_controller/twist', Twist, lambda message: None)
+            mouth = rospy.Publisher('/mux_in/voice', Joy, queue_size=1)
+            time.sleep(0.05)
+            mouth.publish(axes=[0.0, 0.0])
+            ear.unregister()
+            mouth.unregister()
+        time.sleep(0.5 / TIMES)
+
+
+def test_an_hour_leaves_nothing_behind():
+    with UnderFire(stick_hz=20 * TIMES, robot_hz=20 * TIMES) as fire:
+        fire.drive()
+        work(fire, WARM_S)
+        fire.hold(0.0)
+        time.sleep(1.0)
+        before = fire.sizes()
+        rounds = work(fire, SOAK_S)
+        fire.hold(0.0)
+        time.sleep(2.0)
+        after = fire.sizes()
+        told = sum(len(log.read()) for log in fire.robots.values())
+        print('\nMEASURED {} rounds in {:.0f} s, {} words to the robots'.format(
+            rounds, SOAK_S, told))
+        table(before, after)
+        fire.check_alive()
+        fire.check_straight()
+        for name, sizes in after.items():
+            more = [new - old for new, old in zip(sizes, before[name])]
+            assert more[0] <= GROWTH_MB and more[1] <= MORE_THREADS \
+                and more[2] <= MORE_DESCRIPTORS, '{}: {}'.format(name, more)
+        # And it still drives.
+        fire.drive()

@@ -1,0 +1,58 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The panel without a screen: its backend, asked for its view 20 times a second, to be attacked.
+
+``backend_process.py LOG``; a line of the standard input is ``select NAME...``,
+``take``, ``mode SOURCE`` or ``limits LINEAR ANGULAR``. A line of
+the log is: when [s, CLOCK_MONOTONIC], how long one round took [s], events, the status.
+"""
+import sys
+import threading
+import time
+
+from mhri.ros.screen.backend import ScreenBackend
+
+
+def main():
+    """Run until the standard input is closed."""
+    backend = ScreenBackend()
+    backend.start()
+    orders, done = [], threading.Event()
+
+    def read():
+        for line in sys.stdin:
+            orders.append(line.split())
+        done.set()
+
+    threading.Thread(target=read, daemon=True).start()
+    repeat_at = 0.0
+    with open(sys.argv[1], 'a', buffering=1) as log:
+        while not done.wait(0.05):
+            begun = time.monotonic()
+            while orders:
+                obey(backend, *orders.pop(0))
+            if begun >= repeat_at:
+                backend.repeat_selection()
+                repeat_at = begun + 0.5
+            events, view = backend.take_events(), backend.view()
+            log.write('{!r} {:.4f} {} {!r}\n'.format(
+                begun, time.monotonic() - begun, len(events), view.status))
+    backend.close()
+
+
+def obey(backend, word, *names):
+    """Do what one line says."""
+    if word == 'take':
+        backend.take_control()
+    elif word == 'mode':
+        backend.request_mode(*names)
+    elif word == 'limits':
+        backend.request_limits(*map(float, names))
+    else:
+        for name in names:
+            backend.add(name)
+        backend.select(names)
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,260 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A small real system to be attacked: mux, gates, the panel's backend, two robots and one stick.
+
+All are processes of their own, so that the attacker's work delays nothing but the attacks. The
+stick only ever drives straight ahead: whatever else a robot is told, nobody commanded.
+"""
+import os
+import subprocess
+import sys
+import time
+
+import psutil
+
+from support.ros_system import System, wait_for
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROBOTS = ('bot1', 'bot2')
+# Of the template "generic", and of float arithmetic.
+FASTEST_MPS = 0.5 + 1e-9
+STOP_S = 0.05
+# A word that was under way when the stick was centred, or the stop pressed.
+UNDER_WAY_S = 0.15
+
+
+class Process:
+    """One program of the system and what it must not do: die, grow, or write without end."""
+
+    def __init__(self, name, popen):
+        self.name, self.popen = name, popen
+        self._process = psutil.Process(popen.pid)
+
+    def sizes(self):
+        """Return (memory [MB], threads, descriptors)."""
+        return (self._process.memory_info().rss / 1e6, self._process.num_threads(),
+                self._process.num_fds())
+
+    def lines(self):
+        """Return how many lines it has written."""
+        with open(self.popen.log, 'rb') as log:
+            return log.read().count(b'\n')
+
+    def tail(self):
+        """Return the end of what it has written."""
+        with open(self.popen.log, errors='replace') as log:
+            return log.read()[-3000:]
+
+    def check(self):
+        """Fail where it has ended."""
+        assert self.popen.poll() is None, '{} ended with {}:\n{}'.format(
+            self.name, self.popen.returncode, self.tail())
+
+
+class RobotLog:
+    """What one robot was told, [(when, linear, angular)]."""
+
+    def __init__(self, path):
+        self.path = path
+        self._at = 0
+        self.told = []
+
+    def read(self):
+        """Return all of it."""
+        if os.path.exists(self.path):
+            with open(self.path) as stream:
+                stream.seek(self._at)
+                for line in iter(stream.readline, ''):
+                    if not line.endswith('\n'):
+                        break
+                    self._at += len(line)
+                    self.told.append(tuple(map(float, line.split())))
+        return self.told
+
+    def moves(self):
+        """Tell whether the last word was to move."""
+        told = self.read()
+        return bool(told) and any(told[-1][1:])
+
+    def after(self, since, until=float('inf')):
+        """Return what it was told in a time."""
+        return [word for word in self.read() if since <= word[0] <= until]
+
+
+class UnderFire:
+    """The system; use it as a context manager."""
+
+    def __init__(self, robots=ROBOTS, stick_hz=50, robot_hz=20):
+        self.system = System()
+        self.names = list(robots)
+        self._stick_hz, self._robot_hz = stick_hz, robot_hz
+        self.processes, self.robots = [], {}
+        self.stops = []
+        self._stop = None
+
+    def __enter__(self):
+        import rospy
+        from std_srvs.srv import SetBool
+        self.system.start_master()
+        rospy.init_node('attacker', disable_signals=True)
+        self.mux = self.start('mux', self.system.node('mux', '__name:=mux'))
+        self.gates = self.start('gates', self.system.node('gates'))
+        for name in self.names:
+            self.robot(name)
+        self.stick = self.speaker(os.path.join(HERE, '..', 'rostest', 'speaker_process.py'),
+                                  'joy', '/mux_in/pedal')
+        self.start('stick', self.stick)
+        self.start_operator()
+        self._stop = rospy.ServiceProxy('/mux/set_stop_all', SetBool, persistent=True)
+        self._stop.wait_for_service(20.0)
+        return self
+
+    def __exit__(self, failure, *_):
+        import rospy
+        if failure is not None:
+            for process in self.processes:
+                print('--- {} ({}):\n{}'.format(process.name, process.popen.poll(),
+                                                process.tail()))
+        rospy.signal_shutdown('done')
+        for speaker in (self.stick, getattr(self, 'operator', None)):
+            if speaker is not None:
+                speaker.stdin.close()
+        self.system.close()
+
+    def start(self, name, popen):
+        """Take a process into the system."""
+        process = Process(name, popen)
+        self.processes.append(process)
+        return process
+
+    def robot(self, name):
+        """Start one robot, known to everybody by its template."""
+        import rospy
+        rospy.set_param('/{}/robot_type'.format(name), 'generic')
+        path = os.path.join(self.system.home, name + '.log')
+        self.robots[name] = RobotLog(path)
+        return self.start(name, self.system.start(
+            sys.executable, os.path.join(HERE, 'logged_robot.py'), name, path,
+            str(self._robot_hz), '__ns:=/' + name))
+
+    def speaker(self, *command):
+        """Start a program that is told things on its standard input."""
+        path = os.path.join(self.system.home, os.path.basename(command[0]) + '.out')
+        with open(path, 'ab') as output:
+            popen = subprocess.Popen(
+                (sys.executable,) + command, env=self.system.env, stdin=subprocess.PIPE,
+                stdout=output, stderr=subprocess.STDOUT, text=True, bufsize=1)
+        popen.log = path
+        return popen
+
+    def start_operator(self):
+        """Start the panel's backend: the operator."""
+        self.operator_log = os.path.join(self.system.home, 'operator.log')
+        self.operator = self.speaker(os.path.join(HERE, 'backend_process.py'), self.operator_log)
+        self.backend = self.start('backend', self.operator)
+
+    def order(self, *words):
+        """Tell the operator's backend to do something."""
+        self.operator.stdin.write(' '.join(words) + '\n')
+
+    def hold(self, forward):
+        """Hold the stick so far ahead from now on."""
+        self.stick.stdin.write('{} 0 0.0 {!r}\n'.format(self._stick_hz, forward))
+
+    def moving(self):
+        """Tell whether all robots were told to move."""
+        return all(log.moves() for log in self.robots.values())
+
+    def drive(self, timeout_s=15.0):
+        """Drive all robots, as an operator would who wants to: centre, push, and again.
+
+        The operator asks for stick and speed limit anew, and from the second time on for control.
+        """
+        deadline = time.monotonic() + timeout_s
+        tries = 0
+        while not self.moving():
+            assert time.monotonic() < deadline, 'cannot be driven: {}'.format(
+                {name: log.told[-2:] for name, log in self.robots.items()})
+            tries += 1
+            if tries % 3 == 0:
+                self.order('take')
+            self.order('select', *self.names)
+            self.order('mode', 'pedal')
+            self.order('limits', '0.5', '1.5')
+            self.hold(0.0)
+            time.sleep(0.15)
+            self.call_stop(False)
+            time.sleep(0.2)
+            self.hold(0.5)
+            until = time.monotonic() + 0.8
+            while time.monotonic() < until and not self.moving():
+                time.sleep(0.01)
+        return tries
+
+    def call_stop(self, stopped):
+        """Engage or release STOP ALL; return the mux's answer."""
+        import rospy
+        try:
+            return self._stop(stopped)
+        except (rospy.ServiceException, rospy.ROSException, OSError) as error:
+            # The connection was closed; a new one at once.
+            self._stop.close()
+            from std_srvs.srv import SetBool
+            self._stop = rospy.ServiceProxy('/mux/set_stop_all', SetBool, persistent=True)
+            print('stop-all called again: {}'.format(error))
+            return self._stop(stopped)
+
+    def stop_all(self):
+        """Press STOP ALL while everything drives; return until the last robot's first zero [s].
+
+        Twice at most: a zero that is late once may be the machine's, twice is not.
+        """
+        for _ in range(2):
+            self.drive()
+            since = time.monotonic()
+            self.call_stop(True)
+            wait_for(lambda: not any(log.moves() for log in self.robots.values()), 2.0,
+                     'every robot to be told to stand')
+            # The first zero behind which nothing but zeros comes.
+            took = max(next(word[0] for word in log.after(since) if not any(word[1:]))
+                       for log in self.robots.values()) - since
+            self.stops.append(took)
+            self.stopped_at = since + took
+            if took <= STOP_S:
+                break
+        return took
+
+    def check_stands(self, since):
+        """Fail where a robot was told to move after a time (and all that was under way)."""
+        for name, log in self.robots.items():
+            moved = [word for word in log.after(since) if any(word[1:])]
+            assert not moved, '{} was moved by nobody: {}'.format(name, moved[:3])
+
+    def check_straight(self):
+        """Fail where a robot was ever told what this stick cannot have asked for."""
+        for name, log in self.robots.items():
+            odd = [word for word in log.read()
+                   if word[2] != 0.0 or not 0.0 <= word[1] <= FASTEST_MPS]
+            assert not odd, '{} was told {}'.format(name, odd[:3])
+
+    def check_alive(self):
+        """Fail where a program has ended."""
+        for process in self.processes:
+            process.check()
+
+    def sizes(self):
+        """Return {name: (memory [MB], threads, descriptors)} of those under attack."""
+        return {process.name: process.sizes() for process in self.processes
+                if process.name in ('mux', 'gates', 'backend')}
+
+    def lines(self):
+        """Return {name: lines written}."""
+        return {process.name: process.lines() for process in self.processes}
+
+
+def table(before, after):
+    """Print memory, threads and descriptors before and after."""
+    for name, sizes in after.items():
+        print('MEASURED {:8} memory {:6.1f} -> {:6.1f} MB, threads {} -> {}, descriptors {} -> '
+              '{}'.format(name, before[name][0], sizes[0], before[name][1], sizes[1],
+                          before[name][2], sizes[2]))
