@@ -33,15 +33,14 @@ def test_the_robots_stand_still_within_600_ms():
 
         def press():
             xdotool('windowfocus', '--sync', window, 'keyup', 'a', 'keydown', 'a')
-            deadline = time.monotonic() + 0.5
+            deadline = time.monotonic() + 2.0
             while time.monotonic() < deadline:
-                if all(robot.moving() for robot in robots):
+                if all(robot.moving() and robot.latest().angular_rad_s > 1.0 for robot in robots):
                     return True
                 time.sleep(0.01)
             return False
 
         wait_for(press, 40, 'the key to drive both robots')
-        wait_for(lambda: all(robot.latest().angular_rad_s > 1.0 for robot in robots), 5, 'speed')
         since = time.monotonic()
         system.kill(panel, family=False)
         times = seconds_to_standstill(robots, since)

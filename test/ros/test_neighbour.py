@@ -6,10 +6,12 @@ import socket
 import subprocess
 import sys
 import threading
+from types import SimpleNamespace
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
+from mhri.ros.driving import neighbour
 from mhri.ros.driving.neighbour import Process, process_of
 
 
@@ -110,3 +112,26 @@ def test_a_node_that_does_not_answer_is_said():
         deaf.listen(1)
         with pytest.raises(OSError, match='does not answer'):
             process_of('http://127.0.0.1:{}/'.format(deaf.getsockname()[1]), '/test', 0.2)
+
+
+def test_a_node_that_was_replaced_is_learnt_even_where_the_first_question_fails(child, monkeypatch):
+    """It is just starting when it is asked: the next look asks again."""
+    answers = [Process(child.pid), OSError('it does not answer yet'), Process(os.getpid())]
+
+    def ask(uri, caller_id):
+        """Answer as the node of that moment does."""
+        answer = answers.pop(0)
+        if isinstance(answer, OSError):
+            raise answer
+        return answer
+
+    monkeypatch.setattr(neighbour, 'process_of', ask)
+    monkeypatch.setattr(neighbour, 'MasterApi', lambda *_, **__: SimpleNamespace(
+        node_uri=lambda name: 'http://127.0.0.1:1/'))
+    watched = neighbour.Neighbour('the gates')
+    watched._learn('/mhri_gates', 0.0, 0.0)
+    child.kill()
+    child.wait()
+    for now in (2.0, 4.0):
+        watched._learn('/mhri_gates', now, now)
+    assert not answers, 'it was asked once, and never again'

@@ -347,8 +347,8 @@ class Missing(VoiceTest):
     def test_no_pocketsphinx(self):
         """Names the package."""
         with tempfile.TemporaryDirectory() as folder:
-            with open(os.path.join(folder, 'sitecustomize.py'), 'w') as stream:
-                stream.write("import sys\nsys.modules['pocketsphinx'] = None\n")
+            with open(os.path.join(folder, 'pocketsphinx.py'), 'w') as stream:
+                stream.write('raise ModuleNotFoundError("No module named \'pocketsphinx\'")\n')
             path = os.pathsep.join([folder, os.environ.get('PYTHONPATH', '')])
             self._restart('_source:=' + self.microphone.path, env={'PYTHONPATH': path})
             self._wait_said('install python3-pocketsphinx')

@@ -3,6 +3,7 @@
 """The executable ``gates``: runs :class:`mhri.ros.driving.gates.Gates` as ``/mhri_gates``."""
 import gc
 import signal
+import sys
 
 import rospy
 
@@ -11,15 +12,20 @@ from mhri.ros.driving.gates_state import GatesSpeaker
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
+from mhri.ros.graph.rospy_inside import ended_by_hand
 from mhri.ros.resources import robot_types
 
 
 def main():
-    """Run until shut down; the last word to every robot is a zero."""
+    """Run until shut down; the last word to every robot is a zero.
+
+    Ended by ``rosnode kill`` the exit status is 1, so that ``mhri.launch`` starts it again.
+    """
     types, errors = robot_types()
     limit_handshakes()
     rospy.init_node('mhri_gates', disable_rostime=True)
     log.install()
+    by_hand = ended_by_hand()
     # A terminal that is closed must not end the gates without a zero.
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     gates = Gates(types)
@@ -34,3 +40,6 @@ def main():
     # What has been loaded by now stays: looking through it would hold up a command.
     gc.freeze()
     rospy.spin()
+    if by_hand():
+        # An error to who launched it: robots must not be left without gates.
+        sys.exit('the gates were ended by rosnode kill')

@@ -11,14 +11,11 @@ and while the stop is latched on the robot the token of an echo does.
 A stop is released by a zero without ``!`` that answers an echo sent after the stop; what is not a
 zero is dropped until then. So a gate says zero until :attr:`GuardLink.stop_confirmed` is false.
 """
-import collections
 import re
-from typing import Deque, Optional, Tuple
+from typing import Optional, Tuple
 
 # An echo comes every 0.1 s; three in a row may be lost.
 ECHO_S = 0.35
-# Commands are waited for that long; one that was dropped on the robot is never answered.
-_WAIT_S = 2.0
 _ID = re.compile(r'([A-Za-z0-9_-]{1,32})(!?):([0-9]{1,15}):([A-Za-z0-9_-]{0,32})(!?)\Z')
 _SESSION = re.compile(r'[A-Za-z0-9_-]{1,32}\Z')
 # The session of an echo before anybody was obeyed.
@@ -43,7 +40,7 @@ def parse_id(text: str) -> Optional[Tuple[str, int, str, bool]]:
 
 
 class GuardLink:
-    """The link to the guard of one robot; time is passed in, of a clock that never goes back [s].
+    """The link to the guard of one robot; times are seconds of a clock that never goes back.
 
     :param session: names this run of the sender: another one at each start, at most 32 of
         ``A-Za-z0-9_-``
@@ -58,9 +55,6 @@ class GuardLink:
         self._number = 0
         self._token = ''
         self._echo_at: Optional[float] = None
-        self._was_alive = False
-        self._sent: Deque[Tuple[int, float]] = collections.deque()
-        self._round_trip_s: Optional[float] = None
         self.obeyed_number = 0
         self.displaced = False
         self.stop_confirmed = False
@@ -76,47 +70,16 @@ class GuardLink:
         self.displaced = not ours and session != _NOBODY and (
             self.displaced or self.obeyed_number > 0)
         self.obeyed_number = number if ours else 0
-        while self._sent and self._sent[0][0] <= self.obeyed_number:
-            sent, at = self._sent.popleft()
-            if sent == number:
-                self._round_trip_s = now - at
         return True
 
     def alive(self, now: float) -> bool:
         """Tell whether an echo came within the last 0.35 s."""
-        self._was_alive = self._echo_at is not None and now - self._echo_at <= ECHO_S
-        return self._was_alive
+        return self._echo_at is not None and now - self._echo_at <= ECHO_S
 
-    @property
-    def was_alive(self) -> bool:
-        """What :meth:`alive` said last: a link that was alive and is not has been lost."""
-        return self._was_alive
-
-    def next_id(self, stop: bool, now: float) -> str:
+    def next_id(self, stop: bool) -> str:
         """Return the frame_id for the next command, which has to be sent.
 
         Its token is empty before the first echo: the guard obeys it then if it is a stop.
         """
         self._number += 1
-        self._forget(now)
-        self._sent.append((self._number, now))
         return format_id(self._session, self._number, self._token, stop)
-
-    def obeyed(self, number: int) -> bool:
-        """Tell whether the guard has obeyed a command of this session so late or later."""
-        return 0 < number <= self.obeyed_number
-
-    def round_trip_s(self, now: float) -> Optional[float]:
-        """Return the time from a command to the echo that says it was obeyed [s], or None.
-
-        The newest one that is known, or what the oldest of the last 2 s has waited already, if
-        that is more.
-        """
-        self._forget(now)
-        if not self._sent:
-            return self._round_trip_s
-        return max(now - self._sent[0][1], self._round_trip_s or 0.0)
-
-    def _forget(self, now: float) -> None:
-        while self._sent and now - self._sent[0][1] > _WAIT_S:
-            self._sent.popleft()

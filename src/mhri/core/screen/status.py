@@ -43,8 +43,7 @@ def _stopped(view, _, __):
 
 def _no_mux(view, _, __):
     if view.mode is None:
-        return 'the mux is not running: nothing can be driven until it is (rosrun mhri mux)', \
-            ATTENTION
+        return 'what decides who drives is not running: close this and start mhri again', ATTENTION
     return None
 
 
@@ -80,8 +79,12 @@ def _lost_robot(view, _, __):
 def _driving(view, waits_for):
     """Say who is driven, by what, and what it waits for."""
     label = dict(view.sources).get(view.mode, view.mode)
+    if not view.dead_man:
+        label += ' (no dead-man button)'
     count = sum(robot.selected for robot in view.robots)
     who = '{} of {} robots'.format(count, len(view.robots))
+    if view.advice and waits_for == 'source':
+        return '{}  \u2013  {}'.format(who, view.advice), ATTENTION
     words = {'neutral': 'centre the stick to drive',
              'source': 'nothing is heard from it yet',
              'enabling': 'press the enabling pedal to drive',

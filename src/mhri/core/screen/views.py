@@ -152,6 +152,8 @@ class PanelView:
     ``camera_bits_per_s`` is what all pictures on show take of the network. ``heard`` is what the
     voice node heard last, None before that. ``control`` is who drives, ``answers`` is false while
     the gates are not heard, ``stop_taken`` true once they have said that the stop is in force.
+    ``advice`` says what keeps the source that drives from doing so, and the remedy; '' for nothing.
+    ``dead_man`` is false while the dead-man buttons of pads need not be held.
     """
 
     ros: str = ROS_STARTING
@@ -167,6 +169,8 @@ class PanelView:
     status_level: str = 'calm'
     robots: Tuple[RobotView, ...] = ()
     camera_bits_per_s: float = 0.0
+    advice: str = ''
+    dead_man: bool = True
     heard: Optional[HeardView] = None
     control: ControlView = ControlView()
     answers: bool = True

@@ -19,7 +19,7 @@ from mhri.ros.graph.look import robot_facts
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.recording.raw_link import LinkError, RawLink
 from mhri.ros.resources import robot_types
-from mhri.ros.graph.unsubscribe import unsubscribe
+from mhri.ros.graph.rospy_inside import unsubscribe
 
 PERIOD_S = 0.05
 ZEROS = 10

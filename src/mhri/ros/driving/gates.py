@@ -106,19 +106,9 @@ class Gates:
                         stop_all=bool(self._stop), together=self._together, share=self._share,
                         refused=refused, robots=[gate.message() for gate in self._gates.values()])
 
-    @property
-    def session(self):
-        """Names this run of the gates, also towards the guards."""
-        return self._session
-
     def mux_heard(self):
         """Tell whether the mux in force has been heard within the last second."""
         return bool(self._mux.caller) and not self._neighbour.silent
-
-    def gates(self):
-        """Return the :class:`RobotGate` of every robot."""
-        with self._lock:
-            return list(self._gates.values())
 
     def _refuse(self, caller, topic):
         """Count who is not believed; the names are bounded."""
@@ -222,7 +212,7 @@ class Gates:
 
     def _on_take(self, request):
         """Put the caller in control; every robot gets a zero, and neutral is asked for."""
-        caller = request._connection_header['callerid']
+        caller = caller_of(request)
         with self._lock:
             now = self._clock()
             self._seat.take(caller, now)

@@ -47,7 +47,10 @@ class GatesSpeaker:
         while not rospy.is_shutdown():
             self._changed.wait(PERIOD_S)
             self._changed.clear()
-            self._publisher.publish(self.message())
+            try:
+                self._publisher.publish(self.message())
+            except rospy.ROSException:
+                return  # the node has just ended
             time.sleep(LEAST_S)
 
     def message(self):

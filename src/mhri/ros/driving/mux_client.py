@@ -5,7 +5,8 @@
 Publishes ``/mux_in/mode_select`` (``mhri/ControlMode``) and ``/mux_in/speed_limit``
 (``geometry_msgs/Twist``, latched); while this screen drives also ``/mux_in/joy``
 (``sensor_msgs/Joy``) and ``/robot_controller/robot_select`` (``mhri/RobotSelect``, latched).
-Subscribes ``/mux/mode``, ``/mux/speed_limit``, ``/mux/waits_for``, ``/robot_controller/stop_all``.
+Subscribes ``/mux/mode``, ``/mux/speed_limit``, ``/mux/waits_for``, ``/mux/advice``,
+``/mux/dead_man``, ``/robot_controller/stop_all``.
 Calls ``/mux/set_stop_all`` on a thread of its own.
 """
 import threading
@@ -42,6 +43,10 @@ class MuxClient:
         self._mode = None
         self._limits = None
         self._waits_for = None
+        #: what keeps the active source from driving, as a sentence; '' for nothing
+        self.advice = ''
+        #: whether the dead-man buttons of pads have to be held
+        self.dead_man = True
         self._pressed = pressed
         self._stopped = False
         self._proxy = None
@@ -55,6 +60,8 @@ class MuxClient:
             self._heard, self._select_mode, self._speed,
             rospy.Subscriber('/mux/speed_limit', Twist, self._on_limits, queue_size=10),
             rospy.Subscriber('/mux/waits_for', String, self._on_waits, queue_size=10),
+            rospy.Subscriber('/mux/advice', String, self._on_advice, queue_size=10),
+            rospy.Subscriber('/mux/dead_man', Bool, self._on_dead_man, queue_size=10),
             rospy.Subscriber('/robot_controller/stop_all', Bool, self._hear_stop, queue_size=10,
                              tcp_nodelay=True)]
         self._stopper = Worker('stop_all', self._keep_stopping, RETRY_S).start()
@@ -94,6 +101,12 @@ class MuxClient:
     def _on_waits(self, message):
         with self._lock:
             self._waits_for = tidy_text(message.data)
+
+    def _on_advice(self, message):
+        self.advice = tidy_text(message.data)
+
+    def _on_dead_man(self, message):
+        self.dead_man = message.data
 
     def state(self):
         """Return (mode, limits, waits_for) as the mux last said; all None while it is not there."""

@@ -208,7 +208,8 @@ class Neighbour:
             uri = MasterApi(rospy.get_name(), timeout_s=0.5).node_uri(caller)
             self._process = process_of(uri, rospy.get_name()) if uri else None
         except (MasterError, OSError, ValueError) as error:
-            self._process = None
+            # Asked again, where it was known before as well: it may just be starting.
+            self._process = self._known = None
             rospy.logdebug('%s: %s', caller, error)
             return
         self._known = caller

@@ -17,8 +17,8 @@ from mhri.core.screen.views import GONE, SILENT
 from mhri.msg import RobotGate as RobotGateMessage
 from mhri.ros.convert import to_twist
 from mhri.ros.driving.motor_power import MotorPower
-from mhri.ros.graph.rospy_inside import listeners, PromptPublisher, publisher_uri
-from mhri.ros.graph.unsubscribe import unsubscribe
+from mhri.ros.graph.rospy_inside import (
+    listeners, PromptPublisher, publisher_uri, unsubscribe)
 from mhri.ros.robots.link_probe import LinkProbe
 
 # A link that has confirmed nothing for so long is lost: the robot is held, with one zero behind the
@@ -108,7 +108,7 @@ class RobotGate:
             # A stop that another session has latched is said again until it is ours to release.
             if self.rule.sent.is_zero() and (stopped != (self.rule.state == STOPPED)
                                              or stopped and not ours):
-                self._send_to_guard(ZERO, now)
+                self._send_to_guard(ZERO)
 
     def _begin_session(self, now):
         """Speak to the guard anew: another sender has taken its ear, and ours is not heard."""
@@ -172,14 +172,13 @@ class RobotGate:
         """Publish what the rule returned (None: nothing)."""
         if velocity is None:
             return
-        now = self._clock()
         if velocity.is_zero():
             for publisher in self._publishers[1:]:
                 publisher.publish_urgent(to_twist(0.0, 0.0))
-            self._send_to_guard(velocity, now)
+            self._send_to_guard(velocity)
         elif self._guarded:
             # A guard that still holds a stop is released by a zero first.
-            self._send_to_guard(ZERO if self._guard.stop_confirmed else velocity, now)
+            self._send_to_guard(ZERO if self._guard.stop_confirmed else velocity)
         else:
             chosen = self._chosen()
             if chosen is not None:
@@ -192,18 +191,14 @@ class RobotGate:
         return next((publisher for publisher, names in zip(self._publishers[1:], self._obeying[1:])
                      if names), None)
 
-    def _send_to_guard(self, velocity, now):
+    def _send_to_guard(self, velocity):
         guard = self._publishers[0]
         if not guard.links():
             return
         message = TwistStamped(twist=to_twist(velocity.linear_mps, velocity.angular_rad_s))
-        message.header.frame_id = self._guard.next_id(self.rule.state == STOPPED, now)
+        message.header.frame_id = self._guard.next_id(self.rule.state == STOPPED)
         message.header.stamp = rospy.Time.from_sec(time.time())
         (guard.publish_urgent if velocity.is_zero() else guard.publish)(message)
-
-    def reachable(self):
-        """Tell whether the robot listens to anything that is said here."""
-        return self._chosen() is not None
 
     def message(self):
         """Return the ``mhri/RobotGate`` of this moment."""

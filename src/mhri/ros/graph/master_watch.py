@@ -10,11 +10,9 @@ import threading
 import time
 
 import rospy
-from rospy.impl.registration import (
-    get_registration_listeners, get_service_manager, get_topic_manager)
-from rospy.impl.paramserver import get_param_server_cache
 
 from mhri.ros.graph.master_api import MasterApi, MasterError
+from mhri.ros.graph.rospy_inside import meet_publishers, never_ask_for, registrations
 
 PRESENT = 'present'
 LOST = 'lost'
@@ -29,7 +27,7 @@ def log_without_master():
     it back, upon which the master ends both (ros_comm#2018).
     """
     name = '/rosout_disable_topics_generation'
-    get_param_server_cache().set(name, bool(rospy.get_param(name, False)))
+    never_ask_for(name, bool(rospy.get_param(name, False)))
 
 
 class MasterWatch:
@@ -137,14 +135,11 @@ class MasterWatch:
         :raises MasterError: it went away again meanwhile
         """
         own = rospy.get_node_uri()
-        topics, services = get_topic_manager(), get_service_manager()
-        calls = [('registerPublisher', name, kind, own) for name, kind in topics.get_publications()]
-        calls += [('registerService', name, uri, own) for name, uri in services.get_services()]
+        publications, services, subscriptions = registrations()
+        calls = [('registerPublisher', name, kind, own) for name, kind in publications]
+        calls += [('registerService', name, uri, own) for name, uri in services]
         calls += [('setParam', name, value) for name, value in self.parameters.items()]
-        subscriptions = topics.get_subscriptions()
         calls += [('registerSubscriber', name, kind, own) for name, kind in subscriptions]
         answers = self._api.call_many(calls)
-        manager = next(iter(get_registration_listeners().listeners), None)
-        for (name, _), publishers in zip(subscriptions, answers[len(calls) - len(subscriptions):]):
-            if manager is not None:
-                manager.publisher_update(name, publishers or [])
+        for (name, _), uris in zip(subscriptions, answers[len(calls) - len(subscriptions):]):
+            meet_publishers(name, uris or [])

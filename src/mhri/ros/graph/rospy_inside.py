@@ -22,6 +22,9 @@ import threading
 import time
 
 import rospy
+from rospy.impl.paramserver import get_param_server_cache
+from rospy.impl.registration import (
+    get_registration_listeners, get_service_manager, get_topic_manager)
 from rospy.impl.tcpros_base import TCPROSTransport
 from rospy.impl.tcpros_pubsub import QueuedConnection
 
@@ -226,6 +229,11 @@ def caller_of(message):
     return (message._connection_header or {}).get('callerid', '')
 
 
+def type_of(message):
+    """Return the ROS type of a message as its publisher named it."""
+    return message._connection_header['type']
+
+
 def link_of(message):
     """Return something that is the same object for all messages of one connection."""
     return message._connection_header
@@ -270,10 +278,48 @@ def on_publisher_gone(subscriber, call):
     impl.remove_connection = remove_connection
 
 
-def close_poller(impl):
-    """Close the epoll handle that rospy leaves in a cycle of references (ros_comm issue 2373)."""
+def ended_by_hand():
+    """Return a function that tells whether somebody has ended this node by ``rosnode kill``.
+
+    Not the master, which ends the older of two nodes with one name. Call it after ``init_node``.
+    """
+    reasons = []
+    rospy.core.add_preshutdown_hook(reasons.append)
+    return lambda: any('user request' in reason for reason in reasons)
+
+
+def unsubscribe(subscriber):
+    """Unregister a ``rospy.Subscriber`` (blocking: it asks the master).
+
+    rospy leaves the epoll handle of the topic open until the garbage collector comes to its oldest
+    generation (ros_comm issue 2373), hundreds of them where views are toggled: it is closed here.
+    """
+    impl = subscriber.impl
+    subscriber.unregister()
     if impl is not None and impl.closed:
         impl.connection_poll.poller.close()
+
+
+def never_ask_for(name, value):
+    """Let rospy know a parameter from now on without asking the master for it."""
+    get_param_server_cache().set(name, value)
+
+
+def registrations():
+    """Return what this node has registered: ([(topic, type)], [(service, URI)], [(topic, type)]).
+
+    Publications, services, subscriptions.
+    """
+    topics = get_topic_manager()
+    return (topics.get_publications(), get_service_manager().get_services(),
+            topics.get_subscriptions())
+
+
+def meet_publishers(topic, uris):
+    """Connect this node's subscription to publishers, as when the master tells of them."""
+    manager = next(iter(get_registration_listeners().listeners), None)
+    if manager is not None:
+        manager.publisher_update(topic, uris)
 
 
 def _self_test():

@@ -13,6 +13,7 @@ import rospy
 
 from mhri.ros.graph.look import knock
 from mhri.ros.graph.master_api import MasterApi
+from mhri.ros.graph.rospy_inside import type_of, unsubscribe
 
 # The most that is read from the socket at once [bytes]; what does not fit is read the next time.
 # From 64 kB to 16 MB the CPU time per picture was measured to be the same.
@@ -36,7 +37,7 @@ class Subscription:
                                             tcp_nodelay=True)
 
     def _hear(self, message):
-        message_type = message._connection_header['type']
+        message_type = type_of(message)
         if isinstance(message, rospy.AnyMsg):
             self._on_bytes(message_type, message._buff)
         else:  # another subscriber of this program was first
@@ -50,11 +51,7 @@ class Subscription:
 
     def close(self):
         """Stop listening and leave nothing behind (blocking: it asks the master)."""
-        impl = self._subscriber.impl
-        self._subscriber.unregister()
-        if impl is not None and impl.closed:
-            # Closed by itself only when the garbage collector finds the cycle it is in.
-            impl.connection_poll.poller.close()
+        unsubscribe(self._subscriber)
 
 
 def reachable(caller_id, topic, timeout_s=1.0):

@@ -79,12 +79,6 @@ class Feed:
         """Return (number, stamp [s]) of a message, or None where it has no header."""
         return header_of(message, self._class)
 
-    def publisher_uri(self):
-        """Return the XML-RPC address of a node that publishes this topic, or None."""
-        subscriber = self._subscriber
-        links = subscriber.impl.connections if subscriber else ()
-        return next((link.endpoint_id for link in links if link.endpoint_id), None)
-
     def connections(self):
         """Return the number of publishers connected; 0 once it has stopped listening."""
         subscriber = self._subscriber

@@ -358,7 +358,8 @@ class ScreenBackend:
             camera_bits_per_s=self._fleet.camera_bits_per_s(),
             heard=self._devices.heard() if self._devices else None,
             control=self._control(), answers=answers,
-            stop_taken=answers and self._stopped_by_gates)
+            stop_taken=answers and self._stopped_by_gates,
+            **({'advice': self._mux.advice, 'dead_man': self._mux.dead_man} if self._mux else {}))
         status, level = status_line(view, waits_for, self.master_uri)
         return replace(view, status=status, status_level=level)
 

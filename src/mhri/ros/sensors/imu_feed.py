@@ -13,7 +13,7 @@ from mhri.core.robots.names import topic_of
 from mhri.core.sensors.plausible import (
     ACCELERATION, ANGULAR_VELOCITY, QUATERNION, sifted, SPEED)
 from mhri.core.sensors.series import BinRing, IMU_KEYS, ODOMETRY_KEYS, roll_pitch_yaw, Series
-from mhri.ros.graph.unsubscribe import unsubscribe
+from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.sensors.refusals import Refusals
 
 # So many samples at most wait for the next drawing; then the ROS thread sorts them in itself.

@@ -11,7 +11,7 @@ import rospy
 from mhri.core.robots.mocap import Pose
 from mhri.core.sensors.plausible import PLACE, QUATERNION, sifted
 from mhri.ros.convert import yaw_of
-from mhri.ros.graph.unsubscribe import unsubscribe
+from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.sensors.refusals import Refusals
 
 TOPIC = '/vrpn_client_node/{}/pose'

@@ -9,7 +9,7 @@ from sensor_msgs.msg import LaserScan
 
 from mhri.core.robots.names import topic_of
 from mhri.core.sensors.plausible import beams_problem, measured_ranges, thinned
-from mhri.ros.graph.unsubscribe import unsubscribe
+from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.sensors.refusals import Refusals
 
 # More than one for each pixel around the view; a scan with more is thinned out to this.
