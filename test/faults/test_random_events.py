@@ -183,7 +183,7 @@ class Events:
 
     def calm(self):
         """Make all well, centre, deflect: every robot has to drive."""
-        self.world.recover()
+        self.world.recover(rival=self.dice.random() < 0.4)
         self.world.stick(self.world.active(), True)
         self.world.wait(3.5)
         self.done.append((time.monotonic(), 'all well'))
@@ -250,7 +250,7 @@ class Judge:
             return
         last = self.violations[-8:]
         for entry in last:
-            if entry['robot'] == name and entry['what'] == verdict.what and now - entry['end'] < 0.1:
+            if (entry['robot'], entry['what']) == (name, verdict.what) and now - entry['end'] < 0.1:
                 entry['end'] = later
                 return
         self.violations.append({'robot': name, 'what': verdict.what, 'why': verdict.why,

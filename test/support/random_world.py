@@ -163,7 +163,8 @@ class World:
         elif kind in ('mux', 'gates'):
             words = ['bash', str(self._restarter), sys.executable, '-c',
                      'from mhri.nodes.{} import main; main()'.format(kind)]
-        with (self.folder / '{}.log'.format('_'.join(filter(None, (kind, name))))).open('ab') as log:
+        path = self.folder / '{}.log'.format('_'.join(filter(None, (kind, name))))
+        with path.open('ab') as log:
             process = subprocess.Popen(words, env=env, stdin=subprocess.PIPE, stdout=log,
                                        stderr=log, start_new_session=True)
         process.number = None
@@ -272,10 +273,15 @@ class World:
 
     # What operators do.
 
-    def say(self, key, line):
-        """Tell a program something; False where it cannot hear."""
+    def say(self, key, line, *fact):
+        """Tell a program something; False where it cannot hear.
+
+        :param fact: what the models are told of it, before it is done
+        """
         if not self.well(key):
             return False
+        if fact:
+            self.tell(*fact)
         self.processes[key].stdin.write((line + '\n').encode())
         self.processes[key].stdin.flush()
         return True
@@ -283,28 +289,20 @@ class World:
     def stick(self, name, out):
         """Deflect or centre a stick."""
         word = 'out' if out else 'centred'
-        if name == PAD:
-            done = self.say('pad', '{} {:d}'.format(word, self.model.sticks[PAD].held))
-        else:
-            done = self.say(('operator', name), 'stick ' + word)
-        if done:
-            self.tell('stick', name, out)
-        return done
+        key, line = (('operator', name), 'stick ' + word) if name != PAD else (
+            'pad', '{} {:d}'.format(word, self.model.sticks[PAD].held))
+        return self.say(key, line, 'stick', name, out)
 
     def dead_man(self, held):
         """Press or let go the dead-man button."""
         word = 'out' if self.model.sticks[PAD].out else 'centred'
-        if self.say('pad', '{} {:d}'.format(word, held)):
-            self.tell('dead_man', held)
-            return True
-        return False
+        return self.say('pad', '{} {:d}'.format(word, held), 'dead_man', held)
 
     def check(self, operator, names):
         """Check exactly these robots."""
-        if self.say(('operator', operator), ' '.join(['select'] + sorted(names))):
-            self.tell('check', operator, sorted(names))
-            return True
-        return False
+        names = sorted(names)
+        return self.say(('operator', operator), ' '.join(['select'] + names), 'check', operator,
+                        names)
 
     def take(self, operator):
         """Take control; waits until it is done."""
@@ -341,6 +339,8 @@ class World:
             except (rospy.ServiceException, rospy.ROSException, OSError):
                 answer.append(None)
         thread = threading.Thread(target=call, daemon=True)
+        if stopped:
+            self.tell('unknown')
         thread.start()
         thread.join(3.0)
         if not answer or answer[0] is None:
@@ -358,18 +358,28 @@ class World:
             return PAD
         return next(iter(sorted(self.model.holders)), OPERATORS[0])
 
-    def recover(self):
-        """Make all well: everything is there, one operator has checked every robot, all centred."""
+    def recover(self, rival):
+        """Make all well: everything is there, one operator has checked every robot, all centred.
+
+        :param rival: whether there is a second operator that has no control
+        """
         self.hurry()
-        self.end(('operator', OPERATORS[1]), signal.SIGKILL, 'killed') \
-            if ('operator', OPERATORS[1]) in self.processes else None
+        second = ('operator', OPERATORS[1])
+        if second in self.processes:
+            self.end(second, signal.SIGKILL, 'killed')
         for key in list(self.processes):
-            if key != ('operator', OPERATORS[1]):
+            if key != second:
                 self.start(key)
         self.wait(0.2)
         wait_for(lambda: self.wait(0.05) or all(
-            part.well for key, part in self.model.parts.items()
-            if key != ('operator', OPERATORS[1])), 20.0, 'everything to be there')
+            part.well for key, part in self.model.parts.items() if key != second),
+            20.0, 'everything to be there')
+        if rival:
+            self.wait(max(0.0, self.model.well_since - time.monotonic()))
+            self.start(second)
+            self.wait(1.5)
+            self.check(OPERATORS[1], list(ROBOTS)[2:])
+            self.stick(OPERATORS[1], True)
         self.check(OPERATORS[0], ROBOTS)
         self.dead_man(True)
         self.stick(PAD, False)

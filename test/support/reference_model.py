@@ -109,7 +109,7 @@ class ReferenceModel:
         part = self.parts[key]
         part.fail(how, now)
         if key[0] == 'operator' and how != 'hung':
-            self._gone(key[1])
+            self._gone(key[1], now)
         if key[0] == 'guard' and how != 'hung':
             self._wait(now, GUARD_LOST_S, 'its guard was lost', key[1])
 
@@ -126,8 +126,9 @@ class ReferenceModel:
             settle = MASTER_BACK_S
         if kind == 'link':
             settle += 2.0 * part.lasted
-        self._unwell_until(now + settle)
         getattr(self, '_back_' + kind)(now, key, part, starting)
+        if kind != 'operator' or key[1] in self.holders:
+            self._unwell_until(now + settle)
 
     def on_stick(self, now, name, out):
         """The stick of a source (PAD, or of an operator) is out or centred from now on."""
@@ -218,18 +219,21 @@ class ReferenceModel:
 
     def _back_link(self, now, key, part, _starting):
         if part.lasted > 1.5:
-            self._wait(now, 1.0 + 1.2 * part.lasted, 'its link was cut', key[1])
+            # What was on its way is too old for a guard.
+            late_s = AT_ONCE_S if self._is_guarded(key[1]) else 1.0 + 1.2 * part.lasted
+            self._wait(now, late_s, 'its link was cut', key[1])
 
     def _back_guard(self, now, key, part, starting):
         if starting or part.lasted > GUARD_LOST_S + 0.5:
             self._wait(now, GUARD_LOST_S, 'its guard is back', key[1])
 
-    def _gone(self, name):
+    def _gone(self, name, now):
         if name in self.holders:
             self.holders.discard(name)
             if not self.holders:
                 self.holders = {other for other in self.chosen
                                 if self.parts['operator', other].well}
+                self._all_wait(now, AT_ONCE_S, 'its operator has gone')
 
     def _unwell_until(self, when):
         self.well_since = max(self.well_since, when)
@@ -350,7 +354,7 @@ class ReferenceModel:
         if guard is not None and not guard.well:
             causes.append((guard.since, GUARD_LOST_S, 'its guard is silent'))
         centred = max((self.sticks[stick].last_centred(now) for stick in self._speakers(now)),
-                      default=-1e9)
+                      default=now)
         return [cause for cause in causes if cause[2] and centred < cause[0] - slack_s]
 
     def _reachable(self, name, now, slack_s):
@@ -374,7 +378,7 @@ class ReferenceModel:
         until = -1e9
         for key, limits, again_s in (
                 ('gates', self._gates_limits(name), 1.0),
-                ('mux', dict.fromkeys(('hung', 'killed', 'ended'), SILENT_S), 0.5)):
+                ('mux', {'hung': SILENT_S, 'killed': SILENT_S, 'ended': AT_ONCE_S}, 0.5)):
             part = self.parts[key]
             if not part.well:
                 until = max(until, part.since + limits[part.how])
