@@ -5,8 +5,8 @@
 It is told what happens in the world (:meth:`ReferenceModel.tell`), in the order in which it does,
 and says of each robot whether it must stand, must drive, or may do either. It knows nothing of
 messages: who is there, what each stick says, who has checked what, and how long the contract gives
-for each end of motion. Time is in seconds of a clock that never goes back. Where the contract leaves
-it open, and while an end of motion may take its time, the answer is EITHER.
+for each end of motion. Time is in seconds of a clock that never goes back. Where the contract is
+silent, and while an end of motion may take its time, the answer is EITHER.
 """
 from collections import namedtuple
 
@@ -388,7 +388,8 @@ class ReferenceModel:
         return until
 
     def _must_drive(self, name, now, slack_s):
-        if self.unknown or not all(part.well for key, part in self.parts.items() if key[0] != 'operator'):
+        if self.unknown or not all(part.well for key, part in self.parts.items()
+                                   if key[0] != 'operator'):
             return False
         speakers = self._speakers(now)
         if len(speakers) != 1 or len(self.holders) != 1:

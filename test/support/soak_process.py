@@ -110,7 +110,7 @@ def operator(name):
 
 
 def pad():
-    """Say the stick at 20 Hz, and at once when it changes: ``out`` or ``centred``, button 0 or 1."""
+    """Say at 20 Hz and on change what it is told: ``out`` or ``centred``, and the button."""
     rospy.init_node('pad', disable_signals=True)
     MasterWatch().start()
     publisher = rospy.Publisher('/mux_in/ps3joy', Joy, queue_size=1, tcp_nodelay=True)
