@@ -270,6 +270,21 @@ class GatesTest(GatesCase):
         for _, receiver in made:
             self.assertEqual(self.drive(receiver, 0.2), (0.2, 0.0))
 
+    def test_a_robot_unchecked_while_there_are_no_gates_gets_its_zero(self):
+        (_, still), (_, driven) = made = self.robots(2)
+        for _, receiver in made:
+            self.drive(receiver, 0.2)
+        when = self.gates.send(signal.SIGKILL)
+        self.gates.wait()
+        self.operator.check(made[0][0])
+        GatesCase.gates = start_gates()
+        for receiver in (still, driven):
+            wait_for(lambda: receiver.after(when), 20.0, 'the zero')
+            at, *value = receiver.after(when)[0]
+            self.assertEqual(tuple(value), ZERO)
+            measured('zero of the next gates, unchecked meanwhile', at - when)
+        self.wait_for_mux()
+
     def test_gates_that_end_say_zero(self):
         (name, receiver), = self.robots(1)
         self.drive(receiver, 0.2)

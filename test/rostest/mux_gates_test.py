@@ -24,7 +24,7 @@ import rostest
 from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
 
-from mhri.msg import GatesState, TeamTwist
+from mhri.msg import GatesState, RobotSelect, TeamTwist
 from mhri.ros.driving.neighbour import Neighbour
 from mhri.ros.graph.rospy_inside import caller_of
 
@@ -115,6 +115,23 @@ class MuxGates(unittest.TestCase):
         start = self.stick.hold(FORWARD)
         self.twists.wait_silence(0.7)
         self.assertFalse([item for item in self.twists.since(start) if moves(item.value)])
+
+    def test_a_second_operators_selection_does_not_stop_the_first_ones_robots(self):
+        select = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1)
+        wait_until(select.get_num_connections, 'the mux does not listen')
+        self.gates.say(operator='/other_panel')
+        rospy.rostime.wallsleep(0.2)
+        self._drive()
+        start = time.monotonic()
+        for number in range(10):
+            select.publish(['stranger{}'.format(number)])
+            rospy.rostime.wallsleep(0.05)
+        self.assertFalse([item for item in self.twists.since(start) if rests(item.value)])
+        self.gates.say(operator='/mux_gates')
+        rospy.rostime.wallsleep(0.2)
+        select.publish(['newcomer'])
+        self.twists.wait(rests, start)
+        select.unregister()
 
     def test_a_stop_that_the_gates_hold_for_a_second_is_the_muxs_as_well(self):
         self._drive()

@@ -49,7 +49,7 @@ from mhri.ros.driving.mux_takeover import is_superseded
 from mhri.ros.driving.source_topic import LONGEST_TEXT, SourceTopic
 from mhri.ros.driving.suspender import Suspender
 from mhri.ros.driving.task_mux import TaskMux
-from mhri.ros.graph.rospy_inside import PromptPublisher
+from mhri.ros.graph.rospy_inside import caller_of, PromptPublisher
 from mhri.ros.worker import Worker
 
 # The mux repeats its stop-all so often, and asks the master so often [s]; a master that hangs is
@@ -269,6 +269,9 @@ class Mux:
             return (self._topics[self._arbiter.mode], self._arbiter.waits_for(self._clock()))
 
     def _on_selection(self, message):
+        if not self._gates.in_control(caller_of(message)):
+            # Two that take turns would look like robots that join, twice a second.
+            return
         with self._changed:
             self._send(self._arbiter.on_selection(message.robots, self._clock()))
 

@@ -39,6 +39,10 @@ class GatesWatch:
         """End the watch; returns at once."""
         self._neighbour.stop()
 
+    def in_control(self, caller):
+        """Tell whether a node may be the operator in control, as far as the gates have said."""
+        return self._operator in ('', caller)
+
     def words(self):
         """Return what is known of the gates, in words."""
         return self._neighbour.words()

@@ -11,15 +11,24 @@ from mhri.ros.graph.look import robot_facts
 from mhri.ros.graph.master_api import MasterApi, MasterError
 
 ROBOTS_PARAMETER = '/mhri/robots'
+# What was ever checked, for the gates after these: a robot that was driven needs their zero, even
+# where it was unchecked meanwhile.
+DRIVEN_PARAMETER = '/mhri_gates/robots'
 PERIOD_S = 1.0
 MOST_ROBOTS = 64
+
+
+def _names(value):
+    """Return the names of robots in a parameter, whatever else it holds."""
+    return [name for name in value if isinstance(name, str) and name_problem(name) is None] \
+        if isinstance(value, list) else []
 
 
 class Roster:
     """A thread that opens and closes gates as robots come into the list and go.
 
     A robot is known while it is in the screen's list (parameter ``/mhri/robots``) or checked, and
-    once checked it stays until it has left the list.
+    once checked it stays until it has left the list; the gates after these know it as well.
 
     :param types: {name: RobotType}
     :param open_gate: called with (name, RobotType), on the thread; replaces what was open
@@ -32,6 +41,7 @@ class Roster:
         self._close_gate = close_gate
         self._checked = frozenset()
         self._ever = {}
+        self._recalled = False
         self._listed = frozenset()
         self._open = {}
         self._seen = {}
@@ -63,15 +73,21 @@ class Roster:
 
         :raises MasterError: the master cannot be asked now; what is open stays
         """
-        listed = MasterApi(rospy.get_name(), timeout_s=2.0).call_many(
-            [('getParam', ROBOTS_PARAMETER)])[0]
-        listed = frozenset(name for name in listed if isinstance(name, str)
-                           and name_problem(name) is None) if isinstance(listed, list) \
-            else frozenset()
+        api = MasterApi(rospy.get_name(), timeout_s=2.0)
+        listed, driven = map(_names, api.call_many([
+            ('getParam', ROBOTS_PARAMETER), ('getParam', DRIVEN_PARAMETER)]))
+        if not self._recalled:
+            self._recalled = True
+            self._ever.update(dict.fromkeys(driven))
+        listed = frozenset(listed)
         gone, self._listed = self._listed - listed - self._checked, listed
         self._ever.update(dict.fromkeys(sorted(self._checked)))
         for name in gone:
             self._ever.pop(name, None)
+        known = list(self._ever)[:MOST_ROBOTS]
+        if known != driven:
+            # Before their gates are open: nobody is driven who is not written down.
+            api.call('setParam', DRIVEN_PARAMETER, known)
         wanted = list(dict.fromkeys(sorted(self._checked) + sorted(listed) + list(self._ever)))
         wanted = wanted[:MOST_ROBOTS]
         for name in set(self._open) - set(wanted):

@@ -1,0 +1,358 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Random events on a running system of four robots without watchdogs, judged by the contract.
+
+Master, mux and gates are the real ones; two robots have the real guard; each has a computer of its
+own, whose link can be cut. ``MHRI_SEED`` repeats a run, ``MHRI_EVENTS`` is the number of events
+(default 60, a minute of them at most; ``MHRI_SECONDS`` for more), ``MHRI_KEEP`` a folder that stays
+with all logs::
+
+    MHRI_EVENTS=1000 MHRI_SEED=7 python3 -m pytest -s test/faults/test_random_events.py
+"""
+import bisect
+from collections import Counter, defaultdict
+import os
+from pathlib import Path
+import random
+import signal
+import statistics
+import sys
+import threading
+import time
+
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support import machines  # noqa: E402
+from support.random_world import JOY, OPERATORS, PAD, ROBOTS, World  # noqa: E402
+from support.reference_model import DRIVE, ReferenceModel, STAND  # noqa: E402
+
+SEED = int(os.environ.get('MHRI_SEED') or random.SystemRandom().randrange(10 ** 6))
+EVENTS = int(os.environ.get('MHRI_EVENTS') or 60)
+# No event is begun after so long [s].
+LIMIT_S = float(os.environ.get('MHRI_SECONDS') or (60 if EVENTS == 60 else 'inf'))
+# The model is asked so often [s]; what a computer may be late by beside what is measured [s].
+GRID_S, SLACK_S = 0.02, 0.3
+CALM_EVERY = 30
+NODES = ['mux', 'gates', 'pad', ('operator', OPERATORS[0])] + [
+    ('robot', name) for name in ROBOTS] + [('guard', name) for name in ROBOTS if ROBOTS[name]]
+WEIGHTS = {'drive': 22, 'key': 8, 'pad': 8, 'dead-man': 4, 'mode': 5, 'check': 8, 'stop-all': 6,
+           'release': 8, 'kill -9': 10, 'stop': 5, 'SIGSTOP': 10, 'cut': 7, 'second operator': 6,
+           'restart of master': 2}
+
+
+class LagMeter:
+    """How late this computer is: a thread that wants to wake up every 10 ms."""
+
+    def __init__(self):
+        self._times, self._lags = [], []
+        self._done = threading.Event()
+        threading.Thread(target=self._run, daemon=True).start()
+
+    def _run(self):
+        due = time.monotonic()
+        while not self._done.is_set():
+            due += 0.01
+            time.sleep(max(0.0, due - time.monotonic()))
+            now = time.monotonic()
+            if now - due > 0.02:
+                self._times.append(now)
+                self._lags.append(now - due)
+                due = now
+
+    def stop(self):
+        self._done.set()
+
+    def slack_s(self, now):
+        """Return what to allow for lateness: twice the worst of the last 3 s more than usual."""
+        low = bisect.bisect_left(self._times, now - 3.0)
+        high = bisect.bisect_right(self._times, now + 0.1)
+        return SLACK_S + 2.0 * max(self._lags[low:high], default=0.0)
+
+
+class Events:
+    """Draws events; each is a method that returns whether it could be done."""
+
+    def __init__(self, world, dice):
+        self.world, self.dice = world, dice
+        self.done = []
+
+    def one(self):
+        """Do one event; return its kind."""
+        while True:
+            kind = self.dice.choices(list(WEIGHTS), list(WEIGHTS.values()))[0]
+            at = time.monotonic()
+            if getattr(self, kind.replace(' ', '_').replace('-', '_'))():
+                self.done.append((at, kind))
+                return kind
+
+    def get_going(self):
+        """Let what is broken come back for a while, release a stop, and drive."""
+        until = time.monotonic() + 4.0
+        parts = self.world.model.parts
+        while time.monotonic() < until and not all(
+                part.well and time.monotonic() - part.back_at > 1.2 for key, part in parts.items()
+                if key != ('operator', OPERATORS[1])):
+            self.world.wait(0.1)
+        if self.world.model.stopped and self.release():
+            self.done.append((time.monotonic(), 'release'))
+        at = time.monotonic()
+        if self.drive():
+            self.done.append((at, 'drive'))
+        self.world.wait(0.2)
+
+    def drive(self):
+        """Centre the stick that drives for a moment, and deflect it."""
+        stick = self.world.active()
+        if stick == PAD and not self.world.model.sticks[PAD].held:
+            self.world.dead_man(True)
+        if not self.world.stick(stick, False):
+            return False
+        self.world.wait(self.dice.uniform(0.1, 0.5))
+        return self.world.stick(stick, True)
+
+    def key(self):
+        alive = [name for name in OPERATORS if self.world.well(('operator', name))]
+        return bool(alive) and self._toggle(self.dice.choice(alive))
+
+    def pad(self):
+        return self._toggle(PAD)
+
+    def _toggle(self, name):
+        return self.world.stick(name, not self.world.model.sticks[name].out)
+
+    def dead_man(self):
+        return self.world.dead_man(not self.world.model.sticks[PAD].held)
+
+    def mode(self):
+        return self.world.mode(JOY if self.world.model.mode == PAD else PAD)
+
+    def check(self):
+        name = self.dice.choice(OPERATORS)
+        chosen = set(self.world.model.chosen[name])
+        chosen ^= {self.dice.choice(list(ROBOTS))}
+        return self.world.check(name, chosen)
+
+    def _stop_is_served(self):
+        model = self.world.model
+        return all(model.parts[key].well and time.monotonic() - model.parts[key].back_at > 3.0
+                   for key in ('mux', 'master'))
+
+    def stop_all(self):
+        return self._stop_is_served() and not self.world.model.stopped and self.world.stop(True)
+
+    def release(self):
+        if not self._stop_is_served() or not self.world.model.stopped:
+            return False
+        self.world.stick(self.world.active(), False)
+        self.world.wait(0.15)
+        return self.world.stop(False)
+
+    def kill__9(self):
+        return self._end(signal.SIGKILL, 'killed')
+
+    def stop(self):
+        return self._end(signal.SIGTERM, 'ended')
+
+    def _end(self, number, how):
+        key = self.dice.choice(NODES)
+        # Of a robot and whatever has no zero for its end, SIGTERM is no more than SIGKILL.
+        orderly = how == 'ended' and key in ('mux', 'gates')
+        if key not in self.world.processes or not self.world.end(
+                key, number, 'ended' if orderly else 'killed'):
+            return False
+        if orderly or key not in ('mux', 'gates'):
+            self.world.later(self.dice.uniform(0.1, 3.0), lambda: self._start(key))
+        return True
+
+    def _start(self, key):
+        self.world.start(key)
+        if key == ('operator', OPERATORS[0]) and self.dice.random() < 0.8:
+            self.world.check(OPERATORS[0], ROBOTS)
+        self.done.append((time.monotonic(), 'start'))
+
+    def SIGSTOP(self):
+        return self.world.hang(self.dice.choice(NODES), self._for())
+
+    def cut(self):
+        return self.world.cut(self.dice.choice(list(ROBOTS)), self._for())
+
+    def _for(self):
+        return self.dice.choice((self.dice.uniform(0.05, 1.0), self.dice.uniform(1.0, 4.0)))
+
+    def second_operator(self):
+        """Come; speak; take control; go."""
+        key = ('operator', OPERATORS[1])
+        if not self.world.well(key):
+            if not self.world.well('master'):
+                return False
+            self.world.start(key)
+            chosen = [name for name in ROBOTS if self.dice.random() < 0.5]
+            self.world.later(0.8, lambda: self.world.check(OPERATORS[1], chosen))
+            self.world.later(1.0, lambda: self.world.stick(OPERATORS[1], True))
+            self.world.later(self.dice.uniform(3.0, 12.0), lambda: self.world.end(
+                key, signal.SIGKILL, 'killed'))
+            return True
+        return self.world.take(self.dice.choice(OPERATORS))
+
+    def restart_of_master(self):
+        return self.world.end_master(self.dice.choice((0.0, self.dice.uniform(0.5, 4.0))))
+
+    def calm(self):
+        """Make all well, centre, deflect: every robot has to drive."""
+        self.world.recover(rival=self.dice.random() < 0.4)
+        self.world.stick(self.world.active(), True)
+        self.world.wait(3.5)
+        self.done.append((time.monotonic(), 'all well'))
+
+
+def motion(path, facts, robot):
+    """Return (times, speeds) of a robot: what it did from each time on."""
+    rows = [tuple(map(float, line.split())) for line in Path(path).read_text().splitlines()]
+    rows = [(at, max(abs(linear), abs(angular))) for at, linear, angular in rows]
+    rows += [(at, 0.0) for at, what, args in facts
+             if what == 'fail' and args[0] == ('robot', robot) and args[1] != 'hung']
+    rows.sort()
+    return [row[0] for row in rows], [row[1] for row in rows]
+
+
+class Judge:
+    """Replays what was told and compares what each robot did."""
+
+    def __init__(self, world, lag, end):
+        self.facts = sorted(world.facts, key=lambda fact: fact[0])
+        self.motion = {name: motion(world.log_of(name), self.facts, name) for name in ROBOTS}
+        self.lag, self.end = lag, end
+        self.violations, self.stands, self.drives = [], {}, {}
+        self.counts = Counter()
+
+    def moved(self, name, begin, end):
+        """Return (whether it moved at all, whether it did all the time) between two times."""
+        times, speeds = self.motion[name]
+        low = bisect.bisect_right(times, begin) - 1
+        inside = speeds[max(low, 0):bisect.bisect_left(times, end)] if times else []
+        return any(inside), bool(inside) and all(inside)
+
+    def until(self, name, begin, moving):
+        """Return how long after a time a robot moves, or stands, first."""
+        times, speeds = self.motion[name]
+        low = max(bisect.bisect_right(times, begin) - 1, 0)
+        return next((max(0.0, at - begin) for at, speed in zip(times[low:], speeds[low:])
+                     if bool(speed) == moving), None)
+
+    def judge(self):
+        """Ask the model all along."""
+        model, facts = ReferenceModel(ROBOTS, OPERATORS), list(self.facts)
+        now = facts[0][0]
+        while now < self.end:
+            while facts and facts[0][0] <= now:
+                at, what, args = facts.pop(0)
+                model.tell(at, what, *args)
+            slack_s = self.lag.slack_s(now)
+            later = min([now + GRID_S] + [fact[0] for fact in facts[:1]])
+            for name in ROBOTS:
+                self._compare(name, model.verdict(name, now, slack_s), now, later)
+            now = later if later > now else now + 1e-6
+        return self
+
+    def _compare(self, name, verdict, now, later):
+        self.counts[verdict.what] += later - now
+        moved, all_along = self.moved(name, now, later)
+        wrong = verdict.what == STAND and moved or verdict.what == DRIVE and not all_along
+        if verdict.what == STAND:
+            self.stands.setdefault((name, verdict.why, round(verdict.since, 3)), verdict.since)
+        elif verdict.what == DRIVE:
+            self.drives.setdefault((name, round(verdict.since, 3)), verdict.since)
+        if not wrong:
+            return
+        last = self.violations[-8:]
+        for entry in last:
+            if (entry['robot'], entry['what']) == (name, verdict.what) and now - entry['end'] < 0.1:
+                entry['end'] = later
+                return
+        self.violations.append({'robot': name, 'what': verdict.what, 'why': verdict.why,
+                                'since': verdict.since, 'begin': now, 'end': later})
+
+
+def kind_at(done, when):
+    """Return the kind of the event that was being done at a time."""
+    index = bisect.bisect_right([at for at, _ in done], when + 0.005) - 1
+    return done[index][1] if index >= 0 else 'start'
+
+
+def table(events, judge):
+    """Return the table: how often each kind was done, and how long robots took to stand."""
+    done = sorted(events.done)
+    counts = Counter(kind for _, kind in done)
+    taken, wrong = defaultdict(list), Counter()
+    for (name, _, _), since in judge.stands.items():
+        if judge.moved(name, since - 0.005, since)[1]:
+            stands = judge.until(name, since, False)
+            if stands is not None:
+                taken[kind_at(done, since)].append(stands)
+    for entry in judge.violations:
+        wrong[kind_at(done, entry['since'])] += 1
+    lines = ['{:18} {:>6} {:>10} {:>7} {:>8} {:>8}'.format(
+        'event', 'times', 'violations', 'stops', 'p50 [s]', 'max [s]')]
+    for kind in sorted(set(counts) | set(taken) | set(wrong)):
+        times = taken[kind]
+        lines.append('{:18} {:6} {:10} {:7} {:>8} {:>8}'.format(
+            kind, counts[kind], wrong[kind], len(times),
+            '{:.3f}'.format(statistics.median(times)) if times else '',
+            '{:.3f}'.format(max(times)) if times else ''))
+    lines.append('robot seconds: ' + ', '.join(
+        '{} {:.0f}'.format(what, seconds) for what, seconds in sorted(judge.counts.items())))
+    return '\n'.join(lines)
+
+
+def tell_violation(number, entry, judge, begin):
+    """Print what came before a violation and what the robot did."""
+    print('\nVIOLATION {}: {} {} ({}, since {:.3f}) from {:.3f} to {:.3f}'.format(
+        number, entry['robot'], entry['what'], entry['why'], entry['since'] - begin,
+        entry['begin'] - begin, entry['end'] - begin))
+    rows = [(at, 'told {} {}'.format(what, args)) for at, what, args in judge.facts]
+    changes = list(zip(*judge.motion[entry['robot']]))
+    rows += [(at, '  {} now {}'.format(entry['robot'], 'moves' if speed else 'stands'))
+             for (_, before), (at, speed) in zip(changes, changes[1:])
+             if bool(before) != bool(speed)]
+    for at, words in sorted(rows):
+        if entry['begin'] - 9.0 <= at <= entry['end'] + 1.0:
+            print('  {:9.3f} {}'.format(at - begin, words))
+
+
+@pytest.fixture
+def world(tmp_path):
+    reason = machines.why_not()
+    if reason:
+        pytest.skip(reason)
+    folder = Path(os.environ.get('MHRI_KEEP') or tmp_path)
+    folder.mkdir(parents=True, exist_ok=True)
+    with machines.Lan(folder) as lan, World(lan) as built:
+        yield built
+
+
+def test_no_robot_moves_that_must_stand_nor_stands_that_must_drive(world):
+    print('\nseed {}: repeat with MHRI_SEED={} MHRI_EVENTS={}'.format(SEED, SEED, EVENTS),
+          flush=True)
+    events, lag = Events(world, random.Random(SEED)), LagMeter()
+    begin, calm_at = time.monotonic(), CALM_EVERY
+    events.calm()
+    while len(events.done) < EVENTS and time.monotonic() - begin < LIMIT_S:
+        if events.dice.random() < 0.4:
+            events.get_going()
+        events.one()
+        world.wait(events.dice.choice((0.0, events.dice.uniform(0.0, 1.2))))
+        if len(events.done) >= calm_at:
+            calm_at += CALM_EVERY
+            events.calm()
+            print('{} events, {:.0f} s'.format(len(events.done), time.monotonic() - begin),
+                  flush=True)
+    lag.stop()
+    judge = Judge(world, lag, time.monotonic()).judge()
+    for number, entry in enumerate(judge.violations, 1):
+        tell_violation(number, entry, judge, begin)
+    print('\nseed {}, {} events in {:.0f} s\n{}'.format(
+        SEED, len(events.done), time.monotonic() - begin, table(events, judge)), flush=True)
+    assert judge.counts[STAND] > 10.0 and judge.counts[DRIVE] > 1.0, 'nothing was judged'
+    assert not judge.violations

@@ -1,0 +1,400 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the contract demands of each robot while things go wrong, apart from mhri's own code.
+
+It is told what happens in the world (:meth:`ReferenceModel.tell`), in the order in which it does,
+and says of each robot whether it must stand, must drive, or may do either. It knows nothing of
+messages: who is there, what each stick says, who has checked what, and how long the contract gives
+for each end of motion. Time is in seconds of a clock that never goes back. Where the contract is
+silent, and while an end of motion may take its time, the answer is EITHER.
+"""
+from collections import namedtuple
+
+STAND, DRIVE, EITHER = 'must stand', 'must drive', 'either'
+JOY, PAD = 'joy', 'ps3joy'
+
+# Within what time a robot stands [s]: the contract's timings, and issue 10 A for what hangs.
+AT_ONCE_S, SILENT_S, LEASE_S, MASTER_S = 0.05, 0.55, 1.6, 1.5
+GATES_KILLED_S, GATES_HUNG_S, GUARD_S, GUARD_LOST_S = 1.5, 4.5, 0.3, 0.55
+# A robot is not heard for so long before it is held, and a guard drops what is older [s].
+NOT_HEARD_S, ANSWER_S = 1.0, 1.0
+# How long it may take until all is well again [s]: a program starts, a hung one goes on, all else.
+START_S, GO_ON_S, SAY_S, MASTER_BACK_S = 5.0, 3.0, 2.0, 6.0
+DRIVES_WITHIN_S, CENTRED_S = 2.0, 0.3
+# After mux or gates are back: until they know again who is in control and what drives [s].
+UNSURE_S = 4.0
+
+Verdict = namedtuple('Verdict', 'what why since')
+
+
+class Part:
+    """A program or a link: well, or since when it is not and how ('killed', 'ended', 'hung')."""
+
+    def __init__(self, well=True):
+        self.well, self.how, self.since, self.lasted = well, '', -1e9, 0.0
+        self.back_at, self.another = -1e9, not well
+
+    def fail(self, how, now):
+        """Take note of an end; one that hung first and was ended then has hung all the time."""
+        if self.well:
+            self.since, self.how, self.well, self.another = now, how, False, False
+        self.another = self.another or how in ('killed', 'ended')
+
+    def mend(self, now):
+        """Take note that it is back."""
+        if not self.well:
+            self.well, self.back_at, self.lasted = True, now, now - self.since
+
+
+class Stick:
+    """What one source says: since when it is out, and when it was centred last."""
+
+    def __init__(self):
+        self.out, self.held = False, True
+        self.changed_at, self.centred_at, self.centred_since = 0.0, 0.0, 0.0
+
+    def say(self, out, now):
+        """Take note of what it says from now on."""
+        if self.out and not out:
+            self.centred_since = now
+        if not self.out:
+            self.centred_at = now
+        if out != self.out:
+            self.changed_at = now
+        self.out = out
+
+    def last_centred(self, now):
+        """Return when it was centred last."""
+        return self.centred_at if self.out else now
+
+
+class ReferenceModel:
+    """The contract for some robots.
+
+    :param robots: {name: has it a guard}
+    :param operators: names; each has a virtual joystick
+    """
+
+    def __init__(self, robots, operators):
+        self.guarded = dict(robots)
+        self.parts = {key: Part() for key in ('mux', 'gates', 'master', 'pad')}
+        self.parts.update({('robot', name): Part() for name in robots})
+        self.parts.update({('link', name): Part() for name in robots})
+        self.parts.update({('guard', name): Part() for name in robots if robots[name]})
+        self.parts.update({('operator', name): Part(False) for name in operators})
+        self.sticks = {PAD: Stick(), **{name: Stick() for name in operators}}
+        self.chosen = {name: frozenset() for name in operators}
+        self.holders = set()
+        self.mode, self.mode_at, self.mode_before = JOY, 0.0, JOY
+        self.stopped, self.stop_at = False, 0.0
+        self.well_since = 0.0
+        # Whether it is not known if a stop is in force: its service has not answered.
+        self.unknown = False
+        # After these a robot waits for a centred stick: {robot: [(time, limit, words)]}, newest.
+        self.causes = {name: (-1e9, 0.0, '') for name in robots}
+        # Since when what has to be so is not: {(robot, words): (time, limit)}.
+        self.missing = {}
+
+    # What happens.
+
+    def tell(self, now, what, *args):
+        """Take in an event; see the methods whose names begin with ``on_``."""
+        for stick in self.sticks.values():
+            stick.say(stick.out, now)
+        getattr(self, 'on_' + what)(now, *args)
+        self._look(now)
+
+    def on_fail(self, now, key, how):
+        """A program (or 'link') has been 'killed', 'ended', 'hung' or 'cut'."""
+        part = self.parts[key]
+        part.fail(how, now)
+        if key[0] == 'operator' and how != 'hung':
+            self._gone(key[1], now)
+        if key[0] == 'guard' and how != 'hung':
+            self._wait(now, GUARD_LOST_S, 'its guard was lost', key[1])
+
+    def on_mend(self, now, key):
+        """It is there again."""
+        part = self.parts[key]
+        if part.well:
+            return
+        part.mend(now)
+        starting = part.another
+        kind = key if isinstance(key, str) else key[0]
+        settle = START_S if starting else GO_ON_S
+        if kind == 'master':
+            settle = MASTER_BACK_S
+        if kind == 'link':
+            settle += 2.0 * part.lasted
+        getattr(self, '_back_' + kind)(now, key, part, starting)
+        if kind != 'operator' or key[1] in self.holders:
+            self._unwell_until(now + settle)
+
+    def on_stick(self, now, name, out):
+        """The stick of a source (PAD, or of an operator) is out or centred from now on."""
+        self.sticks[name].say(out, now)
+
+    def on_dead_man(self, now, held):
+        """The dead-man button of the pad."""
+        stick = self.sticks[PAD]
+        if held and not stick.held and stick.out:
+            self._all_wait(now, AT_ONCE_S, 'the dead-man button was pressed', PAD)
+        stick.held = held
+        if held:
+            self._unwell_until(now + SAY_S)
+
+    def on_mode(self, now, mode):
+        """The mode was asked for."""
+        if mode != self.mode:
+            self.mode_before, self.mode, self.mode_at = self.mode, mode, now
+            self._unwell_until(now + SAY_S)
+            self._all_wait(now, AT_ONCE_S, 'another mode')
+
+    def on_check(self, now, operator, names):
+        """An operator has checked exactly these robots."""
+        names = frozenset(names)
+        new = names - self.chosen[operator]
+        self.chosen[operator] = names
+        if new and self.holders == {operator}:
+            self._unwell_until(now + SAY_S)
+            self._all_wait(now, AT_ONCE_S, 'a robot was checked')
+
+    def on_take(self, now, operator):
+        """An operator has taken control."""
+        self.holders = {operator}
+        self._unwell_until(now + SAY_S)
+        self._all_wait(now, AT_ONCE_S, 'control was taken')
+
+    def on_unknown(self, now):
+        """Stop-all or its release was asked for, and nobody answered."""
+        self.stopped, self.unknown = False, True
+
+    def on_stop(self, now):
+        """Stop-all is in force: its service has said so."""
+        self.unknown = False
+        if not self.stopped:
+            self.stopped, self.stop_at = True, now
+
+    def on_release(self, now):
+        """Stop-all has been released: its service has said so."""
+        self.unknown = False
+        self._unwell_until(now + SAY_S)
+        if self.stopped:
+            self.stopped = False
+            self._all_wait(now, AT_ONCE_S, 'a stop was released')
+
+    # What comes back.
+
+    def _back_mux(self, now, _key, part, starting):
+        if starting or part.lasted > SILENT_S + 0.5:
+            self._all_wait(part.since, SILENT_S, 'the mux was away')
+
+    def _back_gates(self, now, _key, part, starting):
+        if starting:
+            self._all_wait(part.since, None, 'the gates are others')
+            self.holders = {name for name in self.chosen if self.parts['operator', name].well}
+
+    def _back_master(self, now, _key, part, _starting):
+        if part.lasted > MASTER_S + 0.5:
+            self._all_wait(part.since, MASTER_S, 'the master was lost')
+
+    def _back_pad(self, now, _key, part, starting):
+        if starting or part.lasted > SILENT_S + 0.5:
+            self._all_wait(part.since if starting else now, SILENT_S, 'the pad was away', PAD)
+
+    def _back_operator(self, now, key, part, starting):
+        name = key[1]
+        if starting:
+            self.chosen[name] = frozenset()
+            # Who has just come may not have spoken yet.
+            if not any(now - self.parts['operator', other].back_at > UNSURE_S
+                       for other in self.holders):
+                self.holders.add(name)
+        elif part.lasted > LEASE_S + 0.5 and self.holders == {name}:
+            self._all_wait(now, AT_ONCE_S, 'its operator was away')
+
+    def _back_robot(self, now, key, part, starting):
+        if starting or part.lasted > NOT_HEARD_S + 1.0:
+            self._wait(now, 0.5, 'it was away', key[1])
+
+    def _back_link(self, now, key, part, _starting):
+        if part.lasted > 1.5:
+            # What was on its way is too old for a guard.
+            late_s = AT_ONCE_S if self._is_guarded(key[1]) else 1.0 + 1.2 * part.lasted
+            self._wait(now, late_s, 'its link was cut', key[1])
+
+    def _back_guard(self, now, key, part, starting):
+        if starting or part.lasted > GUARD_LOST_S + 0.5:
+            self._wait(now, GUARD_LOST_S, 'its guard is back', key[1])
+
+    def _gone(self, name, now):
+        if name in self.holders:
+            self.holders.discard(name)
+            if not self.holders:
+                self.holders = {other for other in self.chosen
+                                if self.parts['operator', other].well}
+                self._all_wait(now, AT_ONCE_S, 'its operator has gone')
+
+    def _unwell_until(self, when):
+        self.well_since = max(self.well_since, when)
+
+    def _all_wait(self, now, limit_s, why, source=None):
+        for name in self.guarded:
+            self._wait(now, limit_s, why, name, source)
+
+    def _wait(self, now, limit_s, why, name, source=None):
+        """Let a robot wait for neutral from now on; ``source``: only where that one drives."""
+        if source is not None and self._modes(now) != {source}:
+            return
+        if limit_s is None:
+            limit_s = GUARD_S if self._is_guarded(name) else GATES_KILLED_S
+        self.causes[name] = (now, limit_s, why)
+
+    # What follows from it.
+
+    def _unsure(self, key, now):
+        part = self.parts[key]
+        return not part.well or now - part.back_at < UNSURE_S
+
+    def _modes(self, now):
+        """Return the sources that may be the active one."""
+        modes = {self.mode}
+        if self._unsure('mux', now):
+            modes.add(JOY)
+        if now - self.mode_at < 0.5:
+            modes.add(self.mode_before)
+        return modes
+
+    def _speakers(self, now):
+        """Return the sticks that may drive, by name."""
+        names = set()
+        for mode in self._modes(now):
+            if mode == PAD:
+                names.add(PAD)
+            else:
+                names |= self.holders
+                if self._unsure('mux', now) or self._unsure('gates', now):
+                    names |= {name for name in self.chosen if self.parts['operator', name].well}
+        return names
+
+    def _part_of(self, stick):
+        return self.parts['pad' if stick == PAD else ('operator', stick)]
+
+    def _asked(self, name, now):
+        """Yield (words, limit) of everything that keeps a robot from moving."""
+        if self.stopped:
+            yield 'stop-all', AT_ONCE_S
+        for key, limits in (('mux', {'hung': SILENT_S, 'killed': SILENT_S, 'ended': AT_ONCE_S}),
+                            ('gates', self._gates_limits(name))):
+            part = self.parts[key]
+            if not part.well:
+                yield '{} {}'.format(key, part.how), limits[part.how]
+        holders = {holder: self.parts['operator', holder] for holder in self.holders}
+        if not any(part.well for part in holders.values()):
+            hung = any(part.how == 'hung' for part in holders.values())
+            yield 'nobody is in control', LEASE_S if hung else AT_ONCE_S
+        elif not any(name in self.chosen[holder] for holder in holders):
+            yield 'not checked', AT_ONCE_S
+        yield from self._sticks_ask(now)
+        if self._is_guarded(name) and not self.parts['link', name].well:
+            yield 'link cut', GUARD_S
+
+    def _is_guarded(self, name):
+        return self.guarded[name] and self.parts['guard', name].well
+
+    def _gates_limits(self, name):
+        killed = GUARD_S if self._is_guarded(name) else GATES_KILLED_S
+        hung = GUARD_S if self._is_guarded(name) else GATES_HUNG_S
+        return {'killed': killed, 'hung': hung, 'ended': AT_ONCE_S}
+
+    def _sticks_ask(self, now):
+        speakers = self._speakers(now)
+        if not any(self._part_of(stick).well for stick in speakers):
+            yield 'no stick is there', SILENT_S
+        elif not any(self.sticks[stick].out and (stick != PAD or self.sticks[PAD].held)
+                     for stick in speakers if self._part_of(stick).well):
+            yield 'the stick is centred', AT_ONCE_S
+
+    def _look(self, now):
+        """Note since when what has to be so is not."""
+        for name in self.guarded:
+            asked = dict(self._asked(name, now))
+            for key in [key for key in self.missing if key[0] == name and key[1] not in asked]:
+                del self.missing[key]
+            for words, limit_s in asked.items():
+                self.missing.setdefault((name, words), (now, limit_s))
+
+    def verdict(self, name, now, slack_s):
+        """Return what the contract demands of a robot now.
+
+        :param slack_s: what this computer may be late by
+        """
+        self._look(now)
+        if not self._reachable(name, now, slack_s):
+            return Verdict(EITHER, 'out of reach', now)
+        blocked = self._blocked_until(name)
+        stands = [(max(since + limit_s, blocked) + slack_s, since, words)
+                  for (robot, words), (since, limit_s) in self.missing.items() if robot == name]
+        stands += [(max(since + limit_s, blocked) + slack_s, since, why)
+                   for since, limit_s, why in self._waits(name, now, slack_s)]
+        due = min(stands, default=None)
+        if due is not None and now >= due[0]:
+            return Verdict(STAND, due[2], due[1])
+        if due is None and self._must_drive(name, now, slack_s):
+            return Verdict(DRIVE, 'centred and deflected', now)
+        return Verdict(EITHER, '', now)
+
+    def _waits(self, name, now, slack_s):
+        """Yield the causes after which no stick that may drive has been centred since."""
+        causes = [self.causes[name]]
+        master = self.parts['master']
+        if not master.well and now - master.since > MASTER_S + slack_s:
+            causes.append((master.since, MASTER_S, 'the master is lost'))
+        guard = self.parts.get(('guard', name))
+        if guard is not None and not guard.well:
+            causes.append((guard.since, GUARD_LOST_S, 'its guard is silent'))
+        centred = max((self.sticks[stick].last_centred(now) for stick in self._speakers(now)),
+                      default=now)
+        return [cause for cause in causes if cause[2] and centred < cause[0] - slack_s]
+
+    def _reachable(self, name, now, slack_s):
+        robot, link = self.parts['robot', name], self.parts['link', name]
+        guarded = self._is_guarded(name)
+        if not robot.well or now - robot.back_at < 0.5 + slack_s:
+            return False
+        if not guarded and not link.well:
+            return False
+        late = now - link.back_at < 1.0 + 1.2 * link.lasted + slack_s
+        if late and not (guarded and link.lasted > ANSWER_S + 0.3 + slack_s):
+            return False
+        if self.guarded[name]:
+            # The word that makes the robot stand comes from the gates, which notice the loss first.
+            guard = self.parts['guard', name]
+            return now - (guard.back_at if guard.well else guard.since) > GUARD_LOST_S + slack_s
+        return True
+
+    def _blocked_until(self, name):
+        """Return until when nobody may be there to bring a robot its zero."""
+        until = -1e9
+        for key, limits, again_s in (
+                ('gates', self._gates_limits(name), 1.0),
+                ('mux', {'hung': SILENT_S, 'killed': SILENT_S, 'ended': AT_ONCE_S}, 0.5)):
+            part = self.parts[key]
+            if not part.well:
+                until = max(until, part.since + limits[part.how])
+            else:
+                again = limits.get(part.how, 0.0)
+                until = max(until, min(part.back_at + again_s, part.since + again + again_s))
+        return until
+
+    def _must_drive(self, name, now, slack_s):
+        if self.unknown or not all(part.well for key, part in self.parts.items()
+                                   if key[0] != 'operator'):
+            return False
+        speakers = self._speakers(now)
+        if len(speakers) != 1 or len(self.holders) != 1:
+            return False
+        stick = self.sticks[next(iter(speakers))]
+        ready = max(stick.centred_since, self.well_since, self.causes[name][0])
+        return stick.out and stick.changed_at - ready >= CENTRED_S and (
+            now - stick.changed_at >= DRIVES_WITHIN_S + slack_s)
