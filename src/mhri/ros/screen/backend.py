@@ -25,6 +25,7 @@ from mhri.core.screen.views import (
 from mhri.ros.devices.device_client import DeviceClient
 from mhri.ros.robots.fleet import Fleet
 from mhri.ros.driving.gates_client import GatesClient
+from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.master_watch import LOST, MasterWatch
 from mhri.ros.driving.mux_client import MuxClient
@@ -98,6 +99,7 @@ class ScreenBackend:
                 self._closing.wait(1.0)
         if self._closing.is_set():
             return
+        limit_handshakes()
         if not rospy.core.is_initialized():
             rospy.init_node(NODE_NAME, argv=self._argv, disable_signals=True)
         for error in self._type_errors:
@@ -291,10 +293,7 @@ class ScreenBackend:
 
     def take_events(self):
         """Return what has come since the last call, as a list of tuples."""
-        events = []
-        while not self._events.empty():
-            events.append(self._events.get_nowait())
-        return events
+        return [self._events.get_nowait() for _ in range(self._events.qsize())]
 
     def feeds(self, name):
         """Return the :class:`BotFeeds` of a robot, None while there are none."""
