@@ -222,6 +222,18 @@ def test_the_enabling_pedal_released_or_silent_means_zero(end):
     assert rig.joy(FORWARD) == DRIVE
 
 
+def test_the_enabling_pedal_released_just_after_its_time_was_up_means_zero_at_once():
+    """Its message comes in before the timer does."""
+    rig = enabled_rig()
+    rig.joy(NEUTRAL)
+    pedal(rig, True)
+    assert rig.joy(FORWARD) == DRIVE
+    rig.now += ENABLING_TIMEOUT_S + 0.01
+    assert pedal(rig, False) == ZERO
+    assert rig.arbiter.state == WAIT_NEUTRAL and rig.arbiter.cause == 'enabling'
+    assert rig.arbiter.next_tick(rig.now) > rig.now
+
+
 def test_a_stick_held_out_before_the_pedal_has_to_be_centred():
     rig = enabled_rig()
     rig.joy(NEUTRAL)

@@ -66,6 +66,13 @@ def test_a_velocity_that_is_no_number_is_refused(vector, place, value):
     assert rig.arbiter.refused == {'not_finite': 1}
 
 
+def test_a_joy_of_a_source_of_velocities_is_refused():
+    rig = ready()
+    with pytest.raises(JoyRefused, match='type twist'):
+        rig.joy(FORWARD, name='cmd')
+    assert rig.arbiter.refused == {'type': 1} and rig.arbiter.state == READY
+
+
 def test_a_zero_that_is_said_once_stays_neutral_for_as_long_as_its_publisher_is_there():
     """rqt_robot_steering says zero once and falls silent."""
     rig = ready()

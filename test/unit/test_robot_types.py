@@ -221,6 +221,13 @@ def test_a_robot_without_a_namespace_has_absolute_topics():
     assert kind.scan == ('/front/scan',) and kind.depth == ()
 
 
+def test_a_type_of_one_robot_in_a_node_has_no_instances():
+    types = shipped()
+    assert types['turtlesim'].for_instance('/turtle2').command == ('/turtle2/cmd_vel',)
+    with pytest.raises(ValueError, match='generic has no instance'):
+        types['generic'].for_instance('/turtle2')
+
+
 SEEN = {
     'recognised': ({}, Seen(kind='turtlesim', command='turtle1/cmd_vel'),
                    'turtlesim', ('turtle1/cmd_vel',)),

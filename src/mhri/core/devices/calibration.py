@@ -13,6 +13,7 @@ What is not clear (two axes at once, a button that is taken) is said in :attr:`C
 and the step begins anew.
 """
 import json
+from typing import Dict, FrozenSet, Mapping, Optional, Sequence, Set, Tuple
 
 from mhri.core.driving.profile import ACTIONS
 
@@ -51,43 +52,46 @@ class Calibration:
     :param guid: of the pad, '' where it has none: then it is known by its name
     """
 
-    def __init__(self, name, device, guid=''):
+    def __init__(self, name: str, device: str, guid: str = '') -> None:
         self._name = name
         self._device = device
         self._guid = guid
         self.step = REST
         self.problem = ''
-        self._rest = ()
-        self._now = ()
-        self._stuck = frozenset()
-        self._travel = {}
-        self._pressed = set()
-        self._down = frozenset()
-        self._axes = {}
-        self._chosen = {}
+        self._rest: Dict[int, float] = {}
+        self._now: Tuple[Optional[float], ...] = ()
+        self._stuck: FrozenSet[int] = frozenset()
+        self._travel: Dict[int, float] = {}
+        self._pressed: Set[int] = set()
+        self._down: FrozenSet[int] = frozenset()
+        self._axes: Dict[str, int] = {}
+        # By their steps: what is said of an axis in the file, and the button of an action.
+        self._entries: Dict[str, Dict[str, float]] = {}
+        self._buttons: Dict[str, int] = {}
 
     @property
-    def prompt(self):
+    def prompt(self) -> str:
         """What the operator is asked to do now."""
         return _PROMPTS[self.step]
 
-    def confirm(self):
+    def confirm(self) -> None:
         """Take Enter: at rest it says that all is let go, at a button that there is none."""
         if self.step == REST:
             self._confirm_rest()
         elif self.step in _BUTTONS and not self._pressed:
             self._next()
 
-    def _confirm_rest(self):
+    def _confirm_rest(self) -> None:
         """Note what is seen with nothing touched."""
-        if sum(value is not None for value in self._now) < 2:
+        rest = {index: value for index, value in enumerate(self._now) if value is not None}
+        if len(rest) < 2:
             self.problem = 'Fewer than two axes have moved yet.'
             return
-        self._rest = self._now
+        self._rest = rest
         self._stuck = self._down
         self._next()
 
-    def feed(self, axes, buttons):
+    def feed(self, axes: Sequence[Optional[float]], buttons: Sequence[int]) -> None:
         """Take in a state of the pad: axes in [-1, 1] or None where unknown, buttons 0 or 1."""
         self._now = tuple(axes)
         self._down = frozenset(index for index, value in enumerate(buttons) if value)
@@ -96,11 +100,10 @@ class Calibration:
         elif self.step in _BUTTONS:
             self._feed_buttons()
 
-    def _feed_axes(self):
+    def _feed_axes(self) -> None:
         """Follow the axes until one was pushed and all are let go."""
         moved = [(self._fraction(index, value), index) for index, value in enumerate(self._now)
-                 if value is not None and index < len(self._rest)
-                 and self._rest[index] is not None]
+                 if value is not None and index in self._rest]
         for fraction, index in moved:
             if abs(fraction) > abs(self._travel.get(index, 0.0)):
                 self._travel[index] = fraction
@@ -117,25 +120,25 @@ class Calibration:
         else:
             self._accept_axis(order[0])
 
-    def _fraction(self, index, value):
+    def _fraction(self, index: int, value: float) -> float:
         """Return how far an axis is from its rest, as a fraction of its travel."""
         rest = self._rest[index]
         return (value - rest) / (1.0 + abs(rest))
 
-    def _accept_axis(self, index):
+    def _accept_axis(self, index: int) -> None:
         travel = self._travel[index]
         rest = self._rest[index]
         # A stick's rest is the centre and what it is off belongs into the dead zone; a trigger's
         # is the end.
         self._axes[self.step] = index
-        entry = {'axis': index}
+        entry: Dict[str, float] = {'axis': index}
         if abs(rest) > _PUSHED:
             entry['rest'] = round(rest, 2)
         entry['scale'] = round(max(-2.0, min(2.0, 1.0 / travel)), 2)
-        self._chosen[self.step] = entry
+        self._entries[self.step] = entry
         self._next()
 
-    def _feed_buttons(self):
+    def _feed_buttons(self) -> None:
         """Wait until one button was pressed and is let go."""
         self._pressed |= self._down - self._stuck
         if not self._pressed or self._down - self._stuck:
@@ -144,48 +147,42 @@ class Calibration:
         if len(self._pressed) > 1:
             self._again('Buttons {} were pressed together: only one, please.'.format(
                 ' and '.join(map(str, sorted(self._pressed)))))
-        elif button in self._chosen.values():
+        elif button in self._buttons.values():
             self._again('Button {} has a meaning already: another one, please, or Enter.'.format(
                 button))
         else:
-            self._chosen[self.step] = button
+            self._buttons[self.step] = button
             self._next()
 
-    def _again(self, problem):
+    def _again(self, problem: str) -> None:
         """Begin the step anew."""
         self.problem = problem
         self._travel = {}
         self._pressed = set()
 
-    def _next(self):
+    def _next(self) -> None:
         self._again('')
         self.step = _STEPS[_STEPS.index(self.step) + 1]
 
-    def text(self):
+    def text(self) -> str:
         """Return the profile as YAML, once :attr:`step` is ``DONE``."""
         if self.step != DONE:
             raise ValueError('the calibration is at step {}'.format(self.step))
-        drift = max(abs(self._rest[entry['axis']]) for entry in self._entries()
-                    if 'rest' not in entry) if self._has_stick() else 0.0
+        drift = max((abs(self._rest[self._axes[step]]) for step, entry in self._entries.items()
+                     if 'rest' not in entry), default=0.0)
         dead_zone = round(min(0.3, max(_DEAD_ZONE, 2.0 * drift)), 2)
         lines = ['# Written by mhri_joy --calibrate for ' + ' '.join(self._device.split()),
                  'name: ' + self._name,
-                 'forward: ' + _flow(self._chosen[FORWARD]),
-                 'turn: ' + _flow(self._chosen[LEFT]),
+                 'forward: ' + _flow(self._entries[FORWARD]),
+                 'turn: ' + _flow(self._entries[LEFT]),
                  'dead_zone: {}'.format(dead_zone),
                  'neutral: {}'.format(round(dead_zone + 0.04, 2))]
-        lines += ['{}_button: {}'.format(action, self._chosen[action])
-                  for action in _BUTTONS if action in self._chosen]
+        lines += ['{}_button: {}'.format(action, self._buttons[action])
+                  for action in _BUTTONS if action in self._buttons]
         match = 'guids: ["{}"]'.format(self._guid) if self._guid else 'names: [{}]'.format(
             json.dumps(self._device, ensure_ascii=False))
         return '\n'.join(lines + ['match: {' + match + '}', ''])
 
-    def _entries(self):
-        return [self._chosen[FORWARD], self._chosen[LEFT]]
 
-    def _has_stick(self):
-        return any('rest' not in entry for entry in self._entries())
-
-
-def _flow(entry):
+def _flow(entry: Mapping[str, float]) -> str:
     return '{' + ', '.join('{}: {}'.format(key, value) for key, value in entry.items()) + '}'

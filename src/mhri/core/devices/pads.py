@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which pad is used where there are several, and which profile says what its axes mean."""
 from dataclasses import dataclass
+from typing import Iterable, List, Optional, Sequence, Tuple
 
 from mhri.core.config import ConfigError
-from mhri.core.driving.profile import parse_profile
+from mhri.core.driving.profile import Profile, parse_profile
 
 GENERIC = 'generic'
 _HEXADECIMAL = set('0123456789abcdef')
@@ -21,7 +22,7 @@ class PadInfo:
     guid: str = ''
 
 
-def same_guid(guid):
+def same_guid(guid: str) -> str:
     """Return a GUID as it is compared: lower case, without the check sum of the device's name.
 
     SDL 2.26 and later put that into the third and fourth byte; older ones have zeros there.
@@ -30,19 +31,21 @@ def same_guid(guid):
     return guid[:4] + '0000' + guid[8:]
 
 
-def is_guid(text):
+def is_guid(text: str) -> bool:
     """Tell whether a text is a GUID of SDL: 32 hexadecimal digits."""
     return len(text) == 32 and set(text.lower()) <= _HEXADECIMAL
 
 
-def load_profiles(files):
+def load_profiles(
+        files: Iterable[Tuple[str, str, str]]) -> Tuple[List[Profile], List[ConfigError]]:
     """Parse the profiles of all pads; a bad file does not hide the good ones.
 
     :param files: [(name, path, text)] in the order of preference; the name is that of the file
         without ending, and the profile has to say the same
     :returns: ([Profile], [ConfigError])
     """
-    profiles, errors = [], []
+    profiles: List[Profile] = []
+    errors: List[ConfigError] = []
     for name, path, text in files:
         try:
             profile = parse_profile(text, path)
@@ -56,7 +59,7 @@ def load_profiles(files):
     return profiles, errors
 
 
-def choose_profile(profiles, name, guid=''):
+def choose_profile(profiles: Sequence[Profile], name: str, guid: str = '') -> Tuple[Profile, str]:
     """Return the profile for a pad, and what the operator has to know about the choice ('').
 
     First the one that names its GUID; then the one that names the longest part of its name, since
@@ -69,7 +72,8 @@ def choose_profile(profiles, name, guid=''):
         for profile in profiles:
             if same_guid(guid) in [same_guid(own) for own in profile.match.guids]:
                 return profile, ''
-    best, length = None, 0
+    best: Optional[Profile] = None
+    length = 0
     for profile in profiles:
         for part in profile.match.names:
             if part.lower() in name.lower() and len(part) > length:
@@ -83,7 +87,7 @@ def choose_profile(profiles, name, guid=''):
     raise LookupError('no profile knows {!r}, and there is no profile {!r}'.format(name, GENERIC))
 
 
-def is_known(profiles, pad):
+def is_known(profiles: Sequence[Profile], pad: PadInfo) -> bool:
     """Tell whether some profile names a pad by its GUID or its name."""
     try:
         return not choose_profile(profiles, pad.name, pad.guid)[1]
@@ -91,36 +95,36 @@ def is_known(profiles, pad):
         return False
 
 
-def choose_pad(wanted, pads, profiles):
+def choose_pad(wanted: object, pads: Iterable[PadInfo], profiles: Sequence[Profile]) -> PadInfo:
     """Return the :class:`PadInfo` to open.
 
     :param wanted: '' (any: the first that a profile knows, else the first), a whole number (its
         place in the list, from 0), a GUID, or a part of its name in any case
     :raises LookupError: there is none; the text says what was looked for and the remedy
     """
-    wanted = str(wanted).strip()
-    pads = [pad for pad in pads if not any(word in pad.name.lower() for word in _NO_PADS)]
+    word = str(wanted).strip()
+    pads = [pad for pad in pads if not any(part in pad.name.lower() for part in _NO_PADS)]
     if not pads:
         raise LookupError('none is connected; plug one in, or press its PS button')
-    if not wanted:
+    if not word:
         return next((pad for pad in pads if is_known(profiles, pad)), pads[0])
     for pad in pads:
-        if is_wanted(wanted, pad):
+        if is_wanted(word, pad):
             return pad
     raise LookupError('no {!r} among {}; set ~device to the name, GUID or index of one of them, '
-                      'or to nothing'.format(wanted, describe(pads)))
+                      'or to nothing'.format(word, describe(pads)))
 
 
-def is_wanted(wanted, pad):
+def is_wanted(wanted: object, pad: PadInfo) -> bool:
     """Tell whether a pad is the one that is asked for; '' asks for any."""
-    wanted = str(wanted).strip()
-    if wanted.isdigit() and len(wanted) < 4:
-        return pad.index == int(wanted)
-    if is_guid(wanted):
-        return bool(pad.guid) and same_guid(wanted) == same_guid(pad.guid)
-    return wanted.lower() in pad.name.lower()
+    word = str(wanted).strip()
+    if word.isdigit() and len(word) < 4:
+        return pad.index == int(word)
+    if is_guid(word):
+        return bool(pad.guid) and same_guid(word) == same_guid(pad.guid)
+    return word.lower() in pad.name.lower()
 
 
-def describe(pads):
+def describe(pads: Iterable[PadInfo]) -> str:
     """Return a list of pads in words, each with its index."""
     return ', '.join('{}: {}'.format(pad.index, pad.name) for pad in pads) or 'none'

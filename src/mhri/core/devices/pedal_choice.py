@@ -3,9 +3,9 @@
 """Which of the devices that are there is the pedal, and which profile it is read with."""
 from dataclasses import dataclass
 import re
-from typing import Optional, Tuple
+from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
 
-from mhri.core.devices.pedals import AXES, KEYS
+from mhri.core.devices.pedals import AXES, KEYS, PedalProfile
 
 _USB_ID = re.compile(r'[0-9a-fA-F]{4}:[0-9a-fA-F]{4}$')
 
@@ -30,7 +30,7 @@ class Candidate:
     name: str
     places: Tuple[str, ...]
 
-    def __str__(self):
+    def __str__(self) -> str:
         return '{} ({}{})'.format(self.name or 'a device without a name',
                                   self.usb + ', ' if self.usb else '', ', '.join(self.places[:1]))
 
@@ -45,7 +45,7 @@ class Wish:
     device: str = ''
     profile: str = ''
 
-    def fits(self, candidate):
+    def fits(self, candidate: Candidate) -> bool:
         """Tell whether a device is the one that was asked for by ``device``."""
         if _USB_ID.match(self.device):
             return candidate.usb == self.device.lower()
@@ -54,7 +54,7 @@ class Wish:
         return self.device.lower() in candidate.name.lower()
 
 
-def usb_of_guid(guid):
+def usb_of_guid(guid: str) -> str:
     """Return ``vendor:product`` of a GUID of SDL, '' where it holds none.
 
     Its 16 bytes are bus, check sum, vendor, 0, product, 0, ...: two bytes each, the lower first.
@@ -65,7 +65,8 @@ def usb_of_guid(guid):
     return '' if vendor == '0000' else '{}:{}'.format(vendor, product).lower()
 
 
-def choose(candidates, wish, profiles):
+def choose(candidates: Iterable[Candidate], wish: Wish,
+           profiles: Mapping[str, PedalProfile]) -> Tuple[Candidate, PedalProfile]:
     """Return (candidate, profile).
 
     Where several devices fit, none is taken: an operator's keyboard must never be grabbed by a
@@ -94,7 +95,7 @@ def choose(candidates, wish, profiles):
     return found[0], profile or _profile_for(found[0], profiles)
 
 
-def _wished_profile(wish, profiles) -> Optional[object]:
+def _wished_profile(wish: Wish, profiles: Mapping[str, PedalProfile]) -> Optional[PedalProfile]:
     """Return the profile that was asked for by name, None where none was."""
     if not wish.profile:
         return None
@@ -108,18 +109,18 @@ def _wished_profile(wish, profiles) -> Optional[object]:
     return profile
 
 
-def _automatic(profiles):
+def _automatic(profiles: Mapping[str, PedalProfile]) -> List[PedalProfile]:
     """Return the profiles that need not be asked for."""
     return [profile for profile in profiles.values() if profile.automatic]
 
 
-def _known_to(candidate, profiles):
+def _known_to(candidate: Candidate, profiles: Sequence[PedalProfile]) -> bool:
     """Tell whether one of some profiles is for a device."""
     return any(profile.kind == candidate.kind and profile.fits(candidate.usb, candidate.name)
                for profile in profiles)
 
 
-def _profile_for(candidate, profiles):
+def _profile_for(candidate: Candidate, profiles: Mapping[str, PedalProfile]) -> PedalProfile:
     """Return the profile of a device, the generic one where no file knows it."""
     for profile in _automatic(profiles):
         if _known_to(candidate, [profile]):

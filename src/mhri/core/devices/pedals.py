@@ -10,9 +10,9 @@ one button for each pedal in the order of the file.
 from dataclasses import dataclass
 import math
 import re
-from typing import Optional, Tuple
+from typing import AbstractSet, Any, Dict, Iterable, List, Optional, Sequence, Set, Tuple
 
-from mhri.core.config import ConfigError, parse_yaml
+from mhri.core.config import ConfigError, Section, parse_yaml
 
 DRIVE = 'drive'
 ENABLE = 'enable'
@@ -46,7 +46,7 @@ class Pedal:
     direction: bool = False
     enabling: bool = False
 
-    def travel(self, raw):
+    def travel(self, raw: Optional[float]) -> Optional[float]:
         """Return the share of its travel that an axis shows; overshoot is cut off.
 
         :returns: None where the axis has shown nothing yet, or nothing that is a number
@@ -78,28 +78,28 @@ class PedalProfile:
     pressed_at: float = 0.5
     automatic: bool = True
 
-    def fits(self, usb, name):
+    def fits(self, usb: str, name: str) -> bool:
         """Tell whether this profile is for a device (``vendor:product``, name)."""
         lower = name.lower()
         return usb in self.usb or any(part.lower() in lower for part in self.names)
 
-    def from_keys(self, held):
+    def from_keys(self, held: AbstractSet[str]) -> Tuple[float, ...]:
         """Return the value of each pedal.
 
         :param held: names of the keys that are down
         """
         return tuple(0.0 if held.isdisjoint(pedal.keys) else 1.0 for pedal in self.pedals)
 
-    def from_axes(self, raw):
+    def from_axes(self, raw: Sequence[Optional[float]]) -> Tuple[Optional[float], ...]:
         """Return the value of each pedal; None for one whose axis has shown nothing yet.
 
         :param raw: the axes of the device as a list; None for those that are not known yet
         """
-        values = (pedal.travel(raw[pedal.axis] if pedal.axis < len(raw) else None)
-                  for pedal in self.pedals)
+        values = (pedal.travel(raw[pedal.axis] if pedal.axis is not None and pedal.axis < len(raw)
+                               else None) for pedal in self.pedals)
         return tuple(None if value is None else self._stretch(value) for value in values)
 
-    def _stretch(self, value):
+    def _stretch(self, value: float) -> float:
         """Take the dead zone out of a value."""
         size = abs(value)
         if size <= self.dead_zone:
@@ -117,10 +117,10 @@ class _Direction:
     REST, AHEAD, BACK, HOLD = 'rest', 'ahead', 'back', 'hold'
     _SIGN = {REST: 1.0, AHEAD: 1.0, BACK: -1.0, HOLD: 0.0}
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.state = self.REST
 
-    def take(self, driving, reverse):
+    def take(self, driving: bool, reverse: bool) -> float:
         """Follow the pedals; return the factor of forward: 1, -1, or 0 for a hold."""
         wanted = self.BACK if reverse else self.AHEAD
         if not driving:
@@ -141,7 +141,7 @@ class PedalState:
     :param role: DRIVE, or ENABLE: the axes stay at zero, ``buttons[0]`` is what matters
     """
 
-    def __init__(self, profile, role=DRIVE):
+    def __init__(self, profile: PedalProfile, role: str = DRIVE) -> None:
         self._profile = profile
         self._role = role
         self._direction = _Direction()
@@ -153,18 +153,19 @@ class PedalState:
         self._enabling = marked if any(marked) else tuple(
             not pedal.direction for pedal in profile.pedals)
 
-    def note(self):
+    def note(self) -> str:
         """Return what the operator has to do before every pedal counts, '' where nothing."""
         if any(self._unknown):
             return 'move once: {} (nothing is known yet of it)'.format(self._names(self._unknown))
         held = [not armed for armed in self._armed]
         return 'release once: {}'.format(self._names(held)) if any(held) else ''
 
-    def _names(self, marks):
+    def _names(self, marks: Iterable[bool]) -> str:
         """Return the names of the pedals that are marked."""
         return ', '.join(pedal.name for pedal, mark in zip(self._profile.pedals, marks) if mark)
 
-    def read(self, values):
+    def read(self, values: Sequence[Optional[float]]
+             ) -> Optional[Tuple[Tuple[float, float], Tuple[int, ...]]]:
         """Return (axes, buttons) for the values of all pedals, in the order of the profile.
 
         :param values: in [-1, 1]; None where a pedal's value is not known
@@ -172,21 +173,22 @@ class PedalState:
             to be trusted: everything is zero, and has to be seen released again
         """
         self._unknown = [value is None for value in values]
-        if any(self._unknown):
+        counted = [value for value in values if value is not None]
+        if len(counted) < len(values):
             self._armed = [False] * len(values)
             if not self._known:
                 return None
-            values = (0.0,) * len(values)
+            counted = [0.0] * len(values)
         else:
             self._known = True
-            self._armed = [armed or value == 0.0 for armed, value in zip(self._armed, values)]
-            values = [value if armed else 0.0 for armed, value in zip(self._armed, values)]
-        pressed = [abs(value) >= self._profile.pressed_at for value in values]
+            self._armed = [armed or value == 0.0 for armed, value in zip(self._armed, counted)]
+            counted = [value if armed else 0.0 for armed, value in zip(self._armed, counted)]
+        pressed = [abs(value) >= self._profile.pressed_at for value in counted]
         enabled = any(down and counts for down, counts in zip(pressed, self._enabling))
         buttons = (int(enabled),) + tuple(int(down) for down in pressed)
-        return self._axes(values, pressed), buttons
+        return self._axes(counted, pressed), buttons
 
-    def _axes(self, values, pressed):
+    def _axes(self, values: Sequence[float], pressed: Sequence[bool]) -> Tuple[float, float]:
         """Return (left, forward) of the values."""
         pedals = self._profile.pedals
         forward = sum(value * pedal.forward for value, pedal in zip(values, pedals))
@@ -201,12 +203,12 @@ class PedalState:
         return _within_one(turn) + 0.0, _within_one(forward) * sign + 0.0
 
 
-def _within_one(value):
+def _within_one(value: float) -> float:
     """Return the value cut to [-1, 1]."""
     return max(-1.0, min(1.0, value))
 
 
-def parse_pedal_profile(text, origin):
+def parse_pedal_profile(text: str, origin: str) -> PedalProfile:
     """Return the :class:`PedalProfile` that a YAML text describes.
 
     :raises ConfigError: names the file and the key that is wrong
@@ -231,7 +233,7 @@ def parse_pedal_profile(text, origin):
     return profile
 
 
-def _match(section):
+def _match(section: Section) -> Tuple[Tuple[str, ...], Tuple[str, ...]]:
     """Read for which devices a profile is."""
     match = section.section('match', None)
     if match is None:
@@ -248,7 +250,7 @@ def _match(section):
     return usb, names
 
 
-def _pedal(row, kind):
+def _pedal(row: Section, kind: str) -> Pedal:
     """Read one pedal."""
     name = row.text('name')
     source = _keys(row) if kind == KEYS else _axis(row)
@@ -262,8 +264,8 @@ def _pedal(row, kind):
     return pedal
 
 
-def _keys(row):
-    """Read the keys of a switch."""
+def _keys(row: Section) -> Dict[str, Any]:
+    """Read the keys of a switch, as what a :class:`Pedal` is made of."""
     keys = row.texts('keys')
     wrong = [key for key in keys if not _KEY_NAME.match(key)]
     if wrong or not keys:
@@ -272,8 +274,8 @@ def _keys(row):
     return {'keys': keys}
 
 
-def _axis(row):
-    """Read the axis of a pedal."""
+def _axis(row: Section) -> Dict[str, Any]:
+    """Read the axis of a pedal, as what a :class:`Pedal` is made of."""
     axis = {'axis': row.index('axis'), 'rest': row.number('rest', -1.0, 1.0, 0.0),
             'full': row.number('full', -1.0, 1.0, 1.0), 'both_ways': row.flag('both_ways', False)}
     if abs(axis['full'] - axis['rest']) < 0.1:
@@ -281,12 +283,12 @@ def _axis(row):
     return axis
 
 
-def _check_together(section, profile):
+def _check_together(section: Section, profile: PedalProfile) -> None:
     """Refuse what each pedal may have, but not all of them together.
 
     :raises ConfigError: two pedals of one name or key, or nothing that drives
     """
-    seen = set()
+    seen: Set[str] = set()
     for number, pedal in enumerate(profile.pedals):
         for word in (pedal.name,) + pedal.keys:
             if word in seen:
@@ -296,14 +298,16 @@ def _check_together(section, profile):
         raise section.error('pedals', 'none of them drives or enables')
 
 
-def load_pedal_profiles(files):
+def load_pedal_profiles(
+        files: Iterable[Tuple[str, str]]) -> Tuple[Dict[str, PedalProfile], List[ConfigError]]:
     """Parse many profiles; one bad file never hides the good ones.
 
     :param files: pairs (origin, text), the more important first
     :returns: ({name: PedalProfile}, [ConfigError]); of two files with one name the first stays, so
         that an operator's own file takes the place of a shipped one
     """
-    profiles, errors = {}, []
+    profiles: Dict[str, PedalProfile] = {}
+    errors: List[ConfigError] = []
     for origin, text in files:
         try:
             profile = parse_pedal_profile(text, origin)

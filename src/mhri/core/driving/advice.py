@@ -4,7 +4,7 @@
 from dataclasses import dataclass
 from typing import FrozenSet, Optional, Tuple
 
-from mhri.core.driving.sources import JOY, TWIST
+from mhri.core.driving.sources import JOY, Source, TWIST
 
 MESSAGE_TYPES = {JOY: 'sensor_msgs/Joy', TWIST: 'geometry_msgs/Twist'}
 
@@ -26,7 +26,7 @@ class Heard:
     rival: Optional[Tuple[str, str]] = None
 
 
-def advice(source, waits_for, heard):
+def advice(source: Source, waits_for: str, heard: Heard) -> str:
     """Return the sentence, '' where nothing is to be said.
 
     :param source: the active :class:`mhri.core.driving.sources.Source`
@@ -43,7 +43,7 @@ def advice(source, waits_for, heard):
     return ''
 
 
-def _silence(source, heard):
+def _silence(source: Source, heard: Heard) -> str:
     """Say why nothing is heard."""
     if heard.stranger:
         node, kind = heard.stranger

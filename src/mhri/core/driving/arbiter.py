@@ -23,10 +23,13 @@ silence at rest, where they have been sent): one at once, more at :data:`REPEAT_
 :data:`ZEROS_S`, then silence, since endless zeros would block a robot's own navigation behind its
 ``cmd_vel_mux`` (rqt_common_plugins#180).
 """
-from collections import Counter
+import collections
+import math
+from typing import Callable, Counter, Dict, FrozenSet, Iterable, Optional, Sequence, Tuple
 
-from mhri.core.driving.limits import ZERO, speed_limit_problem
-from mhri.core.driving.profile import JoyRefused, read_twist
+from mhri.core.driving.limits import Velocity, ZERO, speed_limit_problem
+from mhri.core.driving.profile import JoyRefused, Profile, Stick, Wanted, read_twist
+from mhri.core.driving.sources import MuxConfig, Source
 
 STOPPED = 'stopped'
 WAIT_NEUTRAL = 'wait_neutral'
@@ -38,6 +41,8 @@ ZEROS_S = 0.5
 # An enabling pedal that has not been heard for so long counts as released.
 ENABLING_TIMEOUT_S = 0.25
 _PERIOD_S = 1.0 / REPEAT_HZ
+# Of a source that has said nothing yet: it asks for nothing, but is not known to be at rest.
+_UNHEARD = Stick(0.0, 0.0, neutral=False, held=False)
 
 
 class Arbiter:
@@ -48,52 +53,52 @@ class Arbiter:
         mux left moving stops
     """
 
-    def __init__(self, config, now):
+    def __init__(self, config: MuxConfig, now: float) -> None:
         self._sources = {source.name: source for source in config.sources}
         self._mode = config.default
         self._limits = (config.linear_mps, config.angular_rad_s)
         self._state = WAIT_NEUTRAL
         self._cause = 'start'
-        self._stick = None
-        self._stick_at = None
-        self._device = None
-        self._selected = frozenset()
+        self._stick: Wanted = _UNHEARD
+        self._stick_at = -math.inf
+        self._device: object = None
+        self._selected: FrozenSet[str] = frozenset()
         self._enabling = config.enabling
-        self._enabled_at = None
+        self._enabled_at = -math.inf
         self._automatic = config.automatic_switching
-        self._rested = {}
-        self._resting = {}
+        self._rested: Dict[str, object] = {}
+        self._resting: Dict[str, Tuple[Wanted, object]] = {}
         self._zeros_until = now + ZEROS_S
         self._next_repeat = now
-        self.refused = Counter()
-        self.ignored = Counter()
+        self.refused: Counter[str] = collections.Counter()
+        self.ignored: Counter[str] = collections.Counter()
 
     @property
-    def mode(self):
+    def mode(self) -> str:
         """Name of the active source."""
         return self._mode
 
     @property
-    def source(self):
+    def source(self) -> Source:
         """Active :class:`mhri.core.driving.sources.Source`."""
         return self._sources[self._mode]
 
     @property
-    def limits(self):
+    def limits(self) -> Tuple[float, float]:
         """Speed limits of the operator in force (m/s, rad/s)."""
         return self._limits
 
     @property
-    def state(self):
+    def state(self) -> str:
         """One of STOPPED, WAIT_NEUTRAL, READY, DRIVING."""
         return self._state
 
     @property
-    def stop_all(self):
+    def stop_all(self) -> bool:
         """Whether stop-all is in force."""
         return self._state == STOPPED
 
-    def waits_for(self, now):
+    def waits_for(self, now: float) -> str:
         """Say what stands between the operator and moving robots.
 
         :returns: '' (nothing: ready or driving), 'release' (stop-all), 'source' (nothing fresh is
@@ -111,11 +116,12 @@ class Arbiter:
         return '' if self._stick.held else 'dead_man'
 
     @property
-    def cause(self):
+    def cause(self) -> str:
         """Event that last led to WAIT_NEUTRAL or STOPPED, e.g. 'stale', 'mode', 'start'."""
         return self._cause
 
-    def on_joy(self, name, axes, buttons, device, now, profile=None):
+    def on_joy(self, name: str, axes: Sequence[float], buttons: Sequence[int], device: object,
+               now: float, profile: Optional[Profile] = None) -> Optional[Velocity]:
         """Take in one Joy message of a source.
 
         :param name: the source it came from
@@ -126,17 +132,23 @@ class Arbiter:
         :raises JoyRefused: the message cannot be used; it changes nothing but the counters
         :raises KeyError: no such source
         """
-        source = self._sources[name]
+        chosen = profile or self._sources[name].profile
         if name == self._enabling:
             return self._on_enabling(bool(buttons and buttons[0]), now)
-        return self._on_message(name, device, now,
-                                lambda: (profile or source.profile).read(axes, buttons))
 
-    def on_twist(self, name, linear, angular, device, now):
+        def read() -> Wanted:
+            if chosen is None:
+                raise JoyRefused('type', 'a Joy message for a source of type twist')
+            return chosen.read(axes, buttons)
+        return self._on_message(name, device, now, read)
+
+    def on_twist(self, name: str, linear: Sequence[float], angular: Sequence[float],
+                 device: object, now: float) -> Optional[Velocity]:
         """Take in one Twist of a source: its two vectors [m/s], [rad/s]; else as :meth:`on_joy`."""
         return self._on_message(name, device, now, lambda: read_twist(linear, angular))
 
-    def _on_message(self, name, device, now, read):
+    def _on_message(self, name: str, device: object, now: float,
+                    read: Callable[[], Wanted]) -> Optional[Velocity]:
         """Take in one message; ``read`` returns what it asks for, or raises JoyRefused."""
         active, rests = name == self._mode, self._sources[name].rests
         if not (active or rests or self._automatic):
@@ -156,7 +168,7 @@ class Arbiter:
         self.ignored[name] += 1
         return None
 
-    def _on_active(self, stick, device, now):
+    def _on_active(self, stick: Wanted, device: object, now: float) -> Optional[Velocity]:
         """Take in what the active source asks for."""
         exchanged = self._device not in (None, device) and self._state in (READY, DRIVING)
         was_fresh, before = self._fresh(now), self._stick
@@ -172,7 +184,7 @@ class Arbiter:
             return self._later_zero(now)
         return self._follow(stick, now)
 
-    def _follow(self, stick, now):
+    def _follow(self, stick: Wanted, now: float) -> Optional[Velocity]:
         """Apply an accepted stick in WAIT_NEUTRAL, READY or DRIVING."""
         if self._state == WAIT_NEUTRAL:
             if not stick.neutral:
@@ -188,25 +200,24 @@ class Arbiter:
         self._enter(DRIVING)
         return self._drive(now)
 
-    def _on_enabling(self, pressed, now):
+    def _on_enabling(self, pressed: bool, now: float) -> Optional[Velocity]:
         """Take in the enabling pedal.
 
         Released, everything stops; pressed while the stick is deflected, nothing moves before that
         has been centred: a foot that comes back must not set robots in motion.
         """
-        was, self._enabled_at = self.enabled(now), now if pressed else None
-        if was and not pressed and self._state == DRIVING:
+        was, self._enabled_at = self.enabled(now), now if pressed else -math.inf
+        if not pressed and self._state == DRIVING:
             return self._interlock('enabling', now)
         if pressed and not was and self._state == READY and not self._stick.neutral:
             self._enter(WAIT_NEUTRAL, 'enabling')
         return None
 
-    def enabled(self, now):
+    def enabled(self, now: float) -> bool:
         """Tell whether the enabling pedal allows motion; without one, it is always allowed."""
-        return self._enabling is None or (
-            self._enabled_at is not None and now - self._enabled_at < ENABLING_TIMEOUT_S)
+        return self._enabling is None or now - self._enabled_at < ENABLING_TIMEOUT_S
 
-    def _on_other(self, name, stick, device, now):
+    def _on_other(self, name: str, stick: Wanted, device: object, now: float) -> Optional[Velocity]:
         """Change over to a source that is touched while everything stands still.
 
         It has to be seen at neutral first, and once more before it moves anything. One that is
@@ -220,19 +231,19 @@ class Arbiter:
         self.ignored[name] += 1
         return None
 
-    def on_selection(self, names, now):
+    def on_selection(self, names: Iterable[str], now: float) -> Optional[Velocity]:
         """Take note of the robots that are selected.
 
         One that joins while others are driven must not leap: all wait until the stick was centred.
 
         :returns: the velocity to send now, or None
         """
-        joined, self._selected = frozenset(names) - self._selected, frozenset(names)
-        if joined and self._state == DRIVING:
+        before, self._selected = self._selected, frozenset(names)
+        if self._selected - before and self._state == DRIVING:
             return self._interlock('selection', now)
         return None
 
-    def on_mode(self, name, now):
+    def on_mode(self, name: str, now: float) -> Optional[Velocity]:
         """Change the active source; the one already active is no change.
 
         :returns: the velocity to send now, or None
@@ -245,11 +256,11 @@ class Arbiter:
             return None
         self._mode = name
         self._rested.clear()
-        self._stick, self._device = self._resting.get(name, (None, None))
-        self._stick_at = now if self._stick else None
+        self._stick, self._device = self._resting.get(name, (_UNHEARD, None))
+        self._stick_at = now if name in self._resting else -math.inf
         return self._interlock('mode', now)
 
-    def on_lost(self, name, cause, now):
+    def on_lost(self, name: str, cause: str, now: float) -> Optional[Velocity]:
         """Take note that a source was suspended or its device was lost ('suspended', 'lost').
 
         :returns: the velocity to send now, or None where the source is not the active one
@@ -258,27 +269,27 @@ class Arbiter:
         self._rested.pop(name, None)
         if name != self._mode:
             return None
-        self._stick = self._stick_at = self._device = None
+        self._stick, self._stick_at, self._device = _UNHEARD, -math.inf, None
         return self._interlock(cause, now)
 
-    def on_hung(self, now):
+    def on_hung(self, now: float) -> Optional[Velocity]:
         """Forget what every source has said: this mux has slept, and all of it is old.
 
         :returns: the zero to send now
         """
         self._resting.clear()
         self._rested.clear()
-        self._enabled_at = None
+        self._enabled_at = -math.inf
         return self.on_lost(self._mode, 'hung', now)
 
-    def on_hold(self, cause, now):
+    def on_hold(self, cause: str, now: float) -> Velocity:
         """Hold everything until the stick is centred, for a cause outside the sources.
 
         :returns: the velocity to send now
         """
         return self._interlock(cause, now)
 
-    def engage_stop_all(self, now):
+    def engage_stop_all(self, now: float) -> Velocity:
         """Stop everything until :meth:`release_stop_all`; may be repeated.
 
         :returns: the zero to send now
@@ -286,14 +297,14 @@ class Arbiter:
         self._enter(STOPPED, 'stop_all')
         return self._zeros(now)
 
-    def release_stop_all(self, now):
+    def release_stop_all(self, now: float) -> Optional[str]:
         """Give up stop-all; nothing moves before the stick has been seen at neutral once more.
 
         :returns: None on success, else the reason why not, as a sentence
         """
         if self._state != STOPPED:
             return None
-        if self._stick is None:
+        if self._stick is _UNHEARD:
             return 'nothing has been heard from {}: centre it once, or drive with another ' \
                    'source'.format(self.source.label)
         if not self._stick.neutral:
@@ -301,7 +312,7 @@ class Arbiter:
         self._enter(WAIT_NEUTRAL, 'released')
         return None
 
-    def set_limits(self, linear_mps, angular_rad_s, now):
+    def set_limits(self, linear_mps: float, angular_rad_s: float, now: float) -> Optional[Velocity]:
         """Change the operator's speed limits; a robot that moves follows at once.
 
         :returns: the velocity to send now, or None
@@ -316,7 +327,7 @@ class Arbiter:
             return self._drive(now)
         return None
 
-    def tick(self, now):
+    def tick(self, now: float) -> Optional[Velocity]:
         """Let time pass.
 
         :returns: the velocity to send now, or None
@@ -340,7 +351,7 @@ class Arbiter:
             return ZERO
         return None
 
-    def next_tick(self, now):
+    def next_tick(self, now: float) -> float:
         """Return the time [s] at which :meth:`tick` has to be called next."""
         times = [now + 1.0]
         if self._state in (READY, DRIVING) and not self._rests():
@@ -351,39 +362,37 @@ class Arbiter:
             times.append(self._next_repeat)
         return min(times)
 
-    def _fresh(self, now):
+    def _fresh(self, now: float) -> bool:
         """Tell whether the active source has been heard recently enough to drive."""
-        return self._stick_at is not None and (
-            now - self._stick_at < self.source.timeout_s or self._rests())
+        return now - self._stick_at < self.source.timeout_s or self._rests()
 
-    def _rests(self):
+    def _rests(self) -> bool:
         """Tell whether the active source is silent at rest, and may be."""
-        return (self.source.rests and self._stick is not None and self._stick.neutral
-                and self._stick.is_zero())
+        return self.source.rests and self._stick.neutral and self._stick.is_zero()
 
-    def _enter(self, state, cause=None):
+    def _enter(self, state: str, cause: Optional[str] = None) -> None:
         """Change the state; the only place that does."""
         self._state = state
         if cause:
             self._cause = cause
 
-    def _interlock(self, cause, now):
+    def _interlock(self, cause: str, now: float) -> Velocity:
         """Demand neutral before anything moves, and stop what moves."""
         if self._state != STOPPED:
             self._enter(WAIT_NEUTRAL, cause)
         return self._zeros(now)
 
-    def _zeros(self, now):
+    def _zeros(self, now: float) -> Velocity:
         """Begin the zeros."""
         self._zeros_until = now + ZEROS_S
         self._next_repeat = now + _PERIOD_S
         return ZERO
 
-    def _later_zero(self, now):
+    def _later_zero(self, now: float) -> Optional[Velocity]:
         """Return a zero while the zeros last, then None."""
         return ZERO if now < self._zeros_until else None
 
-    def _drive(self, now):
+    def _drive(self, now: float) -> Velocity:
         """Return the command of the present stick, and plan its repetition."""
         self._next_repeat = now + _PERIOD_S
         return self._stick.velocity(self._limits)

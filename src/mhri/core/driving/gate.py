@@ -20,6 +20,7 @@ STOPPED, to every robot, checked or not. Who joins while anything is driven wait
 command other than zero that was the last one heard means that something is.
 """
 import math
+from typing import Optional, Sequence
 
 from mhri.core.driving.limits import Velocity, ZERO, clamp_keeping_curvature
 from mhri.core.robots.robot_types import Limits
@@ -32,7 +33,7 @@ STATES = (IDLE, JOINING, OPERATOR, TASK, HELD, STOPPED, CLOSED)
 STALE_S = 0.5
 
 
-def common_limits(limits):
+def common_limits(limits: Sequence[Limits]) -> Limits:
     """Return what every robot of a group can do: the least of each of their limits.
 
     :param limits: several :class:`mhri.core.robots.robot_types.Limits`
@@ -52,7 +53,7 @@ class GateRule:
         be driven, and the robot waits for neutral
     """
 
-    def __init__(self, limits, command=None):
+    def __init__(self, limits: Limits, command: Optional[Velocity] = None) -> None:
         self.limits = limits
         self._group = limits
         self._share = 1.0
@@ -69,33 +70,33 @@ class GateRule:
         self._last = ZERO
 
     @property
-    def state(self):
+    def state(self) -> str:
         """One of :data:`STATES`."""
         return self._state
 
     @property
-    def checked(self):
+    def checked(self) -> bool:
         """Whether the operator has checked the robot, and is in control."""
         return self._checked
 
     @property
-    def sent(self):
+    def sent(self) -> Velocity:
         """The :class:`Velocity` last sent."""
         return self._last
 
     @property
-    def obeys(self):
+    def obeys(self) -> str:
         """Whom the robot obeys: OPERATOR, TASK or '' for nobody."""
         if self._checked and self._state != CLOSED:
             return OPERATOR
         return TASK if self._state == TASK else ''
 
     @property
-    def stands(self):
+    def stands(self) -> str:
         """Why the robot is kept standing: STOPPED, HELD, JOINING, or '' for no reason."""
         return self._state if self._state in (STOPPED, HELD, JOINING) else ''
 
-    def hold_to(self, group, share):
+    def hold_to(self, group: Limits, share: float) -> None:
         """Let the robot keep to its group from the next command on.
 
         :param group: :class:`mhri.core.robots.robot_types.Limits` of the group, or its own
@@ -103,7 +104,7 @@ class GateRule:
         """
         self._group, self._share = group, share
 
-    def on_command(self, velocity, now):
+    def on_command(self, velocity: Velocity, now: float) -> Optional[Velocity]:
         """Take in the operator's command; return what this robot gets of it, or None."""
         self._command, self._command_at = velocity, now
         if velocity.is_zero() and self._state != STOPPED:
@@ -116,7 +117,7 @@ class GateRule:
         return self._say(clamp_keeping_curvature(
             clamp_keeping_curvature(wanted, self._group), self.limits))
 
-    def on_task(self, velocity, now):
+    def on_task(self, velocity: Velocity, now: float) -> Optional[Velocity]:
         """Take in the command of the robot's task; return what the robot gets of it, or None.
 
         After a stop, a hold or a take-over a task is obeyed again once it has said zero or nothing
@@ -131,7 +132,7 @@ class GateRule:
             return None
         return self._say(clamp_keeping_curvature(velocity, self.limits))
 
-    def check(self, checked, now):
+    def check(self, checked: bool, now: float) -> Optional[Velocity]:
         """Let the robot obey the operator, or not any more; the zero of a change goes out now."""
         if checked == self._checked:
             return None
@@ -141,7 +142,7 @@ class GateRule:
             self._centre = True
         return self._settle(now, changed=True)
 
-    def stop(self, stopped, now):
+    def stop(self, stopped: bool, now: float) -> Optional[Velocity]:
         """Engage or release stop-all; engaged, every robot gets a zero, checked or not."""
         if stopped == self._stopped:
             return None
@@ -149,7 +150,7 @@ class GateRule:
         self._centre = self._centre or stopped
         return self._settle(now)
 
-    def hold(self, held, now):
+    def hold(self, held: bool, now: float) -> Optional[Velocity]:
         """Send nothing to a robot that is not heard, after one zero where it was driven.
 
         What is sent into a link that stalls would come out, all of it, when it is back. Heard again
@@ -162,7 +163,7 @@ class GateRule:
         self._centre = self._centre or self._driven()
         return self._settle(now)
 
-    def join(self, now):
+    def join(self, now: float) -> Optional[Velocity]:
         """Wait for neutral where anything is driven.
 
         For a robot that is newly connected, has lost its guard, or has another mux or operator.
@@ -171,14 +172,14 @@ class GateRule:
         self._centre = self._centre or self._driven()
         return self._settle(now)
 
-    def close(self, now):
+    def close(self, now: float) -> Optional[Velocity]:
         """End: the robot is removed or the program closes; the last word is a zero."""
         if self._state == CLOSED:
             return None
         self._state = CLOSED
         return self._say(ZERO)
 
-    def tick(self, now):
+    def tick(self, now: float) -> Optional[Velocity]:
         """Let time pass: commands that went stale are ended by one zero."""
         if self._state == OPERATOR and not self._last.is_zero() \
                 and now - self._command_at >= STALE_S:
@@ -188,17 +189,17 @@ class GateRule:
             return self._settle(now, changed=True)
         return None
 
-    def next_tick(self):
+    def next_tick(self) -> Optional[float]:
         """Return when :meth:`tick` has to be called next [s], or None: not before a command."""
         if self._state == OPERATOR and not self._last.is_zero():
             return self._command_at + STALE_S
         return self._task_at + STALE_S if self._state == TASK else None
 
-    def _driven(self):
+    def _driven(self) -> bool:
         """Tell whether anything may be driven: the last command was no zero, or there was none."""
         return self._command is None or not self._command.is_zero()
 
-    def _belongs(self, now):
+    def _belongs(self, now: float) -> str:
         """Return the state that follows from who wants what."""
         if self._state == CLOSED:
             return CLOSED
@@ -211,7 +212,7 @@ class GateRule:
         on_task = self._task_rests and now - self._task_at < STALE_S
         return TASK if on_task and self._state == TASK else IDLE
 
-    def _settle(self, now, changed=False):
+    def _settle(self, now: float, changed: bool = False) -> Optional[Velocity]:
         """Go where the robot belongs; return the zero of that change, or None.
 
         :param changed: whether the robot obeys another now: a zero even where it stands
@@ -225,6 +226,6 @@ class GateRule:
             zero = changed or self._state in (IDLE, JOINING) and not self._last.is_zero()
         return self._say(ZERO) if zero else None
 
-    def _say(self, velocity):
+    def _say(self, velocity: Velocity) -> Velocity:
         self._last = velocity
         return velocity

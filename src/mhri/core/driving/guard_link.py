@@ -12,6 +12,7 @@ A stop is released by a zero without ``!`` that answers an echo sent after the s
 zero is dropped until then. So a gate says zero until :attr:`GuardLink.stop_confirmed` is false.
 """
 import re
+from typing import Optional, Tuple
 
 # An echo comes every 0.1 s; three in a row may be lost.
 ECHO_S = 0.35
@@ -21,12 +22,12 @@ _SESSION = re.compile(r'[A-Za-z0-9_-]{1,32}\Z')
 _NOBODY = '-'
 
 
-def format_id(session, number, token, stop=False):
+def format_id(session: str, number: int, token: str, stop: bool = False) -> str:
     """Return the frame_id of a command; one with an empty token is good as a stop only."""
     return '{}{}:{}:{}'.format(session, '!' if stop else '', number, token)
 
 
-def parse_id(text):
+def parse_id(text: str) -> Optional[Tuple[str, int, str, bool]]:
     """Return (session, number, token, stop) of a frame_id, or None where it is none.
 
     ``stop`` is true for a command that stops and for an echo of a robot that is stopped.
@@ -46,19 +47,19 @@ class GuardLink:
     :raises ValueError: the session is something else
     """
 
-    def __init__(self, session):
+    def __init__(self, session: str) -> None:
         if not _SESSION.match(session) or session == _NOBODY:
             raise ValueError('the session is {!r}: give at most 32 of A-Z, a-z, 0-9, _ and -'
                              .format(session[:40]))
         self._session = session
         self._number = 0
         self._token = ''
-        self._echo_at = None
+        self._echo_at: Optional[float] = None
         self.obeyed_number = 0
         self.displaced = False
         self.stop_confirmed = False
 
-    def on_echo(self, frame_id, now):
+    def on_echo(self, frame_id: str, now: float) -> bool:
         """Take in the frame_id of an echo; return False where it is none, and nothing changes."""
         echo = parse_id(frame_id)
         if echo is None or not echo[2]:
@@ -71,11 +72,11 @@ class GuardLink:
         self.obeyed_number = number if ours else 0
         return True
 
-    def alive(self, now):
+    def alive(self, now: float) -> bool:
         """Tell whether an echo came within the last 0.35 s."""
         return self._echo_at is not None and now - self._echo_at <= ECHO_S
 
-    def next_id(self, stop):
+    def next_id(self, stop: bool) -> str:
         """Return the frame_id for the next command, which has to be sent.
 
         Its token is empty before the first echo: the guard obeys it then if it is a stop.

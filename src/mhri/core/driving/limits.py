@@ -3,6 +3,9 @@
 """Speeds: a command in SI units, the operator's limits on it, and a robot's own limits."""
 import math
 from dataclasses import dataclass
+from typing import Optional, Tuple
+
+from mhri.core.robots.robot_types import Limits
 
 
 @dataclass(frozen=True)
@@ -12,11 +15,11 @@ class Velocity:
     linear_mps: float = 0.0
     angular_rad_s: float = 0.0
 
-    def is_zero(self):
+    def is_zero(self) -> bool:
         """Tell whether this asks for standstill, exactly."""
         return self.linear_mps == 0.0 and self.angular_rad_s == 0.0
 
-    def is_finite(self):
+    def is_finite(self) -> bool:
         """Tell whether both components are numbers that a robot can be given."""
         return math.isfinite(self.linear_mps) and math.isfinite(self.angular_rad_s)
 
@@ -24,7 +27,7 @@ class Velocity:
 ZERO = Velocity()
 
 
-def clamp_keeping_curvature(velocity, limits):
+def clamp_keeping_curvature(velocity: Velocity, limits: Limits) -> Velocity:
     """Scale both components by one factor, so that neither is over a robot's limit.
 
     The path (curvature = angular / linear) stays the one the operator steered; only the pace along
@@ -40,7 +43,7 @@ def clamp_keeping_curvature(velocity, limits):
     return Velocity(velocity.linear_mps / excess, velocity.angular_rad_s / excess)
 
 
-def within_limits(velocity, linear_mps, angular_rad_s):
+def within_limits(velocity: Velocity, linear_mps: float, angular_rad_s: float) -> Velocity:
     """Scale both components by one factor, so that neither is over the operator's limit.
 
     A limit of 0 leaves nothing of a velocity that needs that component.
@@ -57,7 +60,8 @@ def within_limits(velocity, linear_mps, angular_rad_s):
     return Velocity(velocity.linear_mps * share, velocity.angular_rad_s * share)
 
 
-def speed_limit_problem(linear_mps, angular_rad_s, ceiling=(5.0, 10.0)):
+def speed_limit_problem(linear_mps: float, angular_rad_s: float,
+                        ceiling: Tuple[float, float] = (5.0, 10.0)) -> Optional[str]:
     """Say why a pair cannot be the operator's speed limit; return None where it can.
 
     :param ceiling: the largest limits accepted, [m/s, rad/s]: far above every robot here, so that

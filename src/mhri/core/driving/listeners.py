@@ -5,12 +5,13 @@
 Somebody who merely listens, a ``rostopic echo`` or a ``rosbag record -a``, must change nothing.
 """
 import re
+from typing import Collection, FrozenSet, List, Optional, Sequence
 
 # Tools that listen to whatever they are told to; their names are made up as rospy and roscpp do it.
 _TOOLS = re.compile(r'/(rostopic|record|play|rosbag|rqt|rviz|rosout|mhri)(_|$)')
 
 
-def obeying(robot, listeners):
+def obeying(robot: str, listeners: Sequence[Collection[str]]) -> List[FrozenSet[str]]:
     """Return for each topic the listeners that count as the robot.
 
     The nodes below the robot's namespace; where none of them listens to anything (a robot whose
@@ -26,7 +27,7 @@ def obeying(robot, listeners):
     return [frozenset(name for name in names if not _TOOLS.match(name)) for names in listeners]
 
 
-def first_obeying(robot, listeners):
+def first_obeying(robot: str, listeners: Sequence[Collection[str]]) -> Optional[int]:
     """Return the index of the first topic that the robot listens to, or None.
 
     :param robot: its name

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The power of a robot's motors: what is to be told to the robot next, and what is known of it."""
+from typing import Optional
 
 # Words of the state. Without any, nobody has asked for anything, or the power was given back.
 UNTOUCHED = ''
@@ -22,19 +23,19 @@ class MotorPowerRule:
     the power back it tries for :data:`RESTORE_FOR_S`. It never gives power unasked.
     """
 
-    def __init__(self):
-        self._cut = None
+    def __init__(self) -> None:
+        self._cut: Optional[bool] = None
         self._pending = False
         self._due_at = 0.0
         self._asked_at = 0.0
         self.state = UNTOUCHED
 
     @property
-    def is_cut(self):
+    def is_cut(self) -> bool:
         """Whether the power is to stay cut."""
         return bool(self._cut)
 
-    def ask(self, cut, now):
+    def ask(self, cut: bool, now: float) -> None:
         """Take in what is wanted: cut (True) or give back (False)."""
         if cut and self._cut and not self._pending:
             return
@@ -42,15 +43,15 @@ class MotorPowerRule:
         self._due_at = self._asked_at = now
         self.state = CUT_ASKED if cut else RESTORE_ASKED
 
-    def due(self, now):
+    def due(self, now: float) -> Optional[bool]:
         """Return what to tell the robot now, True (cut) or False (give back); None: nothing."""
         return self._cut if self._pending and now >= self._due_at else None
 
-    def wait_s(self, now):
+    def wait_s(self, now: float) -> Optional[float]:
         """Return for how long :meth:`due` says nothing by itself [s]; None: until asked."""
         return max(0.0, self._due_at - now) if self._pending else None
 
-    def on_told(self, cut, confirmed, now):
+    def on_told(self, cut: bool, confirmed: bool, now: float) -> None:
         """Take in that the robot was told.
 
         :param confirmed: whether it has answered that it is so
@@ -60,14 +61,14 @@ class MotorPowerRule:
         self._pending = False
         self.state = (CUT if confirmed else CUT_SENT) if cut else UNTOUCHED
 
-    def _is_overtaken(self, cut, now):
+    def _is_overtaken(self, cut: bool, now: float) -> bool:
         """Tell whether something else is wanted by now; that is told once more, to be the last."""
         if cut == self._cut:
             return False
         self._pending, self._due_at, self._asked_at = True, now, now
         return True
 
-    def on_failed(self, cut, problem, now):
+    def on_failed(self, cut: bool, problem: object, now: float) -> None:
         """Take in why the robot could not be told; it is tried again, by and by."""
         if self._is_overtaken(cut, now):
             return
@@ -75,7 +76,7 @@ class MotorPowerRule:
         self._due_at = now + RETRY_S
         self._pending = cut or now - self._asked_at < RESTORE_FOR_S
 
-    def tell_again(self, now):
+    def tell_again(self, now: float) -> None:
         """Take in that somebody new listens, who knows nothing of a cut."""
         if self._cut:
             self._pending, self._due_at = True, now

@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Who of several publishers of one topic is listened to."""
-from collections import Counter
+import collections
+from typing import Container, Counter, Optional
 
 # More names than this are counted under one word.
 _MOST_NAMES = 20
@@ -11,11 +12,12 @@ OTHERS = 'others'
 class Ownership:
     """The first who speaks owns the topic, until it has gone or another one takes control."""
 
-    def __init__(self):
-        self.owner = self._claimed = None
-        self.refused = Counter()
+    def __init__(self) -> None:
+        self.owner: Optional[str] = None
+        self._claimed: Optional[str] = None
+        self.refused: Counter[str] = collections.Counter()
 
-    def admits(self, caller, connected):
+    def admits(self, caller: str, connected: Container[str]) -> bool:
         """Tell whether a message counts; one that does not is counted under its sender's name.
 
         :param caller: the node that sent it
@@ -31,7 +33,7 @@ class Ownership:
         self.refused[caller if known else OTHERS] += 1
         return False
 
-    def take(self, caller):
+    def take(self, caller: str) -> bool:
         """Make a node the owner, as soon and as long as it is connected.
 
         :returns: whether that is a change

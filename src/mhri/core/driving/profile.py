@@ -3,9 +3,9 @@
 """Profiles: which axis and button of a device means what."""
 import math
 from dataclasses import dataclass, replace
-from typing import Tuple, Union
+from typing import FrozenSet, Optional, Sequence, Tuple, Union
 
-from mhri.core.config import parse_yaml
+from mhri.core.config import Section, parse_yaml
 from mhri.core.driving.limits import Velocity, within_limits
 
 # As a dead-man button: whichever is pressed, where nobody knows the buttons of a pad.
@@ -22,7 +22,7 @@ ACTIONS = (STOP_ALL, NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL)
 class JoyRefused(ValueError):
     """A Joy message that cannot be used; ``kind`` is the word it is counted under."""
 
-    def __init__(self, kind, problem):
+    def __init__(self, kind: str, problem: str) -> None:
         self.kind = kind
         super().__init__(problem)
 
@@ -39,7 +39,7 @@ class Axis:
     scale: float
     rest: float = 0.0
 
-    def read(self, axes):
+    def read(self, axes: Sequence[float]) -> float:
         """Return the value in [-1, 1], 0 at rest; a driver's overshoot is cut off."""
         travel = (axes[self.index] - self.rest) / (1.0 + abs(self.rest))
         return max(-1.0, min(1.0, travel * self.scale))
@@ -59,11 +59,11 @@ class Stick:
     neutral: bool
     held: bool = True
 
-    def is_zero(self):
+    def is_zero(self) -> bool:
         """Tell whether nothing is asked for."""
         return self.forward == 0.0 and self.turn == 0.0
 
-    def velocity(self, limits):
+    def velocity(self, limits: Tuple[float, float]) -> Velocity:
         """Return the :class:`Velocity` that is asked for under the limits (m/s, rad/s)."""
         return Velocity(self.forward * limits[0], self.turn * limits[1])
 
@@ -76,20 +76,24 @@ class Asked:
     held = True
 
     @property
-    def neutral(self):
+    def neutral(self) -> bool:
         """Whether it asks for standstill."""
         return self.is_zero()
 
-    def is_zero(self):
+    def is_zero(self) -> bool:
         """Tell whether nothing is asked for."""
         return max(abs(self.wanted.linear_mps), abs(self.wanted.angular_rad_s)) < _CREEP
 
-    def velocity(self, limits):
+    def velocity(self, limits: Tuple[float, float]) -> Velocity:
         """Return the :class:`Velocity` under the limits (m/s, rad/s), its curvature kept."""
         return within_limits(self.wanted, *limits)
 
 
-def read_twist(linear, angular):
+#: What a source asks for, whichever kind it is of.
+Wanted = Union[Stick, Asked]
+
+
+def read_twist(linear: Sequence[float], angular: Sequence[float]) -> Asked:
     """Turn the two vectors of a ``geometry_msgs/Twist`` into an :class:`Asked`.
 
     Robots are driven in the plane: x of the first and z of the second count [m/s, rad/s].
@@ -133,12 +137,12 @@ class Profile:
     neutral: float = 0.02
     dead_man: Union[int, str, None] = None
     curve: float = 0.0
-    turbo: Union[int, None] = None
+    turbo: Optional[int] = None
     without_turbo: float = 0.5
     actions: Tuple[Tuple[int, str], ...] = ()
     match: Match = Match()
 
-    def read(self, axes, buttons):
+    def read(self, axes: Sequence[float], buttons: Sequence[int]) -> Stick:
         """Turn the axes and buttons of a ``sensor_msgs/Joy`` into a :class:`Stick`.
 
         :raises JoyRefused: no axes, too few axes or buttons, NaN or infinity anywhere
@@ -161,31 +165,31 @@ class Profile:
         factor = self.without_turbo if slow else 1.0
         return Stick(factor * self._respond(forward), factor * self._respond(turn), neutral)
 
-    def _held(self, buttons):
+    def _held(self, buttons: Sequence[int]) -> bool:
         """Tell whether the dead-man button is held; always, where there is none.
 
         :raises JoyRefused: the device does not have that button
         """
         if self.dead_man is None:
             return True
-        if self.dead_man == ANY and buttons:
+        if isinstance(self.dead_man, str) and buttons:  # ANY
             return any(buttons)
-        if self.dead_man == ANY or len(buttons) <= self.dead_man:
+        if isinstance(self.dead_man, str) or len(buttons) <= self.dead_man:
             raise JoyRefused('too_few_buttons', 'a Joy message with {} buttons; the dead-man '
                              'button of profile {} is {}. Run mhri_joy --calibrate, or set '
                              '/mux/dead_man to false'.format(
                                  len(buttons), self.name, self.dead_man))
         return bool(buttons[self.dead_man])
 
-    def without_dead_man(self):
+    def without_dead_man(self) -> 'Profile':
         """Return the same profile, but that no button has to be held."""
         return replace(self, dead_man=None)
 
-    def pressed(self, buttons):
+    def pressed(self, buttons: Sequence[int]) -> FrozenSet[str]:
         """Return the actions whose buttons are down, as a set; missing buttons are up."""
         return frozenset(action for button, action in self.actions if is_pressed(buttons, button))
 
-    def _respond(self, value):
+    def _respond(self, value: float) -> float:
         """Take the dead zone out of one axis and bend the rest."""
         size = abs(value)
         if size <= self.dead_zone:
@@ -194,12 +198,12 @@ class Profile:
         return math.copysign((1.0 - self.curve) * size + self.curve * size ** 3, value)
 
 
-def is_pressed(buttons, index):
+def is_pressed(buttons: Sequence[int], index: int) -> bool:
     """Tell whether a button is down; one that the device does not have is up."""
     return index < len(buttons) and bool(buttons[index])
 
 
-def _axis(section):
+def _axis(section: Section) -> Axis:
     """Read ``{axis: 1, scale: -1}``, for a trigger with ``rest: -1``."""
     axis = Axis(section.index('axis'), section.number('scale', -10.0, 10.0, 1.0),
                 section.number('rest', -1.0, 1.0, 0.0))
@@ -209,7 +213,7 @@ def _axis(section):
     return axis
 
 
-def parse_profile(text, origin):
+def parse_profile(text: str, origin: str) -> Profile:
     """Return the :class:`Profile` that a YAML text describes.
 
     :raises ConfigError: names the file and the key that is wrong
@@ -237,18 +241,20 @@ def parse_profile(text, origin):
     return profile
 
 
-def _dead_man(section):
+def _dead_man(section: Section) -> Union[int, str, None]:
     """Read ``dead_man_button: 4`` or ``dead_man_button: any``."""
     value = section.take('dead_man_button', None)
-    if value is None or value == ANY:
-        return value
+    if value is None:
+        return None
+    if value == ANY:
+        return ANY
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
         raise section.error('dead_man_button', 'expected a whole number from 0 up, or any, got '
                             '{!r}'.format(value))
     return value
 
 
-def _match(section):
+def _match(section: Optional[Section]) -> Match:
     """Read ``{guids: [...], names: [...]}``."""
     if section is None:
         return Match()

@@ -18,15 +18,15 @@ class Pulse:
     :param now: the time of creation [s], of a clock that goes on while the program is stopped
     """
 
-    def __init__(self, now):
+    def __init__(self, now: float) -> None:
         self._beat_at = now
         self._deaf_until = now
 
-    def beat(self, now):
+    def beat(self, now: float) -> None:
         """Note that the loop has come round; call it ten times a second."""
         self._beat_at = now
 
-    def slept(self, now):
+    def slept(self, now: float) -> bool:
         """Tell, once for each sleep, that there was one; to be asked before anything is done."""
         if now - self._beat_at < SLEPT_S:
             return False
@@ -34,10 +34,10 @@ class Pulse:
         self._deaf_until = now + DEAF_S
         return True
 
-    def deaf(self, now):
+    def deaf(self, now: float) -> bool:
         """Tell whether what is heard now may have been said before a sleep."""
         return now < self._deaf_until
 
-    def is_new(self, now):
+    def is_new(self, now: float) -> bool:
         """Tell whether a message heard now is newer than :data:`NEW_S`."""
         return not self.deaf(now) and now - self._beat_at < NEW_S

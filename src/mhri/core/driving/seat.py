@@ -10,7 +10,9 @@ States and what leads out of them::
 
 Taking control is possible in every state. Nobody's robots but those of a leased seat may move.
 """
-from collections import Counter
+import collections
+import math
+from typing import Counter, Iterable, Optional, Tuple
 
 EMPTY, LEASED, LAPSED = 'empty', 'leased', 'lapsed'
 
@@ -27,32 +29,32 @@ class ControlSeat:
     Operators are caller ids; time is seconds of a clock that never goes back.
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._operator = ''
-        self._chosen = ()
-        self._repeated_at = None
+        self._chosen: Tuple[str, ...] = ()
+        self._repeated_at = -math.inf
         self._lapsed = False
-        self.since = None
-        self.refused = Counter()
+        self.since: Optional[float] = None
+        self.refused: Counter[str] = collections.Counter()
 
     @property
-    def state(self):
+    def state(self) -> str:
         """One of EMPTY, LEASED, LAPSED."""
         if not self._operator:
             return EMPTY
         return LAPSED if self._lapsed else LEASED
 
     @property
-    def operator(self):
+    def operator(self) -> str:
         """Caller id of the operator in control, '' for nobody."""
         return self._operator
 
     @property
-    def checked(self):
+    def checked(self) -> Tuple[str, ...]:
         """Names of the robots that may be driven now."""
         return self._chosen if self.state == LEASED else ()
 
-    def on_selection(self, caller, names, now):
+    def on_selection(self, caller: str, names: Iterable[str], now: float) -> bool:
         """Take in a selection; tell whether it counts.
 
         :param names: robots; more than :data:`MOST_ROBOTS` are cut off
@@ -66,31 +68,31 @@ class ControlSeat:
         self._repeated_at, self._lapsed = now, False
         return True
 
-    def refuse(self, caller):
+    def refuse(self, caller: str) -> None:
         """Count somebody who is not believed, by name."""
         if caller in self.refused or len(self.refused) < MOST_REFUSED:
             self.refused[caller] += 1
 
-    def take(self, caller, now):
+    def take(self, caller: str, now: float) -> None:
         """Put the caller in control; its selection is what it says from now on."""
         self._sit(caller, now)
 
-    def on_gone(self, caller):
+    def on_gone(self, caller: str) -> None:
         """Take note that a publisher of the selection has gone."""
         self.refused.pop(caller, None)
         if caller == self._operator:
             self._operator, self._chosen, self._lapsed, self.since = '', (), False, None
 
-    def tick(self, now):
+    def tick(self, now: float) -> None:
         """Let time pass: a lease that is not renewed lapses."""
         if self._operator and now - self._repeated_at >= LEASE_S:
             self._lapsed = True
 
-    def next_tick(self):
+    def next_tick(self) -> Optional[float]:
         """Return when :meth:`tick` has to be called next [s], or None."""
         return self._repeated_at + LEASE_S if self.state == LEASED else None
 
-    def _sit(self, caller, now):
+    def _sit(self, caller: str, now: float) -> None:
         self._operator, self._chosen, self._lapsed = caller, (), False
         self._repeated_at = self.since = now
         self.refused.pop(caller, None)

@@ -1,36 +1,37 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Which robots are in the list, and which of them are checked for control."""
+from typing import Dict, Iterable, Tuple
 
 
 class Selection:
     """An ordered list of robots, each checked or not; the order is that of adding."""
 
-    def __init__(self):
-        self._checked = {}
+    def __init__(self) -> None:
+        self._checked: Dict[str, bool] = {}
 
     @property
-    def robots(self):
+    def robots(self) -> Tuple[str, ...]:
         """All robots, in order."""
         return tuple(self._checked)
 
     @property
-    def selected(self):
+    def selected(self) -> Tuple[str, ...]:
         """Names of the checked robots, in order."""
         return tuple(name for name, checked in self._checked.items() if checked)
 
-    def add(self, name):
+    def add(self, name: str) -> bool:
         """Append a robot, unchecked; return False where it is there already."""
         if name in self._checked:
             return False
         self._checked[name] = False
         return True
 
-    def remove(self, name):
+    def remove(self, name: str) -> None:
         """Take a robot out; one that is not there is no error."""
         self._checked.pop(name, None)
 
-    def check(self, names):
+    def check(self, names: Iterable[str]) -> Tuple[Tuple[str, ...], Tuple[str, ...]]:
         """Check exactly these robots; return the pair (newly checked, newly unchecked)."""
         before, wanted = set(self.selected), set(names)
         for name in self._checked:

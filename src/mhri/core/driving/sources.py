@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Sources: the rows of ``mux.yaml``, one for each way to drive."""
 from dataclasses import dataclass, replace
-from typing import Optional, Tuple
+from typing import Callable, List, Optional, Sequence, Tuple
 
-from mhri.core.config import parse_yaml
+from mhri.core.config import Section, parse_yaml
 from mhri.core.robots.names import is_base_name, is_global_name
 from mhri.core.driving.profile import Profile, parse_profile
 
+
+# From a profile's name to (origin, text).
+ReadProfile = Callable[[str], Tuple[str, str]]
 
 JOY, TWIST = 'joy', 'twist'
 # The longest text that is shown to the operator.
@@ -35,7 +38,7 @@ class Source:
     exclusive: bool = False
 
     @property
-    def rests(self):
+    def rests(self) -> bool:
         """Whether it may be silent at rest: then it is as good as heard while its publisher lives.
 
         Whoever publishes velocities often says zero once and nothing more.
@@ -60,7 +63,7 @@ class MuxConfig:
     automatic_switching: bool = False
     dead_man: bool = True
 
-    def without_dead_man(self):
+    def without_dead_man(self) -> 'MuxConfig':
         """Return the same configuration, but that no source needs a dead-man button."""
         return replace(self, dead_man=False, sources=tuple(
             source if source.profile is None else
@@ -68,14 +71,14 @@ class MuxConfig:
             for source in self.sources))
 
 
-def parse_mux_config(text, origin, read_profile):
+def parse_mux_config(text: str, origin: str, read_profile: ReadProfile) -> MuxConfig:
     """Return the :class:`MuxConfig` that a YAML text describes.
 
     :param read_profile: function from a profile's name to (origin, text); may raise OSError
     :raises ConfigError: names the file and the key that is wrong
     """
     section = parse_yaml(text, origin)
-    sources = []
+    sources: List[Source] = []
     for row in section.sections('sources'):
         source = _source(row, read_profile)
         if any(source.name == other.name for other in sources):
@@ -98,7 +101,7 @@ def parse_mux_config(text, origin, read_profile):
     return config if dead_man else config.without_dead_man()
 
 
-def _enabling(section, sources):
+def _enabling(section: Section, sources: Sequence[Source]) -> Optional[str]:
     """Read the name of the enabling source, None where there is none."""
     name = section.text('enabling', None)
     problem = enabling_problem(sources, name)
@@ -107,7 +110,7 @@ def _enabling(section, sources):
     return name
 
 
-def enabling_problem(sources, name):
+def enabling_problem(sources: Sequence[Source], name: Optional[str]) -> Optional[str]:
     """Say why a source cannot be the enabling one; None where it can, or where none is named."""
     source = next((source for source in sources if source.name == name), None)
     if name and source is None:
@@ -117,7 +120,7 @@ def enabling_problem(sources, name):
     return None
 
 
-def _source(row, read_profile):
+def _source(row: Section, read_profile: ReadProfile) -> Source:
     """Read one row."""
     name = row.text('name')
     if not is_base_name(name):
@@ -144,11 +147,12 @@ def _source(row, read_profile):
     return source
 
 
-def _profile(row, read_profile):
+def _profile(row: Section, read_profile: ReadProfile) -> Profile:
     """Read the profile that a row of type joy names."""
     profile_name = row.text('profile')
     try:
-        return parse_profile(*reversed(read_profile(profile_name)))
+        origin, text = read_profile(profile_name)
     except OSError as error:
         raise row.error('profile', 'cannot read profile {!r}: {}'.format(
             profile_name, error.strerror or error))
+    return parse_profile(text, origin)

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """A stop that outlives the mux: what the gates say of it brings it back."""
+from typing import Optional
 
 # The gates may contradict the mux for so long: its last word may still be on its way.
 DOUBT_S = 1.0
@@ -13,16 +14,16 @@ class StopEcho:
     the master that kept its parameters. The gates still hold the stop.
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._heard = False
-        self._since = None
-        self._released_at = None
+        self._since: Optional[float] = None
+        self._released_at: Optional[float] = None
 
-    def on_release(self, now):
+    def on_release(self, now: float) -> None:
         """Note that the operator has released the stop at this mux."""
         self._released_at = now
 
-    def must_stop(self, gates_stopped, stopped, now):
+    def must_stop(self, gates_stopped: bool, stopped: bool, now: float) -> bool:
         """Take in what the gates say; tell whether the mux has to engage its stop.
 
         At once by their first word, since a mux that has just begun knows less than they do; later

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Which velocities of robots on a task the mux passes on."""
-from collections import Counter
+import collections
 import math
+from typing import Counter, Optional, Sequence, Tuple
 
 from mhri.core.robots.names import MAX_LENGTH, name_problem
 
@@ -11,7 +12,8 @@ MOST_ROBOTS = 100
 PASS, PASS_ZEROS, NOTHING = 'pass', 'pass_zeros', 'nothing'
 
 
-def team_problem(robots, twists):
+def team_problem(robots: Sequence[str],
+                 twists: Sequence[Sequence[float]]) -> Optional[Tuple[str, str]]:
     """Say why a ``mhri/TeamTwist`` cannot be used; return None where it can.
 
     :param robots: names
@@ -37,12 +39,13 @@ def team_problem(robots, twists):
 class TaskRelay:
     """Decides what becomes of each message; counts what is refused and what is held back."""
 
-    def __init__(self):
-        self.refused = Counter()
-        self.held = Counter()
+    def __init__(self) -> None:
+        self.refused: Counter[str] = collections.Counter()
+        self.held: Counter[str] = collections.Counter()
         self._moving = False
 
-    def judge(self, robots, twists, stopped, enabled, is_new):
+    def judge(self, robots: Sequence[str], twists: Sequence[Sequence[float]], stopped: bool,
+              enabled: bool, is_new: bool) -> Tuple[str, str]:
         """Return (PASS, PASS_ZEROS or NOTHING, what is wrong with the message or '').
 
         :param stopped: stop-all is in force: nothing is passed on, the gates send the zeros

@@ -3,11 +3,18 @@
 """Which parts of a ROS graph are robots: the rules of "Look for Connected Bots"."""
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
-from typing import Optional, Tuple
+from typing import (
+    Container, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple)
 
 from mhri.core.config import parse_yaml
 from mhri.core.robots.names import name_problem
-from mhri.core.robots.robot_types import Seen
+from mhri.core.robots.robot_types import RobotType, Seen
+
+# What the master's getSystemState answers: publishers, subscribers and services, each with nodes.
+SystemState = Sequence[Iterable[Tuple[str, Sequence[str]]]]
+# Of a nested dict of parameters.
+Parameters = Mapping[str, object]
+Types = Mapping[str, RobotType]
 
 TWIST = 'geometry_msgs/Twist'
 ROOT = ''
@@ -25,7 +32,7 @@ class IgnoreList:
     nodes: Tuple[str, ...] = ()
     namespaces: Tuple[str, ...] = ()
 
-    def covers(self, node, namespace):
+    def covers(self, node: str, namespace: str) -> bool:
         """Tell whether a node (with leading slash) or its namespace (without) is ignored."""
         return (any(fnmatchcase(node, pattern) for pattern in self.nodes)
                 or any(fnmatchcase(namespace, pattern) for pattern in self.namespaces))
@@ -49,7 +56,7 @@ class Candidate:
     part: bool = False
 
 
-def parse_ignore_list(text, origin):
+def parse_ignore_list(text: str, origin: str) -> IgnoreList:
     """Return the :class:`IgnoreList` of a YAML text.
 
     :raises ConfigError: names the file and the key that is wrong
@@ -60,23 +67,23 @@ def parse_ignore_list(text, origin):
     return ignore
 
 
-def nodes_of(system_state):
+def nodes_of(system_state: SystemState) -> List[str]:
     """Return the names of all nodes in the answer of the master's ``getSystemState``, sorted."""
     return sorted({node for group in system_state for _, nodes in group for node in nodes})
 
 
-def split(name):
+def split(name: str) -> Tuple[str, str]:
     """Return (first segment, rest) of an absolute name; the first is :data:`ROOT` of ``/name``."""
     first, _, rest = name.lstrip('/').partition('/')
     return (first, rest) if rest else (ROOT, first)
 
 
-def root_name(parameters):
+def root_name(parameters: Parameters) -> str:
     """Return how the robot without a namespace is called, given the parameters at the root."""
     return str(parameters.get(NAME_PARAMETER, ROOT_NAME))
 
 
-def parameters_of(name, parameters, at_root=False):
+def parameters_of(name: str, parameters: Parameters, at_root: bool = False) -> Dict[str, object]:
     """Return the parameters of a robot as a nested dict.
 
     A robot without a namespace has ``/robot_type`` and ``/robot_model``; what overrides its
@@ -84,16 +91,17 @@ def parameters_of(name, parameters, at_root=False):
 
     :param parameters: all parameters as one nested dict
     """
-    own = parameters.get(name)
-    own = own if isinstance(own, dict) else {}
+    below = parameters.get(name)
+    own: Dict[str, object] = below if isinstance(below, dict) else {}
     if not at_root:
         return own
     found = {key: parameters[key] for key in ROOT_PARAMETERS if key in parameters}
     return dict(found, mhri=own['mhri']) if 'mhri' in own else found
 
 
-def find_candidates(system_state, parameters, ignore, known=(), topic_types=(), types=None,
-                    with_parts=False):
+def find_candidates(system_state: SystemState, parameters: Parameters, ignore: IgnoreList,
+                    known: Container[str] = (), topic_types: Iterable[Tuple[str, str]] = (),
+                    types: Optional[Types] = None, with_parts: bool = False) -> List[Candidate]:
     """Return the robots of a graph, sorted by name.
 
     A namespace is a robot if it has a ``robot_type``, or nodes under it that are neither ignored
@@ -115,14 +123,15 @@ def find_candidates(system_state, parameters, ignore, known=(), topic_types=(), 
             and (with_parts or not item.part)]
 
 
-def known_by_name(candidate, known, types):
+def known_by_name(candidate: Candidate, known: Container[str], types: Types) -> bool:
     """Tell whether a robot is in the list already: by its name, or by that of its instance."""
-    kind = types.get(candidate.seen.kind)
+    kind = None if candidate.seen.kind is None else types.get(candidate.seen.kind)
     return candidate.name in known or bool(
         kind and kind.instance and candidate.seen.at_root and kind.instance in known)
 
 
-def named_instances(system_state, parameters, ignore, topic_types, types):
+def named_instances(system_state: SystemState, parameters: Parameters, ignore: IgnoreList,
+                    topic_types: Iterable[Tuple[str, str]], types: Types) -> Dict[str, Seen]:
     """Return {name: :class:`Seen`} of every robot at the root that has siblings in its node.
 
     Other than in :func:`find_candidates`, the first one goes by its own name, too: so it may be
@@ -136,7 +145,8 @@ def named_instances(system_state, parameters, ignore, topic_types, types):
 class Survey:
     """One look at a whole graph; parameters as for :func:`find_candidates`."""
 
-    def __init__(self, system_state, parameters, ignore, topic_types, types):
+    def __init__(self, system_state: SystemState, parameters: Parameters, ignore: IgnoreList,
+                 topic_types: Iterable[Tuple[str, str]], types: Types) -> None:
         self._parameters = parameters
         self._ignore = ignore
         self._types = types
@@ -147,7 +157,7 @@ class Survey:
             node.lstrip('/') for node in nodes_of(system_state)})
         self._typed = {name: str(value['robot_type']) for name, value in parameters.items()
                        if isinstance(value, dict) and 'robot_type' in value}
-        self._members = {}
+        self._members: Dict[str, List[str]] = {}
         for node in nodes_of(system_state):
             namespace, _ = split(node)
             if not self._ignored(node) and not self._is_nested(node):
@@ -155,11 +165,11 @@ class Survey:
         self._root_nodes = set(self._members.pop(ROOT, ()))
         #: {place of a robot of several, e.g. ``/turtle2``: (RobotType, its nodes)}
         self.instances = dict(self._find_instances())
-        self._commands = {}
-        self._listeners = {}
+        self._commands: Dict[str, List[str]] = {}
+        self._listeners: Dict[str, Set[str]] = {}
         self._share_out_commands()
 
-    def _ignored(self, name):
+    def _ignored(self, name: str) -> bool:
         """Tell whether a node or a topic is ignored, by its name or its namespace.
 
         A robot that says of itself that it is one may be called what else is ignored: of its nodes
@@ -171,7 +181,7 @@ class Survey:
                        if pattern.count('/') > 1)
         return self._ignore.covers(name, namespace)
 
-    def _typed_below(self):
+    def _typed_below(self) -> Iterator[str]:
         """Yield ``lab/bot1`` where a robot was started two namespaces deep."""
         for name, value in self._parameters.items():
             if not isinstance(value, dict) or 'robot_type' in value \
@@ -181,13 +191,14 @@ class Survey:
                 if isinstance(below, dict) and 'robot_type' in below:
                     yield '{}/{}'.format(name, inner)
 
-    def _is_nested(self, name):
+    def _is_nested(self, name: str) -> bool:
         return any(name.startswith('/{}/'.format(robot)) for robot in self._nested)
 
-    def _find_instances(self):
+    def _find_instances(self) -> Iterator[Tuple[str, Tuple[RobotType, Tuple[str, ...]]]]:
         """Yield (place, (RobotType, nodes)) of each robot of a node that may have several."""
-        for kind in (kind for kind in self._types.values() if kind.instance):
-            signs = [(topic[len(kind.instance):], sign) for topic, sign in kind.known_by.items()]
+        for kind, first in ((kind, kind.instance) for kind in self._types.values()
+                            if kind.instance):
+            signs = [(topic[len(first):], sign) for topic, sign in kind.known_by.items()]
             tail, _ = signs[0]
             for topic in self._publishers:
                 place = topic[:-len(tail)]
@@ -200,13 +211,13 @@ class Survey:
                     yield place, (kind, tuple(sorted(
                         self._subscribers.get(command) or self._publishers[topic])))
 
-    def _siblings(self):
+    def _siblings(self) -> Iterator[Tuple[str, RobotType, Tuple[str, ...]]]:
         """Yield (place, RobotType, nodes) of the instances beside the template's own."""
         for place, (kind, nodes) in sorted(self.instances.items()):
             if place.rpartition('/')[2] != kind.instance:
                 yield place, kind, nodes
 
-    def _share_out_commands(self):
+    def _share_out_commands(self) -> None:
         """Find the robot of each velocity topic that somebody reads."""
         of_siblings = tuple(place + '/' for place, *_ in self._siblings())
         for topic, nodes in self._subscribers.items():
@@ -219,7 +230,7 @@ class Survey:
                 self._commands.setdefault(owner, []).append(name)
                 self._listeners.setdefault(owner, set()).update(nodes)
 
-    def _owner(self, topic, nodes):
+    def _owner(self, topic: str, nodes: Iterable[str]) -> Tuple[Optional[str], str]:
         """Return (namespace of the robot, name of the topic in its template), (None, '') of none.
 
         A topic at the root which the nodes of several robots read belongs to none of them: with it
@@ -236,7 +247,7 @@ class Survey:
             return ROOT, name
         return namespace, rest
 
-    def candidates(self):
+    def candidates(self) -> List[Candidate]:
         """Return every :class:`Candidate`, sorted by name."""
         root = self._root()
         names = set(self._typed) | set(self._commands) | set(self._members)
@@ -258,26 +269,27 @@ class Survey:
         return sorted(found, key=lambda item: (item.name, item.seen.at_root))
 
     @staticmethod
-    def _renamed(root):
+    def _renamed(root: Candidate) -> Candidate:
         """Return the robot at the root as one that cannot be told from another one."""
         return Candidate(
             '/', root.robot_type, root.nodes, 'there is a robot /{0} as well; give the one without '
             'a namespace another name: rosparam set /{1} <name>'.format(root.name, NAME_PARAMETER),
             root.seen)
 
-    def _in_namespace(self, name):
+    def _in_namespace(self, name: str) -> Candidate:
         nodes = self._members.get(name) or sorted(self._listeners.get(name, ()))
         return Candidate(name, self._typed.get(name), tuple(nodes), name_problem(name),
                          self._seen(name, '/{}/'.format(name)))
 
-    def _root(self):
+    def _root(self) -> Optional[Candidate]:
         """Return the robot without a namespace, None where there is none."""
         robot_type = self._parameters.get('robot_type')
         if not (isinstance(robot_type, str) or ROOT in self._commands):
             return None
         name = root_name(self._parameters)
         seen = self._seen(ROOT, '/')
-        kind = self._types.get(robot_type if isinstance(robot_type, str) else seen.kind)
+        named = robot_type if isinstance(robot_type, str) else seen.kind
+        kind = None if named is None else self._types.get(named)
         topics = ['/' + topic for topic in self._commands.get(ROOT, ())]
         for key in ('command', 'odometry', 'imu') if kind else ():
             topics += ['/' + topic for topic in getattr(kind, key)]
@@ -286,17 +298,17 @@ class Survey:
         return Candidate(name, robot_type if isinstance(robot_type, str) else None,
                          tuple(sorted(nodes & self._root_nodes)), name_problem(name), seen)
 
-    def _seen(self, namespace, prefix):
+    def _seen(self, namespace: str, prefix: str) -> Seen:
         """Return the :class:`Seen` of a robot, whose topics begin with a prefix."""
         kind = next((name for name, item in sorted(self._types.items())
                      if item.known_by and all(self._published(prefix + topic, sign)
                                               for topic, sign in item.known_by.items())), None)
         return Seen(namespace == ROOT, kind, self._likeliest(namespace, prefix))
 
-    def _published(self, topic, kind):
+    def _published(self, topic: str, kind: str) -> bool:
         return topic in self._publishers and self._topic_types.get(topic) == kind
 
-    def _likeliest(self, namespace, prefix):
+    def _likeliest(self, namespace: str, prefix: str) -> Optional[str]:
         """Return the velocity topic of a robot; None where two are equally likely.
 
         One that is written from inside the robot (behind its own multiplexer) is the last choice;
@@ -305,7 +317,7 @@ class Survey:
         """
         usual = [topic for kind in self._types.values() for topic in kind.command]
 
-        def rank(topic):
+        def rank(topic: str) -> Tuple[bool, int, bool, int]:
             """Return a tuple: the smaller, the likelier."""
             full = topic if topic.startswith('/') else prefix + topic
             inside = namespace != ROOT and any(

@@ -3,6 +3,7 @@
 """What is known of a robot's link: how it moves, and whether it can still be heard."""
 import math
 from dataclasses import dataclass
+from typing import Optional
 
 from mhri.core.robots.robot_types import SILENT_AFTER_S
 from mhri.core.screen.views import GONE, LIVE, SILENT, WAITING
@@ -29,11 +30,11 @@ class Motion:
     lateral_mps: float = 0.0
 
     @property
-    def speed_mps(self):
+    def speed_mps(self) -> float:
         """How fast it moves, whichever way [m/s, >= 0]."""
         return math.hypot(self.linear_mps, self.lateral_mps)
 
-    def is_possible(self):
+    def is_possible(self) -> bool:
         """Tell whether all of it are numbers that can be true of a robot."""
         speeds = (self.linear_mps, self.lateral_mps, self.angular_rad_s)
         # A comparison with NaN is false.
@@ -41,7 +42,7 @@ class Motion:
                 and all(abs(place) <= POSSIBLE_M for place in (self.x_m, self.y_m))
                 and math.isfinite(self.heading_rad))
 
-    def is_standstill(self):
+    def is_standstill(self) -> bool:
         """Tell whether the speeds are those of a robot at rest.
 
         The thresholds are above the noise of wheel odometry at rest (which is none, encoders do
@@ -51,7 +52,8 @@ class Motion:
                 and abs(self.angular_rad_s) <= STANDSTILL_RAD_S)
 
 
-def link_state(age_s, connections, silent_after_s=SILENT_AFTER_S, reached=False):
+def link_state(age_s: Optional[float], connections: int, silent_after_s: float = SILENT_AFTER_S,
+               reached: bool = False) -> str:
     """Say how a robot's link is.
 
     :param age_s: age of its newest message [s], None where there never was one
@@ -73,7 +75,7 @@ def link_state(age_s, connections, silent_after_s=SILENT_AFTER_S, reached=False)
     return GONE
 
 
-def link_note(state, age_s, heard_at, waited_s):
+def link_note(state: str, age_s: Optional[float], heard_at: str, waited_s: float) -> str:
     """Say in words what an operator should know about a link; '' where all is well.
 
     :param heard_at: local time of the newest message as text, e.g. '14:02:11'
@@ -81,7 +83,7 @@ def link_note(state, age_s, heard_at, waited_s):
     """
     if state == LIVE and age_s is None:
         return 'tells no odometry: mhri cannot know whether it moves'
-    if state == SILENT:
+    if state == SILENT and age_s is not None:
         return 'nothing for {:.1f} s'.format(age_s)
     if state == GONE:
         return 'switched off or out of reach; last heard {}'.format(heard_at)

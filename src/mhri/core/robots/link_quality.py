@@ -3,6 +3,7 @@
 """How good the link to a robot is: round trip, clock offset and loss. No ROS, no clock."""
 import collections
 import statistics
+from typing import Deque, Optional, Tuple
 
 from mhri.core.screen.views import LinkFigures
 
@@ -25,14 +26,14 @@ SHARE_STEP = 0.1
 class LinkQuality:
     """Collects what is measured of one robot's link; not thread-safe, times are passed in."""
 
-    def __init__(self):
-        self._round_trips = collections.deque(maxlen=ROUND_TRIPS)
+    def __init__(self) -> None:
+        self._round_trips: Deque[float] = collections.deque(maxlen=ROUND_TRIPS)
         self._unanswered = 0
-        self._delays = collections.deque()
-        self._counts = collections.deque()
-        self._seq = None
+        self._delays: Deque[Tuple[float, float]] = collections.deque()
+        self._counts: Deque[Tuple[float, int]] = collections.deque()
+        self._seq: Optional[int] = None
 
-    def on_round_trip(self, round_trip_s):
+    def on_round_trip(self, round_trip_s: Optional[float]) -> None:
         """Take in the time of a question and its answer [s]; None where none came."""
         if round_trip_s is None:
             self._unanswered += 1
@@ -42,7 +43,7 @@ class LinkQuality:
             self._unanswered = 0
             self._round_trips.append(round_trip_s)
 
-    def on_message(self, seq, delay_s, now):
+    def on_message(self, seq: int, delay_s: Optional[float], now: float) -> None:
         """Take in one message of a stream.
 
         :param seq: its number; the publisher counts up by one
@@ -61,13 +62,13 @@ class LinkQuality:
         self._counts.append((now, gap))
         self._forget(now)
 
-    def _forget(self, now):
+    def _forget(self, now: float) -> None:
         while self._delays and self._delays[0][0] < now - OFFSET_WINDOW_S:
             self._delays.popleft()
         while self._counts and self._counts[0][0] < now - LOSS_WINDOW_S:
             self._counts.popleft()
 
-    def read(self, now):
+    def read(self, now: float) -> LinkFigures:
         """Return the :class:`mhri.core.screen.views.LinkFigures` of this moment."""
         self._forget(now)
         trips = self._round_trips
@@ -81,7 +82,7 @@ class LinkQuality:
             loss=lost / (lost + len(self._counts)) if self._counts else None)
 
 
-def link_warning(figures, dropped=False):
+def link_warning(figures: LinkFigures, dropped: bool = False) -> str:
     """Say what is wrong with a link that is live; '' where all is well.
 
     :param dropped: whether the robot's guard drops commands now
@@ -97,7 +98,7 @@ def link_warning(figures, dropped=False):
     return '; '.join(words)
 
 
-def link_share(round_trip_s):
+def link_share(round_trip_s: Optional[float]) -> float:
     """Return how much of a command a group should get whose slowest link takes so long, in tenths.
 
     :param round_trip_s: None where it is not known

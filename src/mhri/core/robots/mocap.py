@@ -3,6 +3,7 @@
 """Motion capture beside odometry: how far the two have come apart."""
 from dataclasses import dataclass
 import math
+from typing import Optional, Tuple
 
 
 @dataclass(frozen=True)
@@ -13,7 +14,7 @@ class Pose:
     y_m: float
     heading_rad: float
 
-    def is_finite(self):
+    def is_finite(self) -> bool:
         """Tell whether every number is one."""
         return all(map(math.isfinite, (self.x_m, self.y_m, self.heading_rad)))
 
@@ -34,11 +35,10 @@ class DriftMeter:
     frame over the other; from then on the difference is how far odometry is off.
     """
 
-    def __init__(self):
-        self._odometry = None
-        self._captured = None
+    def __init__(self) -> None:
+        self._first: Optional[Tuple[Pose, Pose]] = None
 
-    def drift(self, odometry, captured):
+    def drift(self, odometry: Optional[Pose], captured: Optional[Pose]) -> Optional[Drift]:
         """Return the :class:`Drift` of now; zero at the first pair.
 
         :param odometry: :class:`Pose` in ``odom``, None where it is not known
@@ -48,9 +48,9 @@ class DriftMeter:
         if odometry is None or captured is None \
                 or not (odometry.is_finite() and captured.is_finite()):
             return None
-        if self._odometry is None:
-            self._odometry, self._captured = odometry, captured
-        begun, base = self._odometry, self._captured
+        if self._first is None:
+            self._first = (odometry, captured)
+        begun, base = self._first
         turn = base.heading_rad - begun.heading_rad
         moved_x, moved_y = odometry.x_m - begun.x_m, odometry.y_m - begun.y_m
         expected_x = base.x_m + moved_x * math.cos(turn) - moved_y * math.sin(turn)

@@ -3,7 +3,9 @@
 """What takes the power from a robot's motors, and what tells of its own emergency stop, as data."""
 import re
 from dataclasses import dataclass, replace
-from typing import Tuple, Union
+from typing import Any, List, Optional, Pattern, Tuple, TypeVar, Union
+
+from mhri.core.config import Section
 
 SET_BOOL = 'std_srvs/SetBool'
 NONE = 'none'
@@ -12,12 +14,16 @@ _FIELD = re.compile(r'[A-Za-z][A-Za-z0-9_]*(\.[A-Za-z][A-Za-z0-9_]*)*\Z')
 _NAME = re.compile(r'/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)*\Z')
 
 Value = Union[bool, int, float, str]
+Part = TypeVar('Part', bound='AtRoot')
 
 
+@dataclass(frozen=True)
 class AtRoot:
     """A part that is reached by one ``name``, relative to its robot's namespace."""
 
-    def at_root(self):
+    name: str
+
+    def at_root(self: Part) -> Part:
         """Return it with an absolute name: for a robot without a namespace."""
         return replace(self, name='/' + self.name.lstrip('/'))
 
@@ -34,7 +40,6 @@ class MotorPowerSpec(AtRoot):
     :param cut: its value without
     """
 
-    name: str
     service: bool = False
     kind: str = 'std_msgs/Bool'
     field: str = 'data'
@@ -52,13 +57,12 @@ class HardwareStopSpec(AtRoot):
     :param stopped: the values that mean stopped; any other means free
     """
 
-    name: str
     kind: str = 'std_msgs/Bool'
     field: str = 'data'
     stopped: Tuple[Value, ...] = (True,)
 
 
-def read_motor_power(section):
+def read_motor_power(section: Section) -> Optional[MotorPowerSpec]:
     """Return the :class:`MotorPowerSpec` at ``motor_power``; None where there is none.
 
     :param section: :class:`mhri.core.config.Section` of a robot type
@@ -86,7 +90,7 @@ def read_motor_power(section):
     return spec
 
 
-def read_hardware_stop(section):
+def read_hardware_stop(section: Section) -> Optional[HardwareStopSpec]:
     """Return the :class:`HardwareStopSpec` at ``hardware_stop``; None where there is none.
 
     :param section: :class:`mhri.core.config.Section` of a robot type
@@ -95,8 +99,8 @@ def read_hardware_stop(section):
     part = _part(section, 'hardware_stop')
     if part is None:
         return None
-    values = part.take('stopped', [True])
-    values = values if isinstance(values, list) else [values]
+    given = part.take('stopped', [True])
+    values: List[Any] = given if isinstance(given, list) else [given]
     if not values or not all(isinstance(value, (bool, int, float, str)) for value in values):
         raise part.error('stopped', 'expected the values that mean stopped, e.g. [true], got '
                          '{!r}'.format(values))
@@ -107,22 +111,23 @@ def read_hardware_stop(section):
     return spec
 
 
-def _part(section, key):
+def _part(section: Section, key: str) -> Optional[Section]:
     """Return the sub-section of a key; None where it is missing or says ``none``."""
     raw = section.take(key, NONE)
     return None if raw == NONE else section.sub_section(key, raw)
 
 
-def _matching(part, key, pattern, *default):
-    """Read a text of a certain form."""
-    text = part.text(key, *default)
+def _matching(part: Section, key: str, pattern: Pattern[str],
+              default: Optional[str] = None) -> str:
+    """Read a text of a certain form; without a default it has to be there."""
+    text = part.text(key) if default is None else part.text(key, default)
     if not pattern.match(text):
         example = {'type': 'std_msgs/Bool', 'field': 'data'}.get(key, 'motor_power')
         raise part.error(key, 'expected something like {}, got {!r}'.format(example, text))
     return text
 
 
-def _value(part, key, default):
+def _value(part: Section, key: str, default: Value) -> Value:
     """Read a truth value or a number."""
     value = part.take(key, default)
     if not isinstance(value, (bool, int, float)):

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Robot types: the topics, limits and window of each kind of robot, as validated data."""
 from dataclasses import dataclass, field, replace
-from typing import Dict, Optional, Tuple
+from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Tuple
 
 from mhri.core.config import ConfigError, Section, parse_yaml
 from mhri.core.robots.robot_hardware import (
@@ -11,7 +11,8 @@ from mhri.core.robots.robot_hardware import (
 ODOMETRY_TYPES = ('nav_msgs/Odometry', 'turtlesim/Pose')
 # A robot whose type says nothing else is silent when its odometry has not come for so long [s].
 SILENT_AFTER_S = 1.0
-_HARDWARE = {'motor_power': read_motor_power, 'hardware_stop': read_hardware_stop}
+_HARDWARE: Dict[str, Callable[[Section], Any]] = {
+    'motor_power': read_motor_power, 'hardware_stop': read_hardware_stop}
 _TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'scan', 'battery')
 
 
@@ -38,7 +39,7 @@ class Export:
     text: str
     window: str = ''
 
-    def error(self, key, problem):
+    def error(self, key: str, problem: str) -> ConfigError:
         """Return (not raise) a :class:`ConfigError` that names package, file and remedy."""
         return ConfigError('package {}: {}'.format(self.package, self.origin), key,
                            problem + '; mend it there and start mhri again')
@@ -61,7 +62,7 @@ class Seen:
     command: Optional[str] = None
     instance: Optional[str] = None
 
-    def anything(self):
+    def anything(self) -> bool:
         """Tell whether there is more to it than a name."""
         return bool(self.at_root or self.kind or self.command or self.instance)
 
@@ -101,24 +102,29 @@ class RobotType:
     hardware_stop: Optional[HardwareStopSpec] = None
     instance: Optional[str] = None
 
-    def at_root(self):
+    def at_root(self) -> 'RobotType':
         """Return this type with absolute topics: for a robot without a namespace."""
-        changes = {key: tuple('/' + topic.lstrip('/') for topic in getattr(self, key))
-                   for key in _TOPIC_KEYS}
+        changes: Dict[str, Any] = {
+            key: tuple('/' + topic.lstrip('/') for topic in getattr(self, key))
+            for key in _TOPIC_KEYS}
         changes.update((key, getattr(self, key).at_root()) for key in _HARDWARE
                        if getattr(self, key))
         return replace(self, **changes)
 
-    def for_instance(self, place):
+    def for_instance(self, place: str) -> 'RobotType':
         """Return this type with the topics of one of several robots.
 
         :param place: where they begin, e.g. ``/turtle2``
+        :raises ValueError: of such a robot there is one in a node at most
         """
-        return replace(self, **{
-            key: tuple(place + topic[len(self.instance):] for topic in getattr(self, key))
-            for key in _TOPIC_KEYS})
+        if self.instance is None:
+            raise ValueError('robot type {} has no instance'.format(self.name))
+        own = len(self.instance)
+        changes: Dict[str, Any] = {
+            key: tuple(place + topic[own:] for topic in getattr(self, key)) for key in _TOPIC_KEYS}
+        return replace(self, **changes)
 
-    def with_model(self, model):
+    def with_model(self, model: object) -> 'RobotType':
         """Return this type with the limits of one of its models, e.g. ``waffle``.
 
         Without a model (None), the type keeps the limits of its file, which for a type with models
@@ -135,7 +141,7 @@ class RobotType:
                        label='{} {}'.format(self.label, model.replace('_', ' ').title()))
 
 
-def _limits(section):
+def _limits(section: Section) -> Limits:
     """Read ``linear_mps`` and ``angular_rad_s`` of a section."""
     limits = Limits(section.number('linear_mps', 0.001, 50.0),
                     section.number('angular_rad_s', 0.001, 50.0))
@@ -143,7 +149,7 @@ def _limits(section):
     return limits
 
 
-def parse_robot_type(text, origin):
+def parse_robot_type(text: str, origin: str) -> RobotType:
     """Return the :class:`RobotType` that a YAML text describes.
 
     :raises ConfigError: names the file and the key that is wrong
@@ -158,14 +164,13 @@ def parse_robot_type(text, origin):
         odometry_type=odometry_type, known_by=_known_by(section),
         silent_after_s=_silent_after_s(section),
         **{key: read(section) for key, read in _HARDWARE.items()},
-        instance=section.text('instance', None),
-        **{key: _topics(section, key) for key in _TOPIC_KEYS})
+        instance=section.text('instance', None), **_all_topics(section))
     _check_instance(section, robot_type)
     section.close()
     return robot_type
 
 
-def _check_instance(section, robot_type):
+def _check_instance(section: Section, robot_type: RobotType) -> None:
     """Refuse an instance that is not the first segment of everything."""
     if robot_type.instance is None:
         return
@@ -178,7 +183,7 @@ def _check_instance(section, robot_type):
         raise section.error('instance', 'needs known_by, to find the others by')
 
 
-def _odometry_type(section):
+def _odometry_type(section: Section) -> str:
     """Read the ROS type of the odometry."""
     kind = section.text('odometry_type', 'nav_msgs/Odometry')
     if kind not in ODOMETRY_TYPES:
@@ -187,7 +192,7 @@ def _odometry_type(section):
     return kind
 
 
-def _silent_after_s(section):
+def _silent_after_s(section: Section) -> float:
     """Read how long the odometry may stay away; 0: for ever.
 
     Below 0.3 s, ordinary wireless networks would make a robot silent again and again.
@@ -199,7 +204,7 @@ def _silent_after_s(section):
     return value
 
 
-def _topics(section, key):
+def _topics(section: Section, key: str) -> Tuple[str, ...]:
     """Read a list of topics; only ``command`` may not be empty."""
     topics = section.texts(key, ())
     if key == 'command' and not topics:
@@ -207,7 +212,12 @@ def _topics(section, key):
     return topics
 
 
-def _known_by(section):
+def _all_topics(section: Section) -> Dict[str, Any]:
+    """Read every list of topics, by its key."""
+    return {key: _topics(section, key) for key in _TOPIC_KEYS}
+
+
+def _known_by(section: Section) -> Dict[str, str]:
     """Read {topic: ROS type} of what only robots of this type publish."""
     signs = section.take('known_by', {})
     if not isinstance(signs, dict) or not all(
@@ -216,14 +226,17 @@ def _known_by(section):
     return dict(signs)
 
 
-def load_robot_types(files, exports=()):
+def load_robot_types(
+        files: Iterable[Tuple[str, str]],
+        exports: Iterable[Export] = ()) -> Tuple[Dict[str, RobotType], List[ConfigError]]:
     """Parse many templates; one bad file never hides the good ones.
 
     :param files: pairs (origin, text)
     :param exports: :class:`Export` of other packages; they replace none that exists already
     :returns: ({name: RobotType}, [ConfigError]); of two files with one name the first stays
     """
-    types, errors = {}, []
+    types: Dict[str, RobotType] = {}
+    errors: List[ConfigError] = []
     for origin, text in files:
         try:
             robot_type = parse_robot_type(text, origin)
@@ -246,7 +259,8 @@ def load_robot_types(files, exports=()):
     return types, errors
 
 
-def resolve_robot_type(types, robot, params, seen=Seen()):
+def resolve_robot_type(types: Mapping[str, RobotType], robot: str, params: Mapping[str, object],
+                       seen: Seen = Seen()) -> Tuple[RobotType, List[ConfigError]]:
     """Choose and adjust the template of one robot.
 
     :param types: {name: RobotType} with at least ``generic``
@@ -257,7 +271,7 @@ def resolve_robot_type(types, robot, params, seen=Seen()):
     :returns: (RobotType, [ConfigError]); a parameter that cannot be used is reported and left out,
         an unknown type becomes ``generic``
     """
-    errors = []
+    errors: List[ConfigError] = []
     origin = '/' + robot
     wanted = params.get('robot_type', seen.kind or 'generic')
     chosen = types.get(wanted) if isinstance(wanted, str) else None
@@ -282,10 +296,11 @@ def resolve_robot_type(types, robot, params, seen=Seen()):
     return chosen.at_root() if seen.at_root else chosen, errors
 
 
-def _overridden(robot_type, overrides, origin):
+def _overridden(robot_type: RobotType, overrides: object, origin: str) -> RobotType:
     """Return the type with the values of a robot's ``mhri`` parameters."""
     section = Section(overrides, origin, 'mhri')
-    changes = {key: _topics(section, key) for key in _TOPIC_KEYS if key in section}
+    changes: Dict[str, Any] = {
+        key: _topics(section, key) for key in _TOPIC_KEYS if key in section}
     if 'odometry_type' in section:
         changes['odometry_type'] = _odometry_type(section)
     changes.update((key, read(section)) for key, read in _HARDWARE.items() if key in section)

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """How late a stamped message is, from a robot whose clock may be off by any amount."""
+from typing import Optional
 
 # Stamps below this [s since 1970] are simulated time, or of a clock that was never set.
 SET_SINCE_S = 1e9
@@ -11,7 +12,7 @@ LEAK = 5e-4
 SETTLE_S = 1.0
 
 
-def delay_of(received_s, stamp_s):
+def delay_of(received_s: float, stamp_s: float) -> Optional[float]:
     """Return the time from a stamp to the receipt of its message [s], by two clocks.
 
     :param received_s: by the clock here [s since 1970]
@@ -28,13 +29,12 @@ class StampAge:
     clock that never goes back.
     """
 
-    def __init__(self):
-        self._least_s = None
-        self._stamp_s = None
-        self._now = None
-        self._settled_at = None
+    def __init__(self) -> None:
+        # Of the message before; None before any, and then the others count for nothing.
+        self._stamp_s: Optional[float] = None
+        self._least_s = self._now = self._settled_at = 0.0
 
-    def late_s(self, stamp_s, now):
+    def late_s(self, stamp_s: Optional[float], now: float) -> Optional[float]:
         """Take in one message; return by how much it is late [s, >= 0].
 
         :param stamp_s: None, or below :data:`SET_SINCE_S`: nothing can be said; it counts as 0

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The proof of a stop: a robot is called stopped only when its own odometry reads standstill."""
 import math
+from typing import Optional, Tuple
 
-from mhri.core.robots.link import POSSIBLE_SPEED, STANDSTILL_MPS, STANDSTILL_RAD_S
+from mhri.core.robots.link import Motion, POSSIBLE_SPEED, STANDSTILL_MPS, STANDSTILL_RAD_S
 from mhri.core.robots.robot_types import SILENT_AFTER_S
 from mhri.core.screen.views import (
     PROOF_NOT_CONFIRMED, PROOF_STOPPED, PROOF_WAITING, ProofView)
@@ -23,10 +24,10 @@ UNKNOWN_ROUND_TRIP_S = 0.25
 class PoseWatch:
     """Tells whether a pose moves, whatever the velocities beside it say."""
 
-    def __init__(self):
-        self._anchor = None
+    def __init__(self) -> None:
+        self._anchor: Optional[Tuple[float, Motion]] = None
 
-    def speed(self, motion, now):
+    def speed(self, motion: Motion, now: float) -> Tuple[float, float]:
         """Take in one reading; return how fast the pose moves [m/s, rad/s], zeros at rest."""
         if self._anchor is None:
             self._anchor = (now, motion)
@@ -66,7 +67,8 @@ class StopProof:
     :param silent_after_s: after so long the robot is silent [s]; 0: as 1
     """
 
-    def __init__(self, now, round_trip_s=None, silent_after_s=SILENT_AFTER_S):
+    def __init__(self, now: float, round_trip_s: Optional[float] = None,
+                 silent_after_s: float = SILENT_AFTER_S) -> None:
         self._begun = now
         # What was measured before this may be of a robot that knows nothing of the stop.
         self._counts_from = now + (UNKNOWN_ROUND_TRIP_S if round_trip_s is None else round_trip_s)
@@ -80,11 +82,11 @@ class StopProof:
         # A pose that creeps looks like rest in every other reading: its words stay for a while.
         self._crept, self._crept_at = '', -math.inf
         self.state = PROOF_WAITING
-        self._stopped_ms = None
+        self._stopped_ms: Optional[float] = None
         # Whether nobody can tell when the robot came to rest: it was not heard all the while.
         self._unseen = False
 
-    def on_motion(self, motion, now, late_s=0.0):
+    def on_motion(self, motion: Motion, now: float, late_s: Optional[float] = 0.0) -> None:
         """Take in one reading of the robot's odometry, received at ``now``.
 
         :param late_s: by how much it came later than the quickest do [s]; None: nobody knows
@@ -108,7 +110,7 @@ class StopProof:
         elif now - late_s >= self._counts_from:
             self._rests(measured)
 
-    def _moves(self, motion, measured):
+    def _moves(self, motion: Motion, measured: float) -> str:
         """Say how a reading is none of standstill; '' where it is one."""
         if not motion.is_possible():
             return 'its odometry is not possible'
@@ -123,7 +125,7 @@ class StopProof:
             return self._crept
         return ''
 
-    def _rests(self, measured):
+    def _rests(self, measured: float) -> None:
         """Count one reading of standstill."""
         if self._run == 0:
             self._run_began = measured
@@ -134,7 +136,7 @@ class StopProof:
             if self._stopped_ms is None:
                 self._stopped_ms = max(0.0, (self._run_began - self._begun) * 1000.0)
 
-    def view(self, now):
+    def view(self, now: float) -> ProofView:
         """Let time pass and return the :class:`ProofView` of this moment."""
         old = now - self._measured > self._silent_after_s
         late = self.state == PROOF_WAITING and now - self._begun > PATIENCE_S
@@ -144,12 +146,12 @@ class StopProof:
         return ProofView(self.state, self._words(now))
 
     @property
-    def stopped_ms(self):
+    def stopped_ms(self) -> Optional[float]:
         """Time from the stop to the first reading of standstill [ms]; None while it moves."""
         return self._stopped_ms
 
-    def _words(self, now):
-        if self.state == PROOF_STOPPED:
+    def _words(self, now: float) -> str:
+        if self.state == PROOF_STOPPED and self._stopped_ms is not None:
             if self._unseen:
                 return 'standstill seen after {:.1f} s'.format(self._stopped_ms / 1000.0)
             return 'stopped in {:.0f} ms'.format(self._stopped_ms)
