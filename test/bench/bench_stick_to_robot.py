@@ -224,8 +224,12 @@ class Chain:
 
 
 def measure(way, events, pace_s, start):
-    """Return latencies [ms] of a number of events."""
-    found = []
+    """Return latencies [ms] of a number of events.
+
+    A robot that is not heard for a second, on a machine that is too busy, is held and waits for a
+    centred stick: that is no latency. It is said, and too much of it is an error.
+    """
+    found, held = [], 0
     way.rest()
     for number in range(events):
         value = 0.2 + 0.001 * ((start + number) % 500)
@@ -234,7 +238,12 @@ def measure(way, events, pace_s, start):
         way.send(value)
         arrivals = way.receiver.wait()
         if len(arrivals) < way.receiver._count:
-            raise RuntimeError('a command did not arrive at every robot')
+            held += 1
+            if held > max(2, events // 20):
+                raise RuntimeError('again and again a command did not arrive at every robot')
+            print('a command did not arrive at every robot: the stick is centred once', flush=True)
+            way.rest()
+            continue
         found += [(when - begun) * 1000.0 for when in arrivals]
         time.sleep(max(0.0, pace_s - (time.monotonic() - begun)))
     return found
