@@ -19,6 +19,8 @@ import pytest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from support.hostile import Hostile, is_long, seed_of  # noqa: E402
+from support.hostile_wire import (  # noqa: E402
+    call, class_of, Fixed, handshake, torn_call, torn_class)
 from support.ros_system import wait_for  # noqa: E402
 from support.under_fire import ROBOTS, STOP_S, table, UNDER_WAY_S, UnderFire  # noqa: E402
 
@@ -63,13 +65,6 @@ def fire():
         table(system.begun, system.sizes())
 
 
-def class_of(ros_type):
-    import genpy
-    import roslib.message
-    return {'time': genpy.Time, 'duration': genpy.Duration}.get(ros_type) or \
-        roslib.message.get_message_class(ros_type)
-
-
 def count(fire, kind, number=1):
     fire.sent[kind] = fire.sent.get(kind, 0) + number
 
@@ -102,15 +97,6 @@ def plausible(kind, random):
     elif kind._type == 'sensor_msgs/Joy':
         message.axes, message.buttons = [random.uniform(-1.0, 1.0) for _ in range(8)], [1] * 12
     return message
-
-
-def torn_class(kind, hostile):
-    class Torn(kind):
-        """Says that it is of a type, and is not."""
-
-        def serialize(self, buff):
-            buff.write(hostile.torn())
-    return Torn
 
 
 def speaker(fire, topic, kind):
@@ -193,16 +179,6 @@ def test_who_sent_bytes_that_are_no_message_is_heard_again(fire):
     ear.unregister()
 
 
-class Fixed:
-    """Tears all messages the same way."""
-
-    def __init__(self, data):
-        self._data = data
-
-    def torn(self):
-        return self._data
-
-
 def test_a_released_stick_stays_released(fire):
     """All topics at once, with the stick centred: nobody moves."""
     fire.drive()
@@ -218,25 +194,6 @@ def test_a_released_stick_stays_released(fire):
 def service_uri(name):
     import rosgraph
     return urlsplit(rosgraph.Master('/attacker').lookupService(name))
-
-
-def torn_call(uri, header, body, wait_s=0.2):
-    """Speak to a service's port as nobody should."""
-    with socket.create_connection((uri.hostname, uri.port), 1.0) as link:
-        link.settimeout(wait_s)
-        try:
-            link.sendall(header + body)
-            link.recv(4096)
-        except OSError:
-            pass
-
-
-def handshake(**fields):
-    """Return the bytes of a TCPROS header."""
-    lines = ['{}={}'.format(key, value).encode('utf-8', 'replace')
-             for key, value in fields.items()]
-    body = b''.join(struct.pack('<I', len(line)) + line for line in lines)
-    return struct.pack('<I', len(body)) + body
 
 
 def test_services(fire):
@@ -308,16 +265,6 @@ def test_ports(fire):
     under_attack(fire, attack)
     for link in silent:
         link.close()
-
-
-def call(proxy, hostile):
-    """Call the slave API with what is none of its words (nor ``shutdown``, which anybody may)."""
-    method = hostile.random.choice(('requestTopic', 'publisherUpdate', 'paramUpdate', 'getBusStats',
-                                    'getPid', 'no_such_method', 'getSubscriptions'))
-    try:
-        getattr(proxy, method)(*[hostile.value(2) for _ in range(hostile.random.randrange(5))])
-    except (xmlrpc.client.Error, OSError, OverflowError, ValueError, TypeError):
-        pass
 
 
 KEYS = (
