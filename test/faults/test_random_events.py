@@ -213,7 +213,8 @@ def motion(path, facts, robot):
     rows = [(at, max(abs(linear), abs(angular))) for at, linear, angular in rows]
     rows += [(at, 0.0) for at, what, args in facts
              if what == 'fail' and args[0] == ('robot', robot) and args[1] != 'hung']
-    rows.sort()
+    # Of the same instant the last one counts.
+    rows.sort(key=lambda row: row[0])
     return [row[0] for row in rows], [row[1] for row in rows]
 
 
@@ -316,7 +317,7 @@ def tell_violation(number, entry, judge, begin):
     rows += [(at, '  {} now {}'.format(entry['robot'], 'moves' if speed else 'stands'))
              for (_, before), (at, speed) in zip(changes, changes[1:])
              if bool(before) != bool(speed)]
-    for at, words in sorted(rows):
+    for at, words in sorted(rows, key=lambda row: row[0]):
         if entry['begin'] - 9.0 <= at <= entry['end'] + 1.0:
             print('  {:9.3f} {}'.format(at - begin, words))
 

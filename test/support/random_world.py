@@ -374,6 +374,7 @@ class World:
         wait_for(lambda: self.wait(0.05) or all(
             part.well for key, part in self.model.parts.items() if key != second),
             20.0, 'everything to be there')
+        self.check(OPERATORS[0], ROBOTS)
         if rival:
             self.wait(max(0.0, self.model.well_since - time.monotonic()))
             self.start(second)

@@ -302,7 +302,10 @@ class Gates:
         with self._lock:
             while not self._closed:
                 now = self._clock()
-                self._tick(now)
+                try:
+                    self._tick(now)
+                except Exception as error:  # without this thread no lease would ever end
+                    rospy.logerr_throttle(1.0, 'the gates could not look: {!r}'.format(error))
                 times = [self._seat.next_tick()] + [gate.rule.next_tick()
                                                     for gate in self._gates.values()]
                 due = min([time_s for time_s in times if time_s is not None] + [now + TICK_S])

@@ -197,6 +197,11 @@ class PromptPublisher(rospy.Publisher):
         impl.set_queue_size(None)
         impl.set_queue_size = lambda size: None
         impl.add_connection = add_connection
+        with impl.c_lock:
+            # A robot that was waiting may have connected since the topic was registered, above.
+            impl.connections = [link if isinstance(link, PromptConnection) else PromptConnection(
+                getattr(link, '_connection', link), queue_size, call)
+                for link in impl.connections]
 
     def stalled_s(self, names):
         """Return for how long the worst connection to some nodes confirmed nothing [s]; 0: none.
