@@ -10,7 +10,10 @@ import pytest
 
 pytest.importorskip('rospy')
 
-from mhri.ros.graph.rospy_inside import Flow, PromptConnection  # noqa: E402
+from geometry_msgs.msg import Twist  # noqa: E402
+from mhri.ros.graph.rospy_inside import (  # noqa: E402
+    Flow, PromptConnection, PromptPublisher)
+import rospy  # noqa: E402
 from rospy.exceptions import TransportTerminated  # noqa: E402
 
 
@@ -212,6 +215,26 @@ def test_the_flow_of_a_real_connection_is_read():
             info = ours.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, 104)
             rtt_us = struct.unpack_from('=I', info, 68)[0]
             assert 0 < rtt_us < 1e6, 'not where the round trip is in struct tcp_info'
+
+
+def test_a_connection_that_came_while_the_publisher_was_made_is_taken_over(monkeypatch):
+    """A robot that waits connects as soon as the topic is registered, before we have replaced."""
+    ours, theirs = socket.socketpair()
+    early = Transport(ours)
+
+    def register(self, name, message_class, **_):
+        """Do as rospy does, with a robot that is quick."""
+        self.impl = rospy.topics._PublisherImpl(name, message_class)
+        self.impl.connections = [early]
+
+    monkeypatch.setattr(rospy.Publisher, '__init__', register)
+    publisher = PromptPublisher('/bot1/cmd_vel', Twist)
+    found, = publisher.links()
+    stalled_s = publisher.stalled_s({'robot'}) if isinstance(found, PromptConnection) else None
+    early.close()
+    for end in (ours, theirs):
+        end.close()
+    assert stalled_s == 0.0, 'it is still one of rospy'
 
 
 def test_nothing_but_the_word_to_stop_is_given_to_a_stalled_link(link):

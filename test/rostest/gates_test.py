@@ -9,6 +9,7 @@ import sys
 import time
 
 from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
 import rosgraph
 import rospy
 import rostest
@@ -19,6 +20,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 from mhri.msg import GroupSpeed  # noqa: E402
 from gates_case import GatesCase, start_gates, ZERO  # noqa: E402
 from rostest_tools import measured, Process  # noqa: E402
+from support.deaf_robot import DeafRobot  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.stuck_robot import StuckRobot  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
@@ -250,6 +252,22 @@ class GatesTest(GatesCase):
               '{:.2f} ms'.format(len(delays), delays[750] * 1e3, delays[1485] * 1e3,
                                  delays[-1] * 1e3))
         self.assertLess(delays[1485], 0.25)
+
+    def test_a_robot_that_missed_who_speaks_to_it_is_told_again(self):
+        """Heard, but it does not listen: it hung, or was out of reach, when the master said so."""
+        GatesCase.number += 1
+        name = 'gate{}'.format(GatesCase.number)
+        odometry = rospy.Publisher('/{}/odom'.format(name), Odometry, queue_size=1)
+        self.addCleanup(odometry.unregister)
+        deaf = DeafRobot('/{}/cmd_vel'.format(name))
+        self.addCleanup(deaf.close)
+        self.operator.check(name)
+        self.state.wait_robot(name, lambda gate: gate.obeys == 'operator', 'the gate')
+        wait_for(lambda: any('/mhri_gates' in names for names in deaf.told), what='the first word')
+        deaf.told[:] = []
+        wait_for(lambda: odometry.publish(Odometry()) or any('/mhri_gates' in names
+                                                             for names in deaf.told),
+                 20.0, 'the word once more', poll_s=0.1)
 
     def test_gates_that_are_killed_are_followed_by_a_zero(self):
         made = self.robots(4)

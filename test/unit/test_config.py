@@ -150,7 +150,7 @@ def section_of(text):
 
 @pytest.mark.parametrize('name', sorted(HOSTILE))
 def test_hostile_text_is_a_short_error_soon(name):
-    """About a second of work at most; one printable line of 300 characters that says where and why."""
+    """About a second of work at most; one line of 300 characters that says where and why."""
     text, said = HOSTILE[name]
     begun = time.thread_time()
     with pytest.raises(ConfigError, match=said) as error:

@@ -68,7 +68,7 @@ class Gates:
         self._states = []
         self._neighbour = Neighbour('the mux', lambda: self.on_change(), lambda: self.on_change())
         self._mux = MuxInForce(self._refuse, self._on_new_mux)
-        self._roster = Roster(types, self._open, self._close_gate)
+        self._roster = Roster(types, self._open, self._close_gate, self._unheard)
 
     def start(self):
         """Subscribe, serve, and begin to watch the time; returns at once."""
@@ -285,6 +285,11 @@ class Gates:
             gate.send(gate.rule.check(name in self._seat.checked, now))
             self._keep_together()
             self.on_change()
+
+    def _unheard(self):
+        """Return [(topic, type)] that robots which are heard do not listen to."""
+        with self._lock:
+            return [topic for gate in self._gates.values() for topic in gate.unheard(self._clock())]
 
     def _close_gate(self, name):
         """Close the gate of a robot with a zero (blocking: it asks the master)."""

@@ -24,6 +24,8 @@ from mhri.ros.robots.link_probe import LinkProbe
 # A link that has confirmed nothing for so long is lost: the robot is held, with one zero behind the
 # little that is in it. Before that (0.1 s) nothing but zeros is written into it.
 LOST_S = 0.33
+# Heard within this time, a robot is there [s].
+LIVE_S = 1.0
 # A robot has at most so many velocity topics: each costs connections and a registration.
 MOST_TOPICS = 8
 
@@ -202,6 +204,12 @@ class RobotGate:
         message.header.frame_id = self._guard.next_id(self.rule.state == STOPPED)
         message.header.stamp = rospy.Time.from_sec(time.time())
         (guard.publish_urgent if velocity.is_zero() else guard.publish)(message)
+
+    def unheard(self, now):
+        """Return [(topic, type)] that nobody listens to although the robot is there."""
+        there = self._guarded or self._heard_at is not None and now - self._heard_at < LIVE_S
+        return [(publisher.resolved_name, publisher.type) for publisher in self._publishers
+                if not publisher.links()] if there else []
 
     def message(self):
         """Return the ``mhri/RobotGate`` of this moment."""

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which robots the gates know, and of what type they are: asked of the master off their path."""
 import threading
+import time
 
 import rospy
 
@@ -15,6 +16,8 @@ ROBOTS_PARAMETER = '/mhri/robots'
 # where it was unchecked meanwhile.
 DRIVEN_PARAMETER = '/mhri_gates/robots'
 PERIOD_S = 1.0
+# A robot that is heard and does not listen is told of its topics again this often.
+ANNOUNCE_S = 5.0
 MOST_ROBOTS = 64
 
 
@@ -33,12 +36,15 @@ class Roster:
     :param types: {name: RobotType}
     :param open_gate: called with (name, RobotType), on the thread; replaces what was open
     :param close_gate: called with a name, on the thread
+    :param unheard: returns [(topic, type)] that robots which are heard do not listen to
     """
 
-    def __init__(self, types, open_gate, close_gate):
+    def __init__(self, types, open_gate, close_gate, unheard):
         self._types = types
         self._open_gate = open_gate
         self._close_gate = close_gate
+        self._unheard = unheard
+        self._announced_at = 0.0
         self._checked = frozenset()
         self._ever = {}
         self._recalled = False
@@ -65,6 +71,7 @@ class Roster:
             self._changed.clear()
             try:
                 self._look()
+                self._announce(time.monotonic())
             except (MasterError, ValueError, OSError) as error:
                 rospy.logdebug('the robots cannot be looked at now: %s', error)
 
@@ -97,6 +104,22 @@ class Roster:
         seen = {name: self._seen[name] for name in wanted if name in self._seen}
         for name, facts in robot_facts(rospy.get_name(), wanted, self._types, seen).items():
             self._settle(name, facts)
+
+    def _announce(self, now):
+        """Register topics again that robots should listen to and do not.
+
+        The master tells a robot of a new publisher once: one that hung or was out of reach just
+        then would never know.
+
+        :raises MasterError: the master cannot be told now
+        """
+        if now - self._announced_at < ANNOUNCE_S:
+            return
+        self._announced_at = now
+        own = rospy.get_node_uri()
+        calls = [('registerPublisher', topic, kind, own) for topic, kind in self._unheard()]
+        if calls:
+            MasterApi(rospy.get_name(), timeout_s=2.0).call_many(calls)
 
     def _settle(self, name, facts):
         """Open the gate of a robot, or another one where its type has changed."""
