@@ -62,7 +62,7 @@ class Driver:
     def say(self, velocity, stop=False):
         """Send a command; return its frame_id."""
         message = TwistStamped()
-        message.header.frame_id = self.link.next_id(stop, time.monotonic())
+        message.header.frame_id = self.link.next_id(stop)
         message.twist.linear.x, message.twist.angular.z = velocity
         self._publisher.publish(message)
         return message.header.frame_id
