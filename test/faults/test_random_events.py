@@ -28,8 +28,10 @@ from support import machines  # noqa: E402
 from support.random_world import JOY, OPERATORS, PAD, ROBOTS, World  # noqa: E402
 from support.reference_model import DRIVE, ReferenceModel, STAND  # noqa: E402
 
-SEED = int(os.environ.get('MHRI_SEED') or random.SystemRandom().randrange(10 ** 6))
 EVENTS = int(os.environ.get('MHRI_EVENTS') or 60)
+# The short form is the same every time; a long one is new, unless it repeats one.
+SEED = int(os.environ.get('MHRI_SEED') or (
+    random.SystemRandom().randrange(10 ** 6) if 'MHRI_EVENTS' in os.environ else 30))
 # No event is begun after so long [s].
 LIMIT_S = float(os.environ.get('MHRI_SECONDS') or (60 if EVENTS == 60 else 'inf'))
 # The model is asked so often [s]; what a computer may be late by beside what is measured [s].
