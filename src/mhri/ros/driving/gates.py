@@ -119,6 +119,14 @@ class Gates:
             self._strangers[key] = (self._strangers.get(key, (0,))[0] + 1, self._clock())
         self.on_change()
 
+    def _each(self, act):
+        """Do something with every gate: what goes wrong with one keeps no zero from the others."""
+        for gate in self._gates.values():
+            try:
+                act(gate)
+            except Exception as error:  # the guard of each robot
+                rospy.logerr_throttle(1.0, '{}: its gate failed: {!r}'.format(gate.name, error))
+
     def _on_twist(self, message):
         """Forward; the one path on which every microsecond counts."""
         if not self._mux.believes(message, 'twist'):
@@ -127,8 +135,7 @@ class Gates:
         with self._lock:
             now = self._clock()
             before, self._command = self._command, velocity
-            for gate in self._gates.values():
-                gate.command(velocity, now)
+            self._each(lambda gate: gate.command(velocity, now))
             if before is None or before.is_zero() != velocity.is_zero():
                 self.on_change()
 
@@ -164,8 +171,8 @@ class Gates:
         if stopped == self._stop:
             return
         now, self._stop = self._clock(), stopped
+        self._each(lambda gate: gate.send(gate.rule.stop(stopped, now)))
         for gate in self._gates.values():
-            gate.send(gate.rule.stop(stopped, now))
             if not stopped and gate.power.is_cut:
                 gate.power.restore()
         self.on_change()
@@ -190,8 +197,7 @@ class Gates:
     def _everybody_joins(self):
         with self._lock:
             now = self._clock()
-            for gate in self._gates.values():
-                gate.send(gate.rule.join(now))
+            self._each(lambda gate: gate.send(gate.rule.join(now)))
             self.on_change()
 
     def _on_select(self, message):
@@ -241,8 +247,7 @@ class Gates:
     def _check(self):
         """Let the gates know which robots are checked now."""
         now, checked = self._clock(), self._seat.checked
-        for name, gate in self._gates.items():
-            gate.send(gate.rule.check(name in checked, now))
+        self._each(lambda gate: gate.send(gate.rule.check(gate.name in checked, now)))
         self._keep_together()
         self._roster.check(checked)
         self.on_change()
@@ -321,8 +326,7 @@ class Gates:
         self._seat.tick(now)
         if self._seat.checked != before:
             self._check()
-        for gate in self._gates.values():
-            gate.tick(now)
+        self._each(lambda gate: gate.tick(now))
         if self._slow_with_link:
             self._keep_together()
         states = [(gate.rule.obeys, gate.rule.stands) for gate in self._gates.values()]
@@ -334,6 +338,5 @@ class Gates:
         """Close every gate with a zero; nothing is forwarded any more. May be called twice."""
         with self._lock:
             self._closed = True
-            for gate in self._gates.values():
-                gate.send(gate.rule.close(self._clock()))
+            self._each(lambda gate: gate.send(gate.rule.close(self._clock())))
             self._wake.notify()
