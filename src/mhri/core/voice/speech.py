@@ -19,6 +19,8 @@ STOP_RECORDING_S = 1.3
 SURE = 0.5
 # A stop is believed much sooner: one too many does no harm.
 SURE_OF_STOP = 0.18
+# Why a voice that is not understood is refused.
+UNCLEAR = NO_COMMAND, NOT_SURE = 'no command', 'not sure enough'
 
 
 @dataclass(frozen=True)
@@ -158,11 +160,11 @@ class VoiceRules:
                  window: float) -> str:
         """Say why an utterance is not obeyed; '' where it is."""
         if command is None:
-            return 'no command'
+            return NO_COMMAND
         if command.kind == STOP:
-            return '' if confidence >= SURE_OF_STOP else 'not sure enough'
+            return '' if confidence >= SURE_OF_STOP else NOT_SURE
         if not confidence >= SURE:  # A confidence that is no number is none.
-            return 'not sure enough'
+            return NOT_SURE
         if not (command.woken or began <= window or self.talking(began)):
             return 'no wake word: say "{}" first, or hold push-to-talk'.format(
                 self._language.wake_words[0])

@@ -102,6 +102,8 @@ def heard_text(heard):
     """
     if heard is None:
         return 'say the wake word, or hold the button and talk; "stop" is always heard'
+    if not heard.text:
+        return heard_outcome(heard)
     return 'heard "{}": {}'.format(heard.text, heard_outcome(heard))
 
 
@@ -109,7 +111,8 @@ def heard_shorter(heard):
     """Return :func:`heard_text` in fewer and fewer words: what was made of it is what matters."""
     if heard is None:
         return 'wake word or button; "stop" is always heard', '"stop" is always heard'
-    return (heard_outcome(heard),)
+    outcome = heard_outcome(heard)
+    return (outcome,) + beginnings(outcome)
 
 
 def heard_outcome(heard):
