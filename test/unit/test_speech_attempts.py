@@ -12,7 +12,7 @@ ATTEMPT = UNSURE, 1.5, 2.0, False
 
 
 def say(*attempts):
-    """Return the reason of the last attempt: (heard, length, seconds after the one before, held)."""
+    """Return the last reason; an attempt: (heard, length, seconds since the one before, held)."""
     counted, now, reason = Attempts(), 100.0, ''
     for heard, lasted_s, after_s, held in attempts:
         now += after_s
