@@ -266,7 +266,8 @@ def plan(which, voices, rooms, each, step, tuning):
     jobs = []
     for room, (number, voice) in itertools.product(rooms, enumerate(voices)):
         own = [utterance for at, utterance in enumerate(utterances)
-               if (number - at) % len(voices) < (each if utterance.expected else 1)]
+               if (number - at) % len(voices) < (each if utterance.expected else 1)
+               and speech.can_say(utterance.text, voice)]
         jobs += [(room, voice, own[at:at + CHUNK], tuning) for at in range(0, len(own), CHUNK)]
     return jobs
 
@@ -301,8 +302,12 @@ def main():
     options = parser.parse_args()
     tuning = Tuning(**{key: float(value) for key, value in (
         pair.split('=') for pair in options.tuning.split(',') if pair)})
-    language()  # A slip in it is said here: it would not get out of a process of the pool.
+    # What is missing or wrong is said here: it would not get out of a process of the pool.
+    language()
     voices, rooms = chosen(options)
+    for voice in voices:
+        if speech.can_say('stop', voice):
+            speech.speak('stop', voice)
     jobs = plan('tune' if options.tune else 'test', voices, rooms,
                 options.each, 31 if options.short else options.step,
                 tuning)

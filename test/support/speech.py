@@ -10,6 +10,7 @@ import hashlib
 from pathlib import Path
 import shutil
 import subprocess
+import sys
 import tempfile
 import wave
 
@@ -50,8 +51,12 @@ def talk(which):
 
 def _run(command, text=''):
     """Run a program to its end with a text as its input."""
-    subprocess.run(command, input=text.encode(), check=True, stdout=subprocess.DEVNULL,
-                   stderr=subprocess.DEVNULL)
+    try:
+        subprocess.run(command, input=text.encode(), check=True, stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL)
+    except FileNotFoundError:
+        sys.exit('{} is not installed: apt-get install espeak-ng sox flite festival '
+                 'festvox-kdlpc16k festvox-us-slt-hts'.format(command[0]))
 
 
 def _espeak(text, voice, path):
@@ -74,9 +79,20 @@ def _festival(text, voice, path):
     return ['tempo', '-s', str(voice.words_per_minute / _USUAL_WPM)]
 
 
+def _recorded(text, folder):
+    """Return the path of a recording."""
+    return Path(folder) / (text.replace(' ', '_') + '.wav')
+
+
+def can_say(text, voice):
+    """Tell whether a voice can say a sentence: recordings need not be of all of them."""
+    program, _, name = voice.name.rpartition(':')
+    return program != 'wav' or _recorded(text, name).exists()
+
+
 def _recording(text, voice, path):
     """As :func:`_espeak`, from a folder of recordings."""
-    shutil.copy(str(Path(voice.name) / (text.replace(' ', '_') + '.wav')), str(path))
+    shutil.copy(str(_recorded(text, voice.name)), str(path))
     return ['tempo', '-s', str(voice.words_per_minute / _USUAL_WPM)]
 
 
