@@ -57,12 +57,12 @@ class Tuning:
 
     stop_threshold: float = 1e-10
     wake_threshold: float = 1e-20
-    worst_word: float = -36.0
+    worst_word: float = -38.0
     stop_word: float = -18.0
     stop_frames: int = 24
-    first_word: float = -23.0
-    unspotted_wake: float = -19.0
-    all_words: float = -22.5
+    first_word: float = -25.0
+    unspotted_wake: float = -21.0
+    all_words: float = -24.5
     latest_start: float = 42.0
     slope: float = 5.0
     by_worst: float = 0.236
@@ -71,7 +71,7 @@ class Tuning:
     by_mean: float = 0.150
     by_gaps: float = -0.068
     by_start: float = -0.8
-    at_rest: float = 15.42
+    at_rest: float = 15.82
 
 
 @dataclass(frozen=True)
@@ -286,8 +286,10 @@ class Recogniser:
         loop = ' | '.join('sound_' + phone.lower() for phone in phones)
         with tempfile.TemporaryDirectory(prefix='mhri_voice_') as folder:
             # compallsen: only so are the scores of two searches comparable. topn: more of the
-            # model's densities than usual, which helps in noise.
-            decoder = _decoder(folder, rows, compallsen=True, cmn='batch', topn=8)
+            # model's densities than usual, which helps in noise. The beams: what was said must not
+            # be lost early where the voice is unlike those of the model.
+            decoder = _decoder(folder, rows, compallsen=True, cmn='batch', topn=8, beam=1e-120,
+                               wbeam=1e-100, pbeam=1e-120)
         decoder.set_jsgf_string(_COMMAND, grammar.jsgf())
         decoder.set_jsgf_string(_FILLER, '#JSGF V1.0;\ngrammar filler;\npublic <any> = ({})+;\n'
                                 .format(loop))
