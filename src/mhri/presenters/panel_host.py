@@ -23,6 +23,7 @@ from mhri.gui.screen.placing import place_window
 from mhri.gui.screen.window_maker import WindowMaker
 from mhri.presenters.requests_host import RequestsHost
 from mhri.ros.resources import resource_path
+from mhri.presenters.stop_watch import StopWatch
 from mhri.presenters.window_host import WindowHost
 
 DRAW_MS = 50
@@ -75,6 +76,7 @@ class PanelHost(QObject):
         self._stick_timer.setInterval(STICK_MS)
         self._lease_timer = QTimer(self)
         self._lease_timer.setInterval(LEASE_MS)
+        self._stop_watch = StopWatch(self.operator.master_uri, self)
 
     def _connect(self):
         panel, operator = self.panel, self.operator
@@ -99,6 +101,7 @@ class PanelHost(QObject):
         self._slice_timer.timeout.connect(self._draw_next)
         self._stick_timer.timeout.connect(self._repeat_stick)
         self._lease_timer.timeout.connect(operator.repeat_selection)
+        self._stop_watch.said.connect(panel.show_look_result)
 
     def start(self, robots=(), selected=()):
         """Begin; returns at once.
@@ -117,6 +120,7 @@ class PanelHost(QObject):
         self._draw_timer.start()
         self._stick_timer.start()
         self._lease_timer.start()
+        self._stop_watch.start()
         self.draw()
 
     def draw(self):
@@ -374,3 +378,4 @@ class PanelHost(QObject):
         self.doctor.close()
         for name in list(self.windows):
             self._close_window(name)
+        self._stop_watch.close()
