@@ -152,7 +152,7 @@ def desk(tmp_path_factory):
 
 def click(place):
     """Press the left button and let it go at once."""
-    xdotool('mousemove', '--sync', *place, 'mousedown', 1, 'mouseup', 1)
+    xdotool('mousemove', *place, 'mousedown', 1, 'mouseup', 1)
 
 
 @pytest.mark.parametrize('how', sorted(HANGS))
@@ -160,7 +160,7 @@ def click(place):
 def test_stop_works_while_a_view_hangs(desk, how, by):
     place = desk.place(0)
     xdotool('windowfocus', '--sync', desk.window)
-    xdotool('mousemove', '--sync', *place)
+    xdotool('mousemove', *place)
     desk.drive()
     desk.hang(how)
     pressed = time.monotonic()
@@ -187,7 +187,7 @@ def test_what_is_no_press_of_stop_stops_nothing(desk):
     begun = time.monotonic()
     click(elsewhere)
     xdotool('key', 'space', 'key', 'shift+a')
-    xdotool('mousemove', '--sync', *place, 'click', '4', 'click', '5')
+    xdotool('mousemove', *place, 'click', '4', 'click', '5')
     xdotool('windowfocus', '--sync', desk.other, 'key', 'shift+space')
     # Another window before the button.
     xdotool('windowmove', '--sync', desk.other, place[0] - 150, place[1] - 150,
