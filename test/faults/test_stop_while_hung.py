@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""STOP by a real click and real keys while a view of the real panel blocks the thread that draws."""
+"""STOP by a real click and real keys while a view of the real panel blocks the GUI thread."""
 import json
 import os
 import subprocess

@@ -19,19 +19,14 @@ _BUTTONS = weakref.WeakSet()
 def stop_places():
     """Return where this program can be stopped by hand, as the X server counts.
 
-    :returns: {id of each window that is shown: [(left, top, width, height) of each stop button in
-        it, device px from the window's corner]}
+    :returns: {id of each window that is shown: [:meth:`StopButton.place` of each button in it]}
     """
     places = {int(widget.winId()): [] for widget in QApplication.topLevelWidgets()
               if widget.isVisible() and widget.windowHandle()}
     for button in list(_BUTTONS):
         try:
             if button.isVisible():
-                window, scale = button.window(), button.devicePixelRatioF()
-                seen = button.visibleRegion().boundingRect()
-                corner = button.mapTo(window, seen.topLeft())
-                places.setdefault(int(window.winId()), []).append(tuple(round(scale * length) for
-                    length in (corner.x(), corner.y(), seen.width(), seen.height())))
+                places.setdefault(int(button.window().winId()), []).append(button.place())
         except RuntimeError:  # Qt has deleted it
             _BUTTONS.discard(button)
     return places
@@ -70,6 +65,16 @@ class StopButton(QAbstractButton):
         if engaged != self._engaged:
             self._engaged = engaged
             self.update()
+
+    def place(self):
+        """Return (left, top, width, height) of what is to be seen of it in its window [device px].
+
+        An area of nothing where all of it is scrolled away.
+        """
+        seen, scale = self.visibleRegion().boundingRect(), self.devicePixelRatioF()
+        corner = self.mapTo(self.window(), seen.topLeft())
+        return tuple(round(scale * length) for length in (
+            corner.x(), corner.y(), seen.width(), seen.height()))
 
     def sizeHint(self):  # noqa: N802
         """Return room for the text and for a gloved finger."""

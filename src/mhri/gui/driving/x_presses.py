@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Presses of STOP as the X server has them, for a process that is not the one which draws.
 
-Raw events (XInput 2, ``XI_Raw...`` of XI2proto.txt) tell of each button and key, whoever has grabbed
-pointer or keyboard and however short the press is; where the pointer was and who has the keyboard
-the server is asked at once. No Qt here: this runs beside it.
+Raw events (XInput 2, ``XI_Raw...`` of XI2proto.txt) tell of each button and key, whoever has
+grabbed pointer or keyboard and however short the press is; where the pointer was and who has the
+keyboard the server is asked at once. No Qt here: this runs beside it.
 """
 import collections
 import ctypes
