@@ -59,7 +59,7 @@ class WindowHost:
         window.recording.show_recording(self._operator.recordings.status(self._name))
         series = feeds.get(IMU)
         if series is not None:
-            window.graph.show_series(series.series())
+            window.graph.show_value(series.take())
         scan = feeds.get(SCAN)
         if scan is not None:
             self._draw_scan(scan)
@@ -102,7 +102,7 @@ class WindowHost:
     def _draw_scan(self, feed):
         scan = feed.take()
         if scan is not None:
-            self.window.scan.show_scan(scan)
+            self.window.scan.show_value(scan)
         self.window.scan.show_age(feed.age_s())
 
     def _draw_camera(self, feed):

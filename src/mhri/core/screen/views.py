@@ -103,6 +103,7 @@ class RobotView:
     power: str = ''
     offers_power: bool = False
     hardware_stop: Optional[bool] = None
+    number: int = 0
 
 
 @dataclass(frozen=True)
