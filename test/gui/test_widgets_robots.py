@@ -222,7 +222,8 @@ def test_twelve_robots_scroll_and_fingers_hit(robots, operator):
 @pytest.fixture
 def hundred(operator):
     """Return a list on the screen with a hundred robots, and those."""
-    many = tuple(replace(LIVE, name='bot{}'.format(number + 1)) for number in range(100))
+    many = tuple(replace(LIVE, name='bot{}'.format(number), number=number)
+                 for number in range(1, 101))
     widget = RobotList()
     widget.resize(560, 330)
     widget.show_robots(many)
