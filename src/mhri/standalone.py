@@ -3,8 +3,9 @@
 """The panel in a window of its own, for machines without rqt."""
 import signal
 import socket
+import threading
 
-from python_qt_binding.QtCore import QSocketNotifier, Signal
+from python_qt_binding.QtCore import QSocketNotifier, QTimer, Signal
 from python_qt_binding.QtGui import QGuiApplication
 from python_qt_binding.QtWidgets import QApplication, QMainWindow
 import rospy
@@ -14,6 +15,9 @@ from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.presenters.panel_host import PanelHost
 from mhri.presenters.settings_file import SettingsError, SettingsFile
 from mhri.ros.screen.backend import ScreenBackend
+
+# How soon the number of a new robot is kept: it is to survive a program that is killed, too.
+KEEP_NUMBERS_MS = 1000
 
 
 class PanelWindow(QMainWindow):
@@ -64,13 +68,29 @@ class Standalone:
         self._bell = SignalBell(self.window.close)
         self._robots_at_first = None
         self._closed = False
+        self._saved = {}
+        self._numbers = {}
+        self._writing = threading.Lock()
+        self._numbers_timer = QTimer()
+        self._numbers_timer.setInterval(KEEP_NUMBERS_MS)
+        self._numbers_timer.timeout.connect(self._keep_numbers)
+        if remember:
+            self._numbers_timer.start()
 
-    def restore(self):
-        """Take over the settings of the last run, as far as they can be used."""
+    def restore(self, afresh=False):
+        """Take over the settings of the last run, as far as they can be used.
+
+        :param afresh: only the numbers of the robots, which are theirs for good
+        """
         problems, saved, placed = [], {}, False
         try:
             saved = self._settings.read()
-            problems += self.host.restore_state(saved.get('state', {}))
+            self._saved, state = saved, saved.get('state', {})
+            if afresh:
+                numbers = state.get('numbers', {}) if isinstance(state, dict) else {}
+                saved, state = {}, {'numbers': numbers}
+            problems += self.host.restore_state(state)
+            self._numbers = self.host.operator.selection.numbers.kept()
             if 'geometry' in saved:
                 placed = restore_geometry(self.window, read_geometry(saved['geometry']))
         except (SettingsError, ValueError) as error:
@@ -101,18 +121,37 @@ class Standalone:
         """Tell whether robots came or went in a run that began afresh."""
         return self._robots_at_first not in (None, self.host.operator.selection.robots)
 
+    def _keep_numbers(self):
+        """Add the numbers of new robots to the settings as they were read (off the GUI thread)."""
+        numbers = self.host.operator.selection.numbers.kept()
+        if numbers != self._numbers:
+            self._numbers = numbers
+            state = self._saved.get('state')
+            state = {**(state if isinstance(state, dict) else {}), 'numbers': numbers}
+            self.host.operator.do(self._write_unless_closed, {**self._saved, 'state': state})
+
+    def _write_unless_closed(self, settings):
+        with self._writing:
+            if not self._closed:
+                self._write(settings)
+
+    def _write(self, settings):
+        try:
+            self._settings.write(settings)
+        except SettingsError as error:
+            rospy.logwarn('the settings are not kept: %s', error)
+
     def close(self):
         """Stop the robots, save the settings, end."""
         if self._closed:
             return
-        self._closed = True
+        self._numbers_timer.stop()
+        with self._writing:
+            self._closed = True
         kept = {'state': self.host.save_state(), 'geometry': geometry_of(self.window)}
         remember = self._remember or self._has_changed_robots()
         self.host.close()
         if remember:
-            try:
-                self._settings.write(kept)
-            except SettingsError as error:
-                rospy.logwarn('the settings are not kept: %s', error)
+            self._write(kept)
         rospy.signal_shutdown('the panel was closed')
         QApplication.instance().quit()

@@ -106,6 +106,7 @@ class PanelHost(QObject):
         :param robots: names to add to the list
         :param selected: names to add and select
         """
+        self.operator.selection.numbers.meet((*robots, *selected))
         for name in dict.fromkeys((*robots, *selected)):
             self._add(name)
         if selected:
@@ -188,6 +189,7 @@ class PanelHost(QObject):
     def _show_found(self, found):
         """Say what was found; the robots that answer come into the list a few with each drawing."""
         new = [item.name for item in found.live]
+        self.operator.selection.numbers.meet(new)
         self._to_add += [(name, found.facts[name]) for name in new]
         words = ['found {}'.format(', '.join(new)) if new else 'no new robot answers']
         if found.leftovers:
@@ -333,7 +335,9 @@ class PanelHost(QObject):
         """Return what is kept between runs as a plain dict: never which robots are selected."""
         for name in self.windows:
             self._keep_look(name)
-        state = {'robots': list(self.operator.selection.robots), 'mode': self._mode,
+        selection = self.operator.selection
+        state = {'robots': list(selection.robots), 'numbers': selection.numbers.kept(),
+                 'mode': self._mode,
                  'limits': list(self.operator.view().limits), 'windows': self._places,
                  'together': self.operator.view().together, 'looks': self._looks,
                  'panel': self.panel.save_settings()}
@@ -345,6 +349,8 @@ class PanelHost(QObject):
         :returns: what of it cannot be used and is left out, in words
         """
         state, problems = usable_state(state)
+        self.operator.selection.numbers.restore(state.get('numbers', {}))
+        self.operator.selection.numbers.meet(state.get('robots', []))
         for name in state.get('robots', []):
             self.operator.add(name)
         if state.get('mode'):
