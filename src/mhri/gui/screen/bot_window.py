@@ -143,21 +143,6 @@ class BotWindow(QWidget):
             self.hud.raise_()
         return self._views[row.widget]
 
-    @property
-    def camera(self):
-        """The :class:`mhri.gui.camera.camera_view.CameraView`."""
-        return self.view(RGB)
-
-    @property
-    def scan(self):
-        """The :class:`mhri.gui.sensors.scan_view.ScanView`."""
-        return self.view('scan')
-
-    @property
-    def graph(self):
-        """The :class:`mhri.gui.sensors.imu_graph.ImuGraph`."""
-        return self.view('imu')
-
     def offer(self, keys):
         """Offer what this robot can have: keys of the registry, and 'record'.
 
@@ -191,11 +176,11 @@ class BotWindow(QWidget):
 
     def camera_size(self):
         """Return (width, height) that the picture has room for, in pixels of the screen."""
-        return self.camera.camera_size()
+        return self.view(RGB).camera_size()
 
     def picture_shape(self):
         """Return width by height of what the tile shows."""
-        frame = self.camera.picture.frame if self._shown() & PICTURES else None
+        frame = self.view(RGB).picture.frame if self._shown() & PICTURES else None
         if frame is None or not all(frame.full_size):
             return USUAL_SHAPE
         width, height = frame.full_size
@@ -214,6 +199,10 @@ class BotWindow(QWidget):
         if looked_at != self._looked_at:
             self._looked_at = looked_at
             self.update()
+
+    def show_hud(self, shown):
+        """Show the numbers over the picture, or the picture alone; a sentence stays."""
+        self.hud.show_numbers(shown)
 
     def show_torn_off(self, torn_off):
         """Be in a window of its own, which has a stop button of its own, or on the screen."""

@@ -37,6 +37,7 @@ class Hud(QWidget):
         self._sign = None
         self._old = False
         self._large = True
+        self._shown = True
         self._picture = None
         self._build()
 
@@ -61,6 +62,10 @@ class Hud(QWidget):
         """Write large, or small."""
         self._large = large
         self._renew()
+
+    def show_numbers(self, shown):
+        """Show the numbers, or the sentence alone."""
+        self._show(shown=shown)
 
     def show_view(self, view, extra=()):
         """Show the numbers of a :class:`RobotView`, and further lines below them."""
@@ -113,7 +118,7 @@ class Hud(QWidget):
         y = self.height() - 0.6 * unit
         font = theme.number_font(theme.larger(self.font(), 1.35 if self._large else 1.0, bold=True))
         ink = _DIM if self._old else QColor(Qt.white)
-        for line in reversed(self._lines):
+        for line in reversed(self._lines if self._shown else ()):
             y -= self._paint_line(painter, line, font, ink, 0.7 * unit, y)
         if self._sentence:
             self._paint_sentence(painter, y - 0.2 * unit)
