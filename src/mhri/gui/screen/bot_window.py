@@ -7,7 +7,7 @@ from python_qt_binding.QtWidgets import QWidget
 
 from mhri.core.screen import views
 from mhri.core.screen.arrangement import USUAL_SHAPE
-from mhri.core.screen.view_rows import load, PICTURES, RECORD, RGB, VIEW_ROWS
+from mhri.core.screen.view_rows import KEYS, load, PICTURES, RECORD, RGB, VIEW_ROWS
 from mhri.gui.driving.drive_keys import mark_drive_area
 from mhri.gui.driving.stop_button import StopButton
 from mhri.gui.recording.recording_row import RecordingRow
@@ -17,30 +17,13 @@ from mhri.gui.screen.hud import Hud
 from mhri.gui.screen.labels import TextLine
 from mhri.gui.screen.pending import Pace
 from mhri.gui.screen.state_line import StateLine
-from mhri.gui.screen.tile_header import PUT_BACK, TEAR_OFF, TileHeader
+from mhri.gui.screen.tile_header import (
+    drive_state, LOOKS, NOT_SELECTED, PUT_BACK, TEAR_OFF, TileHeader)
 from mhri.gui.screen.view_switches import ViewSwitches
 
 NUMBERS_PERIOD_S = 0.25
 _TORN_OFF_SIZE = (800, 640)
 
-DRIVING = 'DRIVING'
-SELECTED = 'selected'
-NOT_SELECTED = 'not selected'
-STOPPING = 'STOPPING'
-NOT_CONFIRMED = 'NOT CONFIRMED'
-STOPPED = 'STOPPED'
-
-# How each drive state looks: colour, whether the pill is filled, width of the tile's edge [px].
-_LOOKS = {
-    DRIVING: (theme.DRIVE, True, 4),
-    SELECTED: (theme.DRIVE, False, 2),
-    NOT_SELECTED: (theme.MUTED, False, 1),
-    STOPPING: (theme.STOP, False, 4),
-    NOT_CONFIRMED: (theme.STOP, True, 4),
-    STOPPED: (theme.STOP, True, 4),
-}
-# What a stop is called that is proved so far.
-_STOPS = {views.PROOF_STOPPED: STOPPED, views.PROOF_NOT_CONFIRMED: NOT_CONFIRMED}
 _EDGE_PX = 4
 # A small tile that has less room below its header [heights of a line] shows the header alone.
 _LEAST_PICTURE_UNITS = 2.5
@@ -93,7 +76,7 @@ class BotWindow(QWidget):
         self.setFocusPolicy(Qt.ClickFocus)
         mark_drive_area(self)
         self.layout().setContentsMargins(*[_EDGE_PX] * 4)
-        self.header = TileHeader(self.name, type_label, tuple(_LOOKS), self)
+        self.header = TileHeader(self.name, type_label, self)
         self.hud = Hud(self)
         for key in ('name_label', 'type_label', 'pill', 'link_sign', 'link_label',
                     'battery_label', 'views_button', 'tear_button'):
@@ -137,7 +120,7 @@ class BotWindow(QWidget):
             before = [name for name in order[:order.index(row.widget)] if name in self._views]
             self.views_splitter.insertWidget(len(before), widget)
             widget.hide()
-            if key in PICTURES and hasattr(widget, 'show_tools'):
+            if hasattr(widget, 'show_tools'):
                 widget.show_tools(self.tools.isVisibleTo(self))
             self.header.raise_()
             self.hud.raise_()
@@ -223,11 +206,9 @@ class BotWindow(QWidget):
         shown = self._shown()
         kind = next(iter(shown & PICTURES), None)
         visible = {id(self.view(key)) for key in shown}
-        if kind is not None or RGB in {row.key for row in VIEW_ROWS if row.widget in self._views}:
-            camera = self.view(RGB)
-            if getattr(self.view(kind), 'kind', kind) != kind if kind else camera.kind:
-                camera.show_kind(kind)
         for widget in self._views.values():
+            if hasattr(widget, 'show_kind') and id(widget) in visible and widget.kind != kind:
+                widget.show_kind(kind)
             widget.setVisible(id(widget) in visible)
         self.views_splitter.setVisible(bool(shown))
         self.motion_page.setVisible(not shown and self._has_room())
@@ -254,7 +235,7 @@ class BotWindow(QWidget):
         units = 7.0 if self.header.large else 4.0
         high = min(inside.height() - height, round(units * self.fontMetrics().height()))
         foot = self.stop_button.height() if self.stop_button.isVisibleTo(self) else 0
-        width = self._views[next(row.widget for row in VIEW_ROWS if row.key == RGB)].width() \
+        width = self.view(next(iter(self._shown() & PICTURES))).width() \
             if picture and self.header.large else inside.width()
         self.hud.setGeometry(inside.x(), inside.bottom() + 1 - high - foot, width, max(1, high))
         self.header.raise_()
@@ -277,7 +258,7 @@ class BotWindow(QWidget):
 
     @property
     def drive_state(self):
-        """One of DRIVING, SELECTED, NOT_SELECTED, STOPPING, NOT_CONFIRMED, STOPPED."""
+        """What :func:`mhri.gui.screen.tile_header.drive_state` says of the robot on show."""
         return self._drive
 
     def show_view(self, view, stop_all=False):
@@ -299,15 +280,11 @@ class BotWindow(QWidget):
 
     def _show_drive_state(self, view, stopped):
         """Show in edge and pill whether this robot is driven right now."""
-        if stopped:
-            drive = _STOPS.get(view.proof.state, STOPPING) if view.proof else STOPPING
-        else:
-            drive = DRIVING if view.driven else SELECTED if view.selected else NOT_SELECTED
+        drive = drive_state(view, stopped)
         if drive == self._drive:
             return
         self._drive = drive
-        ink, filled, _ = _LOOKS[drive]
-        self.pill.say(drive, ink, filled)
+        self.header.show_drive(drive)
         self.stop_button.setText('STOP ALL in force - release on the main screen'
                                  if stopped else 'STOP ALL')
         self.stop_button.show_engaged(stopped)
@@ -341,9 +318,8 @@ class BotWindow(QWidget):
 
     def save_settings(self):
         """Return what is kept between runs as a plain dict: choices, splitter."""
-        kept = {key: self._views[row.widget].save_settings() for row in VIEW_ROWS
-                for key in (row.key,) if row.widget in self._views
-                and hasattr(self._views[row.widget], 'save_settings')}
+        kept = {row.key: self._views[row.widget].save_settings() for row in VIEW_ROWS
+                if row.widget in self._views}
         return {'views': self.switches.chosen(), 'recording': self.recording.save_settings(),
                 'splitter': self.views_splitter.sizes(), 'of_views': kept}
 
@@ -352,7 +328,7 @@ class BotWindow(QWidget):
         if 'views' in settings:
             self.switches.choose(settings['views'])
         for key, kept in settings.get('of_views', {}).items():
-            if any(row.key == key for row in VIEW_ROWS):
+            if key in KEYS:
                 self.view(key).restore_settings(kept)
         self.recording.restore_settings(settings.get('recording', {}))
         sizes = settings.get('splitter', [])
@@ -394,7 +370,7 @@ class BotWindow(QWidget):
 
     def paintEvent(self, event):  # noqa: N802
         """Paint the edge that says whether this robot is driven."""
-        ink, _, width = _LOOKS[self._drive]
+        ink, _, width = LOOKS[self._drive]
         if self._looked_at and self._drive == NOT_SELECTED:
             ink, width = theme.TEXT, 2
         painter = QPainter(self)

@@ -118,7 +118,8 @@ class Hud(QWidget):
         y = self.height() - 0.6 * unit
         font = theme.number_font(theme.larger(self.font(), 1.35 if self._large else 1.0, bold=True))
         ink = _DIM if self._old else QColor(Qt.white)
-        for line in reversed(self._lines if self._shown else ()):
+        lines = self._lines if self._large else self._lines[:1]
+        for line in reversed(lines if self._shown else ()):
             y -= self._paint_line(painter, line, font, ink, 0.7 * unit, y)
         if self._sentence:
             self._paint_sentence(painter, y - 0.2 * unit)
@@ -147,10 +148,13 @@ class Hud(QWidget):
         painter.setFont(font)
         metrics, unit = painter.fontMetrics(), self.fontMetrics().height()
         side = metrics.height() if self._sign else 0
-        room = QRectF(0.6 * unit + 1.3 * side, 0, self.width() - 1.6 * unit - 1.3 * side,
-                      max(unit, foot))
+        left = 0.6 * unit + 1.3 * side
+        room = QRectF(left, 0, self.width() - left - unit, max(unit, foot))
         flags = int(Qt.AlignLeft | Qt.AlignBottom | Qt.TextWordWrap)
-        needed = metrics.boundingRect(room.toRect(), flags, self._sentence)
+        text = next((text for text in (self._sentence, *words.beginnings(self._sentence))
+                     if metrics.boundingRect(room.toRect(), flags, text).height()
+                     <= room.height()), self._sentence)
+        needed = metrics.boundingRect(room.toRect(), flags, text)
         ground = QRectF(0.4 * unit, needed.top() - 0.15 * unit,
                         needed.right() - 0.4 * unit + 0.5 * unit, needed.height() + 0.3 * unit)
         painter.setPen(Qt.NoPen)
@@ -161,4 +165,4 @@ class Hud(QWidget):
             theme.paint_sign(painter, QRectF(ground.left() + 0.2 * unit, needed.top(), side, side),
                              shape, theme.colour(colour, self.palette()), QColor(Qt.black))
         painter.setPen(Qt.white)
-        painter.drawText(room, flags, self._sentence)
+        painter.drawText(room, flags, text)

@@ -13,7 +13,9 @@ from mhri.gui.screen import theme
 
 ROBOTS, DRIVE = 'Robots', 'Drive'
 # Width of the drawer at first, in heights of a line.
-_DRAWER_UNITS = 25.0
+_DRAWER_UNITS = 23.0
+# Height of the foot at the bottom of the drawer.
+_SIDE_FOOT_UNITS = 13.0
 
 
 class ScreenLayout(QObject):
@@ -143,7 +145,9 @@ class ScreenLayout(QObject):
         beside = screen.stage.picture_px(width - side, height) if is_open else 0.0
         below = screen.stage.picture_px(width - side, height - foot)
         share = beside / below if below else 2.0
-        in_side = is_open and share > (1.0 if self._in_side else WORTH_MOVING)
+        fits = screen.drawer.minimumSizeHint().height() + _SIDE_FOOT_UNITS * \
+            screen.fontMetrics().height() <= height
+        in_side = is_open and fits and share > (1.0 if self._in_side else WORTH_MOVING)
         if in_side != self._in_side and not screen.joystick.dragging:
             self._move_foot(in_side)
         screen.side.setVisible(is_open)

@@ -11,7 +11,7 @@ from mhri.gui.screen import theme
 
 _GAP_PX = 4
 # Least size of a small tile, in heights of a line: its name and a picture that can be made out.
-_LEAST_UNITS = (8.5, 4.0)
+_LEAST_UNITS = (9.0, 6.5)
 _FLOAT_UNITS = 9.0
 _EMPTY = ('No robots yet.\n\nPress "Look for Connected Bots",\n'
           'or type the name of one and press "Add Bot".')

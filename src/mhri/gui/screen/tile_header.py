@@ -13,6 +13,37 @@ from mhri.gui.screen.labels import BatteryLine, Pill, Sign, TextLine
 VIEWS = 'Views'
 TEAR_OFF, PUT_BACK = 'Tear off', 'Put back'
 
+DRIVING = 'DRIVING'
+SELECTED = 'selected'
+NOT_SELECTED = 'not selected'
+STOPPING = 'STOPPING'
+NOT_CONFIRMED = 'NOT CONFIRMED'
+STOPPED = 'STOPPED'
+
+# How each drive state looks: colour, whether the pill is filled, width of the tile's edge [px]; the
+# last is that of a robot which nobody drives.
+LOOKS = {
+    DRIVING: (theme.DRIVE, True, 4),
+    SELECTED: (theme.DRIVE, False, 2),
+    STOPPING: (theme.STOP, False, 4),
+    NOT_CONFIRMED: (theme.STOP, True, 4),
+    STOPPED: (theme.STOP, True, 4),
+    NOT_SELECTED: (theme.MUTED, False, 1),
+}
+# What a stop is called that is proved so far.
+_STOPS = {views.PROOF_STOPPED: STOPPED, views.PROOF_NOT_CONFIRMED: NOT_CONFIRMED}
+
+
+def drive_state(view, stopped):
+    """Return in a word whether a robot is driven: a key of :data:`LOOKS`.
+
+    :param view: :class:`mhri.core.screen.views.RobotView`
+    :param stopped: whether stop-all is in force
+    """
+    if stopped:
+        return _STOPS.get(view.proof.state, STOPPING) if view.proof else STOPPING
+    return DRIVING if view.driven else SELECTED if view.selected else NOT_SELECTED
+
 
 class TileHeader(QWidget):
     """Lies on the picture, light on dark in every theme; small tiles leave out what can be left.
@@ -21,12 +52,12 @@ class TileHeader(QWidget):
     ``link_label``, ``battery_label``, ``rec_label``, ``views_button``, ``tear_button``.
     """
 
-    def __init__(self, name, type_label, pill_words, parent=None):
+    def __init__(self, name, type_label, parent=None):
         super().__init__(parent)
         self.large = True
-        self._build(name, type_label, pill_words)
+        self._build(name, type_label)
 
-    def _build(self, name, type_label, pill_words):
+    def _build(self, name, type_label):
         """Make and place the parts."""
         self.setObjectName('tile_header')
         self.setPalette(theme.over_picture(self.palette()))
@@ -34,7 +65,6 @@ class TileHeader(QWidget):
         self.type_label, self.link_label = TextLine(self), TextLine(self)
         self.rec_label, self.battery_label = TextLine(self), BatteryLine(self)
         self.pill, self.link_sign = Pill(self), Sign(self)
-        self.pill.set_words(pill_words)
         self.name_label.show_text(name)
         self.type_label.show_text(type_label, theme.MUTED)
         self.views_button = QPushButton(VIEWS, self)
@@ -85,7 +115,15 @@ class TileHeader(QWidget):
         for button in (self.views_button, self.tear_button):
             button.setMinimumHeight(theme.touch_size(self))
         self.link_label.setVisible(large)
+        self.show_drive(self.pill.word)
         self._row.setStretch(1, 0 if large else 1)
+
+    def show_drive(self, word):
+        """Say in the pill how the robot is driven; small tiles leave out that it is not."""
+        if word:
+            self.pill.say(word, *LOOKS[word][:2])
+        self.pill.set_words(tuple(LOOKS) if self.large else (word,))
+        self.pill.setVisible(bool(word) and (self.large or word != NOT_SELECTED))
 
     def _fit_name(self):
         """Give number and name the room that they need."""
