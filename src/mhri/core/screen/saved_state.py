@@ -3,10 +3,10 @@
 """What the screen kept from its last run, as far as it can be used: anybody may have edited it.
 
 A state is a dict of JSON values: ``robots`` (names), ``numbers`` ({robot: its own number}),
-``mode`` (a source), ``limits`` [m/s, rad/s], ``together``, ``windows`` ({robot: geometry}, where its tile
-was when it was torn off), ``torn_off`` (robots), ``looks`` ({robot: what its window shows}) and ``panel`` (``splitter``, ``geometry``). A geometry is
-[x, y, width, height, maximised] in pixels: a text that can be read, and no blob that Qt would have
-to trust.
+``mode`` (a source), ``limits`` [m/s, rad/s], ``together``, ``windows`` ({robot: geometry}, where its
+tile was when it was torn off), ``torn_off`` (robots), ``looks`` ({robot: what its tile shows}) and
+``panel`` (``splitter``, ``drawer``, ``geometry``). A geometry is [x, y, width, height, maximised] in
+pixels: a text that can be read, and no blob that Qt would have to trust.
 """
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
 
@@ -197,12 +197,14 @@ def _read_panel(value: Any, problems: List[str], key: str) -> State:
 
 _LOOK = {'views': _read_words, 'of_views': _read_views, 'recording': _read_recording,
          'splitter': read_sizes}
-_PANEL: Dict[str, _PartReader] = {'splitter': _plain(read_sizes), 'geometry': _plain(read_geometry),
-                                   'drawer': _plain(_read_flag)}
+_PANEL: Dict[str, _PartReader] = {
+    'splitter': _plain(read_sizes), 'drawer': _plain(_read_flag),
+    'geometry': _plain(read_geometry)}
 _STATE: Dict[str, _PartReader] = {
     'robots': _plain(_read_robots), 'numbers': _plain(_read_numbers), 'mode': _plain(_read_mode),
     'limits': _plain(read_limits), 'together': _plain(_read_flag),
-    'windows': _by_robot(read_geometry), 'torn_off': _plain(_read_torn), 'looks': _by_robot(_read_look), 'panel': _read_panel}
+    'windows': _by_robot(read_geometry), 'torn_off': _plain(_read_torn),
+    'looks': _by_robot(_read_look), 'panel': _read_panel}
 
 
 def _read_parts(value: State, readers: Dict[str, _PartReader], problems: List[str],
