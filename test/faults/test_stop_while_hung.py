@@ -41,7 +41,7 @@ class Desk:
         from mhri.msg import ControlMode
         from support.velocity import VelocityEnd
         self._folder = str(folder)
-        self._axes, self._done = [0.0, 0.0], threading.Event()
+        self._axes, self.done = [0.0, 0.0], threading.Event()
         self._stops = []
         self.robot = VelocityEnd('/bot1/cmd_vel')
         rospy.Subscriber('/robot_controller/stop_all', Bool, self._on_stop, tcp_nodelay=True)
@@ -67,7 +67,7 @@ class Desk:
 
     def _press_pedal(self):
         from sensor_msgs.msg import Joy
-        while not self._done.wait(0.02):
+        while not self.done.wait(0.02):
             self._joy.publish(Joy(axes=list(self._axes)))
 
     def _on_stop(self, message):
@@ -146,7 +146,9 @@ def desk(tmp_path_factory):
         system.start(sys.executable, os.path.join(SUPPORT, 'plain_robot.py'), 'cmd_vel', 'odom',
                      '__name:=base')
         del system.env['ROS_NAMESPACE']
-        yield Desk(system, tmp_path_factory.mktemp('desk'))
+        made = Desk(system, tmp_path_factory.mktemp('desk'))
+        yield made
+        made.done.set()
         rospy.signal_shutdown('done')
 
 
@@ -158,10 +160,9 @@ def click(place):
 @pytest.mark.parametrize('how', sorted(HANGS))
 @pytest.mark.parametrize('by', ['click', 'keys'])
 def test_stop_works_while_a_view_hangs(desk, how, by):
-    place = desk.place(0)
     xdotool('windowfocus', '--sync', desk.window)
-    xdotool('mousemove', *place)
     desk.drive()
+    place = desk.place(0)
     desk.hang(how)
     pressed = time.monotonic()
     if by == 'click':
