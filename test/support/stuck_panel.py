@@ -15,6 +15,7 @@ import time
 from python_qt_binding.QtCore import QTimer
 from python_qt_binding.QtWidgets import QWidget
 
+from mhri.gui.driving.stop_bar import StopBar
 import mhri.nodes.panel
 
 HANGS = {'sleep': time.sleep, 'hold': lambda s: ctypes.PyDLL(None).usleep(int(1e6 * s))}
@@ -33,7 +34,7 @@ class StuckView(QWidget):
         self._timer.start(20)
 
     def _look(self):
-        button = self.window().findChild(QWidget, 'stop_button')
+        button = self.window().findChild(StopBar).stop_button
         self._write('places', json.dumps([
             [at.x(), at.y()] for at in (
                 button.mapToGlobal(button.rect().center()),
