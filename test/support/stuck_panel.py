@@ -4,7 +4,7 @@
 
 A file ``sleep`` or ``hold`` there, with seconds in it, lets the view block that long while it is
 painted: asleep, or with Python's lock held. ``stuck`` is there while it does; ``places`` says where
-the stop button and the middle of the window are [px of the screen].
+the stop button, while it is shown, and the middle of the window are [px of the screen].
 """
 import ctypes
 import json
@@ -35,17 +35,19 @@ class StuckView(QWidget):
 
     def _look(self):
         button = self.window().findChild(StopBar).stop_button
-        self._write('places', json.dumps([
-            [at.x(), at.y()] for at in (
-                button.mapToGlobal(button.rect().center()),
-                self.window().mapToGlobal(self.window().rect().center()))]))
+        if button.isVisible():
+            self._write('places', json.dumps([
+                [at.x(), at.y()] for at in (
+                    button.mapToGlobal(button.rect().center()),
+                    self.window().mapToGlobal(self.window().rect().center()))]))
         for word in HANGS:
             path = os.path.join(self._folder, word)
             if os.path.exists(path):
                 with open(path) as file:
                     self._todo = HANGS[word], float(file.read())
                 os.remove(path)
-                self.update()
+                # What is seen now is to be known to the watch by then.
+                QTimer.singleShot(500, self.update)
 
     def _write(self, name, text):
         path = os.path.join(self._folder, name)
