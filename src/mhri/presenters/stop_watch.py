@@ -64,33 +64,34 @@ class StopWatch(QObject):
                 return
             self._start_process()
         try:
-            self._hear()
+            words = self._hear()
+            if 'cannot' in words:
+                self.close()
+                self._cannot(words['cannot'])
+                return
             self._socket.send(json.dumps(stop_places()).encode())
         except BlockingIOError:
             pass  # it has not read the last ones; it will
         except OSError:
             self._end_process()
             self._beats_to_start = _AGAIN_AFTER
-
-    def _hear(self):
-        """Take what the watch has said; a watch that has gone is an ``OSError``."""
-        try:
-            while True:
-                packet = self._socket.recv(4096)
-                if not packet:
-                    raise ConnectionError('the watch has gone')
-                self._take(json.loads(packet.decode()))
-        except BlockingIOError:
             return
-
-    def _take(self, words):
-        """Pass on what the watch has said."""
-        if 'cannot' in words:
-            self._timer.stop()
-            self._cannot(words['cannot'])
-        else:
+        if 'said' in words:
             rospy.logwarn(words['said'])
             self.said.emit(words['said'])
+
+    def _hear(self):
+        """Return what the watch has said, {} for nothing.
+
+        :raises OSError: it has gone
+        """
+        try:
+            packet = self._socket.recv(4096)
+        except BlockingIOError:
+            return {}
+        if not packet:
+            raise ConnectionError('the watch has gone')
+        return json.loads(packet.decode())
 
     def close(self):
         """End the watch."""

@@ -6,6 +6,7 @@ Its standard input is a socket from :mod:`mhri.presenters.stop_watch`, of which 
 beat: :func:`mhri.gui.driving.stop_button.stop_places` as JSON. It says in packets of JSON what it
 did, ``{"said": text}``, or why it can do nothing, ``{"cannot": text}``. It ends with the screen.
 """
+import contextlib
 import json
 import select
 import signal
@@ -120,3 +121,8 @@ def main():
         StopWatchProcess(screen, XPresses(), StopLine(sys.argv[1])).run()
     except XError as error:
         tell(screen, cannot=str(error))
+        # An end with beats unread would take that word from the screen: it ends this when it knows.
+        screen.setblocking(True)
+        with contextlib.suppress(ConnectionError):
+            while screen.recv(_PACKET_BYTES):
+                pass
