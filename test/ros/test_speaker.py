@@ -15,7 +15,7 @@ PATIENCE_S = 60.0
 
 
 def pitches(sound, rate_hz, part_s=0.06):
-    """Return the loudest pitch [Hz] of each part of a sound that is not silent, repeats left out."""
+    """Return the loudest pitch [Hz] of each part that is not silent, repeats left out."""
     size, found = round(part_s * rate_hz), []
     for start in range(0, len(sound) - size, size // 2):
         part = sound[start:start + size].astype(float)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The one device here that is written to: tones through SDL's mixer (pygame), in a child process.
 
-Loading pygame takes 0.3 s, opening a device of a busy sound server may take seconds, and where there
-is none ALSA writes a page to the terminal: nothing of that is for a process that drives robots.
+Loading pygame takes 0.3 s, opening a device of a busy sound server may take seconds, and where
+there is none ALSA writes a page to the terminal: nothing for a process that drives robots.
 """
 import json
 import logging

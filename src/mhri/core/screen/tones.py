@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The three tones of the screen as samples: they differ in rhythm and in pitch, and none is long."""
+"""The three tones of the screen as samples: they differ in rhythm and pitch, and none is long."""
 from typing import Any, Dict, Tuple
 
 import numpy as np

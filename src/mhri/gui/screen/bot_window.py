@@ -292,7 +292,7 @@ class BotWindow(QDialog):
         self.link_label.show_text(words.link_text(view))
         self.speed_label.show_text(words.linear_text(view.linear_mps), tone)
         self.heading_label.show_text('heading ' + words.heading_text(view.heading_rad), tone)
-        self.battery_label.show_charge(view.battery)
+        self.battery_label.show_charge(view.battery, view.link != views.LIVE)
         self.x_value.show_text('x ' + words.metres_text(view.x_m), tone)
         if self.pose_label.isVisible():
             self.pose_label.show_text('x {}  y {}'.format(
