@@ -3,9 +3,9 @@
 """What the screen kept from its last run, as far as it can be used: anybody may have edited it.
 
 A state is a dict of JSON values: ``robots`` (names), ``mode`` (a source), ``limits`` [m/s, rad/s],
-``together``, ``windows`` ({robot: geometry}), ``looks`` ({robot: what its window shows}) and
-``panel`` (``splitter``, ``geometry``). A geometry is [x, y, width, height, maximised] in pixels: a
-text that can be read, and no blob that Qt would have to trust.
+``together``, ``windows`` ({robot: geometry}), ``looks`` ({robot: what its window shows}), ``panel``
+(``splitter``, ``geometry``) and ``events`` (``sounds``). A geometry is [x, y, width, height,
+maximised] in pixels: a text that can be read, and no blob that Qt would have to trust.
 """
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
 
@@ -172,13 +172,20 @@ def _read_panel(value: Any, problems: List[str], key: str) -> State:
     return _read_parts(value, _PANEL, problems, key + '.')
 
 
+def _read_events(value: Any, problems: List[str], key: str) -> State:
+    if not isinstance(value, dict):
+        _refuse('a dict')
+    return _read_parts(value, {'sounds': _plain(_read_flag)}, problems, key + '.')
+
+
 _LOOK = {'views': _read_words, 'graph': _read_graph, 'recording': _read_recording,
          'splitter': read_sizes}
 _PANEL: Dict[str, _PartReader] = {'splitter': _plain(read_sizes), 'geometry': _plain(read_geometry)}
 _STATE: Dict[str, _PartReader] = {
     'robots': _plain(_read_robots), 'mode': _plain(_read_mode), 'limits': _plain(read_limits),
     'together': _plain(_read_flag), 'windows': _by_robot(read_geometry),
-    'looks': _by_robot(_read_look), 'panel': _read_panel}
+    'looks': _by_robot(_read_look), 'panel': _read_panel,
+    'events': _read_events}
 
 
 def _read_parts(value: State, readers: Dict[str, _PartReader], problems: List[str],

@@ -5,24 +5,27 @@ from python_qt_binding.QtCore import (
     QAbstractTableModel, QModelIndex, QRectF, QSize, QSortFilterProxyModel, Qt, Signal)
 from python_qt_binding.QtGui import QPainter, QPalette, QPixmap
 from python_qt_binding.QtWidgets import (
-    QAbstractItemView, QComboBox, QHBoxLayout, QHeaderView, QPushButton, QTreeView, QVBoxLayout,
-    QWidget)
+    QAbstractItemView, QComboBox, QHBoxLayout, QHeaderView, QPushButton, QSizePolicy, QTreeView,
+    QVBoxLayout, QWidget)
 
 from mhri.core.screen.events import ALARM, ATTENTION, CALM, clock_text, MOST, SEVERITIES
 from mhri.gui.driving.drive_keys import keep_arrows
 from mhri.gui.screen import theme
-from mhri.gui.screen.labels import plain_tip, TextLine
+from mhri.gui.screen.labels import plain_tip
 from mhri.gui.screen.switches import SwitchBox
 
 TIME, SEVERITY, ROBOT, WHAT = range(4)
 _HEADS = ('Time', 'State', 'Robot', 'What')
 SEVERITY_WORDS = {CALM: 'note', ATTENTION: 'attention', ALARM: 'alarm'}
 # What the second drop-down lets through: label, the least severity.
-_LEAST = (('Everything', CALM), ('Attention and alarms', ATTENTION), ('Alarms', ALARM))
+_LEAST = (('All events', CALM), ('Attention', ATTENTION), ('Alarms', ALARM))
 ALL_ROBOTS = 'All robots'
 NEWEST = 'Newest'
 _EVENT = Qt.UserRole
-_LONGEST_NAME = 'turtlebot_12'
+# The column of names has room for the longest name, up to so many characters.
+_MOST_CHARACTERS = 12
+# Narrower than this [line heights], the shape of a severity goes without its word.
+_NARROW = 32
 
 
 class EventModel(QAbstractTableModel):
@@ -31,6 +34,8 @@ class EventModel(QAbstractTableModel):
     def __init__(self, parent):
         super().__init__(parent)
         self._widget = parent
+        #: whether a severity is said by its word, too
+        self.with_words = True
         self._events = []
         self._signs = {}
 
@@ -52,16 +57,26 @@ class EventModel(QAbstractTableModel):
         if role == _EVENT:
             return event
         if role == Qt.DisplayRole:
-            return (clock_text(event.time_s), SEVERITY_WORDS[event.severity], event.robot,
-                    event.words)[column]
+            return self._text(event, column) if column != SEVERITY or self.with_words else ''
+        if role == Qt.SizeHintRole:
+            return QSize(0, theme.touch_size(self._widget))
+        if role in (Qt.ToolTipRole, Qt.AccessibleTextRole):
+            words = self._text(event, column)
+            return plain_tip(words) if role == Qt.ToolTipRole else words
+        return self._looks(event, column, role)
+
+    @staticmethod
+    def _text(event, column):
+        """Return what a cell says."""
+        return (clock_text(event.time_s), SEVERITY_WORDS[event.severity], event.robot,
+                event.words)[column]
+
+    def _looks(self, event, column, role):
+        """Return the shape of a severity, and that what is calm steps back."""
         if role == Qt.DecorationRole and column == SEVERITY:
             return self._sign(event.severity)
         if role == Qt.ForegroundRole and event.severity == CALM and column != WHAT:
             return theme.colour(theme.MUTED, self._widget.palette())
-        if role == Qt.ToolTipRole:
-            return plain_tip(event.words)
-        if role == Qt.SizeHintRole:
-            return QSize(0, theme.touch_size(self._widget))
         return None
 
     def _sign(self, severity):
@@ -158,22 +173,22 @@ class EventList(QWidget):
         """Make and place the parts."""
         self.setObjectName('event_list')
         self.setFont(theme.base_font(self.font()))
-        self.robot_combo = self._combo('Events of', [(ALL_ROBOTS, '')])
-        self.severity_combo = self._combo('At least', _LEAST)
+        self.robot_combo = self._combo('events of', [(ALL_ROBOTS, '')])
+        self.severity_combo = self._combo('events that are at least', _LEAST)
         self.sounds = SwitchBox('Sounds', self)
         self.sounds.setChecked(True)
         self.sounds.setToolTip('off: only a robot that is lost while it is driven is heard')
-        self.note = TextLine(self)
         self.newest_button = QPushButton(NEWEST, self)
         self.newest_button.setMinimumHeight(theme.touch_size(self))
         self.newest_button.setFocusPolicy(Qt.TabFocus)
         self.newest_button.setMinimumWidth(
-            theme.text_width(self.font(), NEWEST + ' (8888)') + theme.touch_size(self))
+            theme.text_width(self.font(), NEWEST + ' (88)') + theme.touch_size(self) // 4)
         head = QHBoxLayout()
         head.setSpacing(round(0.5 * self.fontMetrics().height()))
-        for widget, stretch in ((self.robot_combo, 0), (self.severity_combo, 0), (self.sounds, 0),
-                                (self.note, 1), (self.newest_button, 0)):
+        for widget, stretch in ((self.robot_combo, 1), (self.severity_combo, 1), (self.sounds, 0)):
             head.addWidget(widget, stretch)
+        head.addStretch(1)
+        head.addWidget(self.newest_button)
         self.model = EventModel(self)
         self.filter = EventFilter(self)
         self.filter.setSourceModel(self.model)
@@ -192,7 +207,12 @@ class EventList(QWidget):
         combo.setFocusPolicy(Qt.TabFocus)
         combo.setMinimumHeight(theme.touch_size(self))
         combo.setSizeAdjustPolicy(QComboBox.AdjustToMinimumContentsLengthWithIcon)
-        combo.setMinimumContentsLength(max(len(label) for label, _ in (*rows, (ALL_ROBOTS, ''))))
+        # As wide as its first row at least; the arrow takes a little more than a line is high.
+        arrow = round(1.6 * self.fontMetrics().height())
+        combo.setMinimumContentsLength(0)
+        combo.setMinimumWidth(theme.text_width(self.font(), rows[0][0]) + arrow)
+        combo.setMaximumWidth(theme.text_width(self.font(), 'm' * _MOST_CHARACTERS) + arrow)
+        combo.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
         for label, value in rows:
             self._add_row(combo, label, value)
         return combo
@@ -201,6 +221,10 @@ class EventList(QWidget):
         """Add a row to a drop-down."""
         combo.addItem(label, value)
         combo.setItemData(combo.count() - 1, QSize(0, theme.touch_size(self)), Qt.SizeHintRole)
+        # The list may be wider than its button.
+        view = combo.view()
+        view.setMinimumWidth(max(view.minimumWidth(), theme.text_width(self.font(), label)
+                                 + theme.touch_size(self)))
 
     def _make_lines(self):
         """Make the list of lines."""
@@ -211,6 +235,8 @@ class EventList(QWidget):
         lines.setFont(theme.number_font(self.font()))
         lines.setRootIsDecorated(False)
         lines.setUniformRowHeights(True)
+        # A row that a finger hits has room for two lines.
+        lines.setWordWrap(True)
         lines.setAllColumnsShowFocus(True)
         lines.setSelectionMode(QAbstractItemView.SingleSelection)
         lines.setEditTriggers(QAbstractItemView.NoEditTriggers)
@@ -220,16 +246,25 @@ class EventList(QWidget):
         keep_arrows(lines)
         lines.verticalScrollBar().setStyleSheet('QScrollBar:vertical {{ width: {}px; }}'.format(
             round(0.6 * theme.touch_size(self))))
-        header, unit = lines.header(), self.fontMetrics().height()
+        header = lines.header()
         header.setSectionsMovable(False)
-        header.setMinimumSectionSize(unit)
+        header.setMinimumSectionSize(self.fontMetrics().height())
         header.setSectionResizeMode(QHeaderView.Fixed)
         header.setSectionResizeMode(WHAT, QHeaderView.Stretch)
-        for column, samples, extra in ((TIME, ('00:00:00',), 1),
-                                       (SEVERITY, SEVERITY_WORDS.values(), 3),
-                                       (ROBOT, (_LONGEST_NAME,), 1)):
-            header.resizeSection(column, theme.text_width(lines.font(), *samples) + extra * unit)
         return lines
+
+    def _size_columns(self):
+        """Give the columns the room they need, and what is left to the text."""
+        header, font = self.lines.header(), self.lines.font()
+        unit = self.fontMetrics().height()
+        names = [name[:_MOST_CHARACTERS] for name in (*self._robots, _HEADS[ROBOT])]
+        self.model.with_words = self.width() >= _NARROW * unit
+        state = unit + theme.text_width(
+            font, *(SEVERITY_WORDS.values() if self.model.with_words else ('',)))
+        for column, needed in ((TIME, theme.text_width(font, '00:00:00')),
+                               (SEVERITY, max(state, theme.text_width(font, _HEADS[SEVERITY]))),
+                               (ROBOT, theme.text_width(font, *names))):
+            header.resizeSection(column, needed + unit)
 
     def _connect(self):
         """Wire the parts."""
@@ -270,11 +305,11 @@ class EventList(QWidget):
         for label, value in ((ALL_ROBOTS, ''), *((name, name) for name in names)):
             self._add_row(self.robot_combo, label, value)
         self.robot_combo.setCurrentIndex(max(0, self.robot_combo.findData(chosen)))
+        self._size_columns()
 
-    def show_sounds(self, on, problem=''):
-        """Show whether tones are heard, and why none can be."""
+    def show_sounds(self, on):
+        """Show whether tones are heard."""
         self.sounds.setChecked(on)
-        self.note.show_text(problem, theme.MUTED)
 
     def show_newest(self):
         """Go to the newest line and stay with it."""
@@ -330,7 +365,8 @@ class EventList(QWidget):
         self.seen.emit()
 
     def resizeEvent(self, event):  # noqa: N802
-        """Stay with the newest."""
+        """Fill the room there is, and stay with the newest."""
         super().resizeEvent(event)
+        self._size_columns()
         if self._follows:
             self.lines.scrollToBottom()
