@@ -9,10 +9,11 @@ from python_qt_binding.QtTest import QTest
 
 from mhri.core.recording.recording import FAILED, RecordingStatus
 from mhri.core.screen import views
-from mhri.core.screen.events import ALARM, clock_text, EventLog, MOST
+from mhri.core.events.events import ALARM, CALM, clock_text, EventLog, Headline, MOST
 from mhri.core.screen.views import PanelView, RobotView
 from mhri.gui.screen import theme
-from mhri.gui.screen.event_list import EventList, ROBOT, SEVERITY, TIME, WHAT
+from mhri.gui.events.event_button import EventButton
+from mhri.gui.events.event_list import EventList, ROBOT, SEVERITY, TIME, WHAT
 from mhri.presenters.event_host import EventHost
 
 WALL_S = 1.8e9
@@ -140,18 +141,18 @@ def test_the_robot_that_is_chosen_stays_though_it_has_left(shown, operator):
 def test_it_follows_the_newest_until_somebody_scrolls_up(shown, operator, heard):
     shown.add(many(50))
     operator.settle()
-    assert at_end(shown) and not shown.newest_button.isEnabled()
+    assert at_end(shown) and not shown.newest_button.isVisible()
     shown.lines.verticalScrollBar().setValue(40)
     operator.settle()
     top = shown.lines.indexAt(QPoint(5, 5)).row()
     shown.add(many(7, 50))
     operator.settle()
     assert shown.lines.indexAt(QPoint(5, 5)).row() == top, 'what is read does not jump'
-    assert shown.newest_button.text() == 'Newest (7)' and shown.newest_button.isEnabled()
+    assert shown.newest_button.text() == 'Newest (7)' and shown.newest_button.isVisible()
     seen = heard(shown.seen)
     operator.click(shown.newest_button)
     operator.settle()
-    assert at_end(shown) and shown.newest_button.text() == 'Newest' and seen
+    assert at_end(shown) and not shown.newest_button.isVisible() and seen
     shown.add(many(5, 57))
     operator.settle()
     assert at_end(shown)
@@ -196,18 +197,21 @@ def test_only_new_rows_are_made(shown):
     assert inserted == [(1004, 1006)]
 
 
-@pytest.mark.parametrize('width', [440, 520, 700, 1200])
+@pytest.mark.parametrize('width', [370, 520, 700, 1200])
 def test_nothing_is_clipped_and_fingers_hit(shown, operator, width):
     shown.add(log_of([('link.gone', 'gone: switched off or out of reach; last heard 14:02:04',
                        'bot2')]).events)
     shown.resize(width, 300)
     operator.settle()
-    head = (shown.robot_combo, shown.severity_combo, shown.sounds, shown.newest_button)
+    shown.lines.verticalScrollBar().setValue(0)
+    operator.settle()
+    head = (shown.robot_combo, shown.severity_combo, shown.sounds)
     for one, other in zip(head, head[1:]):
         assert one.geometry().right() < other.geometry().left()
-    assert shown.minimumSizeHint().width() <= 440
+    assert shown.minimumSizeHint().width() <= 370
     assert head[-1].geometry().right() < shown.width()
-    assert min(widget.height() for widget in head) >= 36
+    assert shown.lines.rect().contains(shown.newest_button.geometry())
+    assert min(widget.height() for widget in (*head, shown.newest_button)) >= 36
     index = shown.filter.index(shown.filter.rowCount() - 1, WHAT)
     assert shown.lines.visualRect(index).height() >= 36
     metrics, room = shown.lines.fontMetrics(), shown.lines.visualRect(index).size()
@@ -249,15 +253,15 @@ VIEW = PanelView(ros=views.ROS_CONNECTED, mode='joy', robots=(BOT,))
 
 
 @pytest.fixture
-def host(operator):
-    """Return a host whose list is on the screen, its tones and its clock."""
-    made, now = [], [0.0]
-    made_host = EventHost(lambda name: made_host.status, lambda on_absent: made.append(
-        Tones(on_absent)) or made[0], lambda: now[0], lambda: WALL_S + now[0])
-    made_host.status, made_host.tones, made_host.now = RecordingStatus(), made[0], now
+def host(panel, operator):
+    """Return a host on a screen, with its tones."""
+    made = []
+    made_host = EventHost(lambda name: made_host.status, panel, lambda on_absent: made.append(
+        Tones(on_absent)) or made[0], lambda: 0.0, lambda: WALL_S)
+    made_host.status, made_host.tones = RecordingStatus(), made[0]
     made_host.start()
-    operator.show(made_host.list)
     made_host.show(VIEW)
+    panel.show_view(VIEW)
     yield made_host
     made_host.close()
     assert made_host.tones.state == 'closed'
@@ -271,7 +275,7 @@ def lose(host, **values):
 def test_the_host_shows_what_changes_and_lets_it_be_heard(host, heard):
     told = heard(host.told)
     lose(host)
-    assert rows(host.list) == ['found', 'silent: nothing']
+    assert rows(host.page) == ['found', 'silent: nothing']
     assert host.tones.played == ['attention']
     assert [event.kind for event in told[0]] == ['link.silent']
     host.show(VIEW)
@@ -281,12 +285,12 @@ def test_the_host_shows_what_changes_and_lets_it_be_heard(host, heard):
 def test_the_host_tells_of_recordings(host):
     host.status = RecordingStatus(FAILED, note='the disk is full')
     host.show(VIEW)
-    assert rows(host.list)[-1] == 'not recorded: the disk is full'
+    assert rows(host.page)[-1] == 'not recorded: the disk is full'
 
 
 @pytest.mark.parametrize('selected, played', [(False, []), (True, ['lost'])])
 def test_silenced_only_a_robot_lost_while_driven_is_heard(host, operator, selected, played):
-    operator.click(host.list.sounds)
+    operator.click(host.page.sounds)
     host.show(replace(VIEW, robots=(replace(BOT, selected=selected),)))
     lose(host, selected=selected)
     assert host.tones.played == played
@@ -295,25 +299,58 @@ def test_silenced_only_a_robot_lost_while_driven_is_heard(host, operator, select
 
 def test_the_switch_is_kept(host, operator):
     host.restore_settings({'sounds': False})
-    assert not host.list.sounds.isChecked()
-    operator.click(host.list.sounds)
+    assert not host.page.sounds.isChecked()
+    operator.click(host.page.sounds)
     assert host.save_settings() == {'sounds': True}
     host.restore_settings({})
-    assert host.list.sounds.isChecked()
+    assert host.page.sounds.isChecked()
 
 
 def test_without_a_sound_device_a_line_says_so(host):
     host.tones.on_absent('no sound device can be opened: none')
     host.show(VIEW)
     host.show(VIEW)
-    assert rows(host.list)[1:] == ['no sound: no sound device can be opened: none']
+    assert rows(host.page)[1:] == ['no sound: no sound device can be opened: none']
 
 
-def test_a_note_and_the_headline(host, operator):
+def test_the_bottom_line_names_the_worst_and_a_click_opens_the_list(host, panel, operator):
+    button = panel.events_button
     host.log.see()
+    assert not host.page.isVisible()
     lose(host, selected=True)
     host.note('request.refused', 'not done: bot9 is not in the list')
-    assert host.headline() == (
-        'bot1 lost while driven {} (1 more)'.format(clock_text(WALL_S)), ALARM)
-    click_line(operator, host.list, 0)
-    assert host.headline().text == ''
+    worst = 'bot1 lost while driven ' + clock_text(WALL_S)
+    assert (button.text(), button.severity) == (worst + ' (1 more)', ALARM)
+    assert button.height() >= 36 and button.toolTip() == button.text()
+    operator.click(button)
+    operator.settle()
+    assert host.page.isVisible() and rows(host.page)[-1].startswith('not done: ')
+    assert button.text() == 'Events', 'whoever has opened the list has seen it'
+
+
+@pytest.mark.parametrize('width, shown', [
+    (500, 'bot1 lost while driven 14:02:06 (2 more)'), (300, 'bot1 lost while driven 14:02:06'),
+    (130, '3 events')])
+def test_the_words_of_the_bottom_line_give_way(operator, width, shown):
+    button = EventButton()
+    button.show_headline(Headline('bot1 lost while driven 14:02:06 (2 more)', ALARM), 3)
+    button.resize(width, 40)
+    assert button.shown_text() == shown
+    button.show_headline(Headline('', CALM), 0)
+    assert button.shown_text() == 'Events' and button.minimumSizeHint().width() <= 130
+
+
+def test_a_click_on_a_line_looks_at_the_robot(host, panel, operator, heard):
+    looked = heard(panel.looked_at)
+    host.note('screen.note', 'a robot that has left', 'bot7')
+    operator.click(panel.events_button)
+    operator.settle()
+    click_line(operator, host.page, 1)
+    click_line(operator, host.page, 0)
+    assert set(looked) == {'bot1'} and panel.stage.looked_at == 'bot1'
+
+
+def test_tones_are_made_ready_a_while_after_the_start(host):
+    assert host.tones.state == 'made' and host._begin.isActive()
+    host._begin.timeout.emit()
+    assert host.tones.state == 'started'

@@ -8,8 +8,8 @@ import pytest
 
 from mhri.core.recording.recording import ENDED, FAILED, RECORDING, RecordingStatus
 from mhri.core.screen.battery import battery_level, FINE, FLAT, LOW
-from mhri.core.screen.changes import BACK_S, GOOD_LINK_S
-from mhri.core.screen.events import (
+from mhri.core.events.changes import BACK_S, GOOD_LINK_S
+from mhri.core.events.events import (
     ALARM, ATTENTION, CALM, clock_text, EventLog, KINDS, LOST_TONE, REPEAT_S, SEVERITIES)
 from mhri.core.screen.views import (
     ControlView, GONE, LinkFigures, LIVE, PanelView, PROOF_NOT_CONFIRMED, PROOF_STOPPED,

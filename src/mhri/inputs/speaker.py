@@ -13,7 +13,7 @@ import subprocess
 import sys
 import threading
 
-from mhri.core.screen.tones import samples, TONES, urgency
+from mhri.core.events.tones import samples, TONES, urgency
 from mhri.inputs import child
 from mhri.inputs.reader import DeviceAbsent
 
@@ -26,7 +26,7 @@ _LOG = logging.getLogger(__name__)
 
 
 class Speaker:
-    """Plays tones; every method returns at once.
+    """Plays tones; every method returns at once. The first tone starts the child at the latest.
 
     :param on_absent: called with a sentence, on a thread of its own, the first time that no tone
         can be heard; later tones are tried all the same
@@ -35,24 +35,36 @@ class Speaker:
     def __init__(self, on_absent=lambda text: None):
         self._on_absent = on_absent
         self._lock = threading.Lock()
+        self._started = False
         self._process = None
+        self._waiting = ''
         self._told = False
         self._closed = threading.Event()
 
     def start(self):
-        """Start the child in the background."""
+        """Start the child in the background, where that has not been done."""
+        with self._lock:
+            if self._started or self._closed.is_set():
+                return self
+            self._started = True
         threading.Thread(target=self._run, name='speaker', daemon=True).start()
         return self
 
     def play(self, tone):
         """Play one of the tones; a less urgent one is left out while another is heard."""
+        self.start()
         with self._lock:
             if self._process is None:
+                self._waiting = max(self._waiting, tone, key=urgency)
                 return
-            try:
-                os.write(self._process.stdin.fileno(), tone.encode() + b'\n')
-            except OSError as error:  # it has ended, or hangs with a full pipe
-                _LOG.debug('not played: %s', error)
+            self._send(tone)
+
+    def _send(self, tone):
+        """Tell the child; the lock is held."""
+        try:
+            os.write(self._process.stdin.fileno(), tone.encode() + b'\n')
+        except OSError as error:  # it has ended, or hangs with a full pipe
+            _LOG.debug('not played: %s', error)
 
     def close(self):
         """End the child."""
@@ -79,6 +91,9 @@ class Speaker:
         os.set_blocking(process.stdin.fileno(), False)
         with self._lock:
             self._process = process
+            if self._waiting:
+                self._send(self._waiting)
+                self._waiting = ''
             if self._closed.is_set():
                 process.kill()
         for line in process.stdout:

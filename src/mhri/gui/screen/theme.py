@@ -10,7 +10,8 @@ from python_qt_binding.QtCore import QPointF, QRectF, Qt
 from python_qt_binding.QtGui import (
     QColor, QFont, QFontDatabase, QFontMetrics, QPainterPath, QPalette, QPen, QPolygonF)
 
-from mhri.core.screen import battery, events, views
+from mhri.core.events import events
+from mhri.core.screen import battery, views
 
 LIVE = 'live'
 ATTENTION = 'attention'

@@ -8,7 +8,7 @@ from python_qt_binding.QtWidgets import (
     QAbstractItemView, QComboBox, QHBoxLayout, QHeaderView, QPushButton, QSizePolicy, QTreeView,
     QVBoxLayout, QWidget)
 
-from mhri.core.screen.events import ALARM, ATTENTION, CALM, clock_text, MOST, SEVERITIES
+from mhri.core.events.events import ALARM, ATTENTION, CALM, clock_text, MOST, SEVERITIES
 from mhri.gui.driving.drive_keys import keep_arrows
 from mhri.gui.screen import theme
 from mhri.gui.screen.labels import plain_tip
@@ -24,8 +24,9 @@ NEWEST = 'Newest'
 _EVENT = Qt.UserRole
 # The column of names has room for the longest name, up to so many characters.
 _MOST_CHARACTERS = 12
-# Narrower than this [line heights], the shape of a severity goes without its word.
-_NARROW = 32
+# Narrower than this [line heights], the shape of a severity goes without its word; and lines are
+# three lines high.
+_NARROW, _NARROWEST = 32, 24
 
 
 class EventModel(QAbstractTableModel):
@@ -36,6 +37,7 @@ class EventModel(QAbstractTableModel):
         self._widget = parent
         #: whether a severity is said by its word, too
         self.with_words = True
+        self._lines = 2
         self._events = []
         self._signs = {}
 
@@ -49,7 +51,9 @@ class EventModel(QAbstractTableModel):
 
     def headerData(self, section, orientation, role=Qt.DisplayRole):  # noqa: N802
         """Return the name of a column."""
-        return _HEADS[section] if role == Qt.DisplayRole else None
+        if role != Qt.DisplayRole or section == SEVERITY and not self.with_words:
+            return None
+        return _HEADS[section]
 
     def data(self, index, role=Qt.DisplayRole):
         """Return what a cell shows."""
@@ -59,7 +63,9 @@ class EventModel(QAbstractTableModel):
         if role == Qt.DisplayRole:
             return self._text(event, column) if column != SEVERITY or self.with_words else ''
         if role == Qt.SizeHintRole:
-            return QSize(0, theme.touch_size(self._widget))
+            # As many lines as a sentence needs in the room there is.
+            return QSize(0, max(theme.touch_size(self._widget),
+                                self._lines * self._widget.fontMetrics().lineSpacing() + 2))
         if role in (Qt.ToolTipRole, Qt.AccessibleTextRole):
             words = self._text(event, column)
             return plain_tip(words) if role == Qt.ToolTipRole else words
@@ -78,6 +84,14 @@ class EventModel(QAbstractTableModel):
         if role == Qt.ForegroundRole and event.severity == CALM and column != WHAT:
             return theme.colour(theme.MUTED, self._widget.palette())
         return None
+
+    def fit(self, width):
+        """Make do with a width [line heights]: without words, then with higher rows."""
+        with_words, lines = width >= _NARROW, 2 if width >= _NARROWEST else 3
+        if (with_words, lines) != (self.with_words, self._lines):
+            self.layoutAboutToBeChanged.emit()
+            self.with_words, self._lines = with_words, lines
+            self.layoutChanged.emit()
 
     def _sign(self, severity):
         """Return the shape of a severity, painted once for each look of the desktop."""
@@ -178,21 +192,17 @@ class EventList(QWidget):
         self.sounds = SwitchBox('Sounds', self)
         self.sounds.setChecked(True)
         self.sounds.setToolTip('off: only a robot that is lost while it is driven is heard')
-        self.newest_button = QPushButton(NEWEST, self)
-        self.newest_button.setMinimumHeight(theme.touch_size(self))
-        self.newest_button.setFocusPolicy(Qt.TabFocus)
-        self.newest_button.setMinimumWidth(
-            theme.text_width(self.font(), NEWEST + ' (88)') + theme.touch_size(self) // 4)
         head = QHBoxLayout()
         head.setSpacing(round(0.5 * self.fontMetrics().height()))
         for widget, stretch in ((self.robot_combo, 1), (self.severity_combo, 1), (self.sounds, 0)):
             head.addWidget(widget, stretch)
-        head.addStretch(1)
-        head.addWidget(self.newest_button)
         self.model = EventModel(self)
         self.filter = EventFilter(self)
         self.filter.setSourceModel(self.model)
         self.lines = self._make_lines()
+        # Over the lines, where there is something below them.
+        self.newest_button = QPushButton(NEWEST, self.lines)
+        self.newest_button.setFocusPolicy(Qt.TabFocus)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addLayout(head)
@@ -207,7 +217,6 @@ class EventList(QWidget):
         combo.setFocusPolicy(Qt.TabFocus)
         combo.setMinimumHeight(theme.touch_size(self))
         combo.setSizeAdjustPolicy(QComboBox.AdjustToMinimumContentsLengthWithIcon)
-        # As wide as its first row at least; the arrow takes a little more than a line is high.
         arrow = round(1.6 * self.fontMetrics().height())
         combo.setMinimumContentsLength(0)
         combo.setMinimumWidth(theme.text_width(self.font(), rows[0][0]) + arrow)
@@ -235,7 +244,6 @@ class EventList(QWidget):
         lines.setFont(theme.number_font(self.font()))
         lines.setRootIsDecorated(False)
         lines.setUniformRowHeights(True)
-        # A row that a finger hits has room for two lines.
         lines.setWordWrap(True)
         lines.setAllColumnsShowFocus(True)
         lines.setSelectionMode(QAbstractItemView.SingleSelection)
@@ -258,13 +266,12 @@ class EventList(QWidget):
         header, font = self.lines.header(), self.lines.font()
         unit = self.fontMetrics().height()
         names = [name[:_MOST_CHARACTERS] for name in (*self._robots, _HEADS[ROBOT])]
-        self.model.with_words = self.width() >= _NARROW * unit
-        state = unit + theme.text_width(
-            font, *(SEVERITY_WORDS.values() if self.model.with_words else ('',)))
-        for column, needed in ((TIME, theme.text_width(font, '00:00:00')),
-                               (SEVERITY, max(state, theme.text_width(font, _HEADS[SEVERITY]))),
-                               (ROBOT, theme.text_width(font, *names))):
-            header.resizeSection(column, needed + unit)
+        self.model.fit(self.width() / unit)
+        words = SEVERITY_WORDS.values() if self.model.with_words else ('',)
+        for column, needed in ((TIME, theme.text_width(font, '00:00:00') + unit // 2),
+                               (SEVERITY, theme.text_width(font, *words) + 2 * unit),
+                               (ROBOT, theme.text_width(font, *names) + unit)):
+            header.resizeSection(column, needed)
 
     def _connect(self):
         """Wire the parts."""
@@ -277,7 +284,7 @@ class EventList(QWidget):
         self.lines.verticalScrollBar().valueChanged.connect(lambda *_: self._on_scroll())
 
     def show_events(self, log):
-        """Show what a :class:`mhri.core.screen.events.EventLog` has kept; for the start."""
+        """Show what a :class:`mhri.core.events.events.EventLog` has kept; for the start."""
         self.add(log.events)
 
     def add(self, events):
@@ -340,10 +347,12 @@ class EventList(QWidget):
 
     def _show_newest_button(self):
         """Say how many lines have come below those in sight."""
-        self.newest_button.setEnabled(not self._follows)
-        text = '{} ({})'.format(NEWEST, self._unread) if self._unread else NEWEST
-        if text != self.newest_button.text():
-            self.newest_button.setText(text)
+        button, room = self.newest_button, self.lines.viewport().geometry()
+        button.setText('{} ({})'.format(NEWEST, self._unread) if self._unread else NEWEST)
+        touch = theme.touch_size(self)
+        button.setGeometry(0, 0, theme.text_width(self.font(), button.text()) + touch, touch)
+        button.move(room.right() - button.width() - 4, room.bottom() - button.height() - 4)
+        button.setVisible(not self._follows)
 
     def _on_line(self, index):
         """Ask for the robot of a line."""
@@ -370,3 +379,4 @@ class EventList(QWidget):
         self._size_columns()
         if self._follows:
             self.lines.scrollToBottom()
+        self._show_newest_button()

@@ -11,7 +11,7 @@ import re
 from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
 
 from mhri.core.recording.recording import RecordingStatus
-from mhri.core.screen.changes import Change, ScreenChanges
+from mhri.core.events.changes import Change, ScreenChanges
 from mhri.core.screen.text import tidy_text
 from mhri.core.screen.views import PanelView
 
@@ -26,7 +26,7 @@ REPEAT_S = 20.0
 _MOST_REMEMBERED = 500
 _NUMBER = re.compile(r'\d+(\.\d+)?')
 
-#: {kind: (severity, tone or '')}; the kinds of :mod:`mhri.core.screen.changes` and of notes
+#: {kind: (severity, tone or '')}; the kinds of :mod:`mhri.core.events.changes` and of notes
 KINDS: Dict[str, Tuple[str, str]] = {
     'robot.added': (CALM, ''), 'robot.removed': (CALM, ''),
     'link.found': (CALM, ''), 'link.back': (CALM, CALM_TONE),

@@ -5,7 +5,7 @@ from typing import Any, Dict, Tuple
 
 import numpy as np
 
-from mhri.core.screen.events import ATTENTION_TONE, CALM_TONE, LOST_TONE
+from mhri.core.events.events import ATTENTION_TONE, CALM_TONE, LOST_TONE
 
 #: {tone: (loudness in [0, 1], ((pitch [Hz], 0 for a pause; length [s]), ...))}, most urgent first;
 #: below 1 kHz, where people hear who have worked beside machines for long
@@ -20,11 +20,8 @@ _FULL = 32767
 
 
 def urgency(tone: str) -> int:
-    """Return how urgent a tone is: 0 for the least; the more urgent one is heard.
-
-    :raises ValueError: there is no such tone
-    """
-    return len(TONES) - 1 - list(TONES).index(tone)
+    """Return how urgent a tone is: 1 for the least, 0 for none; the more urgent one is heard."""
+    return len(TONES) - list(TONES).index(tone) if tone in TONES else 0
 
 
 def samples(tone: str, rate_hz: int, channels: int = 1) -> Any:
