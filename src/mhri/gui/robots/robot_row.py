@@ -108,8 +108,10 @@ class RobotRow(QWidget):
         self.age = self._fixed_line(numbers, '000 ms', Qt.AlignRight)
         self.linear = self._fixed_line(numbers, 'back 0.00 m/s')
         self.turn = self._fixed_line(numbers, 'right 0.00 rad/s')
-        # In a narrow dock it does without its unit, and the row without a scroll bar.
-        self.turn.setSizePolicy(QSizePolicy.Preferred, QSizePolicy.Fixed)
+        # In a narrow drawer the turn does without its unit; beside a sentence the speed takes the
+        # room that it needs now.
+        for line in (self.linear, self.turn):
+            line.setSizePolicy(QSizePolicy.Preferred, QSizePolicy.Fixed)
         self.turn.setMinimumWidth(0)
         self.trouble_sign = Sign(self)
         self.trouble = TextLine(self)
@@ -234,6 +236,7 @@ class RobotRow(QWidget):
         if (speaking, state, sign is None) == self._trouble_shown:
             return
         self._trouble_shown = (speaking, state, sign is None)
+        self.linear.setMinimumWidth(0 if speaking else self.linear.maximumWidth())
         for widget, visible in ((self.trouble_sign, sign is not None), (self.trouble, speaking),
                                 (self.turn, not speaking), (self.filler, not speaking),
                                 (self.pill, state)):
