@@ -106,7 +106,7 @@ def test_the_list_by_keyboard(shown, operator, application, heard):
         reached.append(application.focusWidget())
         QTest.keyClick(application.focusWidget(), Qt.Key_Tab)
     assert reached == [shown.robot_combo, shown.severity_combo, shown.sounds]
-    QTest.keyClick(shown.lines, Qt.Key_End)
+    QTest.keyClick(shown.lines, Qt.Key_End, Qt.ControlModifier)
     QTest.keyClick(shown.lines, Qt.Key_Up)
     QTest.keyClick(shown.lines, Qt.Key_Up)
     QTest.keyClick(shown.lines, Qt.Key_Return)

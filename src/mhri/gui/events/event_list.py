@@ -5,7 +5,7 @@ from python_qt_binding.QtCore import (
     QAbstractTableModel, QModelIndex, QRectF, QSize, QSortFilterProxyModel, Qt, Signal)
 from python_qt_binding.QtGui import QPainter, QPalette, QPixmap
 from python_qt_binding.QtWidgets import (
-    QAbstractItemView, QComboBox, QHBoxLayout, QHeaderView, QPushButton, QSizePolicy, QTreeView,
+    QAbstractItemView, QComboBox, QHBoxLayout, QHeaderView, QPushButton, QSizePolicy, QTableView,
     QVBoxLayout, QWidget)
 
 from mhri.core.events.events import ALARM, ATTENTION, CALM, clock_text, MOST, SEVERITIES
@@ -37,7 +37,6 @@ class EventModel(QAbstractTableModel):
         self._widget = parent
         #: whether a severity is said by its word, too
         self.with_words = True
-        self._lines = 2
         self._events = []
         self._signs = {}
 
@@ -62,10 +61,6 @@ class EventModel(QAbstractTableModel):
             return event
         if role == Qt.DisplayRole:
             return self._text(event, column) if column != SEVERITY or self.with_words else ''
-        if role == Qt.SizeHintRole:
-            # As many lines as a sentence needs in the room there is.
-            return QSize(0, max(theme.touch_size(self._widget),
-                                self._lines * self._widget.fontMetrics().lineSpacing() + 2))
         if role in (Qt.ToolTipRole, Qt.AccessibleTextRole):
             words = self._text(event, column)
             return plain_tip(words) if role == Qt.ToolTipRole else words
@@ -84,14 +79,6 @@ class EventModel(QAbstractTableModel):
         if role == Qt.ForegroundRole and event.severity == CALM and column != WHAT:
             return theme.colour(theme.MUTED, self._widget.palette())
         return None
-
-    def fit(self, width):
-        """Make do with a width [line heights]: without words, then with higher rows."""
-        with_words, lines = width >= _NARROW, 2 if width >= _NARROWEST else 3
-        if (with_words, lines) != (self.with_words, self._lines):
-            self.layoutAboutToBeChanged.emit()
-            self.with_words, self._lines = with_words, lines
-            self.layoutChanged.emit()
 
     def _sign(self, severity):
         """Return the shape of a severity, painted once for each look of the desktop."""
@@ -237,15 +224,14 @@ class EventList(QWidget):
 
     def _make_lines(self):
         """Make the list of lines."""
-        lines = QTreeView(self)
+        lines = QTableView(self)
         lines.setModel(self.filter)
         lines.setObjectName('event_lines')
         lines.setAccessibleName('Events')
         lines.setFont(theme.number_font(self.font()))
-        lines.setRootIsDecorated(False)
-        lines.setUniformRowHeights(True)
-        lines.setWordWrap(True)
-        lines.setAllColumnsShowFocus(True)
+        lines.setShowGrid(False)
+        lines.setTabKeyNavigation(False)
+        lines.setSelectionBehavior(QAbstractItemView.SelectRows)
         lines.setSelectionMode(QAbstractItemView.SingleSelection)
         lines.setEditTriggers(QAbstractItemView.NoEditTriggers)
         lines.setHorizontalScrollBarPolicy(Qt.ScrollBarAlwaysOff)
@@ -254,8 +240,13 @@ class EventList(QWidget):
         keep_arrows(lines)
         lines.verticalScrollBar().setStyleSheet('QScrollBar:vertical {{ width: {}px; }}'.format(
             round(0.6 * theme.touch_size(self))))
-        header = lines.header()
-        header.setSectionsMovable(False)
+        # Of one height, which no row is asked for: a tree would ask all of them each time.
+        lines.verticalHeader().setSectionResizeMode(QHeaderView.Fixed)
+        lines.verticalHeader().hide()
+        header = lines.horizontalHeader()
+        header.setDefaultAlignment(Qt.AlignLeft | Qt.AlignVCenter)
+        header.setHighlightSections(False)
+        header.setSectionsClickable(False)
         header.setMinimumSectionSize(self.fontMetrics().height())
         header.setSectionResizeMode(QHeaderView.Fixed)
         header.setSectionResizeMode(WHAT, QHeaderView.Stretch)
@@ -263,10 +254,13 @@ class EventList(QWidget):
 
     def _size_columns(self):
         """Give the columns the room they need, and what is left to the text."""
-        header, font = self.lines.header(), self.lines.font()
+        header, font = self.lines.horizontalHeader(), self.lines.font()
         unit = self.fontMetrics().height()
         names = [name[:_MOST_CHARACTERS] for name in (*self._robots, _HEADS[ROBOT])]
-        self.model.fit(self.width() / unit)
+        self.model.with_words = self.width() >= _NARROW * unit
+        rows = 2 if self.width() >= _NARROWEST * unit else 3
+        self.lines.verticalHeader().setDefaultSectionSize(max(
+            theme.touch_size(self), rows * self.fontMetrics().lineSpacing() + 2))
         words = SEVERITY_WORDS.values() if self.model.with_words else ('',)
         for column, needed in ((TIME, theme.text_width(font, '00:00:00') + unit // 2),
                                (SEVERITY, theme.text_width(font, *words) + 2 * unit),
