@@ -10,7 +10,7 @@ driven robot is never touched, even where it alone passes the limit.
 """
 from dataclasses import dataclass, replace
 import math
-from typing import Dict, Iterable, List, Optional, Sequence, Set, Tuple
+from typing import Dict, Iterable, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 DRIVEN = 'driven'
 LOOKED_AT = 'looked at'
@@ -57,14 +57,25 @@ AS_IT_COMES = Grant()
 UNSEEN = Grant(0.0)
 
 
+class Figures(NamedTuple):
+    """What is known of a stream.
+
+    ``bits``: size of a message [bit]; ``native_hz``: how often the camera sends [Hz]; None before
+    they were measured, 0 for a camera that is silent. ``heavy``: it comes raw, as was chosen, and
+    might come compressed.
+    """
+
+    bits: Optional[float] = None
+    native_hz: Optional[float] = None
+    heavy: bool = False
+
+
 @dataclass(frozen=True)
 class Picture:
-    """One picture that the screen has a place for, and what is known of its stream.
+    """One picture that the screen has a place for, and the :class:`Figures` of its stream.
 
     ``name``: the robot's; ``importance``: one of :data:`IMPORTANCES`; ``visible``: false where it
-    cannot be seen. ``bits``: size of a message [bit]; ``native_hz``: how often the camera sends
-    [Hz]; None before they were measured, 0 for a camera that is silent. ``heavy``: it comes raw,
-    and might come compressed.
+    cannot be seen.
     """
 
     name: str
