@@ -109,6 +109,14 @@ def test_what_was_not_measured_yet_is_taken_for_a_usual_camera():
     assert set(rates(unknown, 20.0)) == {2.0, 5.0} and set(rates(unknown, 200.0)) == {'full'}
 
 
+def test_what_was_a_guess_is_planned_anew_once_it_is_measured():
+    planner = BudgetPlanner()
+    lean = [picture(name, mbit_s=1.0) for name in ('bot1', 'bot2')]
+    assert rates([Picture('bot1'), Picture('bot2')], 3.0, planner, 0.0) == [2.0, 2.0]
+    assert rates([lean[0], Picture('bot2')], 3.0, planner, 1.0) == ['full', 5.0]
+    assert rates(lean, 3.0, planner, 2.0) == ['full', 'full']
+
+
 def test_a_silent_camera_takes_nothing_from_the_others():
     silent = [Picture('bot1', DRIVEN, bits=0.0, native_hz=0.0),
               Picture('bot2', bits=3e5, native_hz=0.0)]

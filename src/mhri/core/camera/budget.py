@@ -142,6 +142,10 @@ class BudgetPlanner:
         """
         pictures = list(pictures)
         seen = [self._steady(picture) for picture in pictures if picture.visible]
+        if any(None in self._figures.get(picture.name, ())
+               and None not in (picture.bits, picture.native_hz) for picture in seen):
+            # What was planned by a guess is planned anew, with nothing to wait for.
+            self._held = {}
         self._figures = {picture.name: (picture.bits, picture.native_hz) for picture in seen}
         if limit_bits_per_s <= 0.0:
             self._held, self._light = {}, set()
