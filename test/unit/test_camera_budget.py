@@ -112,7 +112,7 @@ def test_what_was_not_measured_yet_is_taken_for_a_usual_camera():
 def test_what_was_a_guess_is_planned_anew_once_it_is_measured():
     planner = BudgetPlanner()
     lean = [picture(name, mbit_s=1.0) for name in ('bot1', 'bot2')]
-    assert rates([Picture('bot1'), Picture('bot2')], 3.0, planner, 0.0) == [2.0, 2.0]
+    assert rates([Picture('bot1'), Picture('bot2')], 3.0, planner, 0.0) == [2.0, 5.0]
     assert rates([lean[0], Picture('bot2')], 3.0, planner, 1.0) == ['full', 5.0]
     assert rates(lean, 3.0, planner, 2.0) == ['full', 'full']
 
