@@ -31,7 +31,8 @@ NETWORK = 'MHRI_BENCH_OWN_NETWORK'
 
 def in_own_network():
     """Run this again where the loopback device carries nothing else; return where not possible."""
-    own = ['unshare', '--map-root-user', '--net', 'sh', '-c', 'ip link set lo up && exec "$@"', 'sh']
+    own = ['unshare', '--map-root-user', '--net', 'sh', '-c', 'ip link set lo up && exec "$@"',
+           'sh']
     if NETWORK in os.environ or not shutil.which('unshare') or subprocess.run(
             own + ['true'], stderr=subprocess.DEVNULL).returncode:
         return
@@ -106,7 +107,8 @@ def measure(title, screen, player, settle_s, seconds):
     took = time.monotonic() - begun
     after = cpu_s(me), cpu_s(player), carried()
     rows = {'': title}
-    for kind, names in (('driven', NAMES[:1]), ('looked at', NAMES[1:2]), ('thumbnails', NAMES[2:])):
+    for kind, names in (('driven', NAMES[:1]), ('looked at', NAMES[1:2]),
+                        ('thumbnails', NAMES[2:])):
         rows[kind + ' [Mbit/s]'] = '{:.1f}'.format(sum(bits[name] for name in names) / looks / 1e6)
         rows[kind + ' [pictures/s each]'] = '{:.1f}'.format(
             sum(screen.taken[name] for name in names) / took / len(names))
@@ -130,7 +132,8 @@ def main():
         system.start_master()
         import rospy
         rospy.init_node('bench', disable_signals=True)
-        player = psutil.Process(play_cameras(system, NAMES, *((1.0, 15) if short else (4.0, 2))).pid)
+        player = psutil.Process(
+            play_cameras(system, NAMES, *((1.0, 15) if short else (4.0, 2))).pid)
         master = rospy.get_master()
         wait_for(lambda: len([topic for topic, _ in master.getPublishedTopics('/')[2]
                               if TOPIC in topic]) == len(NAMES), 60.0, 'the cameras', 0.2)

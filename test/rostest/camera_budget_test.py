@@ -17,7 +17,8 @@ import rostest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
 from camera_feed_test import Camera, CameraProcess, jpeg, raw, RATE_HZ, RGB  # noqa: E402
-from mhri.core.camera.budget import AS_IT_COMES, DRIVEN, Grant, LOOKED_AT, REST, UNSEEN  # noqa: E402
+from mhri.core.camera.budget import (  # noqa: E402
+    AS_IT_COMES, DRIVEN, Grant, LOOKED_AT, REST, UNSEEN)
 from mhri.core.screen.settings import PanelSettings  # noqa: E402
 from mhri.ros.camera.camera_budget import CameraBudget, Wish  # noqa: E402
 from mhri.ros.camera.camera_feed import CameraFeed  # noqa: E402
@@ -101,7 +102,8 @@ class CameraBudgetTest(unittest.TestCase):
         sent = camera.sent
         rate_hz = self.pictures(feed, 20)
         each = (camera.sent - sent) / 20
-        print('MEASURED asked for 4 Hz of 30: {:.2f} Hz, {:.1f} sent for each'.format(rate_hz, each))
+        print('MEASURED asked for 4 Hz of 30: {:.2f} Hz, {:.1f} sent for each'.format(
+            rate_hz, each))
         self.assertLess(rate_hz, 5.0)
         self.assertLess(each, RATE_HZ / 4.0)
         status = feed.status()
