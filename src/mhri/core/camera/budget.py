@@ -222,7 +222,7 @@ def _steady(figure: Optional[float], before: Optional[float]) -> Optional[float]
         return figure
     if before is not None and (1.0 - _FALLS) * before <= figure <= before:
         return before
-    return 2.0 ** (math.ceil(_IN_OCTAVE * math.log2(figure)) / _IN_OCTAVE)
+    return math.pow(2.0, math.ceil(_IN_OCTAVE * math.log2(figure)) / _IN_OCTAVE)
 
 
 def _targets(seen: Sequence[Picture], limit: float, thumbnail_hz: float) -> Dict[str, float]:
