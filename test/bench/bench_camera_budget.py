@@ -25,7 +25,6 @@ NAMES = ['bot{}'.format(number) for number in range(1, 13)]
 BUDGET_MBIT_S = 20.0
 LARGE, SMALL = (1440, 1080), (320, 240)
 DRAW_S = 0.05
-SETTLE_S = 1.0
 NETWORK = 'MHRI_BENCH_OWN_NETWORK'
 
 
@@ -73,7 +72,6 @@ class Screen:
             wish.feed.set_view(*(SMALL if wish.importance == REST else LARGE))
             wish.feed.open()
         self.taken = dict.fromkeys(NAMES, 0)
-        self._settled_at = time.monotonic()
 
     def draw(self, seconds):
         """Take pictures for so long."""
@@ -81,9 +79,7 @@ class Screen:
         while time.monotonic() < until:
             for wish in self.wishes:
                 self.taken[wish.robot] += wish.feed.take() is not None
-            if time.monotonic() - self._settled_at > SETTLE_S:
-                self._settled_at = time.monotonic()
-                self.budget.settle(self.wishes)
+            self.budget.settle(self.wishes)
             time.sleep(DRAW_S / 3.0)
 
     def close(self):

@@ -142,8 +142,8 @@ class CameraBudgetTest(unittest.TestCase):
         self.assertGreater(self.pictures(feeds['first'], 20), 10.0)
         self.assertEqual(settle(REST, REST, DRIVEN)[2], AS_IT_COMES)
         self.assertGreater(self.pictures(feeds['third'], 20), 10.0)
-        settle(DRIVEN, DRIVEN, DRIVEN)
-        self.assertIn('driven robots alone', budget.note)
+        wait_for(lambda: settle(DRIVEN, DRIVEN, DRIVEN) and 'driven robots alone' in budget.note,
+                 10.0, 'the note')
 
     def test_killed_and_replaced(self):
         camera = self.begin(CameraProcess(TOPIC.format('killed'), 'killed_camera'))

@@ -7,6 +7,8 @@ from typing import NamedTuple
 from mhri.core.camera.budget import BudgetPlanner, Picture
 from mhri.ros.camera.camera_feed import CameraFeed
 
+PERIOD_S = 1.0
+
 
 class Wish(NamedTuple):
     """A picture that the screen has a place for.
@@ -31,23 +33,30 @@ class CameraBudget:
         self._settings = settings
         self._clock = clock
         self._planner = BudgetPlanner()
+        self._wishes = []
+        self._grants = {}
+        self._due = clock()
         #: a sentence while the driven robots' pictures alone pass the budget, else ''
         self.note = ''
 
     def settle(self, wishes):
         """Hand every feed its grant; return them, {robot: Grant}.
 
-        Call it about once a second, and whenever a picture is opened or another one matters. It
-        takes about a millisecond for a dozen and asks nobody.
+        Call it with every drawing: it plans once a second, and at once where a picture is opened or
+        another one matters. That takes about a millisecond for a dozen and asks nobody.
 
         :param wishes: a :class:`Wish` for every feed that is open, each robot once
         """
-        settings, wishes = self._settings(), list(wishes)
+        wishes, now = list(wishes), self._clock()
+        if wishes == self._wishes and now < self._due:
+            return self._grants
+        self._wishes, self._due = wishes, now + PERIOD_S
+        settings = self._settings()
         plan = self._planner.plan(
             [Picture(wish.robot, wish.importance, wish.visible, *wish.feed.figures())
              for wish in wishes],
-            settings.camera_budget_mbit_s * 1e6, settings.thumbnail_hz, self._clock())
+            settings.camera_budget_mbit_s * 1e6, settings.thumbnail_hz, now)
         for wish in wishes:
             wish.feed.grant(plan.grants[wish.robot])
-        self.note = plan.note
-        return plan.grants
+        self.note, self._grants = plan.note, plan.grants
+        return self._grants
