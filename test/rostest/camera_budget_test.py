@@ -92,6 +92,14 @@ class CameraBudgetTest(unittest.TestCase):
         wait_for(feed.take, 10.0, 'a picture again')
         measured('seen again until its picture', time.monotonic() - begun)
 
+    def test_paused_from_the_start(self):
+        self.begin(CountedCamera('paused'))
+        feed = self.feed('paused', Grant(0.0, words='paused: camera budget'))
+        self.assertEqual(feed.status().problem, 'paused: camera budget')
+        feed.grant(AS_IT_COMES)
+        wait_for(feed.take, 10.0, 'a picture')
+        self.assertEqual(feed.status().problem, '')
+
     def test_one_picture_at_a_time(self):
         camera = self.begin(CountedCamera('thin'))
         feed = self.feed('thin', Grant(4.0, True, words='thinned to 4 Hz: camera budget'))

@@ -109,7 +109,7 @@ class Decoder:
             old_after_s = max(OLD_AFTER_S, _MISSED * self._period_s)
             return StreamStatus(
                 self._transport, rate_hz, age, bits_per_s, self._shown, self._bad,
-                self._hint or self._problem,
+                self._grant.words if self._grant.rate_hz == 0.0 else self._hint or self._problem,
                 age is not None and (bad_since or age > old_after_s),
                 self._grant.words, old_after_s)
 
