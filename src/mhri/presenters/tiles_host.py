@@ -70,9 +70,10 @@ class TilesHost(QObject):
             self._make(missing.name)
         self._stage.show_tiles({name: self.windows[name] for name in names
                                 if name in self.windows})
-        waiting = [robot.name for robot in self._due]
+        # Those that wait keep their order: else the last one never has its turn on a busy machine.
+        turns = {robot.name: turn for turn, robot in enumerate(self._due)}
         self._due = sorted((robot for robot in robots if robot.name in self.hosts),
-                           key=lambda robot: robot.name not in waiting)
+                           key=lambda robot: turns.get(robot.name, len(turns)))
         self._stopped = view.stop_all
         self._timer.start()
         wishes = [self.hosts[robot.name].camera_wish(robot.selected) for robot in self._due]
