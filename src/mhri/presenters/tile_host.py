@@ -129,7 +129,8 @@ class TileHost:
         if frame is not None:
             camera.show_frame(frame)
         status = feed.status()
-        self._held_back = status.thinned
+        # Where there was no picture yet, its place says it.
+        self._held_back = status.thinned if status.age_s is not None else ''
         camera.show_status(status, None if large else (thumbnail_hz, 'another'))
         if status.age_s is None and status.problem:
             camera.show_placeholder(status.problem)
