@@ -128,7 +128,7 @@ class ScreenBackend:
         """Mend what is missing: the sources of the mux, the links and types of robots."""
         if self._watch.state != LOST:
             self._meet_mux()
-            self._jobs.settle_parameters(list(self.selection.robots) if self.drives() else None)
+            self._jobs.settle_parameters(self.selection.numbered() if self.drives() else None)
             self.recordings.limits = self.settings.recording_limits()
             self._fleet.supervise()
 
