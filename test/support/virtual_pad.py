@@ -149,6 +149,11 @@ class Pads:
             time.sleep(max(0.0, due - time.monotonic()))
         return count, value
 
+    def shown_in(self, folder):
+        """Let the kernel's list of input devices be a folder (:mod:`support.kernel_pads`)."""
+        from mhri.inputs import event_nodes
+        event_nodes.SYS_INPUT = folder
+
     def hush(self):
         """Be a driver that is silent about an axis until it is moved, with an SDL that cannot say.
 
