@@ -6,13 +6,12 @@ import socket
 import threading
 
 from python_qt_binding.QtCore import QSocketNotifier, QTimer, Signal
-from python_qt_binding.QtGui import QGuiApplication
 from python_qt_binding.QtWidgets import QApplication, QMainWindow
 import rospy
 
 from mhri.core.screen.saved_state import read_geometry
 from mhri.gui.screen.geometry import geometry_of, restore_geometry
-from mhri.presenters.panel_host import PanelHost
+from mhri.presenters.screen_host import ScreenHost
 from mhri.presenters.settings_file import SettingsError, SettingsFile
 from mhri.ros.screen.backend import ScreenBackend
 
@@ -20,7 +19,7 @@ from mhri.ros.screen.backend import ScreenBackend
 KEEP_NUMBERS_MS = 1000
 
 
-class PanelWindow(QMainWindow):
+class MainWindow(QMainWindow):
     """A main window around the panel; closing it stops the robots and ends the program."""
 
     closing = Signal()
@@ -29,8 +28,8 @@ class PanelWindow(QMainWindow):
         super().__init__()
         self._host = host
         self.setWindowTitle('mhri')
-        self.setCentralWidget(host.panel)
-        self.resize(940, 600)
+        self.setCentralWidget(host.screen)
+        self.resize(1280, 720)
 
     def closeEvent(self, event):  # noqa: N802
         """Stop the robots before the window goes."""
@@ -62,8 +61,8 @@ class Standalone:
     def __init__(self, argv, settings_path=None, remember=True):
         self._remember = remember
         self._settings = SettingsFile(settings_path)
-        self.host = PanelHost(ScreenBackend(argv))
-        self.window = PanelWindow(self.host)
+        self.host = ScreenHost(ScreenBackend(argv))
+        self.window = MainWindow(self.host)
         self.window.closing.connect(self.close)
         self._bell = SignalBell(self.window.close)
         self._robots_at_first = None
@@ -99,8 +98,7 @@ class Standalone:
             rospy.logwarn('of the saved settings is left out: %s (the file is kept as %s)',
                           '; '.join(problems)[:500], self._settings.keep_aside())
         if not placed:
-            # In a corner, and not in the middle, it leaves room for the robots' windows.
-            self.window.move(QGuiApplication.primaryScreen().availableGeometry().topLeft())
+            self.window.showMaximized()
 
     def begin_afresh(self):
         """Keep the saved settings until the operator changes robots, mode or limits in this run.
@@ -109,7 +107,7 @@ class Standalone:
         """
         self._remember = False
         self._robots_at_first = self.host.operator.selection.robots
-        panel = self.host.panel
+        panel = self.host.screen
         # The mux tells a mode and limits by itself, so that their values do not say who chose them.
         for signal_ in (panel.mode_requested, panel.limits_requested, panel.together_requested):
             signal_.connect(self._on_change)

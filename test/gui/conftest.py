@@ -174,8 +174,8 @@ def four_robots():
 @pytest.fixture
 def panel(operator, ui_dir, application):
     """Return a panel on the screen with the keyboard, its keys installed as the host does."""
-    from mhri.gui.screen.panel import PanelWidget
-    widget = PanelWidget(ui_dir)
+    from mhri.gui.screen.screen import ScreenWidget
+    widget = ScreenWidget(ui_dir)
     widget.resize(1024, 600)
     application.installEventFilter(widget.drive_keys)
     operator.show(widget)

@@ -35,7 +35,7 @@ class Screen:
         self.program = Standalone(['panel'], path)
         self.program.restore(afresh=afresh)
         self.host, self.hands = self.program.host, operator
-        self.panel = self.host.panel
+        self.panel = self.host.screen
         QApplication.instance().installEventFilter(self.panel.drive_keys)
         self.program.window.show()
         self.window = str(int(self.program.window.winId()))

@@ -53,7 +53,7 @@ def test_of_the_panel_the_rest_stays(key, value):
 
 
 @pytest.mark.parametrize('look', [
-    5, {'views': 'imu'}, {'views': [['imu']]}, {'graph': 5}, {'recording': {'extras': 'scan'}},
+    5, {'views': 'imu'}, {'views': [['imu']]}, {'of_views': 5}, {'recording': {'extras': 'scan'}},
     {'splitter': 'ff'}, {'arm': DEEP}, {'arm': list(range(10_000))}, {'arm': 'x' * 100_000}])
 def test_a_look_that_cannot_be_used_costs_that_window_alone(look):
     state, problems = usable_state({'looks': {'bot1': look, **GOOD['looks']}})

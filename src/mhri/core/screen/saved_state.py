@@ -3,10 +3,10 @@
 """What the screen kept from its last run, as far as it can be used: anybody may have edited it.
 
 A state is a dict of JSON values: ``robots`` (names), ``numbers`` ({robot: its own number}),
-``mode`` (a source), ``limits`` [m/s, rad/s], ``together``, ``windows`` ({robot: geometry}),
-``looks`` ({robot: what its window shows}) and ``panel`` (``splitter``, ``geometry``). A geometry is
-[x, y, width, height, maximised] in pixels: a text that can be read, and no blob that Qt would have
-to trust.
+``mode`` (a source), ``limits`` [m/s, rad/s], ``together``, ``windows`` ({robot: geometry}, where its
+tile was when it was torn off), ``torn_off`` (robots), ``looks`` ({robot: what its tile shows}) and
+``panel`` (``splitter``, ``drawer``, ``geometry``). A geometry is [x, y, width, height, maximised] in
+pixels: a text that can be read, and no blob that Qt would have to trust.
 """
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
 
@@ -147,11 +147,19 @@ def _read_words(value: Any) -> List[str]:
     return list(value)
 
 
-def _read_graph(value: Any) -> State:
-    if not isinstance(value, dict):
-        _refuse('a dict')
-    return {key: kept for key, kept in value.items()
-            if is_word(kept) or _is_whole(kept, 0, 3600)}
+def _read_views(value: Any) -> State:
+    """Return {view: {what was chosen in it: word, number or flag}}."""
+    if not isinstance(value, dict) or not all(isinstance(kept, dict) for kept in value.values()):
+        _refuse('a dict for each view')
+    return {view: {key: kept for key, kept in choices.items() if is_word(kept)
+                   or isinstance(kept, (bool, int, float)) and abs(kept) <= _MOST_PX}
+            for view, choices in value.items()}
+
+
+def _read_torn(value: Any) -> List[str]:
+    if not (isinstance(value, list) and len(value) <= MOST_ROBOTS and all(map(_is_robot, value))):
+        _refuse('names of robots')
+    return list(value)
 
 
 def _read_recording(value: Any) -> State:
@@ -187,13 +195,16 @@ def _read_panel(value: Any, problems: List[str], key: str) -> State:
     return _read_parts(value, _PANEL, problems, key + '.')
 
 
-_LOOK = {'views': _read_words, 'graph': _read_graph, 'recording': _read_recording,
+_LOOK = {'views': _read_words, 'of_views': _read_views, 'recording': _read_recording,
          'splitter': read_sizes}
-_PANEL: Dict[str, _PartReader] = {'splitter': _plain(read_sizes), 'geometry': _plain(read_geometry)}
+_PANEL: Dict[str, _PartReader] = {
+    'splitter': _plain(read_sizes), 'drawer': _plain(_read_flag),
+    'geometry': _plain(read_geometry)}
 _STATE: Dict[str, _PartReader] = {
     'robots': _plain(_read_robots), 'numbers': _plain(_read_numbers), 'mode': _plain(_read_mode),
     'limits': _plain(read_limits), 'together': _plain(_read_flag),
-    'windows': _by_robot(read_geometry), 'looks': _by_robot(_read_look), 'panel': _read_panel}
+    'windows': _by_robot(read_geometry), 'torn_off': _plain(_read_torn),
+    'looks': _by_robot(_read_look), 'panel': _read_panel}
 
 
 def _read_parts(value: State, readers: Dict[str, _PartReader], problems: List[str],
