@@ -16,6 +16,7 @@ from mhri.core.screen.views import GONE, SILENT
 from mhri.presenters.doctor_host import DoctorHost
 from mhri.presenters.draw_guard import DrawGuard
 from mhri.gui.screen.screen import ScreenWidget
+from mhri.presenters.pad_host import PadHost
 from mhri.presenters.requests_host import RequestsHost
 from mhri.presenters.tiles_host import TilesHost
 from mhri.ros.resources import resource_path
@@ -45,6 +46,7 @@ class ScreenHost(QObject):
         self.requests = RequestsHost(operator, self.screen.show_look_result, self._select,
                                      self.tiles.recording_wish)
         self.doctor = DoctorHost(operator, self.screen)
+        self.pad = PadHost(operator, self.screen, parent=self)
         self._connect()
 
     @property
@@ -122,6 +124,7 @@ class ScreenHost(QObject):
         self.screen.show_view(view)
         self._feel_losses(view)
         self.tiles.show_view(view)
+        self.pad.show_view(view)
         for kind, value in self.operator.take_events():
             if kind == 'found':
                 self._show_found(value)
@@ -240,3 +243,4 @@ class ScreenHost(QObject):
         QApplication.instance().removeEventFilter(self.screen.drive_keys)
         self.screen.drive_keys.close()
         self.tiles.close()
+        self.pad.close()

@@ -140,11 +140,13 @@ class DeviceView:
 
     ``name`` is that of the device that is there, '' where there is none; ``note`` is why not and
     what to do, or what the one there is waits for; both are '' where the node cannot tell.
+    ``kind`` is what it is, e.g. 'pad'.
     """
 
     source: str
     name: str = ''
     note: str = ''
+    kind: str = ''
 
     @property
     def absent(self) -> bool:

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Which device an input node has, for the screen: ``device_state`` beside its ``set_suspended``.
 
-``diagnostic_msgs/DiagnosticStatus``, latched, on change: ``hardware_id`` is the name of the device that
-is open, or would be if the node were resumed, '' where there is none; ``message`` why there is none
-and what to do, or what has to be done to the one there is; OK where there is one, WARN where there
-is none, STALE where the node cannot tell without opening it.
+``diagnostic_msgs/DiagnosticStatus``, latched, on change: ``name`` is what the device is, e.g.
+'pad'; ``hardware_id`` the name of the one that is open, or would be if the node were resumed, ''
+where there is none; ``message`` why there is none and what to do, or what has to be done to the one
+there is; OK where there is one, WARN where there is none, STALE where the node cannot tell without
+opening it.
 """
 from diagnostic_msgs.msg import DiagnosticStatus
 import rospy
@@ -61,8 +62,8 @@ class DeviceStates:
                 queue_size=1)
 
     def _hear(self, message, source):
-        self._said[source] = DeviceView(source, tidy_text(message.hardware_id),
-                                        tidy_text(message.message))
+        self._said[source] = DeviceView(source, *map(tidy_text, (
+            message.hardware_id, message.message, message.name)))
 
     def views(self):
         """Return a :class:`mhri.core.screen.views.DeviceView` of each that is known now."""
