@@ -11,7 +11,7 @@ import os
 from python_qt_binding.QtCore import QObject, QProcess, QTimer, Signal
 
 from mhri.core.config import ConfigError
-from mhri.core.devices.calibration_page import CalibrationPage, SAVING
+from mhri.core.devices.calibration_page import CalibrationPage, READY, SAVING
 from mhri.core.devices.pads import choose_profile
 from mhri.gui.devices.pad_calibration import PadCalibration
 from mhri.gui.screen.screen import VIRTUAL_JOYSTICK
@@ -120,14 +120,15 @@ class PadHost(QObject):
 
     def _confirm(self):
         """Do what the large button says."""
+        begins = self._dialogue.state == READY
         self._dialogue.confirm()
-        if self._dialogue.state == SAVING:
+        if begins:
+            self._leave_pad()
+            self._operator.stop_all()
+        elif self._dialogue.state == SAVING:
             path = os.path.join(own_folder(), self._dialogue.name + '.yaml')
             self._operator.do(self._save, path, self._dialogue.text(), self._dialogue.replaces,
                               self._dialogue.name, self._dialogue.pad)
-        elif self._dialogue.wants_stop:
-            self._leave_pad()
-            self._operator.stop_all()
         self._draw()
 
     def _leave_pad(self):

@@ -90,11 +90,6 @@ class CalibrationPage:
         """Whether the operator was asked to replace a file, and may have agreed."""
         return self._replace
 
-    @property
-    def wants_stop(self) -> bool:
-        """Whether it waits for everything to be stopped, or relies on it."""
-        return self.state in (STOPPING, ASKING)
-
     def text(self) -> str:
         """Return the profile as YAML, while it is being saved."""
         assert self._calibration is not None

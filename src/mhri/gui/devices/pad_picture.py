@@ -22,6 +22,8 @@ class PadPicture(QWidget):
         super().__init__(parent)
         self._axes, self._buttons = (), ()
         self._axis_words, self._button_words = {}, {}
+        # What each axis showed first: a trigger that nobody touches is at its end.
+        self._first = {}
         self._build()
 
     def _build(self):
@@ -37,6 +39,11 @@ class PadPicture(QWidget):
         :param axis_words: pairs (index, meaning); so ``button_words``
         """
         sizes = len(self._axes), len(self._buttons)
+        if sizes[0] != len(axes):
+            self._first = {}
+        for index, value in enumerate(axes):
+            if value is not None:
+                self._first.setdefault(index, value)
         state = axes, buttons, dict(axis_words), dict(button_words)
         if state != (self._axes, self._buttons, self._axis_words, self._button_words):
             self._axes, self._buttons, self._axis_words, self._button_words = state
@@ -47,10 +54,17 @@ class PadPicture(QWidget):
 
     def seen(self):
         """Return in words which axes are pushed and which buttons are pressed."""
-        pushed = [str(index) for index, value in enumerate(self._axes) if abs(value or 0.0) > 0.5]
+        pushed = [str(index) for index, value in enumerate(self._axes)
+                  if value is not None and abs(value - self._first[index]) > 0.5]
         pressed = [str(index) for index, value in enumerate(self._buttons) if value]
         return ', '.join('{} {}'.format(word, ' '.join(numbers)) for word, numbers in (
             ('axis', pushed), ('button', pressed)) if numbers)
+
+    def words(self):
+        """Return pairs ('axis 3' or 'button 6', its meaning)."""
+        return [('{} {}'.format(kind, index), words) for kind, meanings in (
+            ('axis', self._axis_words), ('button', self._button_words))
+            for index, words in sorted(meanings.items())]
 
     def _row_px(self):
         return round(1.25 * self.fontMetrics().height())
