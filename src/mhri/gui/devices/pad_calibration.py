@@ -12,7 +12,7 @@ from mhri.gui.screen.labels import Sign, TextLine
 
 NO_PAD = 'No pad'
 # So many lines are kept free for what is asked, so that nothing below it jumps.
-_PROMPT_LINES = 4
+_PROMPT_LINES = 3
 
 
 class PadCalibration(QWidget):

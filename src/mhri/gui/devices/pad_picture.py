@@ -104,13 +104,12 @@ class PadPicture(QWidget):
         painter.drawText(QRectF(bar.right() + 0.4 * unit, top, words_px, height),
                          int(Qt.AlignVCenter), self._axis_words.get(index, ''))
         painter.setPen(QPen(theme.colour(theme.MUTED, palette), 1))
-        painter.setBrush(palette.color(QPalette.Base))
-        painter.drawRect(bar)
         if value is None:
-            painter.setPen(theme.colour(theme.MUTED, palette))
-            painter.drawText(QRectF(bar.left(), top, bar.width(), height), int(Qt.AlignCenter),
+            painter.drawText(QRectF(bar.left(), top, bar.width(), height), int(Qt.AlignVCenter),
                              UNKNOWN)
             return
+        painter.setBrush(palette.color(QPalette.Base))
+        painter.drawRect(bar)
         middle, end = bar.center().x(), bar.center().x() + value * bar.width() / 2.0
         painter.fillRect(QRectF(min(middle, end), bar.top(), max(2.0, abs(end - middle)),
                                 bar.height()), theme.colour(theme.DRIVE, palette))
