@@ -3,10 +3,10 @@
 """What the screen kept from its last run, as far as it can be used: anybody may have edited it.
 
 A state is a dict of JSON values: ``robots`` (names), ``numbers`` ({robot: its own number}),
-``mode`` (a source), ``limits`` [m/s, rad/s], ``together``, ``windows`` ({robot: geometry}, where its
-tile was when it was torn off), ``torn_off`` (robots), ``looks`` ({robot: what its tile shows}) and
-``panel`` (``splitter``, ``drawer``, ``geometry``). A geometry is [x, y, width, height, maximised] in
-pixels: a text that can be read, and no blob that Qt would have to trust.
+``mode`` (a source), ``limits`` [m/s, rad/s], ``together``, ``windows`` ({robot: geometry}: where
+its tile was when it was torn off), ``torn_off`` (robots), ``looks`` ({robot: what its tile shows})
+and ``panel`` (``splitter``, ``drawer``, ``geometry``). A geometry is [x, y, width, height,
+maximised] in pixels: a text that can be read, and no blob that Qt would have to trust.
 """
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
 
