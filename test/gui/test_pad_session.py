@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A pad by its name, driving, and calibrated while nothing drives: real nodes, a simulated robot."""
+"""A pad by its name, driving, and calibrated while nothing drives: real nodes, one robot."""
 import os
 import sys
 
