@@ -156,6 +156,7 @@ def test_the_camera_budget_follows_its_parameters(session):
 def test_the_list_is_told_to_voice_and_pad(session):
     import rospy
     session.until(lambda: rospy.get_param('/mhri/robots', None) == ROBOTS)
+    assert rospy.get_param('/mhri/robot_numbers') == {'bot1': 1, 'bot2': 2, 'bot3': 3}
 
 
 def test_a_lost_robot_shakes_the_pad_once_and_talking_opens_the_ear(session):

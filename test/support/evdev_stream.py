@@ -177,7 +177,7 @@ def grab_holder(state, terminal):
         process, number = holder.split('/')
         if os.readlink('/proc/{}/fd/{}'.format(process, number)) == terminal:
             return holder
-    except OSError:
+    except (OSError, ValueError):  # gone, or not written yet
         return None
     return None
 

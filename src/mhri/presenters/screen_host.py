@@ -17,6 +17,7 @@ from mhri.presenters.doctor_host import DoctorHost
 from mhri.presenters.draw_guard import DrawGuard
 from mhri.presenters.event_host import EventHost
 from mhri.gui.screen.screen import ScreenWidget
+from mhri.presenters.pad_host import PadHost
 from mhri.presenters.requests_host import RequestsHost
 from mhri.presenters.stop_watch import StopWatch
 from mhri.presenters.tiles_host import TilesHost
@@ -48,6 +49,7 @@ class ScreenHost(QObject):
                                      self.tiles.recording_wish)
         self.events = EventHost(operator.recordings.status, self.screen)
         self.doctor = DoctorHost(operator, self.screen)
+        self.pad = PadHost(operator, self.screen, parent=self)
         self._connect()
 
     @property
@@ -130,6 +132,7 @@ class ScreenHost(QObject):
         self._feel_losses(view)
         self.tiles.show_view(view)
         self.events.show(view)
+        self.pad.show_view(view)
         for kind, value in self.operator.take_events():
             if kind == 'found':
                 self._show_found(value)
@@ -256,3 +259,4 @@ class ScreenHost(QObject):
         self.events.close()
         self.tiles.close()
         self._stop_watch.close()
+        self.pad.close()

@@ -93,6 +93,9 @@ def _driving(view: PanelView, waits_for: Optional[str]) -> _Line:
         label += ' (no dead-man button)'
     count = sum(robot.selected for robot in view.robots)
     who = '{} of {} robots'.format(count, len(view.robots))
+    absent = [device.note for device in view.devices if device.source == mode and device.absent]
+    if absent:
+        return '{}: {}'.format(label, absent[0]), ATTENTION
     if view.advice and waits_for == 'source':
         return '{}  \u2013  {}'.format(who, view.advice), ATTENTION
     words = {'neutral': 'centre the stick to drive',

@@ -174,7 +174,7 @@ class ScreenWidget(QWidget):
         self.robot_list.show_in_force(view.control.ours)
         self.robot_list.show_robots(view.robots, numbers)
         self.control_bar.show_control(view.control)
-        self.mode_combo.show_mode(view.sources, view.mode)
+        self.mode_combo.show_mode(view.sources, view.mode, view.devices)
         self.speed_limits.show_limits(view.limits)
         self.speed_limits.show_pace(view.together, view.pace, view.slowed)
         self.stop_bar.show_cut_off(view.ros == ROS_CUT_OFF)

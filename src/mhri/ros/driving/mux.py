@@ -100,8 +100,9 @@ class Mux:
         self._memory = Worker('stop_memory')
         self._watch = MasterWatch(
             on_lost=lambda reason: self._hold('master'),
-            parameters={SOURCES_PARAMETER: [{'name': source.name, 'label': source.label}
-                                            for source in config.sources]},
+            parameters={SOURCES_PARAMETER: [
+                {'name': source.name, 'label': source.label,
+                 'suspend_service': source.suspend_service or ''} for source in config.sources]},
             period_s=MASTER_PERIOD_S, patience_s=MASTER_PATIENCE_S)
         self._config = config
         self._topics = {source.name: SourceTopic(source, clock) for source in config.sources}
