@@ -159,8 +159,9 @@ class Streams:
     def from_a_bag(self, seconds):
         """End the simulated robots and play what they sent, over and over, in their place."""
         path = os.path.join(self._system.home, 'robots.bag')
-        recorder = self._system.start('rosbag', 'record', '--quiet', '--duration={}'.format(seconds),
-                                      '--output-name', path, *self._all_topics())
+        recorder = self._system.start(
+            'rosbag', 'record', '--quiet', '--duration={}'.format(seconds), '--output-name', path,
+            *self._all_topics())
         if recorder.wait(60):
             raise RuntimeError('rosbag record ended with {}'.format(recorder.returncode))
         self._robots.terminate()
@@ -309,7 +310,7 @@ def run(robots, table, streaming, short):
 def main():
     """Print one table; each number of robots in a process of its own, rospy knows only one life."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--short', action='store_true', help='fewer events; not with 1 robot, nor with 4 alone')
+    parser.add_argument('--short', action='store_true', help='fewer events and numbers of robots')
     parser.add_argument('--robots', type=int, help='only this many')
     parser.add_argument('--streaming', action='store_true', help='windows with pictures')
     options = parser.parse_args()

@@ -170,7 +170,7 @@ def test_fast_group_builds_and_installs_nothing(fast, text, status, count):
 def test_interrupted_run_leaves_nothing(package):
     write_tests(package, {
         'gui/test_long.py': 'import time\n\n\ndef test_long():\n'
-                               '    print("up", flush=True)\n    time.sleep(600)\n'})
+                            '    print("up", flush=True)\n    time.sleep(600)\n'})
     process = package.start('--only', 'gui', script=package.script.with_name('mhri_test.sh'))
     for line in process.stdout:
         if line.strip().endswith('up'):
