@@ -22,11 +22,11 @@ from std_srvs.srv import SetBool
 
 from mhri.core.voice.grammar import MODE, PANEL, STOP
 from mhri.msg import ControlMode, Heard, PanelRequest, RobotSelect
+from mhri.ros.driving.in_force import InForce, STOP_SERVICE
 from mhri.ros.graph.live_parameter import LiveParameter
 from mhri.ros.worker import Worker
 
 ROBOTS_PARAMETER = '/mhri/robots'
-STOP_SERVICE = '/mux/set_stop_all'
 VOICE_SOURCE = 'voice'
 # A stop that the mux does not take is repeated for so long; it is said aloud then.
 _INSIST_S = 3.0
@@ -66,7 +66,8 @@ class VoiceLink:
         """
         self._reader = reader
         rospy.Subscriber('~push_to_talk', Bool, self._on_push, queue_size=10, tcp_nodelay=True)
-        rospy.Subscriber('/mux/mode', ControlMode, self._on_mode, queue_size=10)
+        InForce(STOP_SERVICE).start().subscribe('/mux/mode', ControlMode, self._on_mode,
+                                                queue_size=10)
         rospy.Subscriber('/robot_controller/robot_select', RobotSelect, self._on_selection,
                          queue_size=1)
         LiveParameter(ROBOTS_PARAMETER, [], self._on_robots, wanted).start()
