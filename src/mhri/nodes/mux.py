@@ -1,6 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``mux``: reads its parameters and runs :class:`mhri.ros.driving.mux.Mux`."""
+"""The executable ``mux``: reads its parameters and runs :class:`mhri.ros.driving.mux.Mux`.
+
+``mux --stand-by`` does so in a process that another one, all loaded, takes the place of when it is
+killed (:mod:`mhri.ros.stand_by`).
+"""
 from dataclasses import replace
 import gc
 import signal
@@ -17,6 +21,7 @@ from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.driving.mux import Mux, STOP_PARAMETER
 from mhri.ros.driving.mux_takeover import end_other_muxes
 from mhri.ros.resources import profile_reader, read_text, resource_path
+from mhri.ros.stand_by import stand_by
 
 
 def config_path(argv):
@@ -64,6 +69,8 @@ def _flag(name, default):
 
 def main():
     """Run until shut down; exit with 1 where the sources' file cannot be used."""
+    if '--stand-by' in sys.argv:
+        stand_by('the mux')
     try:
         path = config_path(sys.argv) or resource_path('mux.yaml')
         config = parse_mux_config(read_text(path), path, profile_reader(path))

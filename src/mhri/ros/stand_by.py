@@ -44,7 +44,7 @@ def stand_by(label):
         killer = os.WTERMSIG(status)
         if asked or time.monotonic() - begun < LEAST_LIFE_S:
             os._exit(128 + killer)
-        print('{} (process {}) were killed by signal {}: another process takes over'.format(
+        print('{}: process {} was killed by signal {}, another one takes over'.format(
             label, child, killer), file=sys.stderr)
 
 

@@ -94,9 +94,12 @@ class InForce:
             self._ask.clear()
             try:
                 self._look(api)
-            except (MasterError, ValueError, TypeError) as error:
-                # Without a master, or an answer of sense, the one that is known stays in force.
+            except MasterError as error:
+                # Without a master the one that is known stays in force.
                 rospy.logdebug('who serves %s cannot be asked now: %s', self._service, error)
+            except Exception as error:  # without this thread a newer server would not be believed
+                rospy.logerr_throttle(10.0, 'who serves {} could not be asked: {}'.format(
+                    self._service, repr(error)[:300]))
             self._done.wait(ASK_S)
 
     def _look(self, api):
