@@ -51,8 +51,8 @@ def test_clicks(window, operator, heard, clicks, wanted):
     assert window.wanted() == wanted
     assert len(changed) == (0 if clicks == ['camera_rgb'] else len(clicks))
     assert window.motion_page.isVisible() == (not wanted)
-    assert window.camera.kind == next(iter(wanted & {'rgb', 'depth'}), None)
-    for key, part in (('imu', window.graph), ('scan', window.scan)):
+    assert window.view('rgb').kind == next(iter(wanted & {'rgb', 'depth'}), None)
+    for key, part in (('imu', window.view('imu')), ('scan', window.view('scan'))):
         assert part.isVisible() == (key in wanted)
 
 
@@ -99,13 +99,13 @@ def test_what_is_not_on_offer_for_a_while_comes_back(window, heard):
     window.offer({'imu'})
     assert len(changed) == 1
     window.offer(ALL)
-    assert window.wanted() == {'imu', 'rgb'} and window.camera.kind == 'rgb'
+    assert window.wanted() == {'imu', 'rgb'} and window.view('rgb').kind == 'rgb'
 
 
 def test_settings_come_back(window, operator, ui_dir):
     operator.click(window.switches.cameras['depth'])
     operator.click(window.switches.checks['scan'])
-    window.graph.window_combo.setCurrentIndex(0)
+    window.view('imu').window_combo.setCurrentIndex(0)
     sizes = [300, 200, window.views_splitter.width() - 524]
     window.views_splitter.setSizes(sizes)
     window.views_splitter.splitterMoved.emit(300, 1)
@@ -162,9 +162,9 @@ def test_the_place_is_in_the_header_where_there_is_room(window, operator):
 def test_no_control_is_too_small_for_a_finger(window, operator):
     operator.settle()
     for button in (*window.switches.checks.values(), *window.switches.cameras.values(),
-                   window.graph.quantity_combo, window.graph.window_combo,
-                   window.graph.pause_button, window.camera.transport_combo,
-                   window.camera.still_button, window.recording.record_check,
+                   window.view('imu').quantity_combo, window.view('imu').window_combo,
+                   window.view('imu').pause_button, window.view('rgb').transport_combo,
+                   window.view('rgb').still_button, window.recording.record_check,
                    window.recording.path_edit, window.recording.browse_button,
                    window.recording.extras_button):
         assert button.height() >= 36 and button.width() >= 36, button.objectName()

@@ -119,7 +119,7 @@ def test_numbers_change_four_times_a_second_at_most(window):
 
 def test_no_dead_controls(window):
     assert not any(part.isVisible() for part in (
-        window.graph, window.camera, window.scan, window.recording, window.switches))
+        window.view('imu'), window.view('rgb'), window.view('scan'), window.recording, window.switches))
     assert window.wanted() == set() and window.motion_page.isVisible()
 
 

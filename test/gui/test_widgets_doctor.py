@@ -5,7 +5,7 @@ import pytest
 from python_qt_binding.QtGui import QGuiApplication
 
 from mhri.core.doctor.facts import FAULT, FINE, Finding, WARNING
-from mhri.gui.doctor.doctor_window import DoctorWindow
+from mhri.gui.doctor.doctor_page import DoctorPage
 
 FOUND = [
     Finding(FAULT, 'dead_node', '/bot1/base', 'is registered, but refuses connections',
@@ -18,7 +18,7 @@ FOUND = [
 
 @pytest.fixture
 def window(operator):
-    made = DoctorWindow()
+    made = DoctorPage()
     operator.show(made)
     yield made
     made.close()

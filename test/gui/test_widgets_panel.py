@@ -13,7 +13,7 @@ from python_qt_binding.QtWidgets import QAbstractButton, QComboBox, QLabel, QLin
 
 from mhri.core.screen import views
 from mhri.gui.screen import theme
-from mhri.gui.screen.panel import PanelWidget
+from mhri.gui.screen.screen import ScreenWidget
 
 
 def test_buttons_and_fields_ask(panel, operator, heard, four_robots):
@@ -81,8 +81,8 @@ def test_escape_after_a_click_on_a_row_takes_its_highlight_away(panel, operator,
 
 
 def test_a_result_is_news_for_a_while(operator, ui_dir, monkeypatch):
-    monkeypatch.setattr('mhri.gui.screen.panel.RESULT_MS', 40)
-    panel = operator.show(PanelWidget(ui_dir))
+    monkeypatch.setattr('mhri.gui.screen.screen.RESULT_MS', 40)
+    panel = operator.show(ScreenWidget(ui_dir))
     panel.show_look_result('looking', busy=True)
     QTest.qWait(80)
     assert panel.look_label.text() == 'looking', 'as long as it looks'
@@ -241,7 +241,7 @@ def test_tab_order_is_the_reading_order(panel, operator, application, four_robot
 def test_settings_survive_json_and_those_of_another_version_do_no_harm(panel, operator, ui_dir):
     panel.splitter.setSizes([400, 600])
     settings = json.loads(json.dumps(panel.save_settings()))
-    other = PanelWidget(ui_dir)
+    other = ScreenWidget(ui_dir)
     other.resize(1024, 600)
     other.restore_settings(settings)
     operator.show(other)
