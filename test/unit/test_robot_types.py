@@ -203,8 +203,9 @@ def test_template_error_names_file_and_key(key):
     assert str(error.value).startswith('crawler.yaml: {}:'.format(key))
 
 
-NO_NAMES = ('', '/', '//x', 'x/', 'a//b', 'no name!', '~cmd', '1st', '\u00e9', 'cmd_vel\n', 'a' * 5000,
-            'x{y}', '..', '$(reboot)')
+NO_NAMES = (
+    '', '/', '//x', 'x/', 'a//b', 'no name!', '~cmd', '1st', '\u00e9', 'cmd_vel\n', 'a' * 5000, 'x{y}',
+    '..', '$(reboot)')
 
 
 @pytest.mark.parametrize('name', NO_NAMES)
@@ -215,7 +216,7 @@ def test_a_topic_that_is_no_name_is_refused(name):
     assert str(errors[0]).startswith('/bot1: mhri.command: expected names of topics, e.g. cmd_vel')
 
 
-@pytest.mark.parametrize('name', ['cmd_vel', '/cmd_vel', 'a/b_2/c', '/turtle1/cmd_vel', 'cam/2d/rgb'])
+@pytest.mark.parametrize('name', ['cmd_vel', '/cmd_vel', 'a/b_2/c', '/turtle1/cmd_vel', 'a/2d'])
 def test_a_topic_that_ros_takes_is_taken(name):
     """Relative or not; a segment behind the first may begin with a digit."""
     kind, errors = resolve_robot_type(shipped(), 'bot1', {'mhri': {'command': [name]}})

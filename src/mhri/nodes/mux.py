@@ -15,6 +15,7 @@ import rospy
 
 from mhri.core.config import ConfigError
 from mhri.core.driving.sources import enabling_problem, parse_mux_config
+from mhri.ros import parameters
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_api import MasterApi, MasterError
@@ -45,26 +46,13 @@ def adjusted(config):
 
     :raises ConfigError: a parameter that cannot be used
     """
-    enabling = rospy.get_param('~enabling', config.enabling or '')
-    problem = 'expected text, got {!r}'.format(enabling) if not isinstance(enabling, str) \
-        else enabling_problem(config.sources, enabling)
+    enabling = parameters.text('~enabling', config.enabling or '')
+    problem = enabling_problem(config.sources, enabling)
     if problem:
         raise ConfigError(rospy.resolve_name('~enabling'), '', problem)
-    config = replace(config, enabling=enabling or None, automatic_switching=_flag(
+    config = replace(config, enabling=enabling or None, automatic_switching=parameters.flag(
         '~automatic_switching', config.automatic_switching))
-    return config if _flag('~dead_man', config.dead_man) else config.without_dead_man()
-
-
-def _flag(name, default):
-    """Return a parameter that is true or false.
-
-    :raises ConfigError: it is neither
-    """
-    value = rospy.get_param(name, default)
-    if not isinstance(value, bool):
-        raise ConfigError(rospy.resolve_name(name), '',
-                          'expected true or false, got {!r}'.format(value))
-    return value
+    return config if parameters.flag('~dead_man', config.dead_man) else config.without_dead_man()
 
 
 def main():

@@ -20,6 +20,8 @@ import rospy
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool
 
+from mhri.core.driving.seat import MOST_ROBOTS
+from mhri.core.robots.names import name_problem
 from mhri.core.voice.grammar import MODE, PANEL, STOP
 from mhri.msg import ControlMode, Heard, PanelRequest, RobotSelect
 from mhri.ros.driving.in_force import InForce, STOP_SERVICE
@@ -37,7 +39,8 @@ def robot_names(value):
     """Return the names in a parameter that anybody may have set to anything."""
     if not isinstance(value, (list, tuple)):
         return ()
-    return tuple(name for name in value if isinstance(name, str))
+    return tuple(name for name in value[:MOST_ROBOTS] if isinstance(name, str)
+                 and name_problem(name) is None)
 
 
 class VoiceLink:
@@ -86,7 +89,8 @@ class VoiceLink:
     def _on_selection(self, message):
         with self._lock:
             # A robot that was seen once keeps its number.
-            self._selected = tuple(dict.fromkeys(self._selected + tuple(message.robots)))
+            self._selected = tuple(dict.fromkeys(
+                self._selected + robot_names(message.robots)))[:MOST_ROBOTS]
             self._reader.set_robots(self._listed or self._selected)
 
     def on_heard(self, heard):
