@@ -195,7 +195,7 @@ def test_services_and_ports(field, held_to):
             uri = urlsplit(master.lookupNode(name))
             proxy = xmlrpc.client.ServerProxy(uri.geturl())
             port = proxy.requestTopic('/attacker', '/rosout', [['TCPROS']])[2][2]
-            silent.extend(socket.create_connection((uri.hostname, port), 1.0) for _ in range(8))
+            silent.extend(socket.create_connection((uri.hostname, port), 20.0) for _ in range(8))
             for _ in range(5 * FACTOR):
                 call(proxy, hostile)
         begun = time.monotonic()
