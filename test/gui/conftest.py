@@ -176,7 +176,7 @@ def panel(operator, ui_dir, application):
     """Return a panel on the screen with the keyboard, its keys installed as the host does."""
     from mhri.gui.screen.screen import ScreenWidget
     widget = ScreenWidget(ui_dir)
-    widget.resize(1024, 600)
+    widget.resize(1280, 960)
     application.installEventFilter(widget.drive_keys)
     operator.show(widget)
     yield widget

@@ -3,7 +3,7 @@
 """One robot's tile: who it is, whether it is being driven, what it sees, how it moves."""
 from python_qt_binding.QtCore import QEvent, QSize, Qt, Signal
 from python_qt_binding.QtGui import QPainter, QPen
-from python_qt_binding.QtWidgets import QWidget
+from python_qt_binding.QtWidgets import QLayout, QWidget
 
 from mhri.core.screen import views
 from mhri.core.screen.arrangement import USUAL_SHAPE
@@ -76,6 +76,8 @@ class BotWindow(QWidget):
         self.setFocusPolicy(Qt.ClickFocus)
         mark_drive_area(self)
         self.layout().setContentsMargins(*[_EDGE_PX] * 4)
+        # The stage says how large it is, whatever its parts would like.
+        self.layout().setSizeConstraint(QLayout.SetNoConstraint)
         self.header = TileHeader(self.name, type_label, self)
         self.hud = Hud(self)
         for key in ('name_label', 'type_label', 'pill', 'link_sign', 'link_label',

@@ -54,6 +54,11 @@ class Hud(QWidget):
         return self._lines
 
     @property
+    def sign(self):
+        """(shape, colour name) before the sentence, or None."""
+        return self._sign
+
+    @property
     def sentence(self):
         """The sentence on show, '' for none."""
         return self._sentence

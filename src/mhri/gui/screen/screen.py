@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The screen: the pictures of all robots, STOP ALL, and the panel in a drawer at the left."""
-from python_qt_binding.QtCore import Qt, QTimer, Signal
+from python_qt_binding.QtCore import QSize, Qt, QTimer, Signal
 from python_qt_binding.QtWidgets import QPushButton, QWidget
 
 from mhri.core.screen.stop_words import stop_words
@@ -255,6 +255,11 @@ class ScreenWidget(QWidget):
             self._record()
         elif command == 'stills':
             self.stills_requested.emit()
+
+    def minimumSizeHint(self):  # noqa: N802
+        """Return the least at which it can be used; parts that are too large then give way."""
+        unit = self.fontMetrics().height()
+        return QSize(38 * unit, 26 * unit)
 
     def stick(self):
         """Return (forward, turn), each in [-1, 1], as held by pointer or keys now."""

@@ -6,14 +6,14 @@ The foot is below everything, or at the bottom of the drawer, whichever leaves m
 a 4:3 picture on a wide screen leaves room beside it, a wide one leaves room below.
 """
 from python_qt_binding.QtCore import QEvent, QObject, Qt
-from python_qt_binding.QtWidgets import QBoxLayout
+from python_qt_binding.QtWidgets import QBoxLayout, QLayout
 
 from mhri.core.screen.arrangement import WORTH_MOVING
 from mhri.gui.screen import theme
 
 ROBOTS, DRIVE = 'Robots', 'Drive'
 # Width of the drawer at first, in heights of a line.
-_DRAWER_UNITS = 23.0
+_DRAWER_UNITS = 24.0
 # Height of the foot at the bottom of the drawer.
 _SIDE_FOOT_UNITS = 13.0
 
@@ -37,6 +37,8 @@ class ScreenLayout(QObject):
     def _build(self):
         """Set what a form cannot say."""
         screen = self._screen
+        # It becomes as small as it is made: the parts give way before the screen does.
+        screen.layout().setSizeConstraint(QLayout.SetNoConstraint)
         screen.tabs.addTab(ROBOTS)
         screen.tabs.setExpanding(False)
         screen.tabs.setDrawBase(False)

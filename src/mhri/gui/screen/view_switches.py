@@ -33,10 +33,11 @@ class ViewSwitches(QWidget):
     def _build(self):
         """Make and place the switches."""
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
-        self.checks = {row.key: SwitchBox(row.label, self) for row in VIEW_ROWS if not row.picture}
+        # Made in reading order: Tab goes that way.
         self.cameras = {OFF: SwitchRadio(OFF, self)}
         self.cameras.update((row.key, SwitchRadio(row.label, self))
                             for row in VIEW_ROWS if row.picture)
+        self.checks = {row.key: SwitchBox(row.label, self) for row in VIEW_ROWS if not row.picture}
         self.camera_caption = QLabel('Picture', self)
         self._group = QButtonGroup(self)
         row = QHBoxLayout(self)
@@ -56,9 +57,6 @@ class ViewSwitches(QWidget):
             box.setObjectName('view_' + key)
             row.addWidget(box)
         row.addStretch(1)
-        reading = [*self.cameras.values(), *self.checks.values()]
-        for one, other in zip(reading, reading[1:]):
-            self.setTabOrder(one, other)
 
     def _connect(self):
         """Wire the switches."""
