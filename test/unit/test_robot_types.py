@@ -204,8 +204,8 @@ def test_template_error_names_file_and_key(key):
 
 
 NO_NAMES = (
-    '', '/', '//x', 'x/', 'a//b', 'no name!', '~cmd', '1st', '\u00e9', 'cmd_vel\n', 'a' * 5000, 'x{y}',
-    '..', '$(reboot)')
+    '', '/', '//x', 'x/', 'a//b', 'no name!', '~cmd', '1st', '\u00e9', 'cmd_vel\n', 'a' * 5000,
+    'x{y}', '..', '$(reboot)')
 
 
 @pytest.mark.parametrize('name', NO_NAMES)

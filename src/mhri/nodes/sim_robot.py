@@ -53,7 +53,8 @@ def start_pose(plan, name, radius_m):
             except (TypeError, ValueError):
                 raise ConfigError(rospy.resolve_name('~' + key), '',
                                   'expected a number, got {}'.format(shown(value)))
-    if not (all(abs(part) <= FARTHEST for part in pose) and plan.distance(pose[0], pose[1]) >= radius_m):
+    if not (all(abs(part) <= FARTHEST for part in pose)
+            and plan.distance(pose[0], pose[1]) >= radius_m):
         raise ConfigError(rospy.resolve_name('~x'), '', 'a body of {:g} m radius cannot stand at '
                           'x {:g}, y {:g} of this plan'.format(radius_m, pose[0], pose[1]))
     return tuple(pose)
@@ -143,7 +144,7 @@ def main():
                        'roslaunch mhri turtlebot.launch name:=bot1')
         sys.exit(1)
     of_robot = {key: rospy.get_param(key) for key in ('robot_type', 'robot_model')
-                  if rospy.has_param(key)}
+                if rospy.has_param(key)}
     try:
         robot = build(name, of_robot)
     except (ConfigError, WorldFull, OSError, ValueError) as error:
