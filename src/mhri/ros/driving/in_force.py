@@ -87,6 +87,10 @@ class InForce:
         self._ears.append(ear)
         return rospy.Subscriber(topic, kind, ear.on_message, **options)
 
+    def waiting(self):
+        """Return of how many who are not in force the newest word is kept."""
+        return sum(ear.waiting() for ear in self._ears)
+
     def _run(self):
         api = MasterApi(rospy.get_name(), timeout_s=1.0)
         while not (rospy.is_shutdown() or self._done.is_set()):
@@ -107,7 +111,11 @@ class InForce:
 
         :raises MasterError: the master cannot be asked now
         """
+        begun = time.monotonic()
         uri = api.call_many([('lookupService', self._service)])[0]
+        if uri and uri == self._uri:
+            for ear in self._ears:
+                ear.forget(begun)
         if uri in (None, self._uri):
             return
         servers = dict(api.call('getSystemState')[2]).get(self._service, [])
@@ -140,15 +148,26 @@ class _Ear:
                 return
             caller = caller_of(message)
             self._waiting.pop(caller, None)
-            self._waiting[caller] = message
+            self._waiting[caller] = message, time.monotonic()
             while len(self._waiting) > MOST_WAITING:
                 del self._waiting[next(iter(self._waiting))]
+
+    def waiting(self):
+        """Return how many words are kept."""
+        with self._lock:
+            return len(self._waiting)
+
+    def forget(self, before):
+        """Let go what was said before the master was asked, by others than the one in force."""
+        with self._lock:
+            self._waiting = {caller: said for caller, said in self._waiting.items()
+                             if said[1] >= before}
 
     def catch_up(self, caller):
         """Pass on what the one that has just come into force had said before."""
         with self._lock:
             if caller in self._waiting:
-                message = self._waiting.pop(caller)
+                message, _ = self._waiting.pop(caller)
                 if self._force.believes(message, self._topic):
                     self._hear(message)
 
