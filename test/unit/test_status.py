@@ -68,6 +68,14 @@ CASES = {
     'ready': (panel([READY]), '', 'ready', CALM),
     'driving': (panel([DRIVEN, READY]), '',
                 '2 of 2 robots  \u2013  Virtual joystick  \u2013  driving', CALM),
+    'low_battery': (panel([DRIVEN, replace(IDLE, battery=0.29), replace(READY, battery=0.31)]), '',
+                    'driving; bot3 battery 29 %', ATTENTION),
+    'flat_battery': (panel([replace(IDLE, battery=0.14), replace(READY, battery=0.2)]), '',
+                     'ready; bot3 battery 14 %, bot2 battery 20 %', STOPPED),
+    'three_low': (panel([replace(IDLE, name=name, battery=0.2) for name in 'abc']), '',
+                  'selected: check the ones to drive; a battery 20 %, 2 more', ATTENTION),
+    'battery_while_stopped': (panel([replace(IDLE, battery=0.14)], stop_all=True), '',
+                              'release it to drive again', STOPPED),
     'unknown_source': (panel([READY], mode='brain'), '', 'brain', CALM),
 }
 

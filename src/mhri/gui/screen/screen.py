@@ -8,6 +8,7 @@ from mhri.core.screen.stop_words import stop_words
 from mhri.core.screen.views import PanelView, ROS_CUT_OFF
 from mhri.gui.screen import theme, words
 from mhri.gui.driving.control_bar import ControlBar
+from mhri.gui.events.event_button import EventButton
 from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.gui.driving.drive_keys import DriveKeys, mark_drive_area
 from mhri.gui.screen.forms import load_form
@@ -29,8 +30,8 @@ STOP_RECORDING = 'Stop recording ({})'
 # What came of looking or recording is news for so long.
 RESULT_MS = 20000
 
-_WIDGETS = (ControlBar, ModeCombo, RobotList, Sign, SpeedLimits, Stage, StatusLine, StopBar,
-            TextLine, VirtualJoystick)
+_WIDGETS = (ControlBar, EventButton, ModeCombo, RobotList, Sign, SpeedLimits, Stage, StatusLine,
+            StopBar, TextLine, VirtualJoystick)
 
 
 class ScreenWidget(QWidget):

@@ -118,6 +118,14 @@ class RawLink:
         if self._socket is not None:
             self._socket.close()
 
+    def cut(self):
+        """Hang up with a reset: the publisher learns of it before it sends the next message.
+
+        Of a connection that was merely closed rospy learns by that message, and sends it whole.
+        """
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack('ii', 1, 0))
+        self.close()
+
 
 def _definition(found):
     """Return the text of a message type that its publisher did not send, '' where unknown here."""
