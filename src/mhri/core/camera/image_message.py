@@ -7,7 +7,7 @@ data), ``sensor_msgs/Image`` is (header, height, width, string encoding, is_bige
 data), the header (seq, stamp, string frame_id). It is read where it lies: no picture is copied.
 """
 import struct
-from typing import Any, Optional, Tuple
+from typing import Any, Optional, Tuple, Type
 
 from mhri.core.camera.depth_codec import decode_depth
 from mhri.core.camera.depth_colour import DepthColour
@@ -20,11 +20,16 @@ RAW_TYPE = 'sensor_msgs/Image'
 _LONGEST_NAME = 4096
 
 
-class _Wire:
-    """Reads the fields of a serialised message in order."""
+class Wire:
+    """Reads the fields of a serialised message in order.
 
-    def __init__(self, what: str, data: Data) -> None:
+    :param what: how the message calls itself, for the error's text
+    :param error: raised where it ends early
+    """
+
+    def __init__(self, what: str, data: Data, error: Type[ValueError] = FrameError) -> None:
         self._what = what
+        self._error = error
         self._data = memoryview(data)
         self._place = 0
 
@@ -33,7 +38,7 @@ class _Wire:
         try:
             values = struct.unpack_from(form, self._data, self._place)
         except struct.error:
-            raise FrameError('{}: truncated message of {} bytes'.format(
+            raise self._error('{}: truncated message of {} bytes'.format(
                 self._what, len(self._data)))
         self._place += struct.calcsize(form)
         return values
@@ -42,7 +47,7 @@ class _Wire:
         """Return a uint8[] as a view."""
         (length,) = self.numbers('<I')
         if self._place + length > len(self._data):
-            raise FrameError('{}: truncated, {} of {} bytes'.format(
+            raise self._error('{}: truncated, {} of {} bytes'.format(
                 self._what, len(self._data) - self._place, length))
         self._place += length
         return self._data[self._place - length:self._place]
@@ -51,7 +56,7 @@ class _Wire:
         """Return a string."""
         value = self.array()
         if len(value) > _LONGEST_NAME:
-            raise FrameError('{}: corrupted, a name of {} bytes'.format(self._what, len(value)))
+            raise self._error('{}: corrupted, a name of {} bytes'.format(self._what, len(value)))
         return bytes(value).decode('utf-8', 'replace')
 
 
@@ -60,7 +65,7 @@ def read_compressed(data: Data) -> Tuple[str, memoryview]:
 
     :raises FrameError: it ends early
     """
-    wire = _Wire(COMPRESSED_TYPE, data)
+    wire = Wire(COMPRESSED_TYPE, data)
     wire.numbers('<III')
     wire.text()
     return wire.text(), wire.array()
@@ -71,7 +76,7 @@ def read_raw(data: Data) -> RawImage:
 
     :raises FrameError: it ends early
     """
-    wire = _Wire(RAW_TYPE, data)
+    wire = Wire(RAW_TYPE, data)
     wire.numbers('<III')
     wire.text()
     height, width = wire.numbers('<II')
