@@ -35,8 +35,10 @@ class RangeFollower:
         if len(values) == 0:
             return self._range
         low, high = (float(value) for value in np.percentile(values, _PERCENT))
-        if high - low < self._least_span:
-            half = self._least_span / 2
+        # What is large has no digits for a narrow range.
+        span = max(self._least_span, 1e-6 * max(abs(low), abs(high)))
+        if high - low < span:
+            half = span / 2
             middle = max((low + high) / 2, self._least + half)
             low, high = middle - half, middle + half
         if self._range is not None:

@@ -25,6 +25,8 @@ _AHEAD, _LEFT, _UP = 0xffe69f00, 0xff009e73, 0xff56b4e9
 # x ahead, y left, z up of an optical frame's x right, y down, z ahead (REP-103).
 _FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 _SAMPLES = 20_000
+# No sensor's intensity is more, and the differences of such can still be had.
+_MOST = np.float32(1e30)
 # The width of a point [m], and the sides it may have on the screen [px].
 _POINT_M = 0.02
 _SIDES_PX = (2, 3, 5)
@@ -129,7 +131,7 @@ class CloudArtist:
         if colouring == DISTANCE:
             values = np.sqrt(sum(np.square(column) for column in cloud.points.T))
         elif colouring == INTENSITY and cloud.intensity is not None:
-            values = np.nan_to_num(cloud.intensity)
+            values = np.clip(np.nan_to_num(cloud.intensity), -_MOST, _MOST)
         if colouring != HEIGHT:
             scale = self._follow(colouring, values, cloud.received_s)
         low, high = scale or (0.0, 1.0)
@@ -183,7 +185,7 @@ def _splat(pixels: np.ndarray, cloud: Cloud, colours: np.ndarray, orbit: Orbit) 
     found = np.empty(len(seen) + 1, np.uint32)
     found[1:] = colours[seen]
     drawn = found.take(ranks.astype(np.int32))
-    cv2.copyTo(_bytes(drawn), cv2.compare(ranks, 0.0, cv2.CMP_GT), _bytes(pixels))
+    cv2.copyTo(_bytes(drawn), (ranks > 0).view(np.uint8), _bytes(pixels))
 
 
 def _grown(ranks: np.ndarray, closeness: np.ndarray, focal: float, count: int) -> np.ndarray:
