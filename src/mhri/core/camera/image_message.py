@@ -9,6 +9,8 @@ data), the header (seq, stamp, string frame_id). It is read where it lies: no pi
 import struct
 from typing import Any, Optional, Tuple, Type
 
+import numpy as np
+
 from mhri.core.camera.depth_codec import decode_depth
 from mhri.core.camera.depth_colour import DepthColour
 from mhri.core.camera.images import DEPTH, RGB, Data, Frame, FrameError, Size
@@ -112,12 +114,21 @@ def _read_rgb(message_type: str, data: Data, view: Optional[Size],
     return Frame(RGB, rgb, None, full, None, received_s), transport
 
 
+def read_depth(message_type: str, data: Data,
+               view: Optional[Size] = None) -> Tuple[np.ndarray, Size, str]:
+    """Return (depth float32 (h, w) [m], NaN invalid; size as sent; transport) of a message.
+
+    :raises FrameError: another type, or a picture that cannot be decoded
+    """
+    if message_type == COMPRESSED_TYPE:
+        return decode_depth(*read_compressed(data), view)
+    if message_type != RAW_TYPE:
+        raise FrameError('{} is not a picture'.format(message_type))
+    return (*decode_raw_depth(read_raw(data), view), 'raw')
+
+
 def _read_depth(message_type: str, data: Data, view: Optional[Size], colour: DepthColour,
                 received_s: float) -> Tuple[Frame, str]:
-    if message_type == RAW_TYPE:
-        depth, full = decode_raw_depth(read_raw(data), view)
-        transport = 'raw'
-    else:
-        depth, full, transport = decode_depth(*read_compressed(data), view)
+    depth, full, transport = read_depth(message_type, data, view)
     rgb, depth_range = colour.colour(depth, received_s)
     return Frame(DEPTH, rgb, depth, full, depth_range, received_s), transport

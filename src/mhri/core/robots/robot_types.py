@@ -13,7 +13,7 @@ ODOMETRY_TYPES = ('nav_msgs/Odometry', 'turtlesim/Pose')
 SILENT_AFTER_S = 1.0
 _HARDWARE: Dict[str, Callable[[Section], Any]] = {
     'motor_power': read_motor_power, 'hardware_stop': read_hardware_stop}
-_TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'scan', 'battery')
+_TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'cloud', 'scan', 'battery')
 
 
 @dataclass(frozen=True)
@@ -94,6 +94,7 @@ class RobotType:
     odometry_type: str = 'nav_msgs/Odometry'
     rgb: Tuple[str, ...] = ()
     depth: Tuple[str, ...] = ()
+    cloud: Tuple[str, ...] = ()
     scan: Tuple[str, ...] = ()
     battery: Tuple[str, ...] = ()
     known_by: Dict[str, str] = field(default_factory=dict)

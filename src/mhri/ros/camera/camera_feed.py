@@ -55,14 +55,25 @@ class CameraFeed:
         with self._changed:
             if self._session is not None:
                 return
-            self._session = Decoder(self.robot, self.kind, lambda: self._wanted, self._clock,
-                                    self._depth_range)
+            self._session = self.new_session(lambda: self._wanted)
             if self._finder is None:
                 # One that is still giving a topic back to the master goes on with this instead.
                 self._finder = threading.Thread(target=self._find, daemon=True,
                                                 name='camera finder ' + self.robot)
                 self._finder.start()
             self._changed.notify_all()
+
+    def new_session(self, wanted):
+        """Return the :class:`Decoder` of one opening; ``wanted`` is for it."""
+        return Decoder(self.robot, self.kind, wanted, self._clock, self._depth_range)
+
+    def find_offers(self, published):
+        """Return the offers, best first, among {topic: type} of what is published."""
+        return find_offers(self.kind, self._topics, published)
+
+    def subscribe(self, session, offer):
+        """Return a subscription to an offer, for a session (blocking)."""
+        return Subscription(offer.topic, session.hear)
 
     def close(self, wait_s=0.0):
         """Decode nothing more and give the topic back; the latter on the feed's own thread.
@@ -148,7 +159,7 @@ class CameraFeed:
         :raises MasterError: the master cannot be reached
         """
         published = dict(MasterApi(rospy.get_name()).call('getPublishedTopics', '/' + self.robot))
-        offers = find_offers(self.kind, self._topics, published)
+        offers = self.find_offers(published)
         with self._changed:
             self._offers = offers if self._session is session else []
         offer = choose_offer(offers, transport)
@@ -168,7 +179,7 @@ class CameraFeed:
         if subscription is not None:
             _give_back(subscription)
         session.explain('nothing has come on {} yet'.format(offer.topic))
-        return Subscription(offer.topic, session.hear)
+        return self.subscribe(session, offer)
 
     def _nothing(self, transport, offers):
         """Say why there is nothing to subscribe."""

@@ -3,11 +3,12 @@
 """What one bot window can show of its robot: a row for each view, opened while it is wanted."""
 from mhri.core.camera.images import DEPTH, RGB
 from mhri.ros.camera.camera_feed import CameraFeed
+from mhri.ros.sensors.cloud_feed import CloudFeed
 from mhri.ros.sensors.imu_feed import ImuFeed
 from mhri.ros.sensors.mocap_feed import MocapFeed
 from mhri.ros.sensors.scan_feed import ScanFeed
 
-IMU, SCAN, RECORD, MOCAP = 'imu', 'scan', 'record', 'mocap'
+IMU, SCAN, CLOUD, RECORD, MOCAP = 'imu', 'scan', 'cloud', 'record', 'mocap'
 
 # A further view is a further row: key, whether a type has it, what makes its feed.
 _ROWS = (
@@ -16,6 +17,8 @@ _ROWS = (
     (RGB, lambda kind: kind.rgb, lambda robot, kind: CameraFeed(robot, kind.rgb, RGB)),
     (DEPTH, lambda kind: kind.depth, lambda robot, kind: CameraFeed(robot, kind.depth, DEPTH)),
     (SCAN, lambda kind: kind.scan, lambda robot, kind: ScanFeed(robot, kind.scan)),
+    (CLOUD, lambda kind: kind.cloud or kind.depth,
+     lambda robot, kind: CloudFeed.of(robot, kind, CLOUD)),
     (MOCAP, lambda kind: True, lambda robot, kind: MocapFeed(robot)),
 )
 
