@@ -44,12 +44,14 @@ class Picture(NamedTuple):
     """A drawn cloud: ``pixels`` uint32 (h, w), each 0xffrrggbb, and what they mean.
 
     ``scale`` is the range of the colours, in metres or the unit of the intensity, None where they
-    are those of the points; ``grid_m`` the distance of the lines on the floor.
+    are those of the points; ``grid_m`` the distance of the lines on the floor, ``colouring`` what
+    the colours mean.
     """
 
     pixels: np.ndarray
     scale: Optional[Range]
     grid_m: float
+    colouring: str
 
 
 def _table() -> np.ndarray:
@@ -116,7 +118,7 @@ class CloudArtist:
         pen.grid(floor_m, grid_m)
         _splat(pixels, cloud, colours, orbit)
         pen.robot(floor_m)
-        return Picture(pixels, scale, grid_m)
+        return Picture(pixels, scale, grid_m, colouring)
 
     def _follow(self, key: str, values: np.ndarray, now: float) -> Optional[Range]:
         """Return the range of some values after one more cloud."""
