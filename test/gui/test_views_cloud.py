@@ -15,8 +15,8 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 
 from mhri.core.camera.images import StreamStatus  # noqa: E402
 from mhri.core.sensors.cloud_picture import (  # noqa: E402
-    COLOUR, DISTANCE, GROUND, HEIGHT, projected)
-from mhri.core.sensors.orbit import Orbit  # noqa: E402
+    COLOUR, DISTANCE, GROUND, HEIGHT)
+from mhri.core.sensors.orbit import Orbit, projected  # noqa: E402
 from mhri.core.sensors.point_cloud import Cloud  # noqa: E402
 from mhri.gui.driving.drive_keys import DriveKeys, mark_drive_area  # noqa: E402
 from mhri.gui.sensors.cloud_canvas import MOST_PIXELS, number_text  # noqa: E402

@@ -12,8 +12,9 @@ import pytest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from mhri.core.sensors.cloud_picture import (  # noqa: E402
-    CloudArtist, COLOUR, colourings, DISTANCE, GROUND, HEIGHT, INTENSITY, projected, TABLE)
-from mhri.core.sensors.orbit import fitted, focal_px, Orbit, read_orbit  # noqa: E402
+    CloudArtist, COLOUR, colourings, DISTANCE, GROUND, HEIGHT, INTENSITY, TABLE)
+from mhri.core.sensors.orbit import (  # noqa: E402
+    fitted, focal_px, Orbit, projected, read_orbit)
 from mhri.core.sensors.point_cloud import Cloud  # noqa: E402
 from support.clouds import room  # noqa: E402
 
@@ -235,3 +236,14 @@ def test_an_orbit_is_kept_as_numbers():
 def test_no_orbit_of_other_words(words):
     with pytest.raises(ValueError):
         read_orbit(words)
+
+
+def test_a_ceiling_does_not_hide_the_room():
+    """Seen from above; seen level or from below it is there."""
+    cloud = cloud_of([(3, -0.8, 2.4)] * 5 + [(3, -0.8, 0.0)] * 60, [BLUE] * 5 + [RED] * 60)
+    for orbit, cut in ((Orbit((3.0, 0.0, 0.0), 0.0, 1.5, 5.0), True),
+                       (Orbit((3.0, 0.0, 1.0), 0.0, 0.0, 5.0), False),
+                       (Orbit((3.0, 0.0, 1.0), 0.0, -0.5, 5.0), False)):
+        picture = CloudArtist().draw(cloud, orbit, SIZE, COLOUR)
+        assert picture.cut == cut and bool(where(picture.pixels, BLUE)) != cut
+        assert where(picture.pixels, RED)

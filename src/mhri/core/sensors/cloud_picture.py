@@ -14,7 +14,7 @@ import numpy as np
 
 from mhri.core.camera.images import Range, Size
 from mhri.core.camera.range_follower import RangeFollower
-from mhri.core.sensors.orbit import Orbit, focal_px
+from mhri.core.sensors.orbit import Orbit, focal_px, projected
 from mhri.core.sensors.point_cloud import Cloud
 
 HEIGHT, DISTANCE, INTENSITY, COLOUR = 'height', 'distance', 'intensity', 'colour'
@@ -35,6 +35,9 @@ _SPARSE = 60_000
 _NEAR = 0.05
 _GRID_M = (0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 _GRID_LINES = 10
+#: how far above the floor a cloud is cut that is looked down on from above that [m]
+CEILING_M = 1.9
+_DOWN_RAD = math.radians(10.0)
 _ROBOT_RADIUS_M = 0.18
 _Line = Tuple[Tuple[float, ...], Tuple[float, ...]]
 _FOLLOWERS = {HEIGHT: (0.5, -math.inf), DISTANCE: (0.5, 0.0), INTENSITY: (1e-3, -math.inf)}
@@ -45,13 +48,14 @@ class Picture(NamedTuple):
 
     ``scale`` is the range of the colours, in metres or the unit of the intensity, None where they
     are those of the points; ``grid_m`` the distance of the lines on the floor, ``colouring`` what
-    the colours mean.
+    the colours mean. ``cut``: what is more than :data:`CEILING_M` above the floor is left out.
     """
 
     pixels: np.ndarray
     scale: Optional[Range]
     grid_m: float
     colouring: str
+    cut: bool = False
 
 
 def _table() -> np.ndarray:
@@ -78,19 +82,6 @@ def colourings(cloud: Cloud) -> Tuple[str, ...]:
     return (HEIGHT, DISTANCE) + tuple(key for key, values in extras if values is not None)
 
 
-def projected(places_m: np.ndarray, orbit: Orbit, size: Size) -> np.ndarray:
-    """Return where places are in a picture: columns x and y [px] and the way ahead [m], (n, 3).
-
-    :param places_m: (n, 3), x ahead, y left, z up; what is not ahead has no place (NaN)
-    :param size: (width, height) of the picture [px]
-    """
-    seen = (np.asarray(places_m, float) - orbit.eye_m()) @ orbit.axes().T
-    with np.errstate(divide='ignore', invalid='ignore'):
-        seen[:, :2] *= focal_px(size[1]) / np.where(seen[:, 2:] > 0.0, seen[:, 2:], np.nan)
-    seen[:, :2] += 0.5 * size[0], 0.5 * size[1]
-    return seen
-
-
 class CloudArtist:
     """Draws the clouds of one sensor; the scales follow what is seen without flickering.
 
@@ -112,13 +103,17 @@ class CloudArtist:
         floor = self._follow(HEIGHT, heights, cloud.received_s)
         colours, scale = self._colours(cloud, colouring, heights, floor)
         floor_m = floor[0] if floor else 0.0
+        top_m = floor_m + CEILING_M
+        # Seen from above, a ceiling would hide the room, and no robot meets it.
+        hides = orbit.pitch_rad > _DOWN_RAD and orbit.eye_m()[2] > top_m
+        low = heights < top_m if hides else np.ones(len(heights), bool)
         grid_m = next((step for step in _GRID_M if step >= 0.15 * orbit.distance_m), _GRID_M[-1])
         pixels = np.full((size[1], size[0]), GROUND, np.uint32)
         pen = _Pen(pixels, orbit)
         pen.grid(floor_m, grid_m)
-        _splat(pixels, cloud, colours, orbit)
+        _splat(pixels, cloud, colours, orbit, low)
         pen.robot(floor_m)
-        return Picture(pixels, scale, grid_m, colouring)
+        return Picture(pixels, scale, grid_m, colouring, not low.all())
 
     def _follow(self, key: str, values: np.ndarray, now: float) -> Optional[Range]:
         """Return the range of some values after one more cloud."""
@@ -160,8 +155,9 @@ def _along(axis: np.ndarray, points: np.ndarray) -> np.ndarray:
     return found
 
 
-def _splat(pixels: np.ndarray, cloud: Cloud, colours: np.ndarray, orbit: Orbit) -> None:
-    """Draw the points of a cloud into a picture."""
+def _splat(pixels: np.ndarray, cloud: Cloud, colours: np.ndarray, orbit: Orbit,
+           wanted: np.ndarray) -> None:
+    """Draw those points of a cloud that are wanted (bool (n,)) into a picture."""
     height, width = pixels.shape
     focal = focal_px(height)
     lens = np.array([[focal, 0.0, 0.5 * width], [0.0, focal, 0.5 * height], [0.0, 0.0, 1.0]])
@@ -174,7 +170,7 @@ def _splat(pixels: np.ndarray, cloud: Cloud, colours: np.ndarray, orbit: Orbit) 
         closeness = np.float32(1.0) / ahead
         x = (x - shift[0]) * closeness
         y = (y - shift[1]) * closeness
-    seen = np.flatnonzero((ahead > near) & (x >= 0) & (x < width) & (y >= 0) & (y < height))
+    seen = np.flatnonzero(wanted & (ahead > near) & (x >= 0) & (x < width) & (y >= 0) & (y < height))
     closeness = closeness[seen]
     # 16 bits are enough to tell what is in front, and are sorted in a tenth of the time.
     far_first = np.argsort((closeness * (near * 65535)).astype(np.uint16), kind='stable')

@@ -7,6 +7,8 @@ from typing import List, Tuple
 
 import numpy as np
 
+from mhri.core.camera.images import Size
+
 #: of the picture's height [rad]
 FIELD_OF_VIEW_RAD = math.radians(60.0)
 _NEAREST_M, _FARTHEST_M = 0.3, 500.0
@@ -16,6 +18,8 @@ _TURN_RAD_PER_PX = math.radians(0.4)
 _ZOOM = 1.15
 # Most of what is there, so that one stray point does not make the rest a dot.
 _CORE_PERCENT = (4, 96)
+_NEAREST_FIT_M = 1.0
+_FIT_SIZE = (120, 100)
 
 
 @dataclass(frozen=True)
@@ -88,6 +92,19 @@ def focal_px(height_px: float) -> float:
     return 0.5 * max(1.0, height_px) / math.tan(0.5 * FIELD_OF_VIEW_RAD)
 
 
+def projected(places_m: np.ndarray, orbit: Orbit, size: Size) -> np.ndarray:
+    """Return where places are in a picture: columns x and y [px] and the way ahead [m], (n, 3).
+
+    :param places_m: (n, 3), x ahead, y left, z up; what is not ahead has no place (NaN)
+    :param size: (width, height) of the picture [px]
+    """
+    seen = (np.asarray(places_m, float) - orbit.eye_m()) @ orbit.axes().T
+    with np.errstate(divide='ignore', invalid='ignore'):
+        seen[:, :2] *= focal_px(size[1]) / np.where(seen[:, 2:] > 0.0, seen[:, 2:], np.nan)
+    seen[:, :2] += 0.5 * size[0], 0.5 * size[1]
+    return seen
+
+
 def fitted(points_m: np.ndarray) -> Orbit:
     """Return an :class:`Orbit` that shows most of some points, and the sensor, from behind.
 
@@ -95,9 +112,20 @@ def fitted(points_m: np.ndarray) -> Orbit:
     """
     if not len(points_m):
         return Orbit()
-    low, high = np.percentile(points_m[::max(1, len(points_m) // 20_000)], _CORE_PERCENT, axis=0)
+    low, high = np.percentile(points_m, _CORE_PERCENT, axis=0)
     low, high = np.minimum(low, 0.0), np.maximum(high, 0.0)
     x, y, z = ((low + high) / 2.0).tolist()
-    radius = float(np.linalg.norm(high - low)) / 2.0
-    distance = min(_FARTHEST_M, max(1.0, 0.85 * radius / math.sin(0.5 * FIELD_OF_VIEW_RAD)))
-    return Orbit((x, y, z), distance_m=distance)
+    orbit = Orbit((x, y, z), distance_m=_NEAREST_FIT_M)
+    # The box around most of it, in the corners of which there is often nothing.
+    corners = np.array(np.meshgrid(*zip(0.9 * low + 0.1 * high, 0.9 * high + 0.1 * low)))
+    places = np.vstack((corners.reshape(3, -1).T, ((0.0, 0.0, 0.0), (0.0, 0.0, low[2]))))
+    while orbit.distance_m < _FARTHEST_M and not _shows(orbit, places):
+        orbit = replace(orbit, distance_m=min(_FARTHEST_M, 1.05 * orbit.distance_m))
+    return orbit
+
+
+def _shows(orbit: Orbit, places_m: np.ndarray) -> bool:
+    """Tell whether places are in a picture that is a little wider than high, off its edge."""
+    seen = projected(places_m, orbit, _FIT_SIZE)
+    off = np.abs(seen[:, :2] - 0.5 * np.array(_FIT_SIZE))
+    return bool((seen[:, 2] > 0.0).all() and (off < 0.46 * np.array(_FIT_SIZE)).all())

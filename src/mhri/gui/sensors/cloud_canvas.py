@@ -7,7 +7,7 @@ from python_qt_binding.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from python_qt_binding.QtGui import QColor, QImage, QPainter, QPen
 from python_qt_binding.QtWidgets import QSizePolicy, QWidget
 
-from mhri.core.sensors.cloud_picture import GROUND, TABLE
+from mhri.core.sensors.cloud_picture import CEILING_M, GROUND, TABLE
 from mhri.core.sensors.orbit import Orbit
 from mhri.gui.driving.drive_keys import keep_arrows
 from mhri.gui.screen import theme
@@ -202,13 +202,17 @@ class CloudCanvas(QWidget):
         if self._warning:
             self._paint_warning(painter, room, unit)
         if self.hasFocus():
+            painter.setBrush(Qt.NoBrush)
             painter.setPen(QPen(theme.colour(theme.DRIVE, self.palette()), 4))
             painter.drawRect(room)
 
     def _paint_words(self, painter, unit):
         """Paint in the lower left corner how far the lines of the floor are apart."""
         words = 'lines {:g} m apart'.format(self._picture.grid_m)
+        if self._picture.cut:
+            words = 'cut {:g} m above the floor, {}'.format(CEILING_M, words)
         words = '{}, {}'.format(self._note, words) if self._note else words
+        words = theme.fitting_text(painter.fontMetrics(), (words,), self.width() - 2 * unit)
         box = QRectF(0.0, 0.0, painter.fontMetrics().horizontalAdvance(words) + unit, 1.3 * unit)
         box.moveBottomLeft(QPointF(0.3 * unit, self.height() - 0.3 * unit))
         _paint_shade(painter, box)
