@@ -155,6 +155,7 @@ class Decoder:
             self._bad_at = received_s
             # It names what a message says of itself, which may be any text.
             self._problem = tidy_text(problem, _LONGEST_PROBLEM)
+            self._hint = ''
 
     def _note_good(self, frame, transport):
         with self._changed:
