@@ -13,7 +13,9 @@ XYZ = (('x', 'f4'), ('y', 'f4'), ('z', 'f4'))
 
 
 def laid_out(columns, kinds=XYZ, gap=0, row_gap=0, width=None, bigendian=False):
-    """Return (fields as (name, offset, datatype, count), width, height, point_step, row_step, data).
+    """Return (fields, width, height, point_step, row_step, data) of a message.
+
+    A field is (name, offset, datatype, count).
 
     :param columns: {name: values}
     :param kinds: (name, type) in the order of the bytes
