@@ -33,14 +33,14 @@ class Session:
     def __init__(self):
         import rospy
         from mhri.presenters.demo import Hands
-        from mhri.presenters.panel_host import PanelHost
+        from mhri.presenters.screen_host import ScreenHost
         from mhri.ros.screen.backend import ScreenBackend
         self.system = System()
         self.app = QApplication.instance() or QApplication(['panel'])
-        self.host = PanelHost(ScreenBackend(['panel']))
-        self.host.panel.resize(1000, 600)
-        self.host.panel.show()
-        self.hands = Hands(self.host.panel)
+        self.host = ScreenHost(ScreenBackend(['panel']))
+        self.host.screen.resize(1000, 600)
+        self.host.screen.show()
+        self.hands = Hands(self.host.screen)
         self.host.start()
         self.operator = self.host.operator
         until(lambda: 'no ROS master' in self.operator.view().status, what='the missing master')
@@ -55,7 +55,7 @@ class Session:
         self._rospy = rospy
 
     def widget(self, name):
-        found = self.host.panel.findChild(QWidget, name)
+        found = self.host.screen.findChild(QWidget, name)
         assert found is not None, 'no widget ' + name
         return found
 
@@ -168,7 +168,7 @@ def test_staying_together_slows_the_quick_one(session):
         session.drive(-1.0, 0.0, lambda: all(
             abs(session.witnesses[name].latest().linear_mps + 0.22) < 0.04
             for name in ('bot1', 'bot2')), 'both at the pace of the Burger')
-        assert 'bot2' in session.host.panel.speed_limits.pace_label.text()
+        assert 'bot2' in session.host.screen.speed_limits.pace_label.text()
         session.click('together_box')
         until(lambda: session.witnesses['bot1'].latest().linear_mps < -0.3, 10,
               'the TurtleBot2 to do its best')
@@ -198,14 +198,14 @@ def test_closing_the_window_of_a_driven_robot_stops_it(session):
 
 def test_keys_drive_and_release_stops(session):
     session.select('bot1')
-    session.host.panel.activateWindow()
-    panel = session.host.panel
+    session.host.screen.activateWindow()
+    panel = session.host.screen
     until(Grip(lambda: QTest.keyPress(panel, Qt.Key_Left),
                lambda: QTest.keyRelease(panel, Qt.Key_Left),
                lambda: session.operator.view().status, session.witnesses['bot1'].moving), 30,
           'the key to drive')
     assert session.witnesses['bot1'].latest().angular_rad_s > 0
-    QTest.keyRelease(session.host.panel, Qt.Key_Left)
+    QTest.keyRelease(session.host.screen, Qt.Key_Left)
     until(session.witnesses['bot1'].at_rest, 2, 'bot1 to stand still')
 
 
@@ -213,7 +213,7 @@ def test_stop_all_with_proof_and_release_in_two_steps(session):
     session.select('bot1', 'bot2')
     session.drive(0.0, 0.5, lambda: all(
         session.witnesses[name].moving() for name in ('bot1', 'bot2')))
-    QTest.keyClick(session.host.panel, Qt.Key_Space, Qt.ShiftModifier)
+    QTest.keyClick(session.host.screen, Qt.Key_Space, Qt.ShiftModifier)
     until(lambda: all(robot.proof and robot.proof.state == 'stopped'
                       for robot in session.operator.view().robots), what='the proofs')
     proofs = {robot.name: robot.proof.text for robot in session.operator.view().robots}

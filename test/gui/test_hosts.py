@@ -9,7 +9,7 @@ import pytest
 from python_qt_binding.QtCore import QPoint, QRect
 from python_qt_binding.QtWidgets import QApplication, QWidget
 
-from mhri.presenters.panel_host import PanelHost
+from mhri.presenters.screen_host import ScreenHost
 from mhri.ros.screen.backend import ScreenBackend
 from mhri.standalone import Standalone
 
@@ -21,7 +21,7 @@ def app():
 
 def used_host():
     """A host with something to remember."""
-    host = PanelHost(ScreenBackend())
+    host = ScreenHost(ScreenBackend())
     for name in ('bot2', 'bot1', 'rover_7'):
         host._add(name)
     host._select(['bot1'])
@@ -45,14 +45,14 @@ def test_state_survives_as_json():
     first = used_host()
     state = json.loads(json.dumps(first.save_state()))
     first.close()
-    second = PanelHost(ScreenBackend())
+    second = ScreenHost(ScreenBackend())
     second.restore_state(state)
     check_restored(second)
     second.close()
 
 
 def test_a_camera_knows_which_robot_is_in_front_of_it():
-    host = PanelHost(ScreenBackend())
+    host = ScreenHost(ScreenBackend())
     for name in ('bot1', 'bot2', 'bot3'):
         host._add(name)
     for name in ('bot1', 'bot2'):
@@ -64,11 +64,11 @@ def test_a_camera_knows_which_robot_is_in_front_of_it():
             host._draw_next()
         return [host._hosts[name].behind for name in ('bot1', 'bot2')]
     assert behind() == ['', '']
-    host.panel.robot_list.activate('bot2')
+    host.screen.robot_list.activate('bot2')
     assert behind() == ['bot2', '']
-    host.panel.robot_list.clear()
+    host.screen.robot_list.clear()
     assert behind() == ['', '']
-    host.panel.robot_list.activate('bot3')
+    host.screen.robot_list.activate('bot3')
     assert behind() == ['', ''], 'it has no window'
     host.close()
 
@@ -137,7 +137,7 @@ def test_a_demo_leaves_the_settings_alone(saved):
         before = stream.read()
     program = Standalone(['panel'], saved, remember=False)
     program.host._add('bot1')
-    program.host.panel.limits_requested.emit(0.3, 0.8)
+    program.host.screen.limits_requested.emit(0.3, 0.8)
     program.window.close()
     with open(saved, 'rb') as stream:
         assert stream.read() == before
@@ -148,9 +148,9 @@ def test_a_demo_leaves_the_settings_alone(saved):
     (lambda host: host._open('bot1'), ['kept']),
     (lambda host: host._add('bot2'), ['bot1', 'bot2']),
     (lambda host: host._remove('bot1'), []),
-    (lambda host: host.panel.mode_requested.emit('ps3joy'), ['bot1']),
-    (lambda host: host.panel.limits_requested.emit(0.3, 0.8), ['bot1']),
-    (lambda host: host.panel.together_requested.emit(True), ['bot1']),
+    (lambda host: host.screen.mode_requested.emit('ps3joy'), ['bot1']),
+    (lambda host: host.screen.limits_requested.emit(0.3, 0.8), ['bot1']),
+    (lambda host: host.screen.together_requested.emit(True), ['bot1']),
 ], ids=['none', 'a window', 'one more', 'one less', 'mode', 'limits', 'together'])
 def test_a_fresh_panel_keeps_the_settings_until_something_is_changed(saved, change, robots):
     program = Standalone(['panel'], saved)

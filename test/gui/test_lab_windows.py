@@ -12,7 +12,7 @@ from mhri.core.screen import views
 from mhri.core.screen.views import RobotView
 from mhri.gui.screen.window_maker import import_window, WindowMaker
 from mhri.gui.screen.windows import TurtleBotWindow
-from mhri.presenters.panel_host import PanelHost
+from mhri.presenters.screen_host import ScreenHost
 from mhri.ros.screen.backend import ScreenBackend
 
 MODULE = '''
@@ -126,7 +126,7 @@ def test_the_windows_of_mhri_need_no_trust(operator, ui_dir):
 @pytest.fixture
 def host(operator, monkeypatch):
     """The panel with robots whose type is a lab's; nothing is connected to anything."""
-    made = PanelHost(ScreenBackend())
+    made = ScreenHost(ScreenBackend())
     made.keys = {}
     monkeypatch.setattr(made.operator, '_robot_view', lambda name, selected: RobotView(
         name, 'Lab', window=made.keys[name], link=views.LIVE, x_m=made.x_m))
@@ -161,7 +161,7 @@ def test_one_that_fails_while_it_draws_is_replaced_and_the_others_go_on(host, op
     assert type(host.windows['bot1']) is TurtleBotWindow and host.windows['bot1'].isVisible()
     assert not lab.isVisible()
     assert host.windows['bot2'] is other and host.windows['bot3'] is good
-    assert 'ZeroDivisionError' in host.panel.look_label.text()
+    assert 'ZeroDivisionError' in host.screen.look_label.text()
     host.windows['bot1'].stop_requested.emit()
     host.windows['bot1'].close()
     assert 'bot1' not in host.windows

@@ -91,7 +91,7 @@ def toggle(session, window, number):
     session.until(lambda: heard(session) == window.wanted(), what='{} {}'.format(name, on))
     if name in ('camera_rgb', 'camera_depth') and number // len(STEPS) % 5 == 0:
         # As an operator would: look at it. Else the next click comes while it is being subscribed.
-        session.until(lambda: window.camera.picture.frame is not None, what='a picture')
+        session.until(lambda: window.view('rgb').picture.frame is not None, what='a picture')
 
 
 def use(process):
@@ -129,7 +129,7 @@ def test_a_thousand_toggles_leave_nothing_behind(session, window):
     panel, robot = psutil.Process(), robot_process(session)
     for number in range(WARM_UP):
         toggle(session, window, number)
-    session.until(lambda: window.camera.picture.frame is not None, what='the picture')
+    session.until(lambda: window.view('rgb').picture.frame is not None, what='the picture')
     before = {'panel': use(panel), 'robot': use(robot)}
     for name in before:
         print(row('{}, warm'.format(name), before[name]))
@@ -139,7 +139,7 @@ def test_a_thousand_toggles_leave_nothing_behind(session, window):
         if number % 250 == 249:
             print(row('panel after {} toggles'.format(number + 1), use(panel)), flush=True)
     took_s = time.monotonic() - begun
-    session.until(lambda: window.camera.picture.frame is not None, what='the picture')
+    session.until(lambda: window.view('rgb').picture.frame is not None, what='the picture')
 
     def settled():
         return all(value <= MARGINS[key] for key, value in growth(

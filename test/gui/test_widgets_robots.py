@@ -206,7 +206,7 @@ def test_a_removed_robot_loses_highlight_and_row(robots, operator, four_robots):
     operator.settle()
     assert robots.current is None
     assert robots.findChild(type(robots.row('bot1')), 'row_bot2') is None
-    assert [robots.row(name).number.text() for name in ('bot1', 'bot3', 'bot4')] == ['1', '2', '3']
+    assert [robots.row(name).number.text() for name in ('bot1', 'bot3', 'bot4')] == ['1', '3', '4']
 
 
 def test_twelve_robots_scroll_and_fingers_hit(robots, operator):
@@ -222,7 +222,8 @@ def test_twelve_robots_scroll_and_fingers_hit(robots, operator):
 @pytest.fixture
 def hundred(operator):
     """Return a list on the screen with a hundred robots, and those."""
-    many = tuple(replace(LIVE, name='bot{}'.format(number + 1)) for number in range(100))
+    many = tuple(replace(LIVE, name='bot{}'.format(number), number=number)
+                 for number in range(1, 101))
     widget = RobotList()
     widget.resize(560, 330)
     widget.show_robots(many)

@@ -57,6 +57,8 @@ class LinkFigures:
 class RobotView:
     """One robot as its row and its window show it.
 
+    ``number`` is its own for good, from 1; 0 where it has none.
+
     ``age_s`` is the age of the newest odometry [s]; speeds are the robot's own odometry [m/s,
     rad/s], ``heading_rad`` its yaw in (-pi, pi], x and y in metres in its ``odom`` frame; None
     where nothing has been heard. ``battery`` is a fraction in [0, 1]. ``recording`` is true while a
@@ -103,6 +105,7 @@ class RobotView:
     power: str = ''
     offers_power: bool = False
     hardware_stop: Optional[bool] = None
+    number: int = 0
 
 
 @dataclass(frozen=True)

@@ -115,19 +115,19 @@ class CameraView(QWidget):
         self._note_timer = QTimer(self)
         self._note_timer.setSingleShot(True)
         self._note_timer.setInterval(NOTE_MS)
-        line, controls = QHBoxLayout(), QHBoxLayout()
+        self._tools = QWidget(self)
+        line = QHBoxLayout(self._tools)
+        line.setContentsMargins(0, 4, 0, 0)
         line.setSpacing(6)
-        line.addWidget(self.status_label, 1)
+        line.addWidget(self.status_label, 3)
         line.addWidget(self.status_sign)
-        controls.setSpacing(6)
-        controls.addWidget(self.transport_combo, 1)
-        controls.addWidget(self.still_button)
+        line.addWidget(self.transport_combo, 1)
+        line.addWidget(self.still_button)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(4)
+        column.setSpacing(0)
         column.addWidget(self.picture, 1)
-        column.addLayout(line)
-        column.addLayout(controls)
+        column.addWidget(self._tools)
 
     def _connect(self):
         """Wire the controls."""
@@ -137,6 +137,17 @@ class CameraView(QWidget):
     def _restore(self):
         """Begin without a picture."""
         self.show_kind(None)
+
+    def show_tools(self, shown):
+        """Show the stream's figures and the controls below the picture, or the picture alone."""
+        self._tools.setVisible(shown)
+
+    def save_settings(self):
+        """Return what is kept between runs: nothing, since what there is changes."""
+        return {}
+
+    def restore_settings(self, settings):
+        """Take over a dict of :meth:`save_settings`."""
 
     @property
     def kind(self):

@@ -148,7 +148,10 @@ class PictureView(QWidget):
         self._point = QPointF(event.pos())
         self.update()
 
-    mousePressEvent = mouseMoveEvent  # noqa: N815
+    def mousePressEvent(self, event):  # noqa: N802
+        """Follow the pointer, and leave the click to the tile."""
+        self.mouseMoveEvent(event)
+        event.ignore()
 
     def leaveEvent(self, event):  # noqa: N802
         """Go back to the middle."""

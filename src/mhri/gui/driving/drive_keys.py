@@ -27,6 +27,11 @@ _DIGITS = {int(Qt.Key_0) + digit: digit for digit in range(10)}
 _ENTER = (int(Qt.Key_Return), int(Qt.Key_Enter))
 _SPACE = int(Qt.Key_Space)
 _TALK = int(Qt.Key_T)
+_TABS = {int(Qt.Key_Tab): 1, int(Qt.Key_Backtab): -1}
+# Keys of the screen, and what they are for.
+COMMANDS = {int(Qt.Key_F1): 'keys', int(Qt.Key_F2): 'drawer', int(Qt.Key_F6): 'focus',
+            int(Qt.Key_F11): 'full_screen',
+            int(Qt.Key_H): 'numbers', int(Qt.Key_P): 'stills', int(Qt.Key_R): 'record'}
 
 _KEYS = frozenset((QEvent.KeyPress, QEvent.KeyRelease, QEvent.ShortcutOverride))
 # After one of these the releases of held keys may go to somebody else.
@@ -108,6 +113,14 @@ class DriveKeys(QObject):
     robot_pressed = Signal(int)
     #: the digit 0
     all_pressed = Signal()
+    #: Ctrl and a digit: the robot of that number and no other
+    alone_pressed = Signal(int)
+    #: Tab between the pictures: 1, or -1 with Shift
+    next_pressed = Signal(int)
+    #: Return where no button has the focus: drive the robot that is looked at
+    drive_pressed = Signal()
+    #: one of the keys of the screen: a value of ``COMMANDS``
+    command_pressed = Signal(str)
     #: T was pressed or let go (push-to-talk)
     talk_changed = Signal(bool)
 
@@ -198,9 +211,10 @@ class DriveKeys(QObject):
             return self._on_stop(event, kind)
         focus = QApplication.focusWidget() or watched
         if not self._listens(watched, focus) or event.modifiers() & (
-                Qt.ControlModifier | Qt.AltModifier | Qt.MetaModifier):
+                Qt.AltModifier | Qt.MetaModifier):
             return False
-        action = self._action(event, focus)
+        action = self._action_with_ctrl(event) if event.modifiers() & Qt.ControlModifier \
+            else self._action(event, focus)
         if action is None:
             return False
         if kind == QEvent.ShortcutOverride:
@@ -271,6 +285,11 @@ class DriveKeys(QObject):
             if key in _ARROWS and self._keeps_arrows(focus):
                 return None
             return lambda: self._press(_identity(event), direction)
+        if key in COMMANDS:
+            return lambda: self.command_pressed.emit(COMMANDS[key])
+        if key in _TABS:
+            return (lambda: self.next_pressed.emit(_TABS[key])) if self._tabs_pictures(focus) \
+                else None
         digit = _digit(event)
         if digit is None:
             return None
@@ -281,12 +300,23 @@ class DriveKeys(QObject):
         """Tell whether a widget needs the arrow keys itself."""
         return isinstance(focus, _ARROW_USERS) or bool(focus.property(_KEEPS_ARROWS))
 
+    def _action_with_ctrl(self, event):
+        """Return what a press with Ctrl has to do, or None."""
+        digit = _digit(event)
+        return (lambda: self.alone_pressed.emit(digit)) if digit else None
+
     @staticmethod
-    def _enter_action(focus):
-        """Return what Return does to the focused widget, or None."""
-        if isinstance(focus, QAbstractButton) and focus.isEnabled():
-            return focus.click
-        return focus.showPopup if isinstance(focus, QComboBox) else None
+    def _tabs_pictures(focus):
+        """Tell whether Tab goes from picture to picture, and not through what can be clicked."""
+        return bool(focus.property(_AREA))
+
+    def _enter_action(self, focus):
+        """Return what Return does: to the focused widget, or to the robot that is looked at."""
+        if isinstance(focus, QAbstractButton):
+            return focus.click if focus.isEnabled() else None
+        if isinstance(focus, QComboBox):
+            return focus.showPopup
+        return self.drive_pressed.emit if focus.property(_AREA) else None
 
     def _set_talk(self, identity):
         """Hold the key of push-to-talk, or let it go (None)."""

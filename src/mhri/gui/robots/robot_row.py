@@ -5,6 +5,7 @@ from python_qt_binding.QtCore import QRectF, QSize, Qt, Signal
 from python_qt_binding.QtGui import QPainter, QPalette, QPen
 from python_qt_binding.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
+from mhri.core.robots.numbers import LAST_KEY
 from mhri.core.screen import views
 from mhri.gui.screen import theme, words
 from mhri.gui.screen.labels import BatteryLine, Pill, Sign, TextLine
@@ -154,17 +155,16 @@ class RobotRow(QWidget):
         """Tell of a click on the box."""
         self.checked.emit(self.name, on)
 
-    def show_view(self, view, number, checked, numbers=True):
+    def show_view(self, view, checked, numbers=True):
         """Show a robot.
 
         :param view: :class:`mhri.core.screen.views.RobotView`
-        :param number: its place in the list, from 1
         :param checked: whether the box is ticked
         :param numbers: whether numbers may change now; a changed state always shows at once
         """
         numbers = numbers or view.link != self._link
         self._link = view.link
-        self.number.show_text(str(number))
+        self._show_number(view.number)
         self.box.setChecked(checked)
         self.kind.show_text(words.type_text(view), theme.MUTED)
         self.sign.show_sign(theme.LINK_SIGNS[view.link])
@@ -199,6 +199,13 @@ class RobotRow(QWidget):
             self.pill.say(DRIVING)
         else:
             self.pill.say(MOVING if view.moving else '', theme.ATTENTION, filled=False)
+
+    def _show_number(self, number):
+        """Show the robot's number; one that no key drives is dimmed."""
+        text = str(number) if number else ''
+        if len(text) > max(len(self.number.text()), 2):
+            self.number.fix_width('8' * len(text))
+        self.number.show_text(text, theme.TEXT if number <= LAST_KEY else theme.MUTED)
 
     def _show_trouble(self, sign, text, loud=False, with_state=False):
         """Show a sentence in place of the motion; '' brings the motion back.

@@ -42,6 +42,9 @@ PROOF_SIGNS = {
     views.PROOF_NOT_CONFIRMED: (OCTAGON, STOP),
 }
 
+# What lies under words on a picture, in every theme.
+OVER_PICTURE = QColor(12, 14, 18, 205)
+
 SMALLEST_TEXT_PT = 11.0
 SMALLEST_TOUCH_PX = 36
 
@@ -49,6 +52,16 @@ SMALLEST_TOUCH_PX = 36
 def is_dark(palette):
     """Tell whether a palette is a dark one."""
     return palette.color(QPalette.Window).lightness() < 128
+
+
+def over_picture(palette):
+    """Return a palette for what is written on a picture: light on dark, whatever the theme."""
+    result = QPalette(palette)
+    for role, value in ((QPalette.Window, '#0c0e12'), (QPalette.Base, '#0c0e12'),
+                        (QPalette.WindowText, '#f4f4f4'), (QPalette.Text, '#f4f4f4'),
+                        (QPalette.Button, '#2b3036'), (QPalette.ButtonText, '#f4f4f4')):
+        result.setColor(role, QColor(value))
+    return result
 
 
 def colour(name, palette):

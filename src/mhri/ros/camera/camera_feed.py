@@ -36,6 +36,12 @@ class CameraFeed:
     :param depth_range_m: (near, far) of the colours [m]; None: as the scene has it
     """
 
+    @classmethod
+    def of(cls, robot, kind, key):
+        """Return the feed of a camera (``key``: 'rgb' or 'depth'), None for a type without it."""
+        topics = getattr(kind, key)
+        return cls(robot, topics, key) if topics else None
+
     def __init__(self, robot, topics, kind, transport=AUTO, clock=time.monotonic,
                  depth_range_m=None):
         self.robot = robot

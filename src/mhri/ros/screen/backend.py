@@ -319,10 +319,11 @@ class ScreenBackend:
         return self._robot_view(name, name in self.selection.selected)
 
     def _robot_view(self, name, selected):
+        ours = {'selected': selected, 'number': self.selection.numbers.of(name)}
         if self._ros == ROS_STARTING or self._mux is None:
-            return RobotView(name=name, selected=selected)
-        return self._fleet.view(name, selected,
-                                self.recordings.status(name).state == RECORDING)
+            return RobotView(name=name, **ours)
+        recording = self.recordings.status(name).state == RECORDING
+        return self._fleet.view(name, recording=recording, **ours)
 
     def _state_of_ros(self):
         """Return the state of the connection, one of ``ROS_*``."""
