@@ -9,7 +9,7 @@ from python_qt_binding.QtWidgets import QAbstractButton
 from mhri.gui.driving.drive_keys import DriveKeys
 from mhri.gui.screen.windows import TurtleBotWindow
 
-ALL = frozenset(('imu', 'rgb', 'depth', 'scan', 'record'))
+ALL = frozenset(('imu', 'rgb', 'depth', 'cloud', 'scan', 'record'))
 
 
 @pytest.fixture

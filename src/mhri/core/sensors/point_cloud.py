@@ -9,7 +9,7 @@ is checked before a byte is.
 """
 from dataclasses import dataclass
 import math
-from typing import List, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -41,7 +41,7 @@ class Field(NamedTuple):
     name: str
     offset: int
     datatype: int
-    count: int = 1
+    values: int = 1
 
 
 class RawCloud(NamedTuple):
@@ -195,7 +195,7 @@ class _View:
 
     def __init__(self, raw: RawCloud) -> None:
         self._raw = raw
-        self._fields = {}
+        self._fields: Dict[str, Field] = {}
         for field in raw.fields:
             self._fields.setdefault(field.name, field)
         self._every, self.kept_of = _thinned(raw.height, raw.width)
@@ -233,9 +233,9 @@ class _View:
     def _check(self, field: Field, size: int) -> None:
         """Refuse a field that is not one value within the bytes of a point."""
         # Old drivers write no count for one value.
-        if field.count not in (0, 1):
+        if field.values not in (0, 1):
             raise CloudError('{}: refused, field {!r} has {:,} values'.format(
-                CLOUD_TYPE, field.name, field.count))
+                CLOUD_TYPE, field.name, field.values))
         if field.offset < 0 or field.offset + size > self._raw.point_step:
             raise CloudError('{}: refused, field {!r} ends at byte {:,} of a point of {:,}'.format(
                 CLOUD_TYPE, field.name, field.offset + size, self._raw.point_step))
