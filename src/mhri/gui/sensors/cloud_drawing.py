@@ -7,15 +7,13 @@ from python_qt_binding.QtCore import QObject, Signal
 
 from mhri.core.sensors.cloud_picture import CloudArtist
 
-# A thread without anything to draw ends after so long; the next wish starts another.
-IDLE_S = 2.0
-
 
 class CloudDrawing(QObject):
     """One view's drawings, on a thread that is there while there is something to draw.
 
     It has no parent: its thread keeps it until the last drawing is done, whatever becomes of the
-    view.
+    view. The end of the program waits for that, some hundredths of a second: a thread that is cut
+    off within OpenCV or Qt takes the program down with an abort.
     """
 
     #: a :class:`mhri.core.sensors.cloud_picture.Picture`
@@ -25,9 +23,9 @@ class CloudDrawing(QObject):
 
     def __init__(self):
         super().__init__()
-        self._changed = threading.Condition()
+        self._lock = threading.Lock()
         self._wish = None
-        self._running = self._drawing = False
+        self._running = False
         self._artist = CloudArtist()
 
     def ask(self, cloud, orbit, size, colouring):
@@ -35,27 +33,23 @@ class CloudDrawing(QObject):
 
         The arguments are those of :meth:`CloudArtist.draw`.
         """
-        with self._changed:
+        with self._lock:
             self._wish = (cloud, orbit, size, colouring)
-            self._changed.notify_all()
             if not self._running:
                 self._running = True
-                threading.Thread(target=self._run, daemon=True, name='cloud drawing').start()
+                threading.Thread(target=self._run, name='cloud drawing').start()
 
     @property
     def idle(self):
         """Whether all that was asked for has been drawn, or forgotten."""
-        with self._changed:
-            return self._wish is None and not self._drawing
+        with self._lock:
+            return not self._running
 
     def _run(self):
         """Draw what is wished for (the thread)."""
         while True:
-            with self._changed:
-                self._drawing = False
-                self._changed.wait_for(lambda: self._wish is not None, IDLE_S)
+            with self._lock:
                 wish, self._wish = self._wish, None
-                self._drawing = wish is not None
                 if wish is None:
                     self._running = False
                     return
