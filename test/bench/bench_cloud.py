@@ -120,7 +120,8 @@ def on_screen(seconds, turned):
     print('{} at 1280x960: {:.1f} pictures/s, {:.2f} cores in all; GUI thread late p50 {:.1f}, '
           'p99 {:.1f}, worst {:.1f} ms'.format(
               'turned' if turned else 'shown', len(drawn) / took,
-              (time.process_time() - used) / took, late[len(late) // 2], late[int(0.99 * len(late))], late[-1]))
+              (time.process_time() - used) / took, late[len(late) // 2],
+              late[int(0.99 * len(late))], late[-1]))
     for timer in (clouds, tick, hand):
         timer.stop()
     view.close()

@@ -12,6 +12,7 @@ from mhri.core.screen.view_rows import CLOUD, IMU, PICTURES, RGB, SCAN, VIEW_ROW
 from mhri.core.screen.views import StateView
 from mhri.gui.camera.camera_view import still_name
 from mhri.presenters.draw_guard import DrawGuard
+from mhri.presenters.rviz_cloud import RvizCloud
 from mhri.ros.robots.bot_feeds import MOCAP
 
 # How a stream is called where there is little room.
@@ -38,6 +39,7 @@ class TileHost:
         self._notes = []
         self._drift = DriftMeter()
         self._wired = False
+        self._rviz = None
         window.recording.record_requested.connect(self._record)
         window.recording.stop_record_requested.connect(self._stop_recording)
         self._operator_folder()
@@ -76,6 +78,8 @@ class TileHost:
         if hasattr(feed, 'set_view'):
             self._draw_camera(widget, feed)
             return
+        if key == CLOUD and self._rviz is None:
+            self._rviz = RvizCloud(widget, feed)
         value = feed.take()
         if value is not None:
             widget.show_value(value)

@@ -3,28 +3,21 @@
 """Draws clouds beside the GUI thread, which a large one would hold up: newest wish only."""
 import threading
 
-from python_qt_binding.QtCore import QObject, Signal
-
 from mhri.core.sensors.cloud_picture import CloudArtist
 
 
-class CloudDrawing(QObject):
+class CloudDrawing:
     """One view's drawings, on a thread that is there while there is something to draw.
 
-    It has no parent: its thread keeps it until the last drawing is done, whatever becomes of the
-    view. The end of the program waits for that, some hundredths of a second: a thread that is cut
-    off within OpenCV or Qt takes the program down with an abort.
+    The thread touches nothing of Qt: a signal of it would take the program down where the
+    application is gone by then. The end of the program waits for it, some hundredths of a second:
+    a thread that is cut off within OpenCV does the same.
     """
 
-    #: a :class:`mhri.core.sensors.cloud_picture.Picture`
-    drawn = Signal(object)
-    #: why a cloud could not be drawn
-    failed = Signal(str)
-
     def __init__(self):
-        super().__init__()
         self._lock = threading.Lock()
         self._wish = None
+        self._done = None
         self._running = False
         self._artist = CloudArtist()
 
@@ -41,9 +34,20 @@ class CloudDrawing(QObject):
 
     @property
     def idle(self):
-        """Whether all that was asked for has been drawn, or forgotten."""
+        """Whether all that was asked for has been drawn or forgotten, and taken."""
         with self._lock:
-            return not self._running
+            return not self._running and self._done is None
+
+    def take(self):
+        """Return the newest :class:`mhri.core.sensors.cloud_picture.Picture` once, else None.
+
+        :raises ValueError: the cloud could not be drawn
+        """
+        with self._lock:
+            done, self._done = self._done, None
+        if isinstance(done, Exception):
+            raise ValueError('this cloud cannot be drawn: {!r}'.format(done))
+        return done
 
     def _run(self):
         """Draw what is wished for (the thread)."""
@@ -54,6 +58,8 @@ class CloudDrawing(QObject):
                     self._running = False
                     return
             try:
-                self.drawn.emit(self._artist.draw(*wish))
+                done = self._artist.draw(*wish)
             except Exception as error:  # the guard of this thread
-                self.failed.emit('this cloud cannot be drawn: {!r}'.format(error))
+                done = error
+            with self._lock:
+                self._done = done

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """A robot's point cloud: turned by hand, coloured by choice, drawn without a GPU."""
-from python_qt_binding.QtCore import Qt, Signal
+from python_qt_binding.QtCore import Qt, QTimer, Signal
 from python_qt_binding.QtWidgets import (
     QComboBox, QHBoxLayout, QPushButton, QSizePolicy, QVBoxLayout, QWidget)
 
@@ -17,12 +17,17 @@ from mhri.gui.sensors.cloud_drawing import CloudDrawing
 
 OLD_S = 1.0
 STATUS_PERIOD_S = 0.25
+# How often a drawing that is under way is looked for.
+LOOK_MS = 15
+# How long a reason stays.
+REFUSAL_S = 6.0
 WAITING = 'waiting for the first cloud'
 NOTHING = 'nothing measured'
 # What a cloud is coloured by: key, label, unit of the scale.
 _COLOURINGS = ((HEIGHT, 'Height', 'm'), (DISTANCE, 'Distance', 'm'), (INTENSITY, 'Intensity', ''),
                (COLOUR, 'Colour', ''))
 _UNITS = {key: unit for key, _, unit in _COLOURINGS}
+_RVIZ_HELP = 'show it with RViz instead; robots stop while that is being loaded'
 _HELP = ('drag to turn, drag with the right button to move, wheel to zoom, '
          'double click to show all')
 
@@ -38,11 +43,14 @@ class CloudView(QWidget):
     """Shows the clouds that it is given; the first one decides from where it is looked at.
 
     The sensor is where its axes are (orange ahead, green left, blue up), above the white circle of
-    the robot. Child widgets: ``canvas``, ``status_label``, ``colour_combo``, ``reset_button``.
+    the robot. Child widgets: ``canvas``, ``status_label``, ``colour_combo``, ``reset_button``,
+    ``rviz_button``.
     """
 
     #: the picture of a cloud has been drawn
     drawn = Signal()
+    #: the operator wants RViz's own widget instead, or no more
+    rviz_chosen = Signal(bool)
 
     def __init__(self, parent=None):
         super().__init__(parent)
@@ -50,7 +58,7 @@ class CloudView(QWidget):
         self._looked = False
         self._chosen = HEIGHT
         self._stream = ''
-        self._status_pace = Pace(STATUS_PERIOD_S)
+        self._numbers_pace = self._status_pace = Pace(STATUS_PERIOD_S)
         self._drawing = CloudDrawing()
         self._build()
         self._connect()
@@ -68,6 +76,13 @@ class CloudView(QWidget):
         self.colour_combo = QComboBox(self)
         self.reset_button = QPushButton('Show all', self)
         self.reset_button.setAutoDefault(False)
+        self.rviz_button = QPushButton('RViz', self)
+        self.rviz_button.setAutoDefault(False)
+        self.rviz_button.setCheckable(True)
+        self.rviz_button.hide()
+        self._instead = None
+        self._timer = QTimer(self)
+        self._timer.setInterval(LOOK_MS)
         self._tools = QWidget(self)
         line = QHBoxLayout(self._tools)
         line.setContentsMargins(0, 4, 0, 0)
@@ -75,7 +90,8 @@ class CloudView(QWidget):
         line.addWidget(self.status_label, 1)
         for widget, name, spoken in (
                 (self.colour_combo, 'colour_combo', 'what the colours of the points mean'),
-                (self.reset_button, 'reset_button', 'look at all points, from behind the robot')):
+                (self.reset_button, 'reset_button', 'look at all points, from behind the robot'),
+                (self.rviz_button, 'rviz_button', _RVIZ_HELP)):
             widget.setObjectName(name)
             widget.setAccessibleName(spoken)
             widget.setToolTip(spoken)
@@ -95,8 +111,8 @@ class CloudView(QWidget):
         self.canvas.resized.connect(self._ask)
         self.colour_combo.activated[int].connect(self._on_colour)
         self.reset_button.clicked.connect(lambda *_: self.show_all())
-        self._drawing.drawn.connect(self._on_drawn)
-        self._drawing.failed.connect(self.canvas.clear)
+        self.rviz_button.clicked[bool].connect(self.rviz_chosen)
+        self._timer.timeout.connect(self._look)
 
     def _restore(self):
         """Begin without a cloud."""
@@ -111,6 +127,37 @@ class CloudView(QWidget):
     def idle(self):
         """Whether the newest cloud has been drawn, from where it is looked at now."""
         return self._drawing.idle
+
+    @property
+    def frame_id(self):
+        """The frame of the newest cloud, None before the first."""
+        return None if self._cloud is None else self._cloud.frame_id
+
+    def offer_rviz(self, offered):
+        """Let the operator choose RViz's widget, or not."""
+        self.rviz_button.setVisible(offered)
+
+    def show_instead(self, widget):
+        """Show another widget in place of the drawn cloud; None: the cloud again."""
+        before, self._instead = self._instead, widget
+        if before is not None:
+            before.setParent(None)
+            before.deleteLater()
+        if widget is not None:
+            self.layout().insertWidget(0, widget, 1)
+            widget.show()
+        self.canvas.setVisible(widget is None)
+        for control in (self.colour_combo, self.reset_button):
+            control.setEnabled(widget is None)
+        self.rviz_button.setChecked(widget is not None)
+        self._ask()
+
+    def refuse_rviz(self, reason):
+        """Say why RViz's widget cannot be had."""
+        self.show_instead(None)
+        self._status_pace = Pace(REFUSAL_S)
+        self._status_pace.due()
+        self.status_label.show_text(reason)
 
     def show_value(self, cloud):
         """Show a :class:`mhri.core.sensors.point_cloud.Cloud`."""
@@ -137,6 +184,7 @@ class CloudView(QWidget):
     def _say(self):
         """Say how many points there are, and how their stream does where that is known."""
         if self._cloud is not None and self._status_pace.due():
+            self._status_pace = self._numbers_pace
             points = points_text(self._cloud)
             self.status_label.show_text('{}  {}'.format(points, self._stream).rstrip(),
                                         shorter=(points,))
@@ -184,13 +232,21 @@ class CloudView(QWidget):
 
     def _ask(self):
         """Ask for a picture of what there is, where anybody can see it."""
-        if self._cloud is not None and self.isVisible():
+        if self._cloud is not None and self.canvas.isVisible():
             self._drawing.ask(self._cloud, self.canvas.orbit, self.canvas.drawing_size(),
                               self._chosen)
+            self._timer.start()
 
-    def _on_drawn(self, picture):
-        """Show a picture, unless the cloud is gone meanwhile."""
-        if self._cloud is None:
+    def _look(self):
+        """Show what has been drawn, unless the cloud is gone meanwhile."""
+        try:
+            picture = self._drawing.take()
+        except ValueError as error:
+            picture = None
+            self.canvas.clear(str(error))
+        if self._drawing.idle:
+            self._timer.stop()
+        if picture is None or self._cloud is None:
             return
         self.canvas.show_picture(picture, _UNITS[picture.colouring],
                                  picture.colouring == DISTANCE,

@@ -85,6 +85,7 @@ class _CloudStream(CameraFeed):
         super().__init__(robot, clouds + depths, DEPTH, clock=clock)
         self._clouds = [topic_of(robot, topic) for topic in clouds]
         self._depths = [topic_of(robot, topic) for topic in depths]
+        self.cloud_topic = ''
 
     def new_session(self, wanted):
         return CloudDecoder(self.robot, wanted, self._clock)
@@ -92,6 +93,7 @@ class _CloudStream(CameraFeed):
     def find_offers(self, published):
         offers = [Offer('cloud', topic) for topic in self._clouds
                   if published.get(topic) == CLOUD_TYPE]
+        self.cloud_topic = offers[0].topic if offers else ''
         depths = [topic for topic in self._depths if published.get(info_topic(topic)) == _INFO_TYPE]
         return offers + find_offers(DEPTH, depths, published)
 
@@ -143,6 +145,10 @@ class CloudFeed:
     def status(self):
         """Return the :class:`mhri.core.camera.images.StreamStatus` of this moment."""
         return self._stream.status()
+
+    def topic(self):
+        """Return the topic of clouds that is published now, '' for none."""
+        return self._stream.cloud_topic
 
     def age_s(self):
         """Return the age of the newest cloud [s], None before the first."""
