@@ -187,12 +187,15 @@ def test_a_robot_unchecked_while_driving_stops_and_the_other_goes_on(session):
     session.let_go()
 
 
-def test_closing_the_window_of_a_driven_robot_stops_it(session):
+def test_closing_the_torn_off_window_of_a_driven_robot_stops_it(session):
     session.select('bot2')
     session.drive(0.0, 0.5, session.witnesses['bot2'].moving)
-    session.host.windows['bot2'].close()
+    until(lambda: 'bot2' in session.host.windows, what='the tile')
+    session.host.tiles.toggle_torn('bot2')
+    session.host.windows['bot2'].window().close()
     until(session.witnesses['bot2'].at_rest, 2, 'bot2 to stand still')
     assert 'bot2' not in session.operator.selection.selected
+    assert not session.host.windows['bot2'].torn_off
     session.let_go()
 
 
@@ -261,12 +264,12 @@ def test_a_name_with_special_characters_is_refused_in_place(session):
 
 def test_the_doctor_examines_beside_the_driving(session):
     session.click('doctor_button')
-    window = session.host.doctor.window
-    assert window.isVisible() and not window.isModal()
+    window = session.host.doctor.page
+    assert window.isVisible() and session.host.screen.isAncestorOf(window)
     until(lambda: window.again_button.isEnabled(), 30, 'the examination')
     text = window.text.toPlainText()
     assert 'ROS master' in text and 'bot1' in text, text
-    window.close()
+    session.host.screen.tabs.setCurrentIndex(0)
 
 
 def test_a_restarted_master_is_said_and_driving_goes_on_without_a_restart(session):

@@ -136,10 +136,10 @@ def host(operator):
     made = ScreenHost(ScreenBackend())
     made._add('bot1')
     made.operator.start = lambda: None
-    made.panel.resize(1024, 600)
+    made.screen.resize(1024, 600)
     made.start()
-    operator.show(made.panel)
-    made._open('bot1')
+    operator.show(made.screen)
+    made.tiles.make('bot1')
     yield made
     made.close()
 
@@ -165,7 +165,7 @@ def test_a_panel_whose_drawing_fails_says_so_within_a_second(host, operator, mon
 
 
 def test_a_window_whose_drawing_fails_says_so_alone(host, operator, monkeypatch):
-    guard = host._hosts['bot1'].guard
+    guard = host.tiles.hosts['bot1'].guard
     operator.wait_until(lambda: guard.cover._drawn_at is not None)
     monkeypatch.setattr(host.windows['bot1'], 'show_view', lambda *_: 1 / 0)
     operator.wait_until(guard.cover.isVisible, within_s=2.0)

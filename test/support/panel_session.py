@@ -43,7 +43,7 @@ class PanelSession:
         self.app = QApplication.instance() or QApplication(['panel'])
         self.host = ScreenHost(ScreenBackend(['panel']))
         self.operator = self.host.operator
-        self.host.screen.resize(1000, 600)
+        self.host.screen.resize(1280, 900)
         self.host.screen.show()
         self.hands = Hands(self.host.screen)
         self.host.start(robots)
@@ -63,15 +63,17 @@ class PanelSession:
         return wait_for(turn, timeout_s, what)
 
     def open(self, name):
-        """Click a robot's check box, wait for its window, and return that, in front of all."""
-        if name not in self.host.windows:
+        """Look at a robot alone, open its switches, and return its tile."""
+        self.until(lambda: name in self.host.windows, what='the tile of ' + name)
+        if name not in self.operator.selection.selected:
             self.hands.click('check_' + name)
-        self.until(lambda: name in self.host.windows, what='the window of ' + name)
-        window = self.host.windows[name]
-        window.raise_()
-        self.until(lambda: window.windowHandle().isExposed(), what='the window to be seen')
+        self.host.screen.stage.set_style('one')
+        self.host.screen.look_at(name)
+        tile = self.host.windows[name]
+        self.until(lambda: tile.isVisible() and tile.header.large, what='the tile to be large')
+        tile.views_button.setChecked(True)
         self.until(lambda: self.operator.feeds(name) is not None, what='the feeds of ' + name)
-        return window
+        return tile
 
     def switch(self, window, name, on=True):
         """Click one of a window's switches where it is not as it shall be."""

@@ -53,7 +53,7 @@ class TilesHost(QObject):
         self._stopped = False
         self._timer = QTimer(self)
         self._timer.setInterval(SLICE_MS)
-        self._timer.timeout.connect(self._draw_next)
+        self._timer.timeout.connect(self.draw_next)
 
     def show_view(self, view):
         """Follow a :class:`PanelView`: make a tile that is missing, and draw all of them soon."""
@@ -65,7 +65,7 @@ class TilesHost(QObject):
         missing = next((robot for robot in robots
                         if robot.name not in self.windows and robot.type_label), None)
         if missing is not None:
-            self._make(missing.name)
+            self.make(missing.name)
         self._stage.show_tiles({name: self.windows[name] for name in names
                                 if name in self.windows})
         waiting = [robot.name for robot in self._due]
@@ -74,21 +74,24 @@ class TilesHost(QObject):
         self._stopped = view.stop_all
         self._timer.start()
 
-    def _draw_next(self):
-        """Draw one tile; the others have their turn later, so that a click never waits for all.
+    def draw_next(self):
+        """Draw one tile, and return whether another is due.
+
+        They have their turn later, so that a click never waits for all.
 
         Those that were not reached before the next round come first in it.
         """
         if not self._due:
             self._timer.stop()
-            return
+            return False
         robot = self._due.pop(0)
         host = self.hosts.get(robot.name)
         if host is not None:
             host.guard.run(self._guarded, robot.name, host.draw, robot, self._stopped)
+        return bool(self._due)
 
-    def _make(self, name):
-        """Make a robot's tile."""
+    def make(self, name):
+        """Make a robot's tile; it is shown with the next view."""
         view = self._operator.robot_view(name)
         tile, problem = self._maker.make(view.window, self._ui_dir, name, view.type_label)
         if problem:
@@ -127,7 +130,7 @@ class TilesHost(QObject):
             self._maker.distrust(key, '{} failed ({}: {}); mend it and start mhri again'.format(
                 key, type(error).__name__, error))
             self._discard(name)
-            self._make(name)
+            self.make(name)
             self._stage.show_tiles({name: self.windows[name] for name in self.windows})
 
     def toggle_torn(self, name):

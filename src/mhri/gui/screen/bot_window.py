@@ -86,6 +86,7 @@ class BotWindow(QWidget):
         self._build_figures()
         self.stop_button.setFont(theme.larger(self.font(), 1.3, bold=True))
         self.stop_button.set_look('Shift+Space', 2.2)
+        self.stop_button.setObjectName('tile_stop_button')
         self.stop_button.hide()
         self.tools.hide()
         self.motion_place.hide()
