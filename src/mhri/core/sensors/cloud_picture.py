@@ -170,8 +170,8 @@ def _splat(pixels: np.ndarray, cloud: Cloud, colours: np.ndarray, orbit: Orbit,
         closeness = np.float32(1.0) / ahead
         x = (x - shift[0]) * closeness
         y = (y - shift[1]) * closeness
-    seen = np.flatnonzero(wanted & (ahead > near) & (x >= 0) & (x < width)
-                          & (y >= 0) & (y < height))
+        seen = np.flatnonzero(wanted & (ahead > near) & (x >= 0) & (x < width)
+                              & (y >= 0) & (y < height))
     closeness = closeness[seen]
     # 16 bits are enough to tell what is in front, and are sorted in a tenth of the time.
     far_first = np.argsort((closeness * (near * 65535)).astype(np.uint16), kind='stable')
@@ -244,6 +244,8 @@ class _Pen:
         ends = np.array(lines)
         depths = (ends - self._orbit.eye_m()) @ self._orbit.axes()[2] - self._near_m
         seen = depths.max(axis=1) > 0.0
+        if not seen.any():
+            return
         ends, depths = ends[seen], depths[seen]
         cut, back = np.flatnonzero(depths.min(axis=1) < 0.0), depths.argmin(axis=1)
         for line in cut:

@@ -118,7 +118,7 @@ def fitted(points_m: np.ndarray) -> Orbit:
     orbit = Orbit((x, y, z), distance_m=_NEAREST_FIT_M)
     # The box around most of it, in the corners of which there is often nothing.
     corners = np.array(np.meshgrid(*zip(0.9 * low + 0.1 * high, 0.9 * high + 0.1 * low)))
-    places = np.vstack((corners.reshape(3, -1).T, ((0.0, 0.0, 0.0), (0.0, 0.0, low[2]))))
+    places = np.vstack((corners.reshape(3, -1).T, ((0.0, 0.0, 0.0), (-0.3, 0.0, low[2]))))
     while orbit.distance_m < _FARTHEST_M and not _shows(orbit, places):
         orbit = replace(orbit, distance_m=min(_FARTHEST_M, 1.05 * orbit.distance_m))
     return orbit
