@@ -29,6 +29,11 @@ def ask(session):
     return lambda action, *robots: publisher.publish(action=action, robots=robots)
 
 
+def events(session):
+    """Return what the event list has told: {(robot, kind, text)}."""
+    return {(event.robot, event.kind, event.text) for event in session.host.events.log.events}
+
+
 def test_requests_change_the_selection_as_a_click_would(session, ask):
     """The panel stays the one publisher, and says what it does not do."""
     import rospy
@@ -50,6 +55,11 @@ def test_requests_change_the_selection_as_a_click_would(session, ask):
     ask('fly')
     session.until(lambda: 'fly' in session.host.screen.look_label.text())
     assert selection.selected == ()
+    told = events(session)
+    assert ('', 'request.refused', 'not done: bot9 is not in the list: add it first') in told
+    assert {(name, 'link.found', 'found') for name in ROBOTS} <= told
+    assert {(robot, kind) for robot, kind, _ in told} >= {
+        (name, kind) for name in ROBOTS for kind in ('drive.checked', 'drive.unchecked')}
 
 
 def test_record_selected_records_each_and_says_how_it_ended(session, ask):
@@ -66,6 +76,9 @@ def test_record_selected_records_each_and_says_how_it_ended(session, ask):
     for name in ('bot1', 'bot3'):
         path = recordings.status(name).path
         assert os.path.dirname(path) == session.system.home and os.path.exists(path)
+        assert {kind for robot, kind, text in events(session)
+                if robot == name and os.path.basename(path) in text} == {
+            'recording.begun', 'recording.ended'}
     ask('record', 'bot2')
     session.until(lambda: recordings.running() == ('bot2',)
                   and recordings.status('bot2').messages > 10)
@@ -143,6 +156,7 @@ def test_the_camera_budget_follows_its_parameters(session):
 def test_the_list_is_told_to_voice_and_pad(session):
     import rospy
     session.until(lambda: rospy.get_param('/mhri/robots', None) == ROBOTS)
+    assert rospy.get_param('/mhri/robot_numbers') == {'bot1': 1, 'bot2': 2, 'bot3': 3}
 
 
 def test_a_lost_robot_shakes_the_pad_once_and_talking_opens_the_ear(session):

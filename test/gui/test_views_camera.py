@@ -248,5 +248,17 @@ def test_a_picture_that_is_shown_less_often_says_why(view, operator, slowed, tex
         assert view.status_label.shown_text() == text
 
 
+def test_a_picture_that_the_budget_holds_back_says_so_and_is_not_old_before_its_time(view):
+    held = replace(LIVE, rate_hz=0.5, age_s=1.9, thinned='thinned to 0.5 Hz: camera budget',
+                   old_after_s=5.0)
+    view.show_frame(colour_frame())
+    view._status_pace._next = None
+    view.show_status(held, (5.0, 'bot2'))
+    assert view.status_label.text().startswith('thinned to 0.5 Hz: camera budget')
+    assert stream_warning(held) == ''
+    assert stream_warning(replace(held, age_s=5.1)) == \
+        'OLD PICTURE, 5.1 s\nthinned to 0.5 Hz: camera budget'
+
+
 def test_of_an_old_picture_the_age_is_the_last_to_go():
     assert titles('OLD PICTURE, 2.4 s') == ('OLD PICTURE, 2.4 s', 'OLD 2.4 s', '2.4 s')

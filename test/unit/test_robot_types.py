@@ -140,6 +140,7 @@ OVERRIDES = {
 UNCHECKED = {
     'mhri.odometry_type': {'mhri': {'odometry_type': 'foo/Bar'}},
     'mhri.command': {'mhri': {'command': []}},
+    'mhri.imu': {'mhri': {'imu': ['imu', 'no name!']}},
     'robot_type': {'robot_type': ['turtlebot2']},
     'robot_model': {'robot_model': {'a': 1}},
 }
@@ -201,6 +202,26 @@ def test_template_error_names_file_and_key(key):
     with pytest.raises(ConfigError) as error:
         parse_robot_type(BAD[key], 'crawler.yaml')
     assert str(error.value).startswith('crawler.yaml: {}:'.format(key))
+
+
+NO_NAMES = (
+    '', '/', '//x', 'x/', 'a//b', 'no name!', '~cmd', '1st', '\u00e9', 'cmd_vel\n', 'a' * 5000,
+    'x{y}', '..', '$(reboot)')
+
+
+@pytest.mark.parametrize('name', NO_NAMES)
+def test_a_topic_that_is_no_name_is_refused(name):
+    """rospy would report it where it is used, and the robot never be reached."""
+    kind, errors = resolve_robot_type(shipped(), 'bot1', {'mhri': {'command': [name]}})
+    assert kind == shipped()['generic'] and len(errors) == 1
+    assert str(errors[0]).startswith('/bot1: mhri.command: expected names of topics, e.g. cmd_vel')
+
+
+@pytest.mark.parametrize('name', ['cmd_vel', '/cmd_vel', 'a/b_2/c', '/turtle1/cmd_vel', 'a/2d'])
+def test_a_topic_that_ros_takes_is_taken(name):
+    """Relative or not; a segment behind the first may begin with a digit."""
+    kind, errors = resolve_robot_type(shipped(), 'bot1', {'mhri': {'command': [name]}})
+    assert kind.command == (name,) and not errors
 
 
 def test_one_bad_file_never_hides_the_good_ones():

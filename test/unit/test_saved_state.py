@@ -14,7 +14,8 @@ GOOD = {
     'looks': {'bot2': {'views': ['imu', 'rgb'], 'graph': {'quantity': 'gyro', 'window_s': 5},
                        'recording': {'extras': ['scan']}, 'splitter': [300, 200, 100],
                        'arm': {'pose': [1.5, None, 'up']}}},
-    'panel': {'splitter': [400, 600], 'geometry': [0, 0, 1024, 600, True]}}
+    'panel': {'splitter': [400, 600], 'geometry': [0, 0, 1024, 600, True]},
+    'events': {'sounds': False}}
 NAN = float('nan')
 DEEP = []
 for _ in range(900):
@@ -34,11 +35,17 @@ def test_what_was_kept_comes_back_whole():
     ('numbers', {'bot1': True}), ('numbers', {'bot1': 1.0}), ('numbers', {'bot1': 10 ** 6}),
     ('numbers', {'bot1': 2, 'bot2': 2}), ('numbers', {'a%d' % n: n + 1 for n in range(5000)}),
     ('mode', 5), ('mode', 'x' * 1_000_000), ('mode', 'a\x00b'), ('mode', ['joy']),
-    ('together', 1), ('together', 'yes'), ('windows', []), ('looks', 'x'), ('panel', [1])])
+    ('together', 1), ('together', 'yes'), ('windows', []), ('looks', 'x'), ('panel', [1]),
+    ('events', True)])
 def test_a_part_that_cannot_be_used_is_left_out_and_named(key, value):
     state, problems = usable_state({**GOOD, key: value})
     assert state == {other: kept for other, kept in GOOD.items() if other != key}
     assert len(problems) == 1 and problems[0].startswith(key) and len(problems[0]) < 200
+
+
+def test_a_switch_that_is_none_is_left_out_and_named():
+    state, problems = usable_state({'events': {'sounds': 'off', 'colour': 1}})
+    assert state == {'events': {}} and problems == ('events.sounds: expected true or false',)
 
 
 @pytest.mark.parametrize('key, value', [

@@ -7,9 +7,10 @@ set -euo pipefail
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 GROUPS_IN_ORDER=(lint unit oldest scripts rostest gui faults bench)
-# Targets whose files may run at the same time, and those that measure times, which run alone.
-CALM=(lint unit oldest scripts_calm rostest_calm)
-TIMED=(scripts_timed rostest_timed gui faults bench)
+# Targets whose files may run at the same time (the longest first), and those that measure times or
+# share a screen, which run alone.
+CALM=(scripts_calm rostest_calm faults_calm oldest unit lint)
+TIMED=(rostest_timed scripts_timed faults_timed gui bench)
 
 help_text() {
   cat <<'HELP'
@@ -22,7 +23,7 @@ ran and nothing failed.
   --only GROUP   run one group only (may be given again): lint, unit, oldest, scripts, rostest,
                  gui, faults, bench, or fast
   --jobs N       run N files at the same time where no times are measured, the others alone
-                 (default: the number of processors, at most 4); 1: one after the other
+                 (default: one more than there are processors, at most 4); 1: one after the other
   --bench        run the benchmarks (test/bench) in full instead of their short form
   -h, --help     this text
 
@@ -63,7 +64,7 @@ parse_arguments() {
     shift
   done
   [ "${#ONLY[@]}" -gt 0 ] || ONLY=("${GROUPS_IN_ORDER[@]}")
-  if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 4 ? $(nproc) : 4)); fi
+  if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 4 ? $(nproc) + 1 : 4)); fi
 }
 
 # Tools that Debian and Ubuntu do not package, in the workspace, at fixed versions.

@@ -15,8 +15,11 @@ from mhri.core.screen.saved_state import usable_state
 from mhri.core.screen.views import GONE, SILENT
 from mhri.presenters.doctor_host import DoctorHost
 from mhri.presenters.draw_guard import DrawGuard
+from mhri.presenters.event_host import EventHost
 from mhri.gui.screen.screen import ScreenWidget
+from mhri.presenters.pad_host import PadHost
 from mhri.presenters.requests_host import RequestsHost
+from mhri.presenters.stop_watch import StopWatch
 from mhri.presenters.tiles_host import TilesHost
 from mhri.ros.resources import resource_path
 
@@ -44,7 +47,9 @@ class ScreenHost(QObject):
         self._build()
         self.requests = RequestsHost(operator, self.screen.show_look_result, self._select,
                                      self.tiles.recording_wish)
+        self.events = EventHost(operator.recordings.status, self.screen)
         self.doctor = DoctorHost(operator, self.screen)
+        self.pad = PadHost(operator, self.screen, parent=self)
         self._connect()
 
     @property
@@ -65,6 +70,7 @@ class ScreenHost(QObject):
         self._stick_timer.setInterval(STICK_MS)
         self._lease_timer = QTimer(self)
         self._lease_timer.setInterval(LEASE_MS)
+        self._stop_watch = StopWatch(self.operator.master_uri, self)
 
     def _connect(self):
         panel, operator = self.screen, self.operator
@@ -91,6 +97,7 @@ class ScreenHost(QObject):
         self._draw_timer.timeout.connect(lambda: self._guard.run(self.draw))
         self._stick_timer.timeout.connect(self._repeat_stick)
         self._lease_timer.timeout.connect(operator.repeat_selection)
+        self._stop_watch.said.connect(panel.show_look_result)
 
     def start(self, robots=(), selected=()):
         """Begin; returns at once.
@@ -110,6 +117,8 @@ class ScreenHost(QObject):
         self._draw_timer.start()
         self._stick_timer.start()
         self._lease_timer.start()
+        self._stop_watch.start()
+        self.events.start()
         self.draw()
 
     def draw(self):
@@ -122,17 +131,24 @@ class ScreenHost(QObject):
         self.screen.show_view(view)
         self._feel_losses(view)
         self.tiles.show_view(view)
+        self.events.show(view)
+        self.pad.show_view(view)
         for kind, value in self.operator.take_events():
             if kind == 'found':
                 self._show_found(value)
             elif kind == 'examined':
                 self.doctor.show(*value)
-            elif kind == 'request':
-                if view.control.ours:
-                    self.requests.carry_out(*value)
-            else:
+            elif kind != 'request':
                 self.screen.show_look_result(value)
+            elif view.control.ours:
+                self._carry_out(*value)
         self.requests.tell_ends()
+
+    def _carry_out(self, action, names):
+        """Do what was asked for from elsewhere; what is refused is an event."""
+        refused = self.requests.carry_out(action, names)
+        if refused:
+            self.events.note('request.refused', refused)
 
     def _feel_losses(self, view):
         """Shake the pad when a selected robot is lost."""
@@ -203,7 +219,7 @@ class ScreenHost(QObject):
                  'mode': self._mode,
                  'limits': list(self.operator.view().limits), 'windows': places, 'torn_off': torn,
                  'together': self.operator.view().together, 'looks': looks,
-                 'panel': self.screen.save_settings()}
+                 'panel': self.screen.save_settings(), 'events': self.events.save_settings()}
         return usable_state(state)[0]
 
     def restore_state(self, state):
@@ -225,6 +241,7 @@ class ScreenHost(QObject):
         self.tiles.restore_state(state.get('windows', {}), state.get('looks', {}),
                                  state.get('torn_off', ()))
         self.screen.restore_settings(state.get('panel', {}))
+        self.events.restore_settings(state.get('events', {}))
         return problems
 
     def close(self, forget=False):
@@ -239,4 +256,7 @@ class ScreenHost(QObject):
         self.operator.close(forget)
         QApplication.instance().removeEventFilter(self.screen.drive_keys)
         self.screen.drive_keys.close()
+        self.events.close()
         self.tiles.close()
+        self._stop_watch.close()
+        self.pad.close()

@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Joins one tile with what feeds it; everything here runs on the GUI thread."""
 import os
+from dataclasses import replace
 from datetime import datetime
 
 import cv2
 
+from mhri.core.camera.budget import DRIVEN, LOOKED_AT, REST
 from mhri.core.recording.recording import RECORDING
 from mhri.core.robots.mocap import DriftMeter, Pose
 from mhri.core.screen.view_rows import CLOUD, IMU, PICTURES, RGB, SCAN, VIEW_ROWS
@@ -13,6 +15,7 @@ from mhri.core.screen.views import StateView
 from mhri.gui.camera.camera_view import still_name
 from mhri.presenters.draw_guard import DrawGuard
 from mhri.presenters.rviz_cloud import RvizCloud
+from mhri.ros.camera.camera_budget import Wish
 from mhri.ros.robots.bot_feeds import MOCAP
 
 # How a stream is called where there is little room.
@@ -40,6 +43,7 @@ class TileHost:
         self._drift = DriftMeter()
         self._wired = False
         self._rviz = None
+        self._held_back = ''
         window.recording.record_requested.connect(self._record)
         window.recording.stop_record_requested.connect(self._stop_recording)
         self._operator_folder()
@@ -50,7 +54,9 @@ class TileHost:
         :param view: :class:`mhri.core.screen.views.RobotView`
         """
         window = self.window
-        window.show_view(view, stop_all)
+        # Whatever else there is to say matters more than why the picture is slow.
+        window.show_view(replace(view, note=view.note or self._held_back), stop_all)
+        self._held_back = ''
         feeds = self._operator.feeds(self._name)
         if feeds is None:
             return
@@ -129,10 +135,24 @@ class TileHost:
         if frame is not None:
             camera.show_frame(frame)
         status = feed.status()
+        # Where there was no picture yet, its place says it.
+        self._held_back = status.thinned if status.age_s is not None else ''
         camera.show_status(status, None if large else (thumbnail_hz, 'another'))
         if status.age_s is None and status.problem:
             camera.show_placeholder(status.problem)
         camera.show_transports(feed.transports())
+
+    def camera_wish(self, selected):
+        """Return the :class:`Wish` of the picture on show, None without one.
+
+        :param selected: whether the robot is checked
+        """
+        feeds = self._operator.feeds(self._name)
+        feed = feeds.get(self._picture()) if feeds else None
+        if not hasattr(feed, 'grant'):
+            return None
+        rest = LOOKED_AT if self.window.header.large else REST
+        return Wish(self._name, DRIVEN if selected else rest, feed, self.window.is_watched())
 
     def _choose_transport(self, name):
         feeds = self._operator.feeds(self._name)

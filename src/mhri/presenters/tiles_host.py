@@ -13,6 +13,7 @@ from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.gui.screen.torn_off import TornOff
 from mhri.gui.screen.window_maker import WindowMaker
 from mhri.presenters.tile_host import TileHost
+from mhri.ros.camera.camera_budget import CameraBudget
 
 SLICE_MS = 4
 # More tiles than that show no more: the rest of the robots are in the list alone.
@@ -44,6 +45,7 @@ class TilesHost(QObject):
         self._ui_dir = ui_dir
         self._tell = tell
         self._maker = WindowMaker()
+        self._cameras = CameraBudget(lambda: operator.settings)
         self._keys = {}
         self._places = {}
         self._looks = {}
@@ -68,11 +70,14 @@ class TilesHost(QObject):
             self.make(missing.name)
         self._stage.show_tiles({name: self.windows[name] for name in names
                                 if name in self.windows})
-        waiting = [robot.name for robot in self._due]
+        # Those that wait keep their order: else the last one never has its turn on a busy machine.
+        turns = {robot.name: turn for turn, robot in enumerate(self._due)}
         self._due = sorted((robot for robot in robots if robot.name in self.hosts),
-                           key=lambda robot: robot.name not in waiting)
+                           key=lambda robot: turns.get(robot.name, len(turns)))
         self._stopped = view.stop_all
         self._timer.start()
+        wishes = [self.hosts[robot.name].camera_wish(robot.selected) for robot in self._due]
+        self._cameras.settle(filter(None, wishes))
 
     def draw_next(self):
         """Draw one tile, and return whether another is due.

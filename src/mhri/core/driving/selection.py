@@ -23,6 +23,10 @@ class Selection:
         """Names of the checked robots, in order."""
         return tuple(name for name, checked in self._checked.items() if checked)
 
+    def numbered(self) -> Dict[str, int]:
+        """Return {name: number} of all robots, in order."""
+        return {name: self.numbers.of(name) for name in self.robots}
+
     def add(self, name: str) -> bool:
         """Put a robot in its place, unchecked; return False where it is there already."""
         if name in self._checked:

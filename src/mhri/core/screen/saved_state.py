@@ -5,8 +5,9 @@
 A state is a dict of JSON values: ``robots`` (names), ``numbers`` ({robot: its own number}),
 ``mode`` (a source), ``limits`` [m/s, rad/s], ``together``, ``windows`` ({robot: geometry}: where
 its tile was when it was torn off), ``torn_off`` (robots), ``looks`` ({robot: what its tile shows})
-and ``panel`` (``splitter``, ``drawer``, ``geometry``). A geometry is [x, y, width, height,
-maximised] in pixels: a text that can be read, and no blob that Qt would have to trust.
+``panel`` (``splitter``, ``drawer``, ``geometry``) and ``events`` (``sounds``). A geometry is [x, y,
+width, height, maximised] in pixels: a text that can be read, and no blob that Qt would have to
+trust.
 """
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
 
@@ -195,6 +196,12 @@ def _read_panel(value: Any, problems: List[str], key: str) -> State:
     return _read_parts(value, _PANEL, problems, key + '.')
 
 
+def _read_events(value: Any, problems: List[str], key: str) -> State:
+    if not isinstance(value, dict):
+        _refuse('a dict')
+    return _read_parts(value, {'sounds': _plain(_read_flag)}, problems, key + '.')
+
+
 _LOOK = {'views': _read_words, 'of_views': _read_views, 'recording': _read_recording,
          'splitter': read_sizes}
 _PANEL: Dict[str, _PartReader] = {
@@ -204,7 +211,7 @@ _STATE: Dict[str, _PartReader] = {
     'robots': _plain(_read_robots), 'numbers': _plain(_read_numbers), 'mode': _plain(_read_mode),
     'limits': _plain(read_limits), 'together': _plain(_read_flag),
     'windows': _by_robot(read_geometry), 'torn_off': _plain(_read_torn),
-    'looks': _by_robot(_read_look), 'panel': _read_panel}
+    'looks': _by_robot(_read_look), 'panel': _read_panel, 'events': _read_events}
 
 
 def _read_parts(value: State, readers: Dict[str, _PartReader], problems: List[str],

@@ -14,7 +14,6 @@ from mhri.gui.camera.picture import PictureView
 AUTO = 'auto'
 STATUS_PERIOD_S = 0.25
 NOTE_MS = 6000
-OLD_S = 1.0
 WAITING = 'waiting for the first picture'
 
 
@@ -37,8 +36,12 @@ def bandwidth_text(bits_per_s):
 def rate_text(status, slowed=None):
     """Return how often a new picture shows, and why not as often as it comes.
 
+    A rate that the camera budget holds back is said in its words: "thinned to 2 Hz: camera budget".
+
     :param slowed: (rate at most [Hz], robot that is in front instead); None: as often as it comes
     """
+    if status.thinned:
+        return status.thinned
     if slowed is None or status.rate_hz <= slowed[0]:
         return '{:.1f} Hz'.format(status.rate_hz)
     return '{:g} Hz: {} is in front'.format(*slowed)
@@ -63,10 +66,12 @@ def stream_warning(status):
 
     The first line is the warning itself, a second one the reason where it is known.
     """
-    if status.age_s is None or not (status.stale or status.age_s > OLD_S):
+    if status.age_s is None or not (
+            status.stale or status.age_s > status.old_after_s):
         return ''
     warning = 'OLD PICTURE, {}'.format(words.age_text(status.age_s))
-    return '{}\n{}'.format(warning, status.problem) if status.problem else warning
+    reason = status.problem or status.thinned
+    return '{}\n{}'.format(warning, reason) if reason else warning
 
 
 class CameraView(QWidget):
@@ -195,7 +200,7 @@ class CameraView(QWidget):
             trouble = old or (status.bad and status.problem)
             text = stream_text(status, slowed)
             self._say((theme.TRIANGLE, theme.ATTENTION) if trouble else None, text,
-                      (rate_text(status, slowed),) if slowed and text else ())
+                      (rate_text(status, slowed),) if text and (slowed or status.thinned) else ())
 
     def show_note(self, text, good=True):
         """Show a sentence in the status line for a while, e.g. where a still went."""

@@ -7,6 +7,7 @@ from python_qt_binding.QtCore import QRect, QRectF, QSize, Qt
 from python_qt_binding.QtGui import QPainter, QPalette, QPen
 from python_qt_binding.QtWidgets import QLabel, QSizePolicy, QWidget
 
+from mhri.core.screen import battery
 from mhri.gui.screen import theme, words
 
 # Of a text that may be wrapped.
@@ -59,6 +60,11 @@ class TextLine(QLabel):
             self._tone = tone
             self.update()
 
+    @property
+    def tone(self):
+        """The colour on show, one of the theme's."""
+        return self._tone
+
     def set_tone(self, tone):
         """Choose one of the colours of the theme."""
         self.show_text(self.text(), tone)
@@ -109,21 +115,39 @@ class TextLine(QLabel):
 
 
 class BatteryLine(TextLine):
-    """A battery's charge as percent with a battery in front; nothing where there is none."""
+    """A battery's charge as percent with a battery in front; nothing where there is none.
+
+    Of a low one the battery has a colour, of a flat one the number is bold as well
+    (:mod:`mhri.core.screen.battery`).
+    """
 
     def __init__(self, parent=None):
         super().__init__(parent)
         self._fraction = None
+        self._level = battery.FINE
         self.setAlignment(Qt.AlignRight | Qt.AlignVCenter)
 
-    def show_charge(self, fraction):
-        """Show a charge in [0, 1]; None and NaN show nothing."""
+    @property
+    def level(self):
+        """The level of the charge on show, of :mod:`mhri.core.screen.battery`."""
+        return self._level
+
+    def show_charge(self, fraction, old=False):
+        """Show a charge in [0, 1]; None and NaN show nothing.
+
+        :param old: whether it is not from now: it is dimmed
+        """
         if fraction != self._fraction:
             self._fraction = fraction
+            self._level = battery.battery_level(fraction, self._level)
             text = words.battery_text(fraction)
-            self.setAccessibleName('battery {}'.format(text) if text else '')
-            self.show_text(text)
-            self.update()
+            state = '' if self._level == battery.FINE else ', ' + self._level
+            self.setAccessibleName('battery {}{}'.format(text, state) if text else '')
+            font = self.font()
+            font.setBold(self._level == battery.FLAT)
+            self.setFont(font)
+            self.setText(text)
+        self.set_tone(theme.MUTED if old else theme.TEXT)
 
     def fix_width(self, *samples):
         """Be exactly as wide as the battery and the widest of the samples."""
@@ -147,8 +171,8 @@ class BatteryLine(TextLine):
         painter.setRenderHint(QPainter.Antialiasing)
         unit = self.fontMetrics().height()
         mark = QRectF(1.0, (self.height() - 0.68 * unit) / 2.0, 0.42 * unit, 0.68 * unit)
-        theme.paint_battery(painter, mark, self._fraction,
-                            theme.colour(self._tone, self.palette()))
+        tone = self._tone if self._level == battery.FINE else theme.BATTERY_TONES[self._level]
+        theme.paint_battery(painter, mark, self._fraction, theme.colour(tone, self.palette()))
 
 
 class Sign(QWidget):

@@ -8,6 +8,7 @@ from mhri.core.screen.stop_words import stop_words
 from mhri.core.screen.views import PanelView, ROS_CUT_OFF
 from mhri.gui.screen import theme, words
 from mhri.gui.driving.control_bar import ControlBar
+from mhri.gui.events.event_button import EventButton
 from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.gui.driving.drive_keys import DriveKeys, mark_drive_area
 from mhri.gui.screen.forms import load_form
@@ -29,8 +30,8 @@ STOP_RECORDING = 'Stop recording ({})'
 # What came of looking or recording is news for so long.
 RESULT_MS = 20000
 
-_WIDGETS = (ControlBar, ModeCombo, RobotList, Sign, SpeedLimits, Stage, StatusLine, StopBar,
-            TextLine, VirtualJoystick)
+_WIDGETS = (ControlBar, EventButton, ModeCombo, RobotList, Sign, SpeedLimits, Stage, StatusLine,
+            StopBar, TextLine, VirtualJoystick)
 
 
 class ScreenWidget(QWidget):
@@ -149,6 +150,7 @@ class ScreenWidget(QWidget):
         self.drive_keys.moved.connect(self._on_stick)
         self.drive_keys.centre_pressed.connect(self.centre_stick)
         self.drive_keys.stop_pressed.connect(self.stop_bar.request_stop)
+        self.drive_keys.stop_held.connect(self.stop_bar.power_cut_requested)
         self.drive_keys.robot_pressed.connect(self.robot_list.toggle)
         self.drive_keys.all_pressed.connect(self.robot_list.toggle_all)
         self.drive_keys.alone_pressed.connect(self._drive_number)
@@ -173,7 +175,7 @@ class ScreenWidget(QWidget):
         self.robot_list.show_in_force(view.control.ours)
         self.robot_list.show_robots(view.robots, numbers)
         self.control_bar.show_control(view.control)
-        self.mode_combo.show_mode(view.sources, view.mode)
+        self.mode_combo.show_mode(view.sources, view.mode, view.devices)
         self.speed_limits.show_limits(view.limits)
         self.speed_limits.show_pace(view.together, view.pace, view.slowed)
         self.stop_bar.show_cut_off(view.ros == ROS_CUT_OFF)

@@ -10,7 +10,8 @@ from python_qt_binding.QtCore import QPointF, QRectF, Qt
 from python_qt_binding.QtGui import (
     QColor, QFont, QFontDatabase, QFontMetrics, QPainterPath, QPalette, QPen, QPolygonF)
 
-from mhri.core.screen import views
+from mhri.core.events import events
+from mhri.core.screen import battery, views
 
 LIVE = 'live'
 ATTENTION = 'attention'
@@ -41,6 +42,12 @@ PROOF_SIGNS = {
     views.PROOF_STOPPED: (TICK, LIVE),
     views.PROOF_NOT_CONFIRMED: (OCTAGON, STOP),
 }
+SEVERITY_SIGNS = {
+    events.CALM: (RING, MUTED),
+    events.ATTENTION: (TRIANGLE, ATTENTION),
+    events.ALARM: (OCTAGON, STOP),
+}
+BATTERY_TONES = {battery.FINE: TEXT, battery.LOW: ATTENTION, battery.FLAT: STOP}
 
 # What lies under words on a picture, in every theme.
 OVER_PICTURE = QColor(12, 14, 18, 205)

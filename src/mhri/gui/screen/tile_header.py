@@ -150,7 +150,7 @@ class TileHeader(QWidget):
             return
         tone = theme.TEXT if view.link == views.LIVE else theme.MUTED
         self.link_label.show_text(words.link_text(view), tone)
-        self.battery_label.show_charge(view.battery)
+        self.battery_label.show_charge(view.battery, view.link != views.LIVE)
 
     def show_recording(self, status):
         """Show how long a recording has been running, None where none is."""

@@ -52,6 +52,12 @@ class BotFeeds:
         """Return an open feed, None where it is not wanted or not open yet."""
         return self._feeds.get(key) if key in self._open and key in self._wanted else None
 
+    def refused(self):
+        """Return {key: messages left out so far because they cannot be} of feeds that had any."""
+        counts = {key: feed.refused() for key, feed in list(self._feeds.items())
+                  if hasattr(feed, 'refused')}
+        return {key: count for key, count in counts.items() if count}
+
     def bits_per_s(self):
         """Return what pictures and clouds of this robot take of the network now [bit/s]."""
         feeds = [self.get(row.key) for row in VIEW_ROWS]

@@ -63,19 +63,18 @@ class CloudDecoder(Decoder):
             raise FrameError(str(error))
 
 
-class _WithLens:
-    """Two subscriptions as one: a depth picture and its lens."""
+class _WithLens(Subscription):
+    """A subscription to a depth picture, and to its lens as well."""
 
-    def __init__(self, picture, lens):
-        self.topic = picture.topic
-        self._both = picture, lens
+    def __init__(self, topic, on_bytes, lens_topic, on_lens):
+        super().__init__(topic, on_bytes)
+        self._lens = Subscription(lens_topic, on_lens)
 
     def close(self):
-        picture, lens = self._both
         try:
-            picture.close()
+            super().close()
         finally:
-            lens.close()
+            self._lens.close()
 
 
 class _CloudStream(CameraFeed):
@@ -97,12 +96,11 @@ class _CloudStream(CameraFeed):
         depths = [topic for topic in self._depths if published.get(info_topic(topic)) == _INFO_TYPE]
         return offers + find_offers(DEPTH, depths, published)
 
-    def subscribe(self, session, offer):
-        picture = super().subscribe(session, offer)
+    def line_of(self, session, offer):
         if offer.transport == 'cloud':
-            return picture
+            return super().line_of(session, offer)
         depth = next(topic for topic in self._depths if offer.topic.startswith(topic))
-        return _WithLens(picture, Subscription(info_topic(depth), session.hear_lens))
+        return (_WithLens, offer.topic, session.hear, info_topic(depth), session.hear_lens)
 
 
 class CloudFeed:
@@ -145,6 +143,10 @@ class CloudFeed:
     def status(self):
         """Return the :class:`mhri.core.camera.images.StreamStatus` of this moment."""
         return self._stream.status()
+
+    def refused(self):
+        """Return the number of clouds that could not be read, and were left out."""
+        return self.status().bad
 
     def topic(self):
         """Return the topic of clouds that is published now, '' for none."""
