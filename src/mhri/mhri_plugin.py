@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The panel as an rqt plugin: a thin adapter over :class:`mhri.presenters.panel_host.PanelHost`."""
+"""The screen as an rqt plugin: a thin adapter over :mod:`mhri.presenters.screen_host`."""
 import json
 
 import rospy
 from rqt_gui_py.plugin import Plugin
 
-from mhri.presenters.panel_host import PanelHost
+from mhri.presenters.screen_host import ScreenHost
 from mhri.ros.screen.backend import ScreenBackend
 
 _KEY = 'state'
@@ -21,11 +21,11 @@ class MhriPlugin(Plugin):
     def __init__(self, context):
         super().__init__(context)
         self.setObjectName('MhriPlugin')
-        self._host = PanelHost(ScreenBackend())
+        self._host = ScreenHost(ScreenBackend())
         if context.serial_number() > 1:
-            self._host.panel.setWindowTitle('{} ({})'.format(
-                self._host.panel.windowTitle(), context.serial_number()))
-        context.add_widget(self._host.panel)
+            self._host.screen.setWindowTitle('{} ({})'.format(
+                self._host.screen.windowTitle(), context.serial_number()))
+        context.add_widget(self._host.screen)
         words = list(context.argv())
         self._host.start(words[words.index('--robots') + 1].split() if '--robots' in words[:-1]
                          else ())

@@ -3,20 +3,23 @@
 """The panel in a window of its own, for machines without rqt."""
 import signal
 import socket
+import threading
 
-from python_qt_binding.QtCore import QSocketNotifier, Signal
-from python_qt_binding.QtGui import QGuiApplication
+from python_qt_binding.QtCore import QSocketNotifier, QTimer, Signal
 from python_qt_binding.QtWidgets import QApplication, QMainWindow
 import rospy
 
 from mhri.core.screen.saved_state import read_geometry
 from mhri.gui.screen.geometry import geometry_of, restore_geometry
-from mhri.presenters.panel_host import PanelHost
+from mhri.presenters.screen_host import ScreenHost
 from mhri.presenters.settings_file import SettingsError, SettingsFile
 from mhri.ros.screen.backend import ScreenBackend
 
+# How soon the number of a new robot is kept: it is to survive a program that is killed, too.
+KEEP_NUMBERS_MS = 1000
 
-class PanelWindow(QMainWindow):
+
+class MainWindow(QMainWindow):
     """A main window around the panel; closing it stops the robots and ends the program."""
 
     closing = Signal()
@@ -25,8 +28,8 @@ class PanelWindow(QMainWindow):
         super().__init__()
         self._host = host
         self.setWindowTitle('mhri')
-        self.setCentralWidget(host.panel)
-        self.resize(940, 600)
+        self.setCentralWidget(host.screen)
+        self.resize(1280, 720)
 
     def closeEvent(self, event):  # noqa: N802
         """Stop the robots before the window goes."""
@@ -58,19 +61,35 @@ class Standalone:
     def __init__(self, argv, settings_path=None, remember=True):
         self._remember = remember
         self._settings = SettingsFile(settings_path)
-        self.host = PanelHost(ScreenBackend(argv))
-        self.window = PanelWindow(self.host)
+        self.host = ScreenHost(ScreenBackend(argv))
+        self.window = MainWindow(self.host)
         self.window.closing.connect(self.close)
         self._bell = SignalBell(self.window.close)
         self._robots_at_first = None
         self._closed = False
+        self._saved = {}
+        self._numbers = {}
+        self._writing = threading.Lock()
+        self._numbers_timer = QTimer()
+        self._numbers_timer.setInterval(KEEP_NUMBERS_MS)
+        self._numbers_timer.timeout.connect(self._keep_numbers)
+        if remember:
+            self._numbers_timer.start()
 
-    def restore(self):
-        """Take over the settings of the last run, as far as they can be used."""
+    def restore(self, afresh=False):
+        """Take over the settings of the last run, as far as they can be used.
+
+        :param afresh: only the numbers of the robots, which are theirs for good
+        """
         problems, saved, placed = [], {}, False
         try:
             saved = self._settings.read()
-            problems += self.host.restore_state(saved.get('state', {}))
+            self._saved, state = saved, saved.get('state', {})
+            if afresh:
+                numbers = state.get('numbers', {}) if isinstance(state, dict) else {}
+                saved, state = {}, {'numbers': numbers}
+            problems += self.host.restore_state(state)
+            self._numbers = self.host.operator.selection.numbers.kept()
             if 'geometry' in saved:
                 placed = restore_geometry(self.window, read_geometry(saved['geometry']))
         except (SettingsError, ValueError) as error:
@@ -79,8 +98,7 @@ class Standalone:
             rospy.logwarn('of the saved settings is left out: %s (the file is kept as %s)',
                           '; '.join(problems)[:500], self._settings.keep_aside())
         if not placed:
-            # In a corner, and not in the middle, it leaves room for the robots' windows.
-            self.window.move(QGuiApplication.primaryScreen().availableGeometry().topLeft())
+            self.window.showMaximized()
 
     def begin_afresh(self):
         """Keep the saved settings until the operator changes robots, mode or limits in this run.
@@ -89,7 +107,7 @@ class Standalone:
         """
         self._remember = False
         self._robots_at_first = self.host.operator.selection.robots
-        panel = self.host.panel
+        panel = self.host.screen
         # The mux tells a mode and limits by itself, so that their values do not say who chose them.
         for signal_ in (panel.mode_requested, panel.limits_requested, panel.together_requested):
             signal_.connect(self._on_change)
@@ -101,18 +119,37 @@ class Standalone:
         """Tell whether robots came or went in a run that began afresh."""
         return self._robots_at_first not in (None, self.host.operator.selection.robots)
 
+    def _keep_numbers(self):
+        """Add the numbers of new robots to the settings as they were read (off the GUI thread)."""
+        numbers = self.host.operator.selection.numbers.kept()
+        if numbers != self._numbers:
+            self._numbers = numbers
+            state = self._saved.get('state')
+            state = {**(state if isinstance(state, dict) else {}), 'numbers': numbers}
+            self.host.operator.do(self._write_unless_closed, {**self._saved, 'state': state})
+
+    def _write_unless_closed(self, settings):
+        with self._writing:
+            if not self._closed:
+                self._write(settings)
+
+    def _write(self, settings):
+        try:
+            self._settings.write(settings)
+        except SettingsError as error:
+            rospy.logwarn('the settings are not kept: %s', error)
+
     def close(self):
         """Stop the robots, save the settings, end."""
         if self._closed:
             return
-        self._closed = True
+        self._numbers_timer.stop()
+        with self._writing:
+            self._closed = True
         kept = {'state': self.host.save_state(), 'geometry': geometry_of(self.window)}
         remember = self._remember or self._has_changed_robots()
         self.host.close()
         if remember:
-            try:
-                self._settings.write(kept)
-            except SettingsError as error:
-                rospy.logwarn('the settings are not kept: %s', error)
+            self._write(kept)
         rospy.signal_shutdown('the panel was closed')
         QApplication.instance().quit()

@@ -71,21 +71,21 @@ class Measurement:
         import psutil
         from python_qt_binding.QtWidgets import QApplication
         from mhri.presenters.demo import Hands
-        from mhri.presenters.panel_host import PanelHost
+        from mhri.presenters.screen_host import ScreenHost
         from mhri.ros.screen.backend import ScreenBackend
         self.system = system
         self._seconds = seconds
         self._used = (psutil.Process().cpu_times, psutil.cpu_times)
         self._app = QApplication(['panel'])
-        self.host = PanelHost(ScreenBackend(['panel']))
+        self.host = ScreenHost(ScreenBackend(['panel']))
         self.operator = self.host.operator
-        self.host.panel.resize(1000, 600)
-        self.host.panel.show()
+        self.host.screen.resize(1000, 600)
+        self.host.screen.show()
         self.host.start((), NAMES)
         self.until(lambda: len(self.host.windows) == 4 and all(
             self.operator.robot_view(name).link == 'live' for name in NAMES), 'four robots')
         self.until(lambda: self.operator.view().status.endswith('ready'), 'the mux')
-        self._hands = Hands(self.host.panel)
+        self._hands = Hands(self.host.screen)
         self._watch = LoopWatch()
 
     def until(self, condition, what):
@@ -138,7 +138,7 @@ class Measurement:
         self.watch_for(0.5)
         begun = time.monotonic()
         self._hands.click('look_button')
-        self.until(lambda: self.host.panel.look_label.text().startswith('found'), 'the answer')
+        self.until(lambda: self.host.screen.look_label.text().startswith('found'), 'the answer')
         answered = time.monotonic() - begun
         self.until(lambda: len(self.operator.selection.robots) >= 104, '100 robots in the list')
         listed = time.monotonic() - begun

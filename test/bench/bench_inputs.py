@@ -92,14 +92,14 @@ def measure(seconds):
 def main():
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--short', action='store_true', help='a third of the time')
+    parser.add_argument('--short', action='store_true', help='fewer seconds')
     options = parser.parse_args()
     if missing():
         print('no figures: {}'.format(missing()))
         return
     with System() as system:
         system.start_master()
-        rows = measure(5.0 if options.short else 15.0)
+        rows = measure(2.0 if options.short else 15.0)
     print('{:<44} {:>13} {:>13} {:>14}'.format(
         'mhri_joy', '% of a core', 'messages/s', 'wake-ups/s'))
     for state, cpu, rate_hz, wakes_hz in rows:

@@ -182,14 +182,14 @@ def main():
         be_robot()
         return
     cv2.setNumThreads(1)
-    spent = steps(150 if options.short else 600)
+    spent = steps(50 if options.short else 600)
     print('{:<22} {:>7} {:>8}'.format('CPU per frame [ms]', 'median', 'p99'))
     for name, values in spent.items():
         print('{:<22} {:>7.2f} {:>8.2f}'.format(name, at(values, 0.5), at(values, 0.99)))
     median = at(spent['RGB frame with jpeg'], 0.5)
     print('goal: RGB frame with jpeg <= {:g} ms: {}'.format(
         GOAL_MS, 'met' if median <= GOAL_MS else 'NOT met'))
-    streaming(4.0 if options.short else 15.0)
+    streaming(2.0 if options.short else 15.0)
     sys.stdout.flush()
 
 

@@ -156,11 +156,12 @@ class Streams:
         return (time.monotonic(), times.user + times.system,
                 sum(machine) - machine.idle - machine.iowait - machine.guest - machine.guest_nice)
 
-    def from_a_bag(self):
+    def from_a_bag(self, seconds):
         """End the simulated robots and play what they sent, over and over, in their place."""
         path = os.path.join(self._system.home, 'robots.bag')
-        recorder = self._system.start('rosbag', 'record', '--quiet', '--duration=20',
-                                      '--output-name', path, *self._all_topics())
+        recorder = self._system.start(
+            'rosbag', 'record', '--quiet', '--duration={}'.format(seconds), '--output-name', path,
+            *self._all_topics())
         if recorder.wait(60):
             raise RuntimeError('rosbag record ended with {}'.format(recorder.returncode))
         self._robots.terminate()
@@ -272,11 +273,11 @@ def compare(ways, robots, events, table):
     return list(found.values())[0]
 
 
-def compare_streaming(mhri, chain, robots, events, table):
+def compare_streaming(mhri, chain, robots, events, table, short):
     """Measure both ways while every window shows pictures; see the top."""
     for title in ('mhri, simulated here', 'mhri, played from a bag'):
         if title.endswith('bag'):
-            mhri.streams.from_a_bag()
+            mhri.streams.from_a_bag(6 if short else 20)
         begun = mhri.streams.used()
         values = compare({title: mhri, 'topic_tools (mux, relay)': chain}, robots, events, table)
         took_s, panel_s, machine_s = (now - then for now, then in zip(mhri.streams.used(), begun))
@@ -286,9 +287,10 @@ def compare_streaming(mhri, chain, robots, events, table):
             ', '.join('{:.1f}'.format(rate) for rate in mhri.streams.rates(2.0))))
 
 
-def run(robots, events, table, streaming=False):
+def run(robots, table, streaming, short):
     """Measure both ways with a number of robots."""
     import rospy
+    events = 200 if short else 1000
     names = ['bot{}'.format(number + 1) for number in range(robots)]
     with System(adopt=False) as system:
         os.environ.update({key: system.env[key] for key in ('ROS_MASTER_URI', 'ROS_IP', 'ROS_HOME',
@@ -298,7 +300,7 @@ def run(robots, events, table, streaming=False):
         rospy.init_node('bench', disable_signals=True)
         mhri, chain = Mhri(system, names, streaming), Chain(system, names)
         if streaming:
-            compare_streaming(mhri, chain, robots, events, table)
+            compare_streaming(mhri, chain, robots, events, table, short)
         else:
             compare({'mhri (mux, gates)': mhri, 'topic_tools (mux, relay)': chain}, robots, events,
                     table)
@@ -308,14 +310,14 @@ def run(robots, events, table, streaming=False):
 def main():
     """Print one table; each number of robots in a process of its own, rospy knows only one life."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--short', action='store_true', help='fewer events')
+    parser.add_argument('--short', action='store_true', help='fewer events and numbers of robots')
     parser.add_argument('--robots', type=int, help='only this many')
     parser.add_argument('--streaming', action='store_true', help='windows with pictures')
     options = parser.parse_args()
     if options.robots is None:
         print('stick to robot [ms]        bots  values      p50      p90      p99      max',
               flush=True)
-        for words in (['1'], ['4'], ['12'], ['4', '--streaming']):
+        for words in ([] if options.short else [['1'], ['4']]) + [['12'], ['4', '--streaming']]:
             arguments = [sys.executable, os.path.abspath(__file__), '--robots'] + words
             status = os.spawnv(os.P_WAIT, sys.executable,
                                arguments + (['--short'] if options.short else []))
@@ -323,7 +325,7 @@ def main():
                 sys.exit(status)
         return
     table = []
-    run(options.robots, 200 if options.short else 1000, table, options.streaming)
+    run(options.robots, table, options.streaming, options.short)
     print('\n'.join(table), flush=True)
 
 

@@ -25,7 +25,7 @@ def system():
 
 @pytest.fixture(scope='module')
 def sender(system):
-    """A publisher of numbered texts at 100 Hz, 10 kB each, as long as anybody listens."""
+    """A publisher of numbered texts at 250 Hz, 10 kB each, as long as anybody listens."""
     import rospy
     from std_msgs.msg import String
     publisher = rospy.Publisher('/bot1/text', String, queue_size=1000)
@@ -33,7 +33,7 @@ def sender(system):
 
     def send():
         number = 0
-        while not done.wait(0.01):
+        while not done.wait(0.004):
             if publisher.get_num_connections():
                 publisher.publish('{:08} '.format(number) + 'x' * 10000)
                 number += 1

@@ -163,14 +163,14 @@ def test_a_slow_disk_is_told_and_loses_nothing(system, sender, tmp_path, monkeyp
     real = BagFile.write
     notes = set()
 
-    def slow(self, chunk, introduced):
+    def slow(self, messages):
         time.sleep(0.3)
-        real(self, chunk, introduced)
+        real(self, messages)
     monkeypatch.setattr(BagFile, 'write', slow)
 
     def seen(status):
         notes.add(status.note.split(':')[0])
-        return status.messages > 150
+        return status.messages > 60
     limits = RecordingLimits(chunk_bytes=50000, warn_queue_bytes=200000)
     status = record(str(tmp_path / 'slow'), limits=limits, until=seen)
     assert 'the disk is slow' in notes
@@ -183,11 +183,11 @@ def test_a_disk_that_stands_still_ends_the_recording(system, sender, tmp_path, m
     from mhri.ros.recording.bag_file import BagFile
     real = BagFile.write
 
-    def slow(self, chunk, introduced):
+    def slow(self, messages):
         time.sleep(0.4)
-        real(self, chunk, introduced)
+        real(self, messages)
     monkeypatch.setattr(BagFile, 'write', slow)
-    limits = RecordingLimits(chunk_bytes=50000, warn_queue_bytes=100000, stop_queue_bytes=500000)
+    limits = RecordingLimits(chunk_bytes=50000, warn_queue_bytes=100000, stop_queue_bytes=250000)
     status = record(str(tmp_path / 'still'), limits=limits,
                     until=lambda status: status.state == 'failed')
     assert 'the disk is too slow' in status.note

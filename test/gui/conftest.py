@@ -164,19 +164,19 @@ def four_robots():
         ros=views.ROS_CONNECTED, sources=SOURCES, mode='joy', status='driving bot1',
         robots=(
             views.RobotView('bot1', 'TurtleBot2', link=views.LIVE, age_s=0.012, linear_mps=0.31,
-                            angular_rad_s=0.2, battery=0.82, selected=True, driven=True),
-            views.RobotView('bot2', 'TurtleBot3', link=views.WAITING),
+                            angular_rad_s=0.2, battery=0.82, selected=True, driven=True, number=1),
+            views.RobotView('bot2', 'TurtleBot3', link=views.WAITING, number=2),
             views.RobotView('bot3', 'TurtleBot2', link=views.SILENT, age_s=3.2,
-                            note='nothing for 3.2 s'),
-            views.RobotView('bot4', 'generic', link=views.GONE, note='master lost it')))
+                            note='nothing for 3.2 s', number=3),
+            views.RobotView('bot4', 'generic', link=views.GONE, note='master lost it', number=4)))
 
 
 @pytest.fixture
 def panel(operator, ui_dir, application):
     """Return a panel on the screen with the keyboard, its keys installed as the host does."""
-    from mhri.gui.screen.panel import PanelWidget
-    widget = PanelWidget(ui_dir)
-    widget.resize(1024, 600)
+    from mhri.gui.screen.screen import ScreenWidget
+    widget = ScreenWidget(ui_dir)
+    widget.resize(1280, 960)
     application.installEventFilter(widget.drive_keys)
     operator.show(widget)
     yield widget

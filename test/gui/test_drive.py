@@ -33,14 +33,14 @@ class Session:
     def __init__(self):
         import rospy
         from mhri.presenters.demo import Hands
-        from mhri.presenters.panel_host import PanelHost
+        from mhri.presenters.screen_host import ScreenHost
         from mhri.ros.screen.backend import ScreenBackend
         self.system = System()
         self.app = QApplication.instance() or QApplication(['panel'])
-        self.host = PanelHost(ScreenBackend(['panel']))
-        self.host.panel.resize(1000, 600)
-        self.host.panel.show()
-        self.hands = Hands(self.host.panel)
+        self.host = ScreenHost(ScreenBackend(['panel']))
+        self.host.screen.resize(1000, 600)
+        self.host.screen.show()
+        self.hands = Hands(self.host.screen)
         self.host.start()
         self.operator = self.host.operator
         until(lambda: 'no ROS master' in self.operator.view().status, what='the missing master')
@@ -55,7 +55,7 @@ class Session:
         self._rospy = rospy
 
     def widget(self, name):
-        found = self.host.panel.findChild(QWidget, name)
+        found = self.host.screen.findChild(QWidget, name)
         assert found is not None, 'no widget ' + name
         return found
 
@@ -168,7 +168,7 @@ def test_staying_together_slows_the_quick_one(session):
         session.drive(-1.0, 0.0, lambda: all(
             abs(session.witnesses[name].latest().linear_mps + 0.22) < 0.04
             for name in ('bot1', 'bot2')), 'both at the pace of the Burger')
-        assert 'bot2' in session.host.panel.speed_limits.pace_label.text()
+        assert 'bot2' in session.host.screen.speed_limits.pace_label.text()
         session.click('together_box')
         until(lambda: session.witnesses['bot1'].latest().linear_mps < -0.3, 10,
               'the TurtleBot2 to do its best')
@@ -187,25 +187,28 @@ def test_a_robot_unchecked_while_driving_stops_and_the_other_goes_on(session):
     session.let_go()
 
 
-def test_closing_the_window_of_a_driven_robot_stops_it(session):
+def test_closing_the_torn_off_window_of_a_driven_robot_stops_it(session):
     session.select('bot2')
     session.drive(0.0, 0.5, session.witnesses['bot2'].moving)
-    session.host.windows['bot2'].close()
+    until(lambda: 'bot2' in session.host.windows, what='the tile')
+    session.host.tiles.toggle_torn('bot2')
+    session.host.windows['bot2'].window().close()
     until(session.witnesses['bot2'].at_rest, 2, 'bot2 to stand still')
     assert 'bot2' not in session.operator.selection.selected
+    assert not session.host.windows['bot2'].torn_off
     session.let_go()
 
 
 def test_keys_drive_and_release_stops(session):
     session.select('bot1')
-    session.host.panel.activateWindow()
-    panel = session.host.panel
+    session.host.screen.activateWindow()
+    panel = session.host.screen
     until(Grip(lambda: QTest.keyPress(panel, Qt.Key_Left),
                lambda: QTest.keyRelease(panel, Qt.Key_Left),
                lambda: session.operator.view().status, session.witnesses['bot1'].moving), 30,
           'the key to drive')
     assert session.witnesses['bot1'].latest().angular_rad_s > 0
-    QTest.keyRelease(session.host.panel, Qt.Key_Left)
+    QTest.keyRelease(session.host.screen, Qt.Key_Left)
     until(session.witnesses['bot1'].at_rest, 2, 'bot1 to stand still')
 
 
@@ -213,7 +216,7 @@ def test_stop_all_with_proof_and_release_in_two_steps(session):
     session.select('bot1', 'bot2')
     session.drive(0.0, 0.5, lambda: all(
         session.witnesses[name].moving() for name in ('bot1', 'bot2')))
-    QTest.keyClick(session.host.panel, Qt.Key_Space, Qt.ShiftModifier)
+    QTest.keyClick(session.host.screen, Qt.Key_Space, Qt.ShiftModifier)
     until(lambda: all(robot.proof and robot.proof.state == 'stopped'
                       for robot in session.operator.view().robots), what='the proofs')
     proofs = {robot.name: robot.proof.text for robot in session.operator.view().robots}
@@ -261,12 +264,12 @@ def test_a_name_with_special_characters_is_refused_in_place(session):
 
 def test_the_doctor_examines_beside_the_driving(session):
     session.click('doctor_button')
-    window = session.host.doctor.window
-    assert window.isVisible() and not window.isModal()
+    window = session.host.doctor.page
+    assert window.isVisible() and session.host.screen.isAncestorOf(window)
     until(lambda: window.again_button.isEnabled(), 30, 'the examination')
     text = window.text.toPlainText()
     assert 'ROS master' in text and 'bot1' in text, text
-    window.close()
+    session.host.screen.tabs.setCurrentIndex(0)
 
 
 def test_a_restarted_master_is_said_and_driving_goes_on_without_a_restart(session):

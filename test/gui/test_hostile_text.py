@@ -15,7 +15,7 @@ from mhri.core.recording.recording import FAILED, RecordingStatus
 from mhri.core.robots.mocap import Drift, Pose
 from mhri.core.screen import views
 from mhri.core.screen.text import tidy_text
-from mhri.gui.doctor.doctor_window import DoctorWindow
+from mhri.gui.doctor.doctor_page import DoctorPage
 from mhri.gui.screen.labels import plain_tip
 from mhri.gui.screen.windows import TurtleBotWindow
 
@@ -40,7 +40,7 @@ def hostile_view(text, mode='voice'):
 
 def furnish(panel, ui_dir, text, operator):
     """Show a text in every place there is for one; return the three windows."""
-    window, doctor = TurtleBotWindow(ui_dir, text, text), DoctorWindow()
+    window, doctor = TurtleBotWindow(ui_dir, text, text), DoctorPage()
     window.offer({'imu', 'rgb', 'depth', 'scan', 'record'})
     for view in (hostile_view(text), views.PanelView(
             sources=((text, text),), mode=text, status=text, robots=(
@@ -50,10 +50,10 @@ def furnish(panel, ui_dir, text, operator):
         panel.show_look_result(text, shorter=(text,))
         for robot in view.robots:
             window.show_view(robot, view.stop_all)
-    window.camera.show_placeholder(text)
-    window.camera.show_transports((text,))
-    window.camera.show_status(StreamStatus(transport=text, bad=3, age_s=2.0, problem=text))
-    window.scan.clear(text)
+    window.view('rgb').show_placeholder(text)
+    window.view('rgb').show_transports((text,))
+    window.view('rgb').show_status(StreamStatus(transport=text, bad=3, age_s=2.0, problem=text))
+    window.view('scan').clear(text)
     window.recording.show_recording(RecordingStatus(FAILED, path=text, note=text))
     window.recording.set_default_path(text)
     window.state_line.show_state(views.StateView(

@@ -9,7 +9,7 @@ import pytest
 from python_qt_binding.QtCore import QPoint, QRect
 from python_qt_binding.QtWidgets import QApplication, QWidget
 
-from mhri.presenters.panel_host import PanelHost
+from mhri.presenters.screen_host import ScreenHost
 from mhri.ros.screen.backend import ScreenBackend
 from mhri.standalone import Standalone
 
@@ -19,16 +19,22 @@ def app():
     yield QApplication.instance() or QApplication(['panel'])
 
 
+def tear_off(host):
+    """Put a tile into a window of its own."""
+    host.tiles.make('bot1')
+    host.tiles.toggle_torn('bot1')
+    host.windows['bot1'].window().move(QPoint(321, 123))
+
+
 def used_host():
     """A host with something to remember."""
-    host = PanelHost(ScreenBackend())
+    host = ScreenHost(ScreenBackend())
     for name in ('bot2', 'bot1', 'rover_7'):
         host._add(name)
     host._select(['bot1'])
     host.operator.request_limits(0.3, 0.8)
     host._request_mode('ps3joy')
-    host._open('bot1')
-    host.windows['bot1'].move(QPoint(321, 123))
+    tear_off(host)
     return host
 
 
@@ -37,40 +43,19 @@ def check_restored(host):
     assert host.operator.selection.selected == (), 'nothing is driven that was not chosen today'
     assert host.operator.view().limits == (0.3, 0.8)
     assert host.operator._first_mode == 'ps3joy'
-    host._open('bot1')
-    assert host.windows['bot1'].pos() == QPoint(321, 123)
+    host.tiles.make('bot1')
+    assert host.windows['bot1'].torn_off
+    assert host.windows['bot1'].window().pos() == QPoint(321, 123)
 
 
 def test_state_survives_as_json():
     first = used_host()
     state = json.loads(json.dumps(first.save_state()))
     first.close()
-    second = PanelHost(ScreenBackend())
+    second = ScreenHost(ScreenBackend())
     second.restore_state(state)
     check_restored(second)
     second.close()
-
-
-def test_a_camera_knows_which_robot_is_in_front_of_it():
-    host = PanelHost(ScreenBackend())
-    for name in ('bot1', 'bot2', 'bot3'):
-        host._add(name)
-    for name in ('bot1', 'bot2'):
-        host._open(name)
-
-    def behind():
-        host.draw()
-        while host._due:
-            host._draw_next()
-        return [host._hosts[name].behind for name in ('bot1', 'bot2')]
-    assert behind() == ['', '']
-    host.panel.robot_list.activate('bot2')
-    assert behind() == ['bot2', '']
-    host.panel.robot_list.clear()
-    assert behind() == ['', '']
-    host.panel.robot_list.activate('bot3')
-    assert behind() == ['', ''], 'it has no window'
-    host.close()
 
 
 def test_standalone_keeps_its_settings_in_a_file(tmp_path):
@@ -82,8 +67,7 @@ def test_standalone_keeps_its_settings_in_a_file(tmp_path):
     first.host._select(['bot2'])
     first.host.operator.request_limits(0.3, 0.8)
     first.host._request_mode('ps3joy')
-    first.host._open('bot1')
-    first.host.windows['bot1'].move(QPoint(321, 123))
+    tear_off(first.host)
     first.window.close()
     second = Standalone(['panel'], path)
     second.restore()
@@ -91,12 +75,12 @@ def test_standalone_keeps_its_settings_in_a_file(tmp_path):
     second.window.close()
 
 
-def test_the_first_time_the_panel_leaves_room_for_the_windows(tmp_path):
+def test_the_first_time_it_fills_the_screen(tmp_path):
     path = str(tmp_path / 'panel.json')
     first = Standalone(['panel'], path)
     first.restore()
-    screen = QApplication.primaryScreen().availableGeometry()
-    assert first.window.pos() == screen.topLeft()
+    assert first.window.isMaximized()
+    first.window.showNormal()
     first.window.setGeometry(101, 102, 960, 610)
     first.window.close()
     second = Standalone(['panel'], path)
@@ -137,7 +121,7 @@ def test_a_demo_leaves_the_settings_alone(saved):
         before = stream.read()
     program = Standalone(['panel'], saved, remember=False)
     program.host._add('bot1')
-    program.host.panel.limits_requested.emit(0.3, 0.8)
+    program.host.screen.limits_requested.emit(0.3, 0.8)
     program.window.close()
     with open(saved, 'rb') as stream:
         assert stream.read() == before
@@ -145,12 +129,12 @@ def test_a_demo_leaves_the_settings_alone(saved):
 
 @pytest.mark.parametrize('change, robots', [
     (lambda host: None, ['kept']),
-    (lambda host: host._open('bot1'), ['kept']),
+    (lambda host: tear_off(host), ['kept']),
     (lambda host: host._add('bot2'), ['bot1', 'bot2']),
     (lambda host: host._remove('bot1'), []),
-    (lambda host: host.panel.mode_requested.emit('ps3joy'), ['bot1']),
-    (lambda host: host.panel.limits_requested.emit(0.3, 0.8), ['bot1']),
-    (lambda host: host.panel.together_requested.emit(True), ['bot1']),
+    (lambda host: host.screen.mode_requested.emit('ps3joy'), ['bot1']),
+    (lambda host: host.screen.limits_requested.emit(0.3, 0.8), ['bot1']),
+    (lambda host: host.screen.together_requested.emit(True), ['bot1']),
 ], ids=['none', 'a window', 'one more', 'one less', 'mode', 'limits', 'together'])
 def test_a_fresh_panel_keeps_the_settings_until_something_is_changed(saved, change, robots):
     program = Standalone(['panel'], saved)
@@ -218,8 +202,7 @@ def test_the_rqt_plugin_shows_the_panel_and_keeps_its_settings(plugin_class):
         host._add(name)
     host.operator.request_limits(0.3, 0.8)
     host._request_mode('ps3joy')
-    host._open('bot1')
-    host.windows['bot1'].move(QPoint(321, 123))
+    tear_off(host)
     plugin.save_settings(Settings(), settings)
     plugin.shutdown_plugin()
     assert host.windows == {}

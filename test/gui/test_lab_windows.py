@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Windows of a lab's own packages: shown where they work, and never in the way of driving."""
-from dataclasses import replace
 import json
 import sys
 
@@ -12,7 +11,7 @@ from mhri.core.screen import views
 from mhri.core.screen.views import RobotView
 from mhri.gui.screen.window_maker import import_window, WindowMaker
 from mhri.gui.screen.windows import TurtleBotWindow
-from mhri.presenters.panel_host import PanelHost
+from mhri.presenters.screen_host import ScreenHost
 from mhri.ros.screen.backend import ScreenBackend
 
 MODULE = '''
@@ -126,17 +125,18 @@ def test_the_windows_of_mhri_need_no_trust(operator, ui_dir):
 @pytest.fixture
 def host(operator, monkeypatch):
     """The panel with robots whose type is a lab's; nothing is connected to anything."""
-    made = PanelHost(ScreenBackend())
+    made = ScreenHost(ScreenBackend())
     made.keys = {}
     monkeypatch.setattr(made.operator, '_robot_view', lambda name, selected: RobotView(
         name, 'Lab', window=made.keys[name], link=views.LIVE, x_m=made.x_m))
     made.x_m = None
-    made.panel.show()
+    made.screen.show()
 
     def add(name, key):
         made.keys[name] = key
         made._add(name)
-        made._open(name)
+        made.tiles.make(name)
+        made.draw()
         return made.windows[name]
     made.add = add
     yield made
@@ -147,7 +147,7 @@ def drawn(host, operator, rounds=3):
     """Draw every window a few times."""
     for _ in range(rounds):
         host.draw()
-        operator.wait_until(lambda: not host._due or host._draw_next())
+        operator.wait_until(lambda: not host.tiles.draw_next())
 
 
 def test_one_that_fails_while_it_draws_is_replaced_and_the_others_go_on(host, operator):
@@ -161,10 +161,8 @@ def test_one_that_fails_while_it_draws_is_replaced_and_the_others_go_on(host, op
     assert type(host.windows['bot1']) is TurtleBotWindow and host.windows['bot1'].isVisible()
     assert not lab.isVisible()
     assert host.windows['bot2'] is other and host.windows['bot3'] is good
-    assert 'ZeroDivisionError' in host.panel.look_label.text()
+    assert 'ZeroDivisionError' in host.screen.look_label.text()
     host.windows['bot1'].stop_requested.emit()
-    host.windows['bot1'].close()
-    assert 'bot1' not in host.windows
     assert type(host.add('bot4', 'lab_robot.window.FailsToDraw')) is TurtleBotWindow
 
 
@@ -178,7 +176,7 @@ def test_settings_that_cannot_be_kept_do_not_keep_the_panel_from_ending(host, ke
     host.add('bot1', 'lab_robot.window.' + key)
     assert json.dumps(host.save_state())
     assert host.save_state()['robots'] == ['bot1']
-    host._close_window('bot1')
+    host._remove('bot1')
     assert host.windows == {}
 
 
@@ -198,6 +196,6 @@ def test_a_slip_in_mhris_own_window_is_not_hidden(host, monkeypatch):
 
     def fail(*_):
         raise KeyError('ours')
-    monkeypatch.setattr(host._hosts['bot1'], 'draw', fail)
+    monkeypatch.setattr(host.tiles.hosts['bot1'], 'draw', fail)
     with pytest.raises(KeyError):
-        host._guarded('bot1', host._hosts['bot1'].draw, replace(RobotView('bot1')), False)
+        host.tiles._guarded('bot1', host.tiles.hosts['bot1'].draw, RobotView('bot1'), False)

@@ -29,6 +29,11 @@ def ask(session):
     return lambda action, *robots: publisher.publish(action=action, robots=robots)
 
 
+def events(session):
+    """Return what the event list has told: {(robot, kind, text)}."""
+    return {(event.robot, event.kind, event.text) for event in session.host.events.log.events}
+
+
 def test_requests_change_the_selection_as_a_click_would(session, ask):
     """The panel stays the one publisher, and says what it does not do."""
     import rospy
@@ -46,10 +51,15 @@ def test_requests_change_the_selection_as_a_click_would(session, ask):
         session.until(lambda: selection.selected == after and heard and heard[-1] == after,
                       what='{} {}'.format(action, robots))
     ask('select', 'bot9')
-    session.until(lambda: 'bot9 is not in the list' in session.host.panel.look_label.text())
+    session.until(lambda: 'bot9 is not in the list' in session.host.screen.look_label.text())
     ask('fly')
-    session.until(lambda: 'fly' in session.host.panel.look_label.text())
+    session.until(lambda: 'fly' in session.host.screen.look_label.text())
     assert selection.selected == ()
+    told = events(session)
+    assert ('', 'request.refused', 'not done: bot9 is not in the list: add it first') in told
+    assert {(name, 'link.found', 'found') for name in ROBOTS} <= told
+    assert {(robot, kind) for robot, kind, _ in told} >= {
+        (name, kind) for name in ROBOTS for kind in ('drive.checked', 'drive.unchecked')}
 
 
 def test_record_selected_records_each_and_says_how_it_ended(session, ask):
@@ -59,13 +69,16 @@ def test_record_selected_records_each_and_says_how_it_ended(session, ask):
     session.hands.click('record_button')
     session.until(lambda: all(recordings.status(name).messages > 50 for name in ('bot1', 'bot3')),
                   what='messages of both')
-    session.until(lambda: session.host.panel.record_button.text() == 'Stop recording (2)')
-    assert session.host.panel.robot_list.row('bot3').recording.word == 'rec'
+    session.until(lambda: session.host.screen.record_button.text() == 'Stop recording (2)')
+    assert session.host.screen.robot_list.row('bot3').recording.word == 'rec'
     session.hands.click('record_button')
-    session.until(lambda: session.host.panel.look_label.text().count('saved') == 2)
+    session.until(lambda: session.host.screen.look_label.text().count('saved') == 2)
     for name in ('bot1', 'bot3'):
         path = recordings.status(name).path
         assert os.path.dirname(path) == session.system.home and os.path.exists(path)
+        assert {kind for robot, kind, text in events(session)
+                if robot == name and os.path.basename(path) in text} == {
+            'recording.begun', 'recording.ended'}
     ask('record', 'bot2')
     session.until(lambda: recordings.running() == ('bot2',)
                   and recordings.status('bot2').messages > 10)
@@ -105,12 +118,12 @@ def test_a_robot_that_is_removed_is_recorded_no_more_and_the_screen_says_so(sess
     recordings = session.operator.recordings
     session.operator.record('bot3', '', ())
     session.until(lambda: recordings.status('bot3').messages > 10)
-    session.host.panel.robot_list.activate('bot3')
+    session.host.screen.robot_list.activate('bot3')
     session.hands.click('remove_button')
     session.until(lambda: recordings.status('bot3').state == 'ended', what='the end')
     assert recordings.running() == ()
     path = recordings.status('bot3').path
-    session.until(lambda: session.host.panel.look_label.text().startswith('bot3: saved'))
+    session.until(lambda: session.host.screen.look_label.text().startswith('bot3: saved'))
     assert os.path.exists(path) and path.endswith('.bag'), 'closed whole'
     session.host._add('bot3')
     session.until(lambda: session.operator.robot_view('bot3').link == 'live')
@@ -124,7 +137,7 @@ def test_motion_capture_ages_and_bandwidth_show(session):
     assert 'odometry off 0.0' in str(window.state_line.texts())
     session.until(lambda: 'RGB' in str(window.state_line.texts())
                   and 'IMU' in str(window.state_line.texts()))
-    session.until(lambda: 'Mbit/s' in session.host.panel.cameras_label.text())
+    session.until(lambda: 'Mbit/s' in session.host.screen.cameras_label.text())
     window.hide()
     session.until(lambda: session.operator.feeds('bot2').get('mocap') is None,
                   what='nothing to be heard for a hidden window')
@@ -143,6 +156,7 @@ def test_the_camera_budget_follows_its_parameters(session):
 def test_the_list_is_told_to_voice_and_pad(session):
     import rospy
     session.until(lambda: rospy.get_param('/mhri/robots', None) == ROBOTS)
+    assert rospy.get_param('/mhri/robot_numbers') == {'bot1': 1, 'bot2': 2, 'bot3': 3}
 
 
 def test_a_lost_robot_shakes_the_pad_once_and_talking_opens_the_ear(session):

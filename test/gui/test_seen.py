@@ -267,7 +267,7 @@ def test_the_graph_moves_when_the_robot_turns(session):
     window = session.open('bot2')
     session.switch(window, 'camera_off')
     session.switch(window, 'view_imu')
-    chart = YawChart(session, window.graph)
+    chart = YawChart(session, window.view('imu'))
     session.until(lambda: session.operator.view().status.endswith('ready'), what='ready')
     resting = session.until(lambda: chart.read(2.0), what='the curve of the robot at rest')
     assert max(map(abs, resting)) <= 0.02 + 4 * chart.pixel()

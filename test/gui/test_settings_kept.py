@@ -27,7 +27,7 @@ def start_with(path, operator):
     program.restore()
     program.window.show()
     program.host.draw()
-    program.host._open('bot9')
+    program.host.tiles.make('bot9')
     operator.settle()
     program.window.grab()
     view = program.host.operator.view()

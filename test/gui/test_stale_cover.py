@@ -11,7 +11,7 @@ from python_qt_binding.QtWidgets import QApplication, QPushButton, QVBoxLayout, 
 from mhri.gui.screen import theme
 from mhri.gui.screen.stale_cover import OLD_AFTER_S, SLIP_SHOWN_S, StaleCover
 from mhri.presenters.draw_guard import DrawGuard
-from mhri.presenters.panel_host import PanelHost
+from mhri.presenters.screen_host import ScreenHost
 from mhri.ros.screen.backend import ScreenBackend
 
 
@@ -133,13 +133,13 @@ def test_a_painting_that_fails_ends_nothing_and_is_said(window, operator, hook, 
 
 @pytest.fixture
 def host(operator):
-    made = PanelHost(ScreenBackend())
+    made = ScreenHost(ScreenBackend())
     made._add('bot1')
     made.operator.start = lambda: None
-    made.panel.resize(1024, 600)
+    made.screen.resize(1024, 600)
     made.start()
-    operator.show(made.panel)
-    made._open('bot1')
+    operator.show(made.screen)
+    made.tiles.make('bot1')
     yield made
     made.close()
 
@@ -150,7 +150,7 @@ def test_a_panel_whose_drawing_fails_says_so_within_a_second(host, operator, mon
     assert not cover.isVisible()
     stops = []
     monkeypatch.setattr(host.operator, 'stop_all', lambda: stops.append(1))
-    host.panel.stop_requested.connect(host.operator.stop_all)
+    host.screen.stop_requested.connect(host.operator.stop_all)
     begun = time.monotonic()
     monkeypatch.setattr(host.operator, 'view', lambda: 1 / 0)
     operator.wait_until(cover.isVisible, within_s=2.0)
@@ -158,14 +158,14 @@ def test_a_panel_whose_drawing_fails_says_so_within_a_second(host, operator, mon
     print('MEASURED said after {:.0f} ms'.format(took * 1000.0))
     assert took < 1.0
     assert 'ZeroDivisionError' in cover.texts()[-1]
-    operator.click(host.panel.stop_bar.stop_button)
+    operator.click(host.screen.stop_bar.stop_button)
     assert stops == [1]
     monkeypatch.undo()
     operator.wait_until(lambda: not cover.isVisible(), within_s=2.0)
 
 
 def test_a_window_whose_drawing_fails_says_so_alone(host, operator, monkeypatch):
-    guard = host._hosts['bot1'].guard
+    guard = host.tiles.hosts['bot1'].guard
     operator.wait_until(lambda: guard.cover._drawn_at is not None)
     monkeypatch.setattr(host.windows['bot1'], 'show_view', lambda *_: 1 / 0)
     operator.wait_until(guard.cover.isVisible, within_s=2.0)

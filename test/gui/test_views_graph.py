@@ -49,11 +49,11 @@ def inked(chart, stroke=0):
 
 
 def test_the_curve_rises_when_the_robot_turns(graph, operator):
-    graph.show_series(series_of(turn=0.0))
+    graph.show_value(series_of(turn=0.0))
     operator.settle()
     yaw_rate = graph.charts[1]
     before = inked(yaw_rate)
-    graph.show_series(series_of(turn=0.8))
+    graph.show_value(series_of(turn=0.8))
     operator.settle()
     after = inked(yaw_rate)
     assert np.ptp(before[:, 1]) < 8, 'a flat line'
@@ -66,7 +66,7 @@ def test_what_is_drawn_travels_to_the_left(graph, operator):
     places = []
     for later in (0.0, 5.0):
         moved = series_of()
-        graph.show_series(Series(NOW + later, moved.rings))
+        graph.show_value(Series(NOW + later, moved.rings))
         operator.settle()
         points = inked(graph.charts[1])
         places.append(points[points[:, 1] < points[:, 1].max() - 20, 0].min())
@@ -81,7 +81,7 @@ def test_what_is_drawn_travels_to_the_left(graph, operator):
     (3, ['orientation [deg]'], '0.00')])
 def test_every_choice_has_its_units(graph, operator, index, captions, value):
     graph.quantity_combo.setCurrentIndex(index)
-    graph.show_series(series_of())
+    graph.show_value(series_of())
     operator.settle()
     shown = [chart for chart in graph.charts if chart.isVisible()]
     assert [chart.legend._plot.caption for chart in shown] == captions
@@ -91,14 +91,14 @@ def test_every_choice_has_its_units(graph, operator, index, captions, value):
 
 def test_angles_are_in_degrees(graph):
     graph.quantity_combo.setCurrentIndex(3)
-    graph.show_series(series_of())
+    graph.show_value(series_of())
     assert graph.charts[0].legend.texts == ('0.00', '0.00', '30.00')
 
 
 def test_no_curve_and_no_number_before_the_first_sample(graph, operator):
     empty = {key: BinRing(IMU_KEYS if key in IMU_KEYS else ODOMETRY_KEYS)
              for key in IMU_KEYS + ODOMETRY_KEYS}
-    graph.show_series(Series(NOW, empty))
+    graph.show_value(Series(NOW, empty))
     operator.settle()
     assert graph.charts[0].legend.texts == ('–',) and len(inked(graph.charts[0])) == 0
 
@@ -106,7 +106,7 @@ def test_no_curve_and_no_number_before_the_first_sample(graph, operator):
 @pytest.mark.parametrize('seconds', WINDOWS_S)
 def test_the_window_is_as_long_as_chosen(graph, operator, seconds):
     graph.window_combo.setCurrentIndex(WINDOWS_S.index(seconds))
-    graph.show_series(series_of())
+    graph.show_value(series_of())
     low, high = graph.charts[0].box.viewRange()[0]
     assert low == pytest.approx(-seconds, rel=0.1) and 0.0 <= high < 0.1 * seconds
     x, _ = graph.charts[1]._curves[0].getData()
@@ -114,10 +114,10 @@ def test_the_window_is_as_long_as_chosen(graph, operator, seconds):
 
 
 def test_pause_by_click_and_key_keeps_the_picture_and_says_so(graph, operator):
-    graph.show_series(series_of())
+    graph.show_value(series_of())
     operator.click(graph.pause_button)
     before = graph.charts[1]._curves[0].getData()[1].copy()
-    graph.show_series(series_of(turn=-0.8))
+    graph.show_value(series_of(turn=-0.8))
     np.testing.assert_array_equal(graph.charts[1]._curves[0].getData()[1], before)
     assert graph.paused and graph.pause_button.text() == 'Resume'
     assert all(chart.legend._paused for chart in graph.charts)
@@ -125,15 +125,15 @@ def test_pause_by_click_and_key_keeps_the_picture_and_says_so(graph, operator):
     assert len(graph.charts[1]._curves[0].getData()[0]) > 0, 'another window of what is kept'
     graph.pause_button.setFocus()
     operator.hit(graph.pause_button, Qt.Key_Space)
-    graph.show_series(series_of(turn=-0.8))
+    graph.show_value(series_of(turn=-0.8))
     assert not graph.paused and graph.charts[1]._curves[0].getData()[1].min() < -0.5
 
 
 def test_hidden_it_draws_nothing(graph):
-    graph.show_series(series_of())
+    graph.show_value(series_of())
     before = graph.charts[1]._curves[0].getData()[1].copy()
     graph.hide()
-    graph.show_series(series_of(turn=-0.8))
+    graph.show_value(series_of(turn=-0.8))
     np.testing.assert_array_equal(graph.charts[1]._curves[0].getData()[1], before)
 
 
@@ -155,7 +155,7 @@ def test_dark_and_light(graph, operator):
                             (QPalette.WindowText, ink), (QPalette.Text, ink)):
             palette.setColor(role, QColor(value))
         graph.setPalette(palette)
-        graph.show_series(series_of())
+        graph.show_value(series_of())
         operator.settle()
         chart = graph.charts[0]
         grounds.append(chart.view.grab().toImage().pixelColor(

@@ -42,14 +42,14 @@ def places(view, name):
 @pytest.mark.parametrize('bearing_deg, ahead, left', [
     (0, 2.0, 0.0), (90, 0.0, 2.0), (-90, 0.0, -2.0), (45, 1.41, 1.41), (-179, -2.0, -0.03)])
 def test_a_point_is_where_it_was_measured(view, operator, bearing_deg, ahead, left):
-    view.show_scan(scan_of([bearing_deg], 2.0))
+    view.show_value(scan_of([bearing_deg], 2.0))
     operator.settle()
     assert places(view, theme.DRIVE) == pytest.approx((ahead, left), abs=0.04)
     assert view.nearest_m == 2.0
 
 
 def test_what_is_near_is_orange(view, operator):
-    view.show_scan(scan_of([90], 0.4))
+    view.show_value(scan_of([90], 0.4))
     operator.settle()
     assert places(view, theme.ATTENTION) == pytest.approx((0.0, 0.4), abs=0.04)
     assert places(view, theme.DRIVE) is None
@@ -62,34 +62,34 @@ def test_the_reach_shows_all_points(farthest_m, reach_m):
 
 
 def test_the_picture_grows_at_once_and_shrinks_late(view):
-    view.show_scan(scan_of(range(0, 90), 3.0))
+    view.show_value(scan_of(range(0, 90), 3.0))
     assert view.reach_m == 3.0
-    view.show_scan(scan_of(range(0, 90), 11.0))
+    view.show_value(scan_of(range(0, 90), 11.0))
     assert view.reach_m == 12.0
     for _ in range(20):
-        view.show_scan(scan_of(range(0, 90), 3.0))
+        view.show_value(scan_of(range(0, 90), 3.0))
     assert view.reach_m == 12.0
     for _ in range(30):
-        view.show_scan(scan_of(range(0, 90), 3.0))
+        view.show_value(scan_of(range(0, 90), 3.0))
     assert view.reach_m == 3.0
 
 
 def test_an_old_scan_does_not_look_live(view, operator):
-    view.show_scan(scan_of([0], 2.0))
+    view.show_value(scan_of([0], 2.0))
     view.show_age(0.3)
     operator.settle()
     assert view.warning == '' and places(view, theme.DRIVE)
     view.show_age(3.2)
     operator.settle()
     assert view.warning == 'OLD SCAN, 3.2 s' and places(view, theme.DRIVE) is None
-    view.show_scan(scan_of([0], 2.0))
+    view.show_value(scan_of([0], 2.0))
     assert view.warning == ''
 
 
 @pytest.mark.parametrize('ranges', [[], [math.nan] * 5, [1e-6] * 5, [99.0] * 5])
 def test_any_scan_can_be_drawn(view, operator, ranges):
     view.show_age(None)
-    view.show_scan((np.array(ranges, float), -1.0, 0.1, 100.0))
+    view.show_value((np.array(ranges, float), -1.0, 0.1, 100.0))
     operator.settle()
     assert not view.grab().isNull()
     view.clear('bot1 has no laser scanner')

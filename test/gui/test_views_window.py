@@ -1,30 +1,32 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The views of a bot window: chosen by click and key, asked for only while they are seen."""
+"""The views of a tile: chosen by click and key, asked for only while they are seen."""
 import pytest
 from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QAbstractButton
 
-from mhri.core.screen import views
 from mhri.gui.driving.drive_keys import DriveKeys
 from mhri.gui.screen.windows import TurtleBotWindow
 
-ALL = frozenset(('imu', 'rgb', 'depth', 'scan', 'record'))
+ALL = frozenset(('imu', 'rgb', 'depth', 'cloud', 'scan', 'record'))
 
 
 @pytest.fixture
 def window(operator, ui_dir):
     made = TurtleBotWindow(ui_dir, 'bot1', 'TurtleBot2')
     made.offer(ALL)
-    return operator.show(made)
+    made.switches.choose({'rgb', 'imu'})
+    made.resize(900, 640)
+    operator.show(made)
+    operator.click(made.views_button)
+    return made
 
 
 @pytest.mark.parametrize('offered, wanted, seen', [
-    (ALL, {'imu', 'rgb'}, {'graph', 'camera', 'recording', 'switches'}),
-    ({'imu', 'record'}, {'imu'}, {'graph', 'recording', 'switches'}),
-    ({'depth'}, set(), {'motion_page', 'switches'}),
-    ({'record'}, set(), {'motion_page', 'recording'}),
+    (ALL, {'rgb'}, set()),
+    ({'imu', 'record'}, set(), {'motion_page'}),
+    ({'depth'}, set(), {'motion_page'}),
     ((), set(), {'motion_page'}),
 ])
 def test_at_first(operator, ui_dir, offered, wanted, seen):
@@ -32,8 +34,9 @@ def test_at_first(operator, ui_dir, offered, wanted, seen):
     window.offer(offered)
     operator.show(window)
     assert window.wanted() == wanted
-    assert {name for name in ('graph', 'camera', 'scan', 'recording', 'switches', 'motion_page')
+    assert {name for name in ('recording', 'switches', 'motion_page')
             if getattr(window, name).isVisible()} == seen
+    assert window.view('rgb').isVisible() == ('rgb' in wanted)
 
 
 @pytest.mark.parametrize('clicks, wanted', [
@@ -51,21 +54,21 @@ def test_clicks(window, operator, heard, clicks, wanted):
     assert window.wanted() == wanted
     assert len(changed) == (0 if clicks == ['camera_rgb'] else len(clicks))
     assert window.motion_page.isVisible() == (not wanted)
-    assert window.camera.kind == next(iter(wanted & {'rgb', 'depth'}), None)
-    for key, part in (('imu', window.graph), ('scan', window.scan)):
+    if wanted & {'rgb', 'depth'}:
+        assert wanted & {'rgb', 'depth'} == {window.view('rgb').kind}
+    for key, part in (('imu', window.view('imu')), ('scan', window.view('scan'))):
         assert part.isVisible() == (key in wanted)
 
 
 def test_every_switch_is_reached_and_set_with_the_keyboard(window, operator):
-    window.switches.checks['imu'].setFocus()
-    operator.hit(window.switches.checks['imu'], Qt.Key_Space)
-    assert window.wanted() == {'rgb'}
-    QTest.keyClick(window, Qt.Key_Tab)
-    operator.wait_until(window.switches.cameras['rgb'].hasFocus)
+    window.switches.cameras['rgb'].setFocus()
     operator.hit(window.switches.cameras['rgb'], Qt.Key_Right)
-    assert window.wanted() == {'depth'}
-    QTest.keyClick(window, Qt.Key_Tab)
-    assert window.switches.checks['scan'].hasFocus()
+    assert window.wanted() == {'depth', 'imu'}
+    for key in ('cloud', 'scan', 'imu'):
+        QTest.keyClick(window, Qt.Key_Tab)
+        operator.wait_until(window.switches.checks[key].hasFocus)
+        operator.hit(window.switches.checks[key], Qt.Key_Space)
+    assert window.wanted() == {'depth', 'cloud', 'scan'}
 
 
 def test_a_click_leaves_the_keyboard_to_the_drive_keys(window, operator, application, panel):
@@ -99,28 +102,28 @@ def test_what_is_not_on_offer_for_a_while_comes_back(window, heard):
     window.offer({'imu'})
     assert len(changed) == 1
     window.offer(ALL)
-    assert window.wanted() == {'imu', 'rgb'} and window.camera.kind == 'rgb'
+    assert window.wanted() == {'imu', 'rgb'} and window.view('rgb').kind == 'rgb'
 
 
 def test_settings_come_back(window, operator, ui_dir):
     operator.click(window.switches.cameras['depth'])
     operator.click(window.switches.checks['scan'])
-    window.graph.window_combo.setCurrentIndex(0)
+    window.view('imu').window_combo.setCurrentIndex(0)
     sizes = [300, 200, window.views_splitter.width() - 524]
     window.views_splitter.setSizes(sizes)
-    window.views_splitter.splitterMoved.emit(300, 1)
     kept = window.save_settings()
     other = TurtleBotWindow(ui_dir, 'bot1', 'TurtleBot2')
     other.restore_settings(kept)
     other.offer(ALL)
     other.resize(window.size())
     operator.show(other)
-    assert other.wanted() == {'imu', 'depth', 'scan'} and other.graph.window_s == 5
+    assert other.wanted() == {'imu', 'depth', 'scan'} and other.view('imu').window_s == 5
     assert other.views_splitter.sizes() == window.views_splitter.sizes()
 
 
 @pytest.mark.parametrize('settings', [
-    {}, {'views': []}, {'views': ['gone', 'rgb', 'depth'], 'splitter': [1, 2], 'graph': {}}])
+    {}, {'views': []},
+    {'views': ['gone', 'rgb', 'depth'], 'splitter': [1, 2], 'of_views': {'arm': {}}}])
 def test_settings_of_another_version_do_no_harm(window, settings):
     window.restore_settings(settings)
     assert window.wanted() <= {'imu', 'rgb'}
@@ -137,34 +140,15 @@ def test_everything_fits(window, operator, size, chosen):
     width, height = window.camera_size()
     if chosen & {'rgb', 'depth'}:
         assert width >= 120 and height >= 120
-    assert window.stop_button.isVisible() and window.stop_button.height() >= 50
-
-
-def test_the_picture_gets_the_width_its_height_needs(window, operator):
-    window.resize(1600, 700)
-    operator.settle()
-    width, height = window.camera_size()
-    assert width == pytest.approx(height * 4.0 / 3.0, abs=6)
-
-
-def test_the_place_is_in_the_header_where_there_is_room(window, operator):
-    for width, there in ((760, False), (1200, True), (760, False)):
-        window.resize(width, 600)
-        operator.settle()
-        assert window.pose_label.isVisible() == there
-    window.resize(1200, 600)
-    operator.settle()
-    window._numbers._next = None
-    window.show_view(views.RobotView('bot1', x_m=1.25, y_m=-0.4, link=views.LIVE))
-    assert window.pose_label.text() == 'x 1.25 m  y -0.40 m'
+    assert window.hud.geometry().bottom() <= window.height()
 
 
 def test_no_control_is_too_small_for_a_finger(window, operator):
     operator.settle()
     for button in (*window.switches.checks.values(), *window.switches.cameras.values(),
-                   window.graph.quantity_combo, window.graph.window_combo,
-                   window.graph.pause_button, window.camera.transport_combo,
-                   window.camera.still_button, window.recording.record_check,
+                   window.view('imu').quantity_combo, window.view('imu').window_combo,
+                   window.view('imu').pause_button, window.view('rgb').transport_combo,
+                   window.view('rgb').still_button, window.recording.record_check,
                    window.recording.path_edit, window.recording.browse_button,
                    window.recording.extras_button):
         assert button.height() >= 36 and button.width() >= 36, button.objectName()

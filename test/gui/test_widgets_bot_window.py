@@ -1,17 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A robot's window: which class, what it shows, and that one never wonders which robot moves."""
+"""A robot's tile: which class, what it shows, and that one never wonders which robot moves."""
 from dataclasses import replace
 
 import pytest
 from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtTest import QTest
+from python_qt_binding.QtWidgets import QWidget
 
 from mhri.core.screen import views
 from mhri.core.screen.views import ProofView, RobotView
-from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.gui.screen import theme
 from mhri.gui.screen.bot_window import BotWindow
+from mhri.gui.screen.hud import hud_lines
+from mhri.gui.screen.torn_off import TornOff
 from mhri.gui.screen.windows import TurtleBotWindow, window_class
 
 VIEW = RobotView('bot1', 'TurtleBot2', link=views.LIVE, age_s=0.012, linear_mps=0.31,
@@ -40,9 +42,8 @@ def test_the_class_follows_the_type(key, expected):
     ({'proof': ProofView(views.PROOF_NOT_CONFIRMED, 'NOT CONFIRMED')}, True, 'NOT CONFIRMED'),
     ({'selected': True, 'proof': CONFIRMED}, False, 'STOPPED'),
 ])
-def test_title_edge_and_pill_say_whether_it_is_driven(window, changes, stop_all, state):
+def test_edge_and_pill_say_whether_it_is_driven(window, changes, stop_all, state):
     window.show_view(replace(VIEW, **changes), stop_all)
-    assert window.windowTitle() == 'bot1 - {}'.format(state)
     assert window.drive_state == state and window.pill.word == state
 
 
@@ -50,7 +51,7 @@ def test_the_edge_is_painted(window, operator):
     for driven, name in ((True, theme.DRIVE), (False, None)):
         window.show_view(replace(VIEW, driven=driven))
         operator.settle()
-        pixel = window.grab().toImage().pixelColor(4, window.height() // 2)
+        pixel = window.grab().toImage().pixelColor(2, window.height() // 2)
         assert (pixel == theme.colour(theme.DRIVE, window.palette())) == (name is not None)
 
 
@@ -59,9 +60,9 @@ def test_the_header_line(window):
     window.show_view(VIEW)
     assert window.name_label.text() == 'bot1' and window.type_label.text() == 'TurtleBot2'
     assert window.link_sign.sign == (theme.DISC, theme.LIVE)
-    assert [label.text() for label in (window.link_label, window.speed_label,
-                                       window.heading_label, window.battery_label)] == [
-        'live 12 ms', '0.31 m/s', 'heading 47 deg', '82 %']
+    assert [label.text() for label in (window.link_label, window.battery_label)] == [
+        'live 12 ms', '82 %']
+    assert window.hud.lines[:2] == ('0.31 m/s   left 0.20 rad/s', 'heading 47 deg')
     assert [label.text() for label in (window.x_value, window.y_value, window.turn_value,
                                        window.max_linear_value, window.max_angular_value)] == [
         'x 1.25 m', 'y -0.40 m', 'left 0.20 rad/s', '0.65 m/s', '3.14 rad/s']
@@ -79,26 +80,14 @@ def test_the_header_line(window):
 ])
 def test_the_sentence(window, changes, shape, text):
     window.show_view(replace(VIEW, **changes))
-    sign = window.sentence_sign.sign
-    assert (sign and sign[0], window.sentence_label.text()) == (shape, text)
+    sign = window.hud.sign
+    assert (sign and sign[0], window.hud.sentence) == (shape, text)
 
 
-def test_a_sentence_has_the_room_of_the_place_and_then_fewer_words(window, operator):
-    for width, text in ((930, 'centre the stick: it was out of reach'), (640, 'centre the stick')):
-        window.resize(width, 540)
-        window.show_view(VIEW)
-        operator.settle()
-        assert window.pose_label.isVisible() == (width == 930)
-        window.show_view(replace(VIEW, slow=True, note='centre the stick: it was out of reach'))
-        operator.settle()
-        assert window.sentence_label.shown_text() == text and not window.pose_label.isVisible()
-        window.show_view(replace(VIEW, proof=ProofView(
-            views.PROOF_NOT_CONFIRMED, 'NOT CONFIRMED: it cannot be heard')))
-        operator.settle()
-        assert window.sentence_label.shown_text().startswith('NOT CONFIRMED')
-
-
-def test_stop_acts_on_press_and_again_while_stopped(window, heard):
+def test_stop_of_a_torn_off_tile_acts_on_press_and_again_while_stopped(window, operator, heard):
+    frame = operator.show(TornOff(window))
+    assert window.window() is frame
+    assert window.stop_button.isVisible() and window.stop_button.height() >= 44
     asked = heard(window.stop_requested)
     QTest.mousePress(window.stop_button, Qt.LeftButton)
     window.show_view(VIEW, stop_all=True)
@@ -112,33 +101,68 @@ def test_numbers_change_four_times_a_second_at_most(window):
     window._numbers._next = None
     window.show_view(VIEW)
     window.show_view(replace(VIEW, linear_mps=0.5))
-    assert window.speed_label.text() == '0.31 m/s'
+    assert window.hud.lines[0].startswith('0.31 m/s')
     window.show_view(replace(VIEW, linear_mps=0.5, link=views.SILENT, age_s=1.2))
     assert window.link_label.text() == 'silent 1.2 s', 'a state never waits'
 
 
 def test_no_dead_controls(window):
     assert not any(part.isVisible() for part in (
-        window.graph, window.camera, window.scan, window.recording, window.switches))
+        window.view('imu'), window.view('rgb'), window.view('scan'), window.recording,
+        window.switches, window.stop_button))
     assert window.wanted() == set() and window.motion_page.isVisible()
 
 
-def test_escape_keeps_it_and_closing_is_told(window, operator, heard):
-    closed = heard(window.closed)
-    operator.hit(window, Qt.Key_Escape)
-    assert window.isVisible() and closed == []
-    window.close()
-    assert closed == ['bot1'] and not window.isVisible()
+def test_a_torn_off_window_closes_by_its_frame_and_not_by_escape(window, operator, heard):
+    frame = operator.show(TornOff(window))
+    closed = heard(frame.closed)
+    operator.hit(frame, Qt.Key_Escape)
+    assert frame.isVisible() and closed == []
+    frame.close()
+    assert closed == ['bot1'] and not frame.isVisible()
+    frame.give_back()
+    assert window.parentWidget() is None and not window.torn_off
 
 
-def test_its_place_is_remembered(operator, ui_dir):
-    first = TurtleBotWindow(ui_dir, 'bot1', 'TurtleBot2')
-    first.setGeometry(120, 90, 800, 560)
-    operator.show(first)
-    second = TurtleBotWindow(ui_dir, 'bot1', 'TurtleBot2')
-    assert restore_geometry(second, geometry_of(first))
-    operator.show(second)
-    assert second.geometry() == first.geometry()
+def test_a_click_looks_and_a_double_click_drives(window, operator, heard):
+    window.offer({'rgb'})
+    clicked, driven = heard(window.clicked), heard(window.drive_requested)
+    operator.settle()
+    picture = window.view('rgb').picture
+    operator.click(picture)
+    assert (clicked, driven) == (['bot1'], [])
+    QTest.mouseDClick(picture, Qt.LeftButton)
+    assert driven == ['bot1']
+
+
+def test_a_small_tile_shows_its_picture_alone_and_a_tiny_one_its_name(window, operator):
+    window.offer({'rgb', 'scan', 'imu', 'record'})
+    window.switches.choose({'rgb', 'scan', 'imu'})
+    operator.settle()
+    assert window.wanted() == {'rgb', 'scan', 'imu'}
+    window.show_large(False)
+    assert window.wanted() == {'rgb'} and not window.views_button.isVisible()
+    stage = operator.show(QWidget())
+    window.setParent(stage)
+    window.setGeometry(0, 0, 200, window.header.height() + 10)
+    window.show()
+    operator.settle()
+    assert window.wanted() == set() and window.name_label.isVisible()
+    window.show_large(True)
+    assert window.wanted() == {'rgb', 'scan', 'imu'}
+
+
+def test_the_header_lies_on_the_picture_where_that_is_all(window, operator):
+    window.offer({'rgb', 'scan'})
+    operator.settle()
+    assert window.view('rgb').mapTo(window, window.rect().topLeft()).y() <= 4
+    window.switches.choose({'rgb', 'scan'})
+    operator.settle()
+    assert window.view('rgb').mapTo(window, window.rect().topLeft()).y() >= window.header.height()
+
+
+def test_the_numbers_of_a_robot_that_says_nothing():
+    assert hud_lines(RobotView('bot1')) == []
 
 
 @pytest.mark.parametrize('changes', [

@@ -7,6 +7,7 @@ from python_qt_binding.QtGui import QMouseEvent, QWheelEvent
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication
 
+from mhri.core.screen.views import DeviceView
 from mhri.gui.driving.mode_combo import ModeCombo
 from mhri.gui.driving.speed_limits import SpeedLimits
 
@@ -72,6 +73,25 @@ def test_following_the_view_asks_for_nothing(combo, heard):
     combo.show_mode(SOURCES, 'voice')
     combo.show_mode(SOURCES[:2], 'joy')
     assert asked == []
+
+
+def test_a_device_that_comes_while_the_list_is_open(combo, operator):
+    """It stays open, and says of the pad that is absent what to do."""
+    absent = SOURCES[:1] + (('ps3joy', 'PS3 Controller (not connected)'),) + SOURCES[2:]
+    combo.show_mode(absent, 'joy', [DeviceView('ps3joy', '', 'plug <b>one</b> in')])
+    combo.showPopup()
+    operator.wait_until(combo.view().isVisible)
+    assert combo.itemText(1) == 'PS3 Controller (not connected)'
+    tip = combo.itemData(1, Qt.ToolTipRole)
+    assert 'plug &lt;b&gt;one' in tip and combo.toolTip() == ''
+    there = SOURCES[:1] + (('ps3joy', 'Logitech F710'),) + SOURCES[2:]
+    combo.show_mode(there, 'joy', [DeviceView('ps3joy', 'Logitech F710')])
+    assert combo.view().isVisible() and combo.itemText(1) == 'Logitech F710'
+    assert combo.itemData(1, Qt.ToolTipRole) == ''
+    combo.hidePopup()
+    combo.show_mode(absent, 'ps3joy', [DeviceView('ps3joy', '', 'plug one in')])
+    assert combo.shown_text == 'PS3 Controller (not connected)'
+    assert combo.toolTip() == 'plug one in'
 
 
 def scroll(widget):

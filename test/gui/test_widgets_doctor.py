@@ -5,7 +5,7 @@ import pytest
 from python_qt_binding.QtGui import QGuiApplication
 
 from mhri.core.doctor.facts import FAULT, FINE, Finding, WARNING
-from mhri.gui.doctor.doctor_window import DoctorWindow
+from mhri.gui.doctor.doctor_page import DoctorPage
 
 FOUND = [
     Finding(FAULT, 'dead_node', '/bot1/base', 'is registered, but refuses connections',
@@ -18,7 +18,7 @@ FOUND = [
 
 @pytest.fixture
 def window(operator):
-    made = DoctorWindow()
+    made = DoctorPage()
     operator.show(made)
     yield made
     made.close()
@@ -65,8 +65,8 @@ def test_the_report_goes_to_the_clipboard(window, operator):
 
 
 def test_where_there_is_little_room_the_worst_can_be_read_whole(window, operator):
-    """Beside three robots' windows it is as small as it says that it may be."""
-    window.resize(window.minimumSizeHint())
+    """In a narrow drawer on a small screen."""
+    window.resize(400, 420)
     window.show_findings(FOUND, 1.2)
     operator.settle()
     for item in FOUND[:2]:

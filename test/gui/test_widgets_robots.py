@@ -49,7 +49,31 @@ def test_a_row_says_state_by_shape_and_word(operator, view, sign, word, age, sec
     assert (row.link.text(), row.age.text()) == (word, age)
     visible = row.trouble if row.trouble.isVisible() else row.linear
     assert visible.text() == second
-    assert row.trouble.isVisible() != row.linear.isVisible()
+    assert row.trouble.isVisible() != row.turn.isVisible()
+
+
+@pytest.mark.parametrize('changes', [
+    {'slow': True, 'note': 'slow link: 431 ms round trip'},
+    {'link': views.SILENT, 'note': 'x' * 90}, {'link': views.GONE, 'note': 'switched off'},
+    {'proof': ProofView(views.PROOF_NOT_CONFIRMED, 'NOT CONFIRMED: ' + 'x' * 90)}])
+def test_a_warning_never_replaces_the_speed_and_what_is_old_is_dimmed(robots, operator, changes):
+    robots.resize(430, 300)
+    robots.show_robots([replace(LIVE, **changes)])
+    operator.settle()
+    row = robots.row('bot1')
+    for line, text in ((row.linear, '0.31 m/s'), (row.battery, '82 %')):
+        assert line.isVisible() and line.shown_text() == text
+        assert not line.visibleRegion().isEmpty()
+        assert line.tone == (theme.TEXT if row.link.text() == 'live' else theme.MUTED)
+    assert row.trouble.isVisible() and row.trouble.width() > 60
+
+
+def test_a_narrow_row_says_the_turn_without_its_unit(robots, operator):
+    for width, shown in ((560, 'right 0.20 rad/s'), (440, 'right 0.20')):
+        robots.resize(width, 300)
+        robots.show_robots([replace(LIVE, driven=True)])
+        operator.settle()
+        assert robots.row('bot1').turn.shown_text() == shown
 
 
 @pytest.mark.parametrize('changes, word', [
@@ -153,9 +177,30 @@ def test_a_charge_has_a_battery_beside_it(operator, application):
     text_left = line.width() - line.fontMetrics().horizontalAdvance('100 %')
 
     def ink(image):
-        return sum(image.pixelColor(x, y).lightness() < 100
+        return sum(image.pixelColor(x, y).lightness() < 150
                    for x in range(text_left - 2) for y in range(image.height()))
     assert 0 == ink(pictures[0]) < ink(pictures[1]) < ink(pictures[2]) < ink(pictures[3])
+
+
+def test_a_low_battery_has_a_colour_and_a_name(operator):
+    line = BatteryLine()
+    operator.show(line)
+    for charge, level, name in ((0.31, 'fine', 'battery 31 %'), (0.29, 'low', 'battery 29 %, low'),
+                                (0.31, 'low', 'battery 31 %, low'), (0.5, 'fine', 'battery 50 %'),
+                                (0.14, 'flat', 'battery 14 %, flat'), (None, 'flat', '')):
+        line.show_charge(charge)
+        assert (line.level, line.accessibleName()) == (level, name)
+        assert line.font().bold() == (level == 'flat')
+    inks = []
+    for charge in (0.8, 0.29, 0.14):
+        line.show_charge(charge)
+        operator.settle()
+        image = line.grab().toImage()
+        inks.append({image.pixelColor(x, y).name() for x in range(line.width())
+                     for y in range(image.height())})
+    orange, vermillion = ('#e69f00', '#d55e00')
+    assert [(orange in ink, vermillion in ink) for ink in inks] == [
+        (False, False), (True, False), (False, True)]
 
 
 def test_a_second_click_or_escape_takes_the_highlight_away(robots, operator, heard):
@@ -206,7 +251,7 @@ def test_a_removed_robot_loses_highlight_and_row(robots, operator, four_robots):
     operator.settle()
     assert robots.current is None
     assert robots.findChild(type(robots.row('bot1')), 'row_bot2') is None
-    assert [robots.row(name).number.text() for name in ('bot1', 'bot3', 'bot4')] == ['1', '2', '3']
+    assert [robots.row(name).number.text() for name in ('bot1', 'bot3', 'bot4')] == ['1', '3', '4']
 
 
 def test_twelve_robots_scroll_and_fingers_hit(robots, operator):
@@ -222,7 +267,8 @@ def test_twelve_robots_scroll_and_fingers_hit(robots, operator):
 @pytest.fixture
 def hundred(operator):
     """Return a list on the screen with a hundred robots, and those."""
-    many = tuple(replace(LIVE, name='bot{}'.format(number + 1)) for number in range(100))
+    many = tuple(replace(LIVE, name='bot{}'.format(number), number=number)
+                 for number in range(1, 101))
     widget = RobotList()
     widget.resize(560, 330)
     widget.show_robots(many)

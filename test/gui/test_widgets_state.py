@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The line of ages and motion capture below a bot window's header."""
+"""The line of ages and motion capture below a tile's switches."""
 import math
 
 import pytest
@@ -51,16 +51,18 @@ def check_whole(line):
 @pytest.mark.parametrize('factor', [1.0, 2.0])
 @pytest.mark.parametrize('width', [0, 620, 760, 930, 1300, 1900])
 def test_nothing_is_cut_off_in_a_window_of_any_width(operator, ui_dir, application, width, factor):
-    """Link figures, drift and pose together; 0: as narrow as the window can be."""
+    """Link figures, drift and pose together; 0: as narrow as the longest phrase."""
     usual = application.font()
     application.setFont(theme.larger(usual, factor))
     try:
         window = TurtleBotWindow(ui_dir, 'bot1', 'TurtleBot2')
         window.offer({'imu', 'rgb', 'depth', 'scan', 'record'})
         operator.show(window)
+        operator.click(window.views_button)
         window.state_line.show_state(StateView(AGES, FIGURES, CAPTURED, DRIFT))
         operator.settle()
-        window.resize(max(width, window.minimumSizeHint().width()), window.height())
+        beside = window.width() - window.state_line.width()
+        window.resize(max(width, window.state_line.minimumSizeHint().width() + beside), 700)
         operator.settle()
         check_whole(window.state_line)
     finally:

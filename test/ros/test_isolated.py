@@ -5,6 +5,7 @@ import json
 import os
 from pathlib import Path
 import re
+import socket
 import subprocess
 import sys
 
@@ -60,6 +61,19 @@ def test_listening(hostile):
         reader.open()
     reader.close()
     assert 'does not answer' not in str(error.value) and hostile() == []
+
+
+def test_watch_of_stop(hostile, monkeypatch):
+    """Its process says why it can do nothing, and ends."""
+    monkeypatch.setenv('DISPLAY', ':99999')
+    screen, end = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    screen.settimeout(60)
+    with screen, end:
+        process = subprocess.Popen(
+            child.command('mhri.presenters.stop_watch_process', 'http://127.0.0.1:9'), stdin=end)
+        assert json.loads(screen.recv(1000).decode()) == {'cannot': 'no X server answers'}
+    assert process.wait(60) == 0
+    assert hostile() == []
 
 
 @pytest.mark.parametrize('program', PROGRAMS, ids=lambda program: program[0])

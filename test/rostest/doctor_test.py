@@ -245,6 +245,7 @@ class DoctorTest(unittest.TestCase):
     def test_gates_that_refuse_somebody(self):
         self.clinic.patient('/rogue', '--select', 'bot1')
         self.clinic.patient('/other', '--select', 'bot2')
+        wait_for(lambda: 'gates_refused' in wrong(self.clinic.examine()[1]), 60.0, 'the refusal')
         found = self.found('gates_refused', 'panel_several', remedy='rosnode info /')
         self.assertRegex(found['gates_refused']['problem'], '/(rogue|other): robot_select, ')
 

@@ -150,15 +150,15 @@ class HostileSensorsTest(unittest.TestCase):
 
         def draw():
             graph.quantity_combo.setCurrentIndex(next(choices))
-            graph.show_series(feed.series())
+            graph.show_value(feed.take())
         longest = self.play([(imus, imu), (odoms, odometry)], draw, seconds)
         self.check_calm(longest, seconds, 2)
         self.assertGreater(feed.refused(), 100)
         for key in ('gyro_z', 'accel_x', 'linear', 'yaw_rate'):
-            _, y = feed.series().curve(key, 5)
+            _, y = feed.take().curve(key, 5)
             self.assertLessEqual(set(y[y == y]), {0.0, 0.3, -0.3}, key)
         imus.publish(imu(0.5))
-        wait_for(lambda: feed.series().latest('gyro_z') == 0.5, what='a value that can be')
+        wait_for(lambda: feed.take().latest('gyro_z') == 0.5, what='a value that can be')
 
     def test_scans(self):
         scans = self.publisher('/wild/scan', LaserScan)
@@ -169,7 +169,7 @@ class HostileSensorsTest(unittest.TestCase):
         def draw():
             found = feed.take()
             if found is not None:
-                view.show_scan(found)
+                view.show_value(found)
             view.show_age(feed.age_s())
         odd = itertools.cycle((
             lambda value: scan([value] * 360), lambda value: scan([1.0] * 360, value),
@@ -189,7 +189,7 @@ class HostileSensorsTest(unittest.TestCase):
         found = wait_for(feed.take, what='the scan that can be')
         self.assertEqual(feed.refused(), 1)
         begun = time.monotonic()
-        view.show_scan(found)
+        view.show_value(found)
         view.grab()
         took = time.monotonic() - begun
         print('MEASURED 100,000 beams drawn in {:.0f} ms as {}'.format(

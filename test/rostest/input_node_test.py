@@ -28,11 +28,17 @@ class Played(Reader):
     kind = 'toy'
 
     def __init__(self):
+        self.finds = lambda: 'Toy of the lab'
         self.opens = lambda: 'a toy'
         self.reads = lambda timeout_s: None
         self.opened = 0
         self.closed = 0
         self.threads = set()
+
+    def find(self):
+        """Answer."""
+        self.threads.add(threading.current_thread())
+        return self.finds()
 
     def open(self):
         """Count, and answer."""
@@ -68,6 +74,8 @@ class InputNodes(unittest.TestCase):
         self.joys = joy_recorder(name + '/joy')
         self.node.start()
         self.joys.wait_publisher()
+        self.there = Recorder(name + '/device_state', DiagnosticStatus, lambda message: (
+            message.level, message.hardware_id, message.message))
         rospy.wait_for_service(name + '/set_suspended', 10.0)
         self.set_suspended = rospy.ServiceProxy(name + '/set_suspended', SetSuspended)
 
@@ -76,6 +84,7 @@ class InputNodes(unittest.TestCase):
         self.go_on.set()
         self.node.close()
         self.joys.close()
+        self.there.close()
 
     def _blocked(self, *_):
         """Be a driver that does not come back; then one that brings home something old."""
@@ -102,6 +111,36 @@ class InputNodes(unittest.TestCase):
         self.joys.wait_silence(0.5)
         self.assertEqual((self.reader.opened, self.joys.since(0.0)), (0, []))
         self.assertEqual(self.set_suspended(True).message, 'suspended: no toy is open')
+
+    def _said(self, level, device, note):
+        """Wait for what is said of the device."""
+        self.there.wait(lambda value: self.there.last() == (level, device, note))
+
+    def test_it_says_which_device_is_there(self):
+        """Suspended or not, on every change."""
+        ok, warn, stale = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.STALE
+        self._said(ok, 'Toy of the lab', '')
+        self.assertEqual(self.reader.opened, 0)
+
+        def nothing():
+            raise DeviceAbsent('plug the toy in')
+        self.reader.finds = self.reader.opens = nothing
+        self._said(warn, '', 'plug the toy in')
+        self.assertTrue(self.set_suspended(False).success)
+        wait_until(lambda: self.reader.opened, 'not opened')
+        self.reader.opens = lambda: setattr(self.reader, 'name', 'Toy') or 'Toy with all its wheels'
+        self.reader.reads = lambda timeout_s: PUSHED
+        self._said(ok, 'Toy', '')
+        self.reader.note = 'wind it up'
+        self._said(ok, 'Toy', 'wind it up')
+        self.reader.reads = lambda timeout_s: DeviceLost('it ran away')
+        self.reader.opens = nothing
+        self._said(warn, '', 'plug the toy in')
+        self.reader.finds = lambda: ''
+        self.assertTrue(self.set_suspended(True).success)
+        self._said(stale, '', '')
+        self.reader.finds = lambda: 1 / 0
+        self.there.wait(lambda value: 'ZeroDivisionError' in value[2])
 
     def test_a_driver_that_hangs_does_not_delay_the_neutral_on_suspend(self):
         """Nor does what it brings home later move anything."""

@@ -6,6 +6,7 @@ import os
 import signal
 import statistics
 import sys
+import tempfile
 import time
 import unittest
 
@@ -16,7 +17,11 @@ import rostest
 from std_msgs.msg import Empty, String
 from std_srvs.srv import SetBool
 
+from mhri.core.screen.source_rows import suspend_services
+from mhri.core.screen.views import DeviceView
 from mhri.msg import ControlMode
+from mhri.ros.devices.device_state import DeviceStates
+from support.kernel_pads import F710, plug
 
 # The dead-man button of resource/pads/ps3.yaml.
 L1 = 4
@@ -78,6 +83,27 @@ class Joy(unittest.TestCase):
             self.assertNotIn('libSDL', maps.read())
         self.assertEqual(self.node.open_devices(), [])
         self.assertEqual(self.node.joys.since(0.0), [])
+
+    def test_the_screen_knows_which_pad_is_there(self):
+        """Suspended by what the kernel says, then by the pad that is open; pulled, the remedy."""
+        states = DeviceStates()
+        states.follow(suspend_services(rospy.get_param('/mux/sources')))
+        self.addCleanup(states.unregister)
+
+        def pad():
+            return {view.source: view for view in states.views()}.get('ps3joy', DeviceView(''))
+        with tempfile.TemporaryDirectory() as folder:
+            self.node.do('shown_in', folder=folder)
+            wait_until(lambda: 'plug one in' in pad().note and pad().absent, 'not absent')
+            plug(folder, 7, F710)
+            wait_until(lambda: pad().name == F710[0] and not pad().note, 'not there')
+            number = self.node.attach(PS3)
+            self.node.resume()
+            wait_until(lambda: pad().name == PS3, 'not open', 25.0)
+            self.node.detach(number)
+            wait_until(lambda: pad().absent, 'not gone')
+        self.node.process.popen.kill()
+        wait_until(lambda: not pad().name and not pad().note, 'a dead node speaks')
 
     def test_resume_and_suspend_by_the_service(self):
         """Resumed it reads; suspended it says neutral once, and nothing more."""

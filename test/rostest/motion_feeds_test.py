@@ -82,17 +82,17 @@ class MotionFeedsTest(unittest.TestCase):
         feed = self.feed(ImuFeed('values', ['imu'], ['odom']))
         for key, value in (('linear', 0.3), ('yaw_rate', 0.4), ('gyro_z', 0.5), ('accel_z', 9.81),
                            ('yaw', 0.5), ('roll', 0.0)):
-            wait_for(lambda: feed.series().latest(key) is not None, what=key)
-            self.assertAlmostEqual(feed.series().latest(key), value, places=6)
-            wait_for(lambda: len(feed.series().curve(key, 5)[0]) > 10, what='a curve of ' + key)
+            wait_for(lambda: feed.take().latest(key) is not None, what=key)
+            self.assertAlmostEqual(feed.take().latest(key), value, places=6)
+            wait_for(lambda: len(feed.take().curve(key, 5)[0]) > 10, what='a curve of ' + key)
 
     def test_what_a_sensor_lacks_is_not_drawn(self):
         self.talk('/lacks/imu', imu(lacks=('orientation', 'linear_acceleration')))
         feed = self.feed(ImuFeed('lacks', ['imu'], []))
-        wait_for(lambda: len(feed.series().curve('gyro_z', 5)[0]) > 10, what='the gyro')
+        wait_for(lambda: len(feed.take().curve('gyro_z', 5)[0]) > 10, what='the gyro')
         for key in ('yaw', 'accel_x'):
-            self.assertTrue(math.isnan(feed.series().latest(key)))
-            self.assertEqual(len(feed.series().curve(key, 5)[0]), 0)
+            self.assertTrue(math.isnan(feed.take().latest(key)))
+            self.assertEqual(len(feed.take().curve(key, 5)[0]), 0)
 
     def test_bytes_are_read_where_another_subscriber_asked_for_those(self):
         first = rospy.Subscriber('/bytes/imu', rospy.AnyMsg, lambda message: None)
@@ -103,28 +103,28 @@ class MotionFeedsTest(unittest.TestCase):
         self.talk('/bytes/scan', scan())
         feed = self.feed(ImuFeed('bytes', ['imu'], []))
         scans = self.feed(ScanFeed('bytes', ['scan']))
-        wait_for(lambda: feed.series().latest('gyro_z') == 0.5, what='a value out of bytes')
+        wait_for(lambda: feed.take().latest('gyro_z') == 0.5, what='a value out of bytes')
         wait_for(scans.take, what='a scan out of bytes')
 
     def test_of_two_topics_the_first_that_speaks(self):
         second = self.talk('/two/imu/data', imu(rate=2.0))
         feed = self.feed(ImuFeed('two', ['imu', 'imu/data'], []))
-        wait_for(lambda: feed.series().latest('gyro_z') == 2.0, what='the second topic')
+        wait_for(lambda: feed.take().latest('gyro_z') == 2.0, what='the second topic')
         first = Talk('/two/imu', imu(rate=1.0))
-        wait_for(lambda: feed.series().latest('gyro_z') == 1.0, what='the first topic')
+        wait_for(lambda: feed.take().latest('gyro_z') == 1.0, what='the first topic')
         seen = set()
-        wait_for(lambda: seen.add(feed.series().latest('gyro_z')) or len(
-            feed.series().curve('gyro_z', 5)[0]) > 60, what='more of it')
+        wait_for(lambda: seen.add(feed.take().latest('gyro_z')) or len(
+            feed.take().curve('gyro_z', 5)[0]) > 60, what='more of it')
         self.assertNotIn(2.0, list(seen)[1:])
         first.stop()
-        wait_for(lambda: feed.series().latest('gyro_z') == 2.0, what='the second one again')
+        wait_for(lambda: feed.take().latest('gyro_z') == 2.0, what='the second one again')
         self.assertIsNotNone(second)
 
     def test_an_unknown_odometry_is_left_out(self):
         self.talk('/turtle/imu', imu())
         feed = self.feed(ImuFeed('turtle', ['imu'], ['pose'], 'turtlesim/Pose'))
-        wait_for(lambda: feed.series().latest('gyro_z') == 0.5, what='the rest')
-        self.assertIsNone(feed.series().latest('linear'))
+        wait_for(lambda: feed.take().latest('gyro_z') == 0.5, what='the rest')
+        self.assertIsNone(feed.take().latest('linear'))
 
     def test_a_scan_is_taken_once_and_says_what_is_no_measurement(self):
         talk = self.talk('/room/scan', scan(), 20.0)

@@ -133,7 +133,7 @@ class RobotTypesTest(unittest.TestCase):
         return self.fleet.robot_type(name)
 
     def view(self, name):
-        return self.fleet.view(name, True)
+        return self.fleet.view(name, selected=True)
 
     def take_stick(self, name):
         """Check a robot, and hold the stick ahead once it has been centred."""

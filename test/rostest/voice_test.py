@@ -230,6 +230,9 @@ class Wishes(VoiceTest):
             self.assertEqual(self.requests.wait(lambda value: True, begun, HEAR_S).value, wish)
         rospy.set_param('/mhri/robots', ROBOTS + ['tango'])
         self._said('robot select number four', 'select tango')
+        numbers = {name: number for number, name in enumerate(ROBOTS, 1)}
+        rospy.set_param('/mhri/robot_numbers', {**numbers, 'tango': 7})
+        self._said('robot select number seven', 'select tango')
         self._said('robot use joystick')
         self.modes.wait(lambda _: self.modes.last() == 'joy', patience_s=HEAR_S)
         wait_until(lambda: not self.node.listeners(), 'still listens', HEAR_S)

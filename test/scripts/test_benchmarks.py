@@ -10,7 +10,7 @@ import pytest
 
 BENCHMARKS = sorted((Path(__file__).resolve().parents[1] / 'bench').glob('bench_*.py'))
 FULL = os.environ.get('MHRI_BENCH') == 'full'
-LIMIT_S = 900 if FULL else 120
+LIMIT_S = 900 if FULL else 300
 
 
 @pytest.mark.parametrize('path', BENCHMARKS, ids=lambda path: path.stem)

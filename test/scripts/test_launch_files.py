@@ -82,6 +82,10 @@ def test_arguments_of_the_host():
     assert '/mux/automatic_switching' not in load(MHRI).params, "the file's word counts then"
     assert not nodes(load(MHRI, 'required:=false'))['/mhri_panel'].required
     assert load(MHRI, 'mux_config:=/x.yaml').params['/mux/config'].value == '/x.yaml'
+    budget = '/mhri/panel/camera_budget_mbit_s'
+    assert load(MHRI, 'camera_budget_mbit_s:=20').params[budget].value == 20
+    assert load(MHRI, 'camera_budget_mbit_s:=0').params[budget].value == 0
+    assert budget not in load(MHRI).params, 'what a lab has set counts then'
 
 
 @pytest.mark.parametrize('argument', ['sim:=many', 'demo:=perhaps', 'required:=perhaps'])

@@ -97,8 +97,8 @@ def test_bad_tests_are_all_counted(package):
     assert status == 1
     failed = [line for line in output.splitlines() if line.startswith('FAILED')
               and '.xml: ' in line]
-    for name in ('test_bad', 'MISSING-pytest-gui-test_crash', 'faults-test_import',
-                 'pytest-faults-test_none.xml: no test ran', 'rosunit-bad',
+    for name in ('test_bad', 'MISSING-pytest-gui-test_crash', 'faults_calm-test_import',
+                 'pytest-faults_calm-test_none.xml: no test ran', 'rosunit-bad',
                  'rosunit-crash.xml: is not a whole result file'):
         assert [line for line in failed if name in line], (name, output)
     assert output.splitlines()[-1] == '7 passed, 6 failed, 1 skipped', output
@@ -129,12 +129,12 @@ def test_meeting():
 
 
 @pytest.mark.parametrize('group, jobs, together', [
-    ('scripts', '2', True), ('scripts', '1', False), ('faults', '2', False)])
+    ('scripts', '2', True), ('scripts', '1', False), ('gui', '2', False)])
 def test_files_that_measure_no_times_run_together(package, group, jobs, together):
-    for folder in ('scripts', 'faults'):
+    for folder in ('scripts', 'gui'):
         shutil.rmtree(str(package.root / 'test' / folder), ignore_errors=True)
     write_tests(package, {group + '/test_one.py': MEETING, group + '/test_two.py': MEETING,
-                          group + '/test_remote_network.py': 'def test_alone():\n    pass\n'})
+                          group + '/test_doctor_network.py': 'def test_alone():\n    pass\n'})
     status, output = package.run(
         '--only', group, '--jobs', jobs, script=package.script.with_name('mhri_test.sh'),
         limit_s=240, MEETING_S='60' if together else '0.5')
@@ -169,9 +169,9 @@ def test_fast_group_builds_and_installs_nothing(fast, text, status, count):
 
 def test_interrupted_run_leaves_nothing(package):
     write_tests(package, {
-        'faults/test_long.py': 'import time\n\n\ndef test_long():\n'
-                               '    print("up", flush=True)\n    time.sleep(600)\n'})
-    process = package.start('--only', 'faults', script=package.script.with_name('mhri_test.sh'))
+        'gui/test_long.py': 'import time\n\n\ndef test_long():\n'
+                            '    print("up", flush=True)\n    time.sleep(600)\n'})
+    process = package.start('--only', 'gui', script=package.script.with_name('mhri_test.sh'))
     for line in process.stdout:
         if line.strip().endswith('up'):
             break

@@ -32,6 +32,7 @@ SPEC.loader.exec_module(turtle_address)
     ('192.168.0.103', [], {}, None, None),
     ('127.0.0.1', ['192.168.0.7', '10.0.0.5', '172.17.0.1'], {}, '127.0.0.1', '127.0.0.1'),
     ('127.0.0.1', ['192.168.0.7'], {}, '127.0.0.1', '127.0.0.1'),
+    ('127.0.0.1', [], {}, '127.0.0.1', '127.0.0.1'),
 ])
 def test_address_on_the_network_of_the_other(target, own, lengths, out, chosen):
     if chosen is None:

@@ -174,10 +174,10 @@ def grab_holder(state, terminal):
     try:
         with open(os.path.join(state, 'grab'), encoding='utf-8') as stream:
             holder = stream.read()
-        process, number = holder.split('/')
+        process, _, number = holder.partition('/')  # nothing while it is being written
         if os.readlink('/proc/{}/fd/{}'.format(process, number)) == terminal:
             return holder
-    except OSError:
+    except (OSError, ValueError):  # gone, or not written yet
         return None
     return None
 

@@ -18,7 +18,7 @@ from support import machines
 from support.ros_system import wait_for
 
 HOST_SCRIPTS = Path(__file__).resolve().parents[2] / 'utils' / 'host'
-START_S = LONG_S = 120.0
+START_S = LONG_S = 300.0
 # Writes what a robot does and is told as the robot itself sees it, link or no link, in rows of
 # numbers: time, speeds, place; or time and speeds of a command.
 OBSERVER = '''

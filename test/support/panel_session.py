@@ -31,7 +31,7 @@ class PanelSession:
 
     def _start(self, launches, robots):
         from mhri.presenters.demo import Hands
-        from mhri.presenters.panel_host import PanelHost
+        from mhri.presenters.screen_host import ScreenHost
         from mhri.ros.screen.backend import ScreenBackend
         # Before there is an application: it takes the screen that is named then.
         self.system.screen()
@@ -41,11 +41,11 @@ class PanelSession:
         for words in launches:
             self.system.launch(*words)
         self.app = QApplication.instance() or QApplication(['panel'])
-        self.host = PanelHost(ScreenBackend(['panel']))
+        self.host = ScreenHost(ScreenBackend(['panel']))
         self.operator = self.host.operator
-        self.host.panel.resize(1000, 600)
-        self.host.panel.show()
-        self.hands = Hands(self.host.panel)
+        self.host.screen.resize(1280, 900)
+        self.host.screen.show()
+        self.hands = Hands(self.host.screen)
         self.host.start(robots)
         self.until(lambda: all(self._is_known(name) for name in robots), START_S, 'live robots')
         self.until(lambda: self.operator.view().mode, START_S, 'the mux')
@@ -63,15 +63,17 @@ class PanelSession:
         return wait_for(turn, timeout_s, what)
 
     def open(self, name):
-        """Click a robot's check box, wait for its window, and return that, in front of all."""
-        if name not in self.host.windows:
+        """Look at a robot alone, open its switches, and return its tile."""
+        self.until(lambda: name in self.host.windows, what='the tile of ' + name)
+        if name not in self.operator.selection.selected:
             self.hands.click('check_' + name)
-        self.until(lambda: name in self.host.windows, what='the window of ' + name)
-        window = self.host.windows[name]
-        window.raise_()
-        self.until(lambda: window.windowHandle().isExposed(), what='the window to be seen')
+        self.host.screen.stage.set_style('one')
+        self.host.screen.look_at(name)
+        tile = self.host.windows[name]
+        self.until(lambda: tile.isVisible() and tile.header.large, what='the tile to be large')
+        tile.views_button.setChecked(True)
         self.until(lambda: self.operator.feeds(name) is not None, what='the feeds of ' + name)
-        return window
+        return tile
 
     def switch(self, window, name, on=True):
         """Click one of a window's switches where it is not as it shall be."""
@@ -82,7 +84,7 @@ class PanelSession:
     def picture(self, window, kind):
         """Show a camera's picture by its switch and wait until it is there and live."""
         self.switch(window, 'camera_' + kind)
-        camera = window.camera
+        camera = window.view('rgb')
         self.until(lambda: camera.picture.frame is not None and camera.picture.frame.kind == kind
                    and not camera.picture.warning, what='the {} picture'.format(kind))
         return camera.picture

@@ -20,8 +20,11 @@ def _place(share):
     return 6.0 + 4.0 * math.cos(angle), 2.1 + 1.5 * math.sin(angle), 3.0 * angle
 
 
-def write_bag(path, names, seconds):
-    """Write the compressed pictures, 640 x 480, of some robots' cameras."""
+def write_bag(path, names, seconds, every=1):
+    """Write the compressed pictures, 640 x 480, of some robots' cameras.
+
+    :param every: each picture is drawn once and sent so many times, which is sooner done
+    """
     import rosbag
     import rospy
     from sensor_msgs.msg import CompressedImage
@@ -33,12 +36,14 @@ def write_bag(path, names, seconds):
     camera = Camera(parse_plan(read_text(plan_path), plan_path))
     nobody = np.zeros(0, [('x', '<f8'), ('y', '<f8'), ('radius', '<f8'), ('height', '<f8'),
                           ('colour', 'u1', 3)])
-    count = round(seconds * RATE_HZ)
+    count, drawn = round(seconds * RATE_HZ), {}
     with rosbag.Bag(path, 'w') as bag:
         for number in range(count):
             for index, name in enumerate(names):
-                pose = _place((number / count + index / len(names)) % 1.0)
-                fmt, data = compress(camera.rgb(camera.look(*pose, nobody)))
+                if number % every == 0:
+                    pose = _place((number / count + index / len(names)) % 1.0)
+                    drawn[name] = compress(camera.rgb(camera.look(*pose, nobody)))
+                fmt, data = drawn[name]
                 # Cameras are not in step with each other.
                 stamp = rospy.Time.from_sec(1.0 + (number + index / len(names)) / RATE_HZ)
                 message = CompressedImage(format=fmt, data=data)
@@ -46,17 +51,18 @@ def write_bag(path, names, seconds):
                 bag.write('/{}/{}/compressed'.format(name, TOPIC), message, stamp)
 
 
-def play_cameras(system, names, seconds=5.0):
+def play_cameras(system, names, seconds=5.0, every=1):
     """Play cameras over and over; the robots' templates name the played ones from now on.
 
     Call it before the panel reads what the robots are, and with robots that have started: a
     simulated one would take the topic for its own.
 
     :param system: :class:`support.ros_system.System`
+    :param every: as for :func:`write_bag`
     """
     import rospy
     path = os.path.join(system.home, 'cameras.bag')
-    write_bag(path, names, seconds)
+    write_bag(path, names, seconds, every)
     for name in names:
         rospy.set_param('/{}/mhri/rgb'.format(name), [TOPIC])
     return system.start('rosbag', 'play', '--quiet', '--loop', path)

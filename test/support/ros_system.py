@@ -99,7 +99,7 @@ class System:
         """Start (or restart) the bare master and wait until it answers."""
         self.master = self.start(
             'rosmaster', '--core', '-p', str(self.port), log='master.log')
-        wait_for(lambda: answers(self.port), 15.0, 'the master to answer')
+        wait_for(lambda: answers(self.port), 60.0, 'the master to answer')
         # As roscore does: two roslaunch at once would each set a run_id of their own, and one fail.
         xmlrpc.client.ServerProxy(self.env['ROS_MASTER_URI']).setParam(
             '/ros_system', '/run_id', str(uuid.uuid1()))

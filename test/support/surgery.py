@@ -16,7 +16,7 @@ from support.ros_system import System, wait_for
 
 PATIENT = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'patient.py')
 SCRIPT = os.path.join(os.path.dirname(PATIENT), '..', '..', 'scripts', 'mhri_doctor')
-START_S = 30.0
+START_S = 90.0
 
 
 class BlackHole:

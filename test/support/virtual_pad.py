@@ -149,6 +149,11 @@ class Pads:
             time.sleep(max(0.0, due - time.monotonic()))
         return count, value
 
+    def shown_in(self, folder):
+        """Let the kernel's list of input devices be a folder (:mod:`support.kernel_pads`)."""
+        from mhri.inputs import event_nodes
+        event_nodes.SYS_INPUT = folder
+
     def hush(self):
         """Be a driver that is silent about an axis until it is moved, with an SDL that cannot say.
 
@@ -184,6 +189,50 @@ def serve(path):
                 stream.flush()
 
 
+def pad_command(path, module, *arguments):
+    """Return the command of a process with virtual pads that listens to a :class:`PadClient`."""
+    return [sys.executable, os.path.abspath(__file__), path, module] + list(arguments)
+
+
+class PadClient:
+    """Tells a process with virtual pads what to do with them.
+
+    :param path: the socket at which it listens, or will
+    :param lives: tells whether it runs
+    :param said: returns what it has written
+    """
+
+    def __init__(self, path, lives=lambda: True, said=lambda: ''):
+        self._said = said
+        self._socket = socket.socket(socket.AF_UNIX)
+        self.done_at = None
+        deadline = time.monotonic() + PATIENCE_S
+        while True:
+            try:
+                self._socket.connect(path)
+                break
+            except OSError:
+                if not lives() or time.monotonic() > deadline:
+                    raise AssertionError('the node with the pads does not run: ' + said())
+                time.sleep(0.01)
+        self._stream = self._socket.makefile('rwb')
+
+    def do(self, command, **arguments):
+        """Let the process carry out a method of :class:`Pads`; return its answer."""
+        self._stream.write(json.dumps([command, arguments]).encode() + b'\n')
+        self._stream.flush()
+        line = self._stream.readline()
+        assert line, 'the node has ended: ' + self._said()
+        good, answer, self.done_at = json.loads(line)
+        assert good, answer
+        return answer
+
+    def close(self):
+        """Say nothing more."""
+        self._stream.close()
+        self._socket.close()
+
+
 class PadProcess:
     """A node with virtual pads, as a process; use it as a context manager or :meth:`end` it.
 
@@ -197,23 +246,10 @@ class PadProcess:
         path = os.path.join(self._folder.name, 'socket')
         self._log = open(os.path.join(self._folder.name, 'log'), 'w+', encoding='utf-8')
         self.popen = subprocess.Popen(
-            [sys.executable, os.path.abspath(__file__), path, module] + list(arguments),
+            pad_command(path, module, *arguments),
             env=dict(os.environ, MHRI_PAUSED='1' if paused else '', **(env or {})),
             stdin=stdin or subprocess.DEVNULL, stdout=self._log, stderr=subprocess.STDOUT)
-        self._socket = socket.socket(socket.AF_UNIX)
-        self._connect(path)
-        self._stream = self._socket.makefile('rwb')
-
-    def _connect(self, path):
-        deadline = time.monotonic() + PATIENCE_S
-        while True:
-            try:
-                self._socket.connect(path)
-                return
-            except OSError:
-                if self.popen.poll() is not None or time.monotonic() > deadline:
-                    raise AssertionError('the node with the pads does not run: ' + self.said())
-                time.sleep(0.01)
+        self._client = PadClient(path, lambda: self.popen.poll() is None, self.said)
 
     @property
     def pid(self):
@@ -227,21 +263,19 @@ class PadProcess:
 
     def do(self, command, **arguments):
         """Let the process carry out a method of :class:`Pads`; return its answer."""
-        self._stream.write(json.dumps([command, arguments]).encode() + b'\n')
-        self._stream.flush()
-        line = self._stream.readline()
-        assert line, 'the node has ended: ' + self.said()
-        good, answer, self.done_at = json.loads(line)
-        assert good, answer
-        return answer
+        return self._client.do(command, **arguments)
+
+    @property
+    def done_at(self):
+        """When the last command was done."""
+        return self._client.done_at
 
     def end(self):
         """Make sure that it is gone."""
         if self.popen.poll() is None:
             self.popen.kill()
         self.popen.wait()
-        self._stream.close()
-        self._socket.close()
+        self._client.close()
         self._log.close()
         if self.popen.stdin and not self.popen.stdin.closed:
             self.popen.stdin.close()

@@ -3,9 +3,9 @@
 """The dialogue that writes a profile, scripted."""
 import pytest
 
-from mhri.core.devices.calibration import Calibration, DONE, FORWARD, LEFT, REST
+from mhri.core.devices.calibration import (
+    Calibration, DONE, FORWARD, LEFT, profile_name, REST)
 from mhri.core.driving.profile import parse_profile
-from mhri.inputs.pad_calibration import name_for
 
 GUID = '030000004c0500006802000011810000'
 
@@ -199,4 +199,4 @@ def test_every_step_against_every_event():
     ('Sony PLAYSTATION(R)3 Controller', 'sony_playstation_r_3_controller'),
     ('8BitDo Pro 2', 'pad_8bitdo_pro_2'), ('---', 'my_pad'), ('', 'my_pad')])
 def test_names(device, name):
-    assert name_for(device) == name
+    assert profile_name(device) == name

@@ -279,7 +279,7 @@ GOOD = '{}x\n{}\n"""Text."""\n'.format(*SPDX)
     ('ros/a.py', 'from python_qt_binding.QtCore import QTimer\n', 'python_qt_binding.QtCore'),
     ('ros/a.py', 'import pyqtgraph\n', 'may not import pyqtgraph'),
     ('ros/a.py',
-     'from mhri.gui.screen.panel import Panel\n', 'may not import mhri.gui.screen.panel'),
+     'from mhri.gui.screen.screen import Panel\n', 'may not import mhri.gui.screen.screen'),
     ('gui/a.py', 'import rospy\n', 'may not import rospy'),
     ('gui/a.py', 'from geometry_msgs.msg import Twist\n', 'may not import geometry_msgs.msg'),
     ('gui/a.py',
@@ -321,7 +321,7 @@ def test_wrong_sample_is_refused(relative, text, said):
     ('sim/body.py', 'import random\nimport numpy\nfrom mhri.core import limits\n'),
     ('sim/node.py', 'import rospy\nfrom sensor_msgs.msg import Imu\nfrom mhri.sim.body import B\n'
      'from mhri.ros import convert\n'),
-    ('nodes/panel.py', 'import rospy\nfrom mhri.gui.screen.panel import Panel\n'),
+    ('nodes/panel.py', 'import rospy\nfrom mhri.gui.screen.screen import Panel\n'),
     ('mhri_plugin.py', 'import rospy\nfrom rqt_gui_py.plugin import Plugin\n'),
     ('core/a.py', 'def f(x):\n' + '    if x:\n        x()\n' * 9),
     ('core/a.py', 'def f():\n' + '    f()\n' * 59),

@@ -8,12 +8,14 @@ import pytest
 from mhri.core.screen.saved_state import usable_state
 
 GOOD = {
-    'robots': ['bot2', 'rover_7'], 'mode': 'ps3joy', 'limits': [0.3, 0.8], 'together': True,
+    'robots': ['bot2', 'rover_7'], 'numbers': {'bot2': 2, 'rover_7': 1, 'bot10': 12},
+    'mode': 'ps3joy', 'limits': [0.3, 0.8], 'together': True,
     'windows': {'bot2': [10, -20, 800, 560, False]},
     'looks': {'bot2': {'views': ['imu', 'rgb'], 'graph': {'quantity': 'gyro', 'window_s': 5},
                        'recording': {'extras': ['scan']}, 'splitter': [300, 200, 100],
                        'arm': {'pose': [1.5, None, 'up']}}},
-    'panel': {'splitter': [400, 600], 'geometry': [0, 0, 1024, 600, True]}}
+    'panel': {'splitter': [400, 600], 'geometry': [0, 0, 1024, 600, True]},
+    'events': {'sounds': False}}
 NAN = float('nan')
 DEEP = []
 for _ in range(900):
@@ -29,12 +31,21 @@ def test_what_was_kept_comes_back_whole():
     ('limits', [NAN, 1.0]), ('limits', ['a', 'b']), ('limits', [1e308, -1]), ('limits', 'fast'),
     ('limits', [0.3]), ('limits', [True, 0.5]), ('limits', [10 ** 400, 1]), ('limits', None),
     ('robots', 5), ('robots', ['bot 1']), ('robots', ['bot'] * 100_000), ('robots', [['bot1']]),
+    ('numbers', ['bot1']), ('numbers', {'bot 1': 1}), ('numbers', {'bot1': 0}),
+    ('numbers', {'bot1': True}), ('numbers', {'bot1': 1.0}), ('numbers', {'bot1': 10 ** 6}),
+    ('numbers', {'bot1': 2, 'bot2': 2}), ('numbers', {'a%d' % n: n + 1 for n in range(5000)}),
     ('mode', 5), ('mode', 'x' * 1_000_000), ('mode', 'a\x00b'), ('mode', ['joy']),
-    ('together', 1), ('together', 'yes'), ('windows', []), ('looks', 'x'), ('panel', [1])])
+    ('together', 1), ('together', 'yes'), ('windows', []), ('looks', 'x'), ('panel', [1]),
+    ('events', True)])
 def test_a_part_that_cannot_be_used_is_left_out_and_named(key, value):
     state, problems = usable_state({**GOOD, key: value})
     assert state == {other: kept for other, kept in GOOD.items() if other != key}
     assert len(problems) == 1 and problems[0].startswith(key) and len(problems[0]) < 200
+
+
+def test_a_switch_that_is_none_is_left_out_and_named():
+    state, problems = usable_state({'events': {'sounds': 'off', 'colour': 1}})
+    assert state == {'events': {}} and problems == ('events.sounds: expected true or false',)
 
 
 @pytest.mark.parametrize('key, value', [
@@ -49,7 +60,7 @@ def test_of_the_panel_the_rest_stays(key, value):
 
 
 @pytest.mark.parametrize('look', [
-    5, {'views': 'imu'}, {'views': [['imu']]}, {'graph': 5}, {'recording': {'extras': 'scan'}},
+    5, {'views': 'imu'}, {'views': [['imu']]}, {'of_views': 5}, {'recording': {'extras': 'scan'}},
     {'splitter': 'ff'}, {'arm': DEEP}, {'arm': list(range(10_000))}, {'arm': 'x' * 100_000}])
 def test_a_look_that_cannot_be_used_costs_that_window_alone(look):
     state, problems = usable_state({'looks': {'bot1': look, **GOOD['looks']}})

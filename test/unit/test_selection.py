@@ -12,8 +12,8 @@ def three():
     return selection
 
 
-def test_robots_keep_the_order_of_adding():
-    """The number keys of the panel depend on it."""
+def test_robots_keep_the_order_of_their_numbers():
+    """A row does not jump because another robot came or went."""
     selection = three()
     assert (selection.robots, selection.selected) == (('b', 'a', 'c'), ())
     assert not selection.add('a') and selection.robots == ('b', 'a', 'c')
@@ -38,4 +38,4 @@ def test_adding_again_keeps_the_check_mark_and_removing_forgets_it():
     selection.remove('a')
     selection.remove('ghost')
     selection.add('a')
-    assert (selection.robots, selection.selected) == (('b', 'c', 'a'), ())
+    assert (selection.robots, selection.selected) == (('b', 'a', 'c'), ())

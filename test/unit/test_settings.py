@@ -15,9 +15,10 @@ def test_nothing_set_is_the_default():
 
 def test_values():
     settings, errors = parse_settings({'thumbnail_hz': 2, 'thumbnail_width_px': 160,
-                                       'record_warn_free_mb': 50, 'record_stop_free_mb': 20.5})
+                                       'record_warn_free_mb': 50, 'record_stop_free_mb': 20.5,
+                                       'camera_budget_mbit_s': 20})
     assert not errors
-    assert settings == PanelSettings(2.0, 160, 50.0, 20.5)
+    assert settings == PanelSettings(2.0, 160, 50.0, 20.5, False, 20.0)
     limits = settings.recording_limits()
     assert (limits.warn_free_bytes, limits.stop_free_bytes) == (50_000_000, 20_500_000)
 
@@ -25,6 +26,7 @@ def test_values():
 @pytest.mark.parametrize('parameters, word', [
     ({'thumbnail_hz': 0}, 'thumbnail_hz'), ({'thumbnail_hz': 'fast'}, 'thumbnail_hz'),
     ({'thumbnail_width_px': float('nan')}, 'thumbnail_width_px'),
+    ({'camera_budget_mbit_s': -0.5}, 'camera_budget_mbit_s'),
     ({'record_stop_free_mb': -1}, 'record_stop_free_mb'), ({'thumbnail_hertz': 5}, 'unknown key'),
     ({'record_warn_free_mb': 10, 'record_stop_free_mb': 20}, 'too late'), ('five', 'mapping')])
 def test_what_is_wrong_is_named_and_the_rest_stays(parameters, word):

@@ -141,5 +141,8 @@ def test_a_robot_that_cannot_be_spoken_goes_by_its_number():
     assert grammar.parse('robot select two').robots == ('stop1',)
     assert grammar.parse('robot select number one').robots == ('zzzzzz',)
     assert len(grammar.notes) == 2
+    gaps = Grammar(LANGUAGE, grammar.robots[:1] + ('', '') + grammar.robots[1:], WORDS.__contains__)
+    assert gaps.parse('robot select four').robots == ('stop1',)
+    assert gaps.parse('robot select two') is None
     # Above all, no robot's name becomes a stop or takes it away.
     assert grammar.parse('robot select stop one') == Command(STOP)

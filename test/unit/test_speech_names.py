@@ -3,7 +3,8 @@
 """How robots are called: names into phrases, numbers into words, and names that cannot be used."""
 import pytest
 
-from mhri.core.voice.names import call_robots, MOST_ROBOTS, number_words, spoken_names
+from mhri.core.voice.names import (
+    call_robots, in_places, MOST_ROBOTS, number_words, numbered, spoken_names)
 
 WORDS = set('bot rover turtle turtlebot robot big blue t b r x one tb left stop'.split())
 
@@ -79,6 +80,18 @@ def test_robots_that_sound_alike_go_by_their_number():
 def test_what_is_no_robot_is_left_out():
     called, _ = call_robots(['rover', 'no name', 7, None, '', 'rover'], knows, set())
     assert list(called) == ['rover']
+
+
+@pytest.mark.parametrize('numbers, spoken', [
+    ({'bot2': 2, 'rover': 4, 'gone': 1}, {'bot2': 2, 'rover': 4}),
+    ({'bot2': 1, 'rover': 2}, {'bot2': 1, 'rover': 2}), ({'rover': 1}, {'rover': 1}),
+    ({}, {'bot2': 1, 'rover': 2}), ('rubbish', {'bot2': 1, 'rover': 2}),
+    ({'bot2': [7], 'rover': True}, {}), ({'bot2': 0, 'rover': 100}, {}),
+    ({'bot2': 3, 'rover': 99}, {'bot2': 3, 'rover': 99})])
+def test_a_number_that_is_said_is_the_robots_own(numbers, spoken):
+    places = in_places(['bot2', 'rover'], numbers)
+    assert numbered(places) == spoken
+    assert all(isinstance(name, str) for name in places) and len(places) < 100
 
 
 def test_no_more_robots_than_can_be_told_apart():

@@ -8,8 +8,8 @@ import pytest
 
 from mhri.core.screen.status import ATTENTION, CALM, status_line, STOPPED
 from mhri.core.screen.views import (
-    ControlView, GONE, LINK_STATES, LIVE, PanelView, PROOF_NOT_CONFIRMED, PROOF_STOPPED, ProofView,
-    ROS_CONNECTED, ROS_CUT_OFF, ROS_NO_MASTER, ROS_STARTING, RobotView, SILENT)
+    ControlView, DeviceView, GONE, LINK_STATES, LIVE, PanelView, PROOF_NOT_CONFIRMED, PROOF_STOPPED,
+    ProofView, ROS_CONNECTED, ROS_CUT_OFF, ROS_NO_MASTER, ROS_STARTING, RobotView, SILENT)
 
 SOURCES = (('joy', 'Virtual joystick'), ('ps3joy', 'PS3 Controller'))
 
@@ -63,11 +63,26 @@ CASES = {
                ATTENTION),
     'advice': (panel([READY], advice='PS3 Controller: nobody publishes it'), 'source',
                '1 of 1 robots  \u2013  PS3 Controller: nobody publishes it', ATTENTION),
+    'absent': (panel([READY], mode='ps3joy', devices=(
+        DeviceView('ps3joy', '', 'none is connected; plug one in'),), advice='move the stick'),
+               'source', 'PS3 Controller: none is connected; plug one in', ATTENTION),
+    'another_absent': (panel([READY], devices=(DeviceView('ps3joy', '', 'none'),)), '', 'ready',
+                       CALM),
+    'there': (panel([READY], mode='ps3joy', devices=(DeviceView('ps3joy', 'F710', 'wait'),)), '',
+              'ready', CALM),
     'no_dead_man': (panel([READY], dead_man=False), '', 'joystick (no dead-man button)', CALM),
     'dead_man': (panel([READY]), 'dead_man', 'hold the dead-man button', CALM),
     'ready': (panel([READY]), '', 'ready', CALM),
     'driving': (panel([DRIVEN, READY]), '',
                 '2 of 2 robots  \u2013  Virtual joystick  \u2013  driving', CALM),
+    'low_battery': (panel([DRIVEN, replace(IDLE, battery=0.29), replace(READY, battery=0.31)]), '',
+                    'driving; bot3 battery 29 %', ATTENTION),
+    'flat_battery': (panel([replace(IDLE, battery=0.14), replace(READY, battery=0.2)]), '',
+                     'ready; bot3 battery 14 %, bot2 battery 20 %', STOPPED),
+    'three_low': (panel([replace(IDLE, name=name, battery=0.2) for name in 'abc']), '',
+                  'selected: check the ones to drive; a battery 20 %, 2 more', ATTENTION),
+    'battery_while_stopped': (panel([replace(IDLE, battery=0.14)], stop_all=True), '',
+                              'release it to drive again', STOPPED),
     'unknown_source': (panel([READY], mode='brain'), '', 'brain', CALM),
 }
 

@@ -7,9 +7,10 @@ set -euo pipefail
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 GROUPS_IN_ORDER=(lint unit oldest scripts rostest gui faults bench)
-# Targets whose files may run at the same time, and those that measure times, which run alone.
-CALM=(lint unit oldest scripts_calm rostest_calm)
-TIMED=(scripts_timed rostest_timed gui faults bench)
+# Targets whose files may run at the same time (the longest first), and those that measure times or
+# share a screen, which run alone.
+CALM=(scripts_calm rostest_calm faults_calm oldest unit lint)
+TIMED=(rostest_timed scripts_timed faults_timed gui bench)
 
 help_text() {
   cat <<'HELP'

@@ -63,11 +63,12 @@ def choose_address(target, own, lengths, out, option):
     :raises Problem: there is none, or several would do
     """
     number(target)
+    # The system speaks to its own addresses, 127.0.0.1 among them, from the same one.
+    if out == target or target in own:
+        return target
     if not own:
         raise Problem('this computer has no IPv4 address: connect it to the network of {0}, or '
                       'name one with {1} ADDR'.format(target, option))
-    if target in own:
-        return target
     near = []
     for address in own:
         shift = 32 - lengths.get(address, 24)
@@ -75,8 +76,7 @@ def choose_address(target, own, lengths, out, option):
             near.append(address)
     if len(near) == 1:
         return near[0]
-    # The system speaks to its own addresses, 127.0.0.1 among them, from the same one.
-    if out == target or out in (near or own):
+    if out in (near or own):
         return out
     if len(own) == 1:
         return own[0]

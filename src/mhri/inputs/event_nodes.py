@@ -6,12 +6,19 @@ What the kernel says in ``/sys/class/input`` everybody may read. So a device tha
 is still named in the message that says so, and an operator's keyboard is not opened just to look.
 """
 from dataclasses import dataclass
+import glob
 import os
 import re
+import struct
 from typing import Tuple
+
+from mhri.core.devices.pads import PadInfo
 
 SYS_INPUT = '/sys/class/input'
 DEV_INPUT = '/dev/input'
+# BTN_JOYSTICK to BTN_THUMBR (linux/input-event-codes.h): what pads have. Rudder pedals have none,
+# but a node of joydev.
+_PAD_KEYS = 0x120, 0x13f
 
 
 @dataclass(frozen=True)
@@ -60,17 +67,49 @@ def find_switches(sys_input=None, dev_input=None):
                    tuple(node.path for node in members)) for members in devices.values()]
 
 
-def _nodes(sys_input, dev_input):
-    """Yield a node for each event node with keys."""
+def find_pads(sys_input=None):
+    """Return a :class:`mhri.core.devices.pads.PadInfo` for each joystick, wheel or pad.
+
+    It has the GUID that SDL makes of what the kernel says, where SDL's own drivers are off.
+    """
+    folders = [folder for _, folder in _folders(sys_input or SYS_INPUT)
+               if _has_keys(_line(folder, 'capabilities/key'), *_PAD_KEYS)
+               or glob.glob(os.path.join(glob.escape(folder), 'js[0-9]*'))]
+    return [PadInfo(index, _line(folder, 'name'), _guid(folder))
+            for index, folder in enumerate(folders)]
+
+
+def _has_keys(words, first, last):
+    """Tell whether a bit map of the kernel has a key from first to last."""
+    size = 8 * struct.calcsize('l')
+    bits = sum(int(word, 16) << size * place for place, word in enumerate(reversed(words.split())))
+    return bool(bits >> first & (1 << last - first + 1) - 1)
+
+
+def _guid(folder):
+    """Return SDL's GUID: each number with its lower byte first; '' for a device without numbers."""
+    numbers = [_line(folder, 'id/' + word) for word in ('bustype', 'vendor', 'product', 'version')]
+    if not all(re.match('[0-9a-fA-F]{4}$', number) for number in numbers) or numbers[1] == '0000':
+        return ''
+    return ''.join(number[2:] + number[:2] + '0000' for number in numbers).lower()
+
+
+def _folders(sys_input):
+    """Return (number, what the kernel says) of each event node, in order."""
     try:
         names = os.listdir(sys_input)
     except OSError:
         # No such folder: a system or container without any input device.
-        return
+        return []
     numbers = sorted(int(name[5:]) for name in names if re.match(r'event\d+$', name))
-    for number in numbers:
+    return [(number, os.path.join(sys_input, 'event{}'.format(number), 'device'))
+            for number in numbers]
+
+
+def _nodes(sys_input, dev_input):
+    """Yield a node for each event node with keys."""
+    for number, folder in _folders(sys_input):
         name = 'event{}'.format(number)
-        folder = os.path.join(sys_input, name, 'device')
         if set(_line(folder, 'capabilities/key')) - set(' 0'):
             yield _Node(os.path.join(dev_input, name), _usb(folder), _line(folder, 'name'),
                         _line(folder, 'phys'), _line(folder, 'uniq'))

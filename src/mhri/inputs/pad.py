@@ -10,7 +10,8 @@ import threading
 import time
 
 from mhri.core.devices.pads import choose_pad, choose_profile, is_wanted
-from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader, Reading
+from mhri.inputs.event_nodes import find_pads
+from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader, Reading, Remembered
 from mhri.inputs.sdl import Joysticks
 
 _LOG = logging.getLogger(__name__)
@@ -44,6 +45,8 @@ class PadReader(Reader):
         self._last = None
         self._choice = ''
         self.note = ''
+        self.name = ''
+        self._find = Remembered(self._found)
 
     def want(self, device):
         """Choose the pad by a part of its name, its GUID or its index; '' is any of them.
@@ -55,6 +58,17 @@ class PadReader(Reader):
     def rumble(self):
         """Shake the pad once, where one is open and can."""
         self._rumble.set()
+
+    def find(self):
+        """Name the pad that is there; see :class:`mhri.inputs.reader.Reader`."""
+        return self._find(self._wanted, find_pads())
+
+    def _found(self, wanted, pads):
+        """Return the name of the pad to open."""
+        try:
+            return choose_pad(wanted, pads, self._profiles()).name
+        except LookupError as problem:
+            raise DeviceAbsent(str(problem))
 
     def open(self):
         """Open the pad; see :class:`mhri.inputs.reader.Reader`."""
@@ -78,6 +92,7 @@ class PadReader(Reader):
         self._last = None
         self._rumble.clear()
         self._choice = self.note = note
+        self.name = info.name
         return '{} with profile {}'.format(info.name, profile.name)
 
     def read(self, timeout_s):
@@ -118,7 +133,7 @@ class PadReader(Reader):
 
     def close(self):
         """Close the pad; see :class:`mhri.inputs.reader.Reader`."""
-        pad, self._pad, self.note = self._pad, None, ''
+        pad, self._pad, self.note, self.name = self._pad, None, '', ''
         if pad is not None:
             pad.close()
 

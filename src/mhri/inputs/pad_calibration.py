@@ -3,11 +3,10 @@
 """``mhri_joy --calibrate``: the dialogue of :mod:`mhri.core.devices.calibration` in a terminal."""
 import argparse
 import os
-import re
 import select
 import sys
 
-from mhri.core.devices.calibration import Calibration, DONE
+from mhri.core.devices.calibration import Calibration, DONE, profile_name
 from mhri.core.config import ConfigError
 from mhri.core.robots.names import is_base_name
 from mhri.core.devices.pads import choose_pad
@@ -20,12 +19,6 @@ LOOK_S = 0.01
 
 class Refused(Exception):
     """The calibration ends without a profile; the text says why and what to do."""
-
-
-def name_for(device):
-    """Return the name of a profile for a pad of this name: letters, digits and _."""
-    name = re.sub(r'[^a-z0-9]+', '_', device.lower()).strip('_')
-    return name if is_base_name(name) else 'pad_' + name if name else 'my_pad'
 
 
 def _options(argv):
@@ -73,14 +66,29 @@ def _calibrate(options, folder, taken, joysticks, stdin):
     :raises Refused: the name cannot be used, or the dialogue was ended
     """
     info = choose_pad(options.device, joysticks.look(), [])
-    name = options.name or name_for(info.name)
+    name = options.name or profile_name(info.name)
     path = os.path.join(folder, name + '.yaml')
     _check(name, path, taken, options.force)
     print('Calibrating {}. Robots that are driven with it would move: press Stop all first.'.format(
         info.name))
     text = _ask(joysticks, info, Calibration(name, info.name, info.guid), stdin)
+    try:
+        write_profile(path, text, options.force)
+    except FileExistsError:
+        raise Refused('{} was written meanwhile; choose another name, or add --force'.format(path))
+    return path
+
+
+def write_profile(path, text, replace):
+    """Write a profile that can be read back, whole or not at all; its folder is made.
+
+    :param replace: whether there may be one already
+    :raises FileExistsError: there is one that may not be replaced
+    :raises OSError: it cannot be written
+    :raises ConfigError: it is no profile
+    """
     parse_profile(text, path)
-    os.makedirs(folder, exist_ok=True)
+    os.makedirs(os.path.dirname(path), exist_ok=True)
     part = path + '.new'
     with open(part, 'w', encoding='utf-8') as stream:
         stream.write(text)
@@ -88,16 +96,13 @@ def _calibrate(options, folder, taken, joysticks, stdin):
         with open(part, encoding='utf-8') as stream:
             parse_profile(stream.read(), path)
         # Not by a look before: another one may have been written during the dialogue.
-        if options.force:
+        if replace:
             os.replace(part, path)
         else:
             os.link(part, path)
-    except FileExistsError:
-        raise Refused('{} was written meanwhile; choose another name, or add --force'.format(path))
     finally:
         if os.path.exists(part):
             os.remove(part)
-    return path
 
 
 def _check(name, path, taken, force):

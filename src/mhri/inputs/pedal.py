@@ -10,9 +10,19 @@ import os
 
 from mhri.core.devices.pedal_choice import choose, NoPedal, Wish
 from mhri.core.devices.pedals import AXES, DRIVE, KEYS
-from mhri.inputs.pedal_axes import PedalAxes
+from mhri.inputs.event_nodes import find_pads
+from mhri.inputs.pedal_axes import candidate_of, PedalAxes
 from mhri.inputs.pedal_keys import PedalKeys
-from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader
+from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader, Remembered
+
+
+def _resolved(wish, candidates):
+    """Return a wish, a link to a device (as in /dev/input/by-id) taken for the device."""
+    if wish.device.startswith('/'):
+        for path in (place for item in candidates for place in item.places):
+            if os.path.realpath(path) == os.path.realpath(wish.device):
+                return Wish(path, wish.profile)
+    return wish
 
 
 class PedalReader(Reader):
@@ -31,6 +41,8 @@ class PedalReader(Reader):
         self._wish = self._opened_for = Wish()
         self._sources = sources or {KEYS: PedalKeys(role), AXES: PedalAxes(role)}
         self._open = None
+        self.name = ''
+        self._find = Remembered(self._found)
 
     def want_device(self, device):
         """Choose the pedal: see :class:`Wish`; '' leaves it to the profiles.
@@ -43,6 +55,18 @@ class PedalReader(Reader):
         """Choose the profile by its name; '' is the one that is for the device."""
         self._wish = Wish(self._wish.device, str(profile).strip())
 
+    def find(self):
+        """Name the pedal that is there; see :class:`mhri.inputs.reader.Reader`."""
+        candidates = self._sources[KEYS].look() if KEYS in self._sources else []
+        return self._find(self._wish, candidates + [candidate_of(info) for info in find_pads()])
+
+    def _found(self, wish, candidates):
+        """Return the name of the pedal to open."""
+        try:
+            return choose(candidates, _resolved(wish, candidates), self._profiles())[0].name
+        except NoPedal as problem:
+            raise DeviceAbsent(str(problem))
+
     def open(self):
         """Open the pedal; see :class:`mhri.inputs.reader.Reader`."""
         self.close()
@@ -50,12 +74,13 @@ class PedalReader(Reader):
         profiles = self._profiles()
         candidates, problems = self._look(profiles)
         try:
-            candidate, profile = choose(candidates, self._resolved(candidates), profiles)
+            candidate, profile = choose(candidates, _resolved(self._opened_for, candidates),
+                                        profiles)
         except NoPedal as problem:
             raise DeviceAbsent('; '.join([str(problem)] + problems))
         source = self._sources[candidate.kind]
         source.open(candidate, profile)
-        self._open = source
+        self._open, self.name = source, candidate.name
         return '{} with profile {}'.format(candidate, profile.name)
 
     @property
@@ -63,15 +88,6 @@ class PedalReader(Reader):
         """What the operator has to do before every pedal counts, '' where nothing."""
         source = self._open
         return source.note if source else ''
-
-    def _resolved(self, candidates):
-        """Return the wish, a link to a device (as in /dev/input/by-id) taken for the device."""
-        wish = self._opened_for
-        if wish.device.startswith('/'):
-            for path in (place for item in candidates for place in item.places):
-                if os.path.realpath(path) == os.path.realpath(wish.device):
-                    return Wish(path, wish.profile)
-        return wish
 
     def _look(self, profiles):
         """Return (candidates, problems) of all kinds of devices that are asked for."""
@@ -96,6 +112,6 @@ class PedalReader(Reader):
 
     def close(self):
         """Give the pedal back; see :class:`mhri.inputs.reader.Reader`."""
-        source, self._open = self._open, None
+        source, self._open, self.name = self._open, None, ''
         if source is not None:
             source.close()

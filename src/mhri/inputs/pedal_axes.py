@@ -9,6 +9,13 @@ from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reading
 from mhri.inputs.sdl import Joysticks
 
 
+def candidate_of(info):
+    """Return the :class:`Candidate` for a joystick, a :class:`mhri.core.devices.pads.PadInfo`."""
+    places = (info.guid, 'joystick {}'.format(info.index))
+    return Candidate(AXES, usb_of_guid(info.guid), info.name,
+                     tuple(place for place in places if place))
+
+
 class PedalAxes:
     """The joysticks of this computer, one of which can be open as pedals.
 
@@ -32,12 +39,7 @@ class PedalAxes:
 
         :raises DeviceAbsent: pygame or SDL cannot be used
         """
-        self._infos = {}
-        for info in self._joysticks.look():
-            places = (info.guid, 'joystick {}'.format(info.index))
-            candidate = Candidate(AXES, usb_of_guid(info.guid), info.name,
-                                  tuple(place for place in places if place))
-            self._infos[candidate] = info
+        self._infos = {candidate_of(info): info for info in self._joysticks.look()}
         return list(self._infos)
 
     def open(self, candidate, profile):

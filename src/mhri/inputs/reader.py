@@ -37,12 +37,24 @@ class Reading:
 class Reader:
     """A device that is read on one thread: every method is called on that thread alone.
 
-    ``kind`` is the word for it in messages, e.g. 'pad'; ``note`` what the operator has to know of
-    the open device ('': nothing), e.g. that it waits for something.
+    ``kind`` is the word for it in messages, e.g. 'pad'; ``name`` that of the open device itself,
+    e.g. 'Logitech Gamepad F710'; ``note`` what the operator has to know of it ('': nothing), e.g.
+    that it waits for something.
     """
 
     kind = 'device'
+    name = ''
     note = ''
+
+    def find(self):
+        """Return the name of the device that :meth:`open` would open, without touching any.
+
+        It is asked every two seconds while the node is suspended, and has to cost next to nothing.
+        '' where it cannot be told.
+
+        :raises DeviceAbsent: there is none
+        """
+        return ''
 
     def open(self):
         """Open the device and return a text that describes it; the next reading is a whole one.
@@ -64,3 +76,31 @@ class Reader:
     def close(self):
         """Give the device back; does nothing where none is open."""
         raise NotImplementedError
+
+
+class Remembered:
+    """A function that is asked anew only when what it is asked about has changed.
+
+    :param function: may raise :class:`DeviceAbsent`, which is remembered, too
+    """
+
+    def __init__(self, function):
+        self._function = function
+        self._asked = None
+        self._answer = None
+
+    def __call__(self, *question):
+        """Return the answer to a question.
+
+        :raises DeviceAbsent: the function did so
+        """
+        if question != self._asked:
+            try:
+                self._answer = self._function(*question), None
+            except DeviceAbsent as reason:
+                self._answer = None, reason
+            self._asked = question
+        value, reason = self._answer
+        if reason is not None:
+            raise DeviceAbsent(str(reason))
+        return value

@@ -23,8 +23,8 @@ def parse(argv):
     parser.add_argument('--select', default='', help='names to add and select at start')
     parser.add_argument('--settings', help='JSON file for the settings, instead of the user\'s own')
     parser.add_argument('--fresh', action='store_true',
-                        help='begin without the saved settings, and keep them until robots, mode '
-                             'or limits are changed')
+                        help='begin without the saved settings but for the numbers of robots, and '
+                             'keep them until robots, mode or limits are changed')
     parser.add_argument('--demo', action='store_true',
                         help='play a scripted drive without hands, then end')
     parser.add_argument('--screenshot', help='with --demo: write a picture (PNG) of the screen to '
@@ -46,8 +46,8 @@ def main():
         os.execvp('rqt', ['rqt', '--standalone', PLUGIN] + remappings + extra)
     app = QApplication(sys.argv[:1])
     program = Standalone(sys.argv, options.settings, remember=not options.demo)
-    if not options.fresh and not options.demo:
-        program.restore()
+    if not options.demo:
+        program.restore(afresh=options.fresh)
     program.window.show()
     program.host.start(options.robots.split(), options.select.split())
     if options.fresh and not options.demo:

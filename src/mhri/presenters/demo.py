@@ -29,7 +29,7 @@ class DemoFailed(Exception):
 class Hands:
     """Mouse and keyboard of somebody who is not there: events as the window system sends them.
 
-    :param panel: :class:`mhri.gui.screen.panel.PanelWidget`
+    :param panel: :class:`mhri.gui.screen.screen.ScreenWidget`
     """
 
     def __init__(self, panel):
@@ -159,7 +159,7 @@ class Demo(QObject):
         super().__init__()
         self._program = program
         self._operator = program.host.operator
-        self._hands = Hands(program.host.panel)
+        self._hands = Hands(program.host.screen)
         self._screenshot = screenshot
         self._result = result
         self._diary = Diary()
@@ -245,14 +245,14 @@ class Demo(QObject):
         yield '{} and {} to move'.format(two, three), self._hold(
             0.4, -0.35, self._both(self._travelled(three, 0.3), self._moves(two, three)))
         self._take_screenshot()
-        self._take_pictures(panel=host.panel, bot_window=host.windows[two])
+        self._take_pictures(panel=host.screen, bot_window=host.windows[two])
         self._say('stop all')
         hands.press_stop_keys()
         yield 'every robot to be proven stopped', lambda: all(
             robot.proof and robot.proof.state == PROOF_STOPPED for robot in operator.view().robots)
         hands.let_go()
         self._program.host.draw()
-        self._take_pictures(stopped=host.panel)
+        self._take_pictures(stopped=host.screen)
 
     def _poll(self):
         """Go on where the present condition is true."""

@@ -42,7 +42,7 @@ class RequestsHost:
         self._ends = []
 
     def carry_out(self, action, names):
-        """Do what a ``mhri/PanelRequest`` asks for, or say why not."""
+        """Do what a ``mhri/PanelRequest`` asks for, or say why not; return that, too, else ''."""
         selection = self._operator.selection
         try:
             check_request(action, names, selection.robots)
@@ -54,7 +54,10 @@ class RequestsHost:
                 self._select(list(selection_after(
                     action, names, selection.robots, selection.selected)))
         except RequestRefused as error:
-            self._tell('not done: {}'.format(error))
+            text = 'not done: {}'.format(error)
+            self._tell(text)
+            return text
+        return ''
 
     def record(self, names):
         """Begin to record robots, each as its window has it set."""

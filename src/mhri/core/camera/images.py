@@ -20,6 +20,8 @@ Range = Tuple[float, float]
 # 8K video is 33 million pixels. What claims to be larger is taken for a corrupted header, so that
 # no frame can make the program allocate gigabytes.
 MAX_PIXELS = 40_000_000
+# A picture that is older is no live one [s].
+OLD_AFTER_S = 1.0
 
 
 class FrameError(ValueError):
@@ -54,7 +56,8 @@ class StreamStatus:
     ``age_s`` the age of the newest good picture [s], None before it. ``shown`` counts the pictures
     that were taken, ``bad`` those that could not be decoded. ``problem`` names the last bad one, or
     why nothing is there; '' while there is nothing to say. ``stale``: the newest good picture is
-    older than the newest bad one, or than 1 s.
+    older than the newest bad one, or than ``old_after_s`` [s], which is longer for a picture that
+    is held back. ``thinned`` says that it is, and by what; '' where it is not.
     """
 
     transport: str = ''
@@ -65,6 +68,8 @@ class StreamStatus:
     bad: int = 0
     problem: str = ''
     stale: bool = False
+    thinned: str = ''
+    old_after_s: float = OLD_AFTER_S
 
 
 def check_size(what: str, width: int, height: int) -> None:

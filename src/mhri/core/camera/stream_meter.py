@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rate and bandwidth of a stream over the last two seconds."""
+"""Rate and bandwidth of a stream over the last seconds."""
 from collections import deque
 from typing import Deque, Tuple
 
@@ -19,6 +19,10 @@ class StreamMeter:
         """Note a message of so many bytes."""
         self._came.append((now, size))
         self._prune(now)
+
+    def look_back(self, window_s: float) -> None:
+        """Count over so many seconds from now on."""
+        self._window_s = window_s
 
     def _prune(self, now: float) -> None:
         while self._came and self._came[0][0] < now - self._window_s:

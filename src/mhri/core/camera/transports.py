@@ -7,10 +7,11 @@ from mhri.core.camera.images import DEPTH, RGB
 from mhri.core.camera.image_message import COMPRESSED_TYPE, RAW_TYPE
 
 AUTO = 'auto'
+RAW = 'raw'
 # For each kind of picture: (name, what image_transport adds to the topic, type), best first.
 _TRANSPORTS = {
-    RGB: (('compressed', '/compressed', COMPRESSED_TYPE), ('raw', '', RAW_TYPE)),
-    DEPTH: (('compressedDepth', '/compressedDepth', COMPRESSED_TYPE), ('raw', '', RAW_TYPE)),
+    RGB: (('compressed', '/compressed', COMPRESSED_TYPE), (RAW, '', RAW_TYPE)),
+    DEPTH: (('compressedDepth', '/compressedDepth', COMPRESSED_TYPE), (RAW, '', RAW_TYPE)),
 }
 
 

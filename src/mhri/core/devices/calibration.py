@@ -13,13 +13,15 @@ What is not clear (two axes at once, a button that is taken) is said in :attr:`C
 and the step begins anew.
 """
 import json
-from typing import Dict, FrozenSet, Mapping, Optional, Sequence, Set, Tuple
+import re
+from typing import Collection, Dict, FrozenSet, Mapping, Optional, Sequence, Set, Tuple
 
 from mhri.core.driving.profile import ACTIONS
+from mhri.core.robots.names import is_base_name
 
 REST, FORWARD, LEFT, DONE = 'rest', 'forward', 'left', 'done'
 _BUTTONS = ('dead_man', 'turbo') + ACTIONS
-_STEPS = (REST, FORWARD, LEFT) + _BUTTONS + (DONE,)
+STEPS = (REST, FORWARD, LEFT) + _BUTTONS + (DONE,)
 
 _PROMPTS = {
     REST: 'Move every stick and trigger once, let go of everything, then press Enter.',
@@ -42,6 +44,16 @@ _RELEASED = 0.2
 # A second axis that went this far of the first one's way makes the push unclear.
 _ALIKE = 0.8
 _DEAD_ZONE = 0.08
+
+
+def profile_name(device: str, taken: Collection[str] = ()) -> str:
+    """Return the name of a profile for a pad of this name: letters, digits and _.
+
+    :param taken: names that it may not have
+    """
+    name = re.sub(r'[^a-z0-9]+', '_', device.lower()).strip('_')
+    name = name if is_base_name(name) else 'pad_' + name if name else 'my_pad'
+    return 'my_' + name if name in taken else name
 
 
 class Calibration:
@@ -73,6 +85,16 @@ class Calibration:
     def prompt(self) -> str:
         """What the operator is asked to do now."""
         return _PROMPTS[self.step]
+
+    @property
+    def axes(self) -> Dict[str, int]:
+        """The axes that have a meaning by now: {step: index}."""
+        return dict(self._axes)
+
+    @property
+    def buttons(self) -> Dict[str, int]:
+        """The buttons that have a meaning by now: {step: index}."""
+        return dict(self._buttons)
 
     def confirm(self) -> None:
         """Take Enter: at rest it says that all is let go, at a button that there is none."""
@@ -162,7 +184,7 @@ class Calibration:
 
     def _next(self) -> None:
         self._again('')
-        self.step = _STEPS[_STEPS.index(self.step) + 1]
+        self.step = STEPS[STEPS.index(self.step) + 1]
 
     def text(self) -> str:
         """Return the profile as YAML, once :attr:`step` is ``DONE``."""

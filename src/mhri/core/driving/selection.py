@@ -3,12 +3,15 @@
 """Which robots are in the list, and which of them are checked for control."""
 from typing import Dict, Iterable, Tuple
 
+from mhri.core.robots.numbers import RobotNumbers
+
 
 class Selection:
-    """An ordered list of robots, each checked or not; the order is that of adding."""
+    """A list of robots in the order of their numbers, each checked or not."""
 
     def __init__(self) -> None:
         self._checked: Dict[str, bool] = {}
+        self.numbers = RobotNumbers()
 
     @property
     def robots(self) -> Tuple[str, ...]:
@@ -20,15 +23,21 @@ class Selection:
         """Names of the checked robots, in order."""
         return tuple(name for name, checked in self._checked.items() if checked)
 
+    def numbered(self) -> Dict[str, int]:
+        """Return {name: number} of all robots, in order."""
+        return {name: self.numbers.of(name) for name in self.robots}
+
     def add(self, name: str) -> bool:
-        """Append a robot, unchecked; return False where it is there already."""
+        """Put a robot in its place, unchecked; return False where it is there already."""
         if name in self._checked:
             return False
-        self._checked[name] = False
+        self.numbers.meet((name,))
+        self._checked = dict(sorted({**self._checked, name: False}.items(),
+                                    key=lambda item: self.numbers.of(item[0])))
         return True
 
     def remove(self, name: str) -> None:
-        """Take a robot out; one that is not there is no error."""
+        """Take a robot out, its number stays its own; one that is not there is no error."""
         self._checked.pop(name, None)
 
     def check(self, names: Iterable[str]) -> Tuple[Tuple[str, ...], Tuple[str, ...]]:

@@ -2,15 +2,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the screen kept from its last run, as far as it can be used: anybody may have edited it.
 
-A state is a dict of JSON values: ``robots`` (names), ``mode`` (a source), ``limits`` [m/s, rad/s],
-``together``, ``windows`` ({robot: geometry}), ``looks`` ({robot: what its window shows}) and
-``panel`` (``splitter``, ``geometry``). A geometry is [x, y, width, height, maximised] in pixels: a
-text that can be read, and no blob that Qt would have to trust.
+A state is a dict of JSON values: ``robots`` (names), ``numbers`` ({robot: its own number}),
+``mode`` (a source), ``limits`` [m/s, rad/s], ``together``, ``windows`` ({robot: geometry}: where
+its tile was when it was torn off), ``torn_off`` (robots), ``looks`` ({robot: what its tile shows})
+``panel`` (``splitter``, ``drawer``, ``geometry``) and ``events`` (``sounds``). A geometry is [x, y,
+width, height, maximised] in pixels: a text that can be read, and no blob that Qt would have to
+trust.
 """
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
 
 from mhri.core.driving.limits import speed_limit_problem
 from mhri.core.robots.names import name_problem
+from mhri.core.robots.numbers import MOST_NUMBERS
 from mhri.core.screen.text import tidy_text
 
 MOST_ROBOTS = 200
@@ -47,10 +50,23 @@ def _is_whole(value: Any, least: int, most: int) -> bool:
 
 def _read_robots(value: Any) -> List[str]:
     names = value if isinstance(value, list) else []
-    if names != value or len(names) > MOST_ROBOTS or any(
-            not isinstance(name, str) or name_problem(name) for name in names):
+    if names != value or len(names) > MOST_ROBOTS or not all(map(_is_robot, names)):
         _refuse('a list of at most {} names of robots'.format(MOST_ROBOTS))
     return names
+
+
+def _is_robot(name: Any) -> bool:
+    return isinstance(name, str) and name_problem(name) is None
+
+
+def _read_numbers(value: Any) -> Dict[str, int]:
+    """Return {name: number}: of two robots with one number neither could be told by its key."""
+    if not (isinstance(value, dict) and len(value) <= MOST_NUMBERS
+            and all(map(_is_robot, value))
+            and all(_is_whole(number, 1, MOST_NUMBERS) for number in value.values())
+            and len(set(value.values())) == len(value)):
+        _refuse('a number of its own, from 1 to {}, for each robot'.format(MOST_NUMBERS))
+    return dict(value)
 
 
 def _read_mode(value: Any) -> Optional[str]:
@@ -132,11 +148,19 @@ def _read_words(value: Any) -> List[str]:
     return list(value)
 
 
-def _read_graph(value: Any) -> State:
-    if not isinstance(value, dict):
-        _refuse('a dict')
-    return {key: kept for key, kept in value.items()
-            if is_word(kept) or _is_whole(kept, 0, 3600)}
+def _read_views(value: Any) -> State:
+    """Return {view: {what was chosen in it: word, number or flag}}."""
+    if not isinstance(value, dict) or not all(isinstance(kept, dict) for kept in value.values()):
+        _refuse('a dict for each view')
+    return {view: {key: kept for key, kept in choices.items() if is_word(kept)
+                   or isinstance(kept, (bool, int, float)) and abs(kept) <= _MOST_PX}
+            for view, choices in value.items()}
+
+
+def _read_torn(value: Any) -> List[str]:
+    if not (isinstance(value, list) and len(value) <= MOST_ROBOTS and all(map(_is_robot, value))):
+        _refuse('names of robots')
+    return list(value)
 
 
 def _read_recording(value: Any) -> State:
@@ -153,7 +177,7 @@ def _by_robot(read: _Reader) -> _PartReader:
         found = {}
         for name, part in list(value.items())[:MOST_ROBOTS]:
             try:
-                if not isinstance(name, str) or name_problem(name):
+                if not _is_robot(name):
                     _refuse('the name of a robot')
                 found[name] = read(part)
             except ValueError as error:
@@ -172,13 +196,22 @@ def _read_panel(value: Any, problems: List[str], key: str) -> State:
     return _read_parts(value, _PANEL, problems, key + '.')
 
 
-_LOOK = {'views': _read_words, 'graph': _read_graph, 'recording': _read_recording,
+def _read_events(value: Any, problems: List[str], key: str) -> State:
+    if not isinstance(value, dict):
+        _refuse('a dict')
+    return _read_parts(value, {'sounds': _plain(_read_flag)}, problems, key + '.')
+
+
+_LOOK = {'views': _read_words, 'of_views': _read_views, 'recording': _read_recording,
          'splitter': read_sizes}
-_PANEL: Dict[str, _PartReader] = {'splitter': _plain(read_sizes), 'geometry': _plain(read_geometry)}
+_PANEL: Dict[str, _PartReader] = {
+    'splitter': _plain(read_sizes), 'drawer': _plain(_read_flag),
+    'geometry': _plain(read_geometry)}
 _STATE: Dict[str, _PartReader] = {
-    'robots': _plain(_read_robots), 'mode': _plain(_read_mode), 'limits': _plain(read_limits),
-    'together': _plain(_read_flag), 'windows': _by_robot(read_geometry),
-    'looks': _by_robot(_read_look), 'panel': _read_panel}
+    'robots': _plain(_read_robots), 'numbers': _plain(_read_numbers), 'mode': _plain(_read_mode),
+    'limits': _plain(read_limits), 'together': _plain(_read_flag),
+    'windows': _by_robot(read_geometry), 'torn_off': _plain(_read_torn),
+    'looks': _by_robot(_read_look), 'panel': _read_panel, 'events': _read_events}
 
 
 def _read_parts(value: State, readers: Dict[str, _PartReader], problems: List[str],

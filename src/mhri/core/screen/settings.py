@@ -18,6 +18,8 @@ class PanelSettings:
     windows of robots that are not highlighted; ``record_warn_free_mb`` and ``record_stop_free_mb``
     the free space [MB] at which a recording warns and at which it stops and closes its file.
     ``slow_with_link`` lets the pace of all fall with the slowest link among the selected robots.
+    ``camera_budget_mbit_s`` is what all pictures may take of the network together [Mbit/s], 0 for
+    no limit (:mod:`mhri.core.camera.budget`).
     """
 
     thumbnail_hz: float = 5.0
@@ -25,6 +27,7 @@ class PanelSettings:
     record_warn_free_mb: float = 1000.0
     record_stop_free_mb: float = 256.0
     slow_with_link: bool = False
+    camera_budget_mbit_s: float = 0.0
 
     def recording_limits(self) -> RecordingLimits:
         """Return the :class:`RecordingLimits` that these settings ask for."""
@@ -34,7 +37,8 @@ class PanelSettings:
 
 # Key: least and greatest value.
 _RANGES = {'thumbnail_hz': (0.1, 60.0), 'thumbnail_width_px': (32.0, 4096.0),
-           'record_warn_free_mb': (1.0, 1e9), 'record_stop_free_mb': (1.0, 1e9)}
+           'record_warn_free_mb': (1.0, 1e9), 'record_stop_free_mb': (1.0, 1e9),
+           'camera_budget_mbit_s': (0.0, 1e5)}
 
 _FLAGS = ('slow_with_link',)
 

@@ -1,19 +1,47 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The sources of the drop-down, as a parameter has them that any program may set."""
-from typing import Any, Tuple
+from typing import Any, Dict, Iterable, List, Tuple
 
+from mhri.core.robots.names import is_global_name
 from mhri.core.screen.text import tidy_text
+from mhri.core.screen.views import DeviceView
 
 MOST_SOURCES = 30
+ABSENT = '{} (not connected)'
+_Rows = Tuple[Tuple[str, str], ...]
 
 
-def source_rows(parameter: Any) -> Tuple[Tuple[str, str], ...]:
+def _rows(parameter: Any) -> List[Dict[str, Any]]:
+    """Return the rows that have a name and a label."""
+    rows = parameter if isinstance(parameter, list) else []
+    return [row for row in rows[:MOST_SOURCES] if isinstance(row, dict) and row.get('name')
+            and isinstance(row['name'], str) and isinstance(row.get('label'), str)]
+
+
+def source_rows(parameter: Any) -> _Rows:
     """Return pairs (name, label); a row that is none is left out, and so is all that is no list.
 
     :param parameter: ``/mux/sources``: a list of dicts with ``name`` and ``label``
     """
-    rows = parameter if isinstance(parameter, list) else []
-    pairs = [(row.get('name'), row.get('label')) for row in rows if isinstance(row, dict)]
-    return tuple((tidy_text(name), tidy_text(label)) for name, label in pairs[:MOST_SOURCES]
-                 if isinstance(name, str) and isinstance(label, str) and name)
+    return tuple((tidy_text(row['name']), tidy_text(row['label'])) for row in _rows(parameter))
+
+
+def suspend_services(parameter: Any) -> Dict[str, str]:
+    """Return {name of a source: the service that suspends its node} of the sources that have one.
+
+    :param parameter: as for :func:`source_rows`
+    """
+    return {tidy_text(row['name']): row['suspend_service'] for row in _rows(parameter)
+            if isinstance(row.get('suspend_service'), str)
+            and is_global_name(row['suspend_service'])}
+
+
+def called_by_device(rows: _Rows, devices: Iterable[DeviceView]) -> _Rows:
+    """Return the rows with the name of the device that is there for a label, or that it is not."""
+    labels = {device.source: device for device in devices}
+    return tuple((name, _label(label, labels.get(name, DeviceView(name)))) for name, label in rows)
+
+
+def _label(label: str, device: DeviceView) -> str:
+    return ABSENT.format(label) if device.absent else device.name or label

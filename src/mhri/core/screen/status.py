@@ -3,6 +3,7 @@
 """The one line at the bottom of the panel: the one thing that matters now."""
 from typing import Optional, Tuple
 
+from mhri.core.screen.battery import battery_level, FINE, FLAT
 from mhri.core.screen.stop_words import stop_words
 from mhri.core.screen.views import (
     GONE, PanelView, ROS_CONNECTED, ROS_CUT_OFF, ROS_STARTING, SILENT, UNANSWERED)
@@ -21,11 +22,15 @@ def status_line(view: PanelView, waits_for: Optional[str], master_uri: str = '')
     :param waits_for: the last word of ``/mux/waits_for``; None where the mux has not been heard
     :returns: (sentence, level), never empty
     """
-    for rule in (_no_ros, _stopped, _no_mux, _no_gates, _not_ours, _no_robots, _lost_robot):
+    for rule in (_no_ros, _stopped, _no_mux, _no_gates):
         line = rule(view, waits_for, master_uri)
         if line:
             return line
-    return _driving(view, waits_for)
+    for rule in (_not_ours, _no_robots, _lost_robot):
+        line = rule(view, waits_for, master_uri)
+        if line:
+            return _with_batteries(view, line)
+    return _with_batteries(view, _driving(view, waits_for))
 
 
 def _no_ros(view: PanelView, _: Optional[str], master_uri: str) -> Optional[_Line]:
@@ -88,6 +93,9 @@ def _driving(view: PanelView, waits_for: Optional[str]) -> _Line:
         label += ' (no dead-man button)'
     count = sum(robot.selected for robot in view.robots)
     who = '{} of {} robots'.format(count, len(view.robots))
+    absent = [device.note for device in view.devices if device.source == mode and device.absent]
+    if absent:
+        return '{}: {}'.format(label, absent[0]), ATTENTION
     if view.advice and waits_for == 'source':
         return '{}  \u2013  {}'.format(who, view.advice), ATTENTION
     words = {'neutral': 'centre the stick to drive',
@@ -103,3 +111,16 @@ def _driving(view: PanelView, waits_for: Optional[str]) -> _Line:
             who, label, ', '.join(waiting)), ATTENTION
     driven = any(robot.driven for robot in view.robots)
     return '{}  \u2013  {}  \u2013  {}'.format(who, label, 'driving' if driven else 'ready'), CALM
+
+
+def _with_batteries(view: PanelView, line: _Line) -> _Line:
+    """Add the robots whose batteries are low, the emptiest first; what is driven stays said."""
+    low = sorted((robot.battery, robot.name) for robot in view.robots
+                 if robot.battery is not None and battery_level(robot.battery) != FINE)
+    if not low:
+        return line
+    flat = battery_level(low[0][0]) == FLAT
+    names = ['{} battery {:.0f} %'.format(name, 100.0 * charge) for charge, name in low[:2]]
+    if len(low) > 2:
+        names[1:] = ['{} more'.format(len(low) - 1)]
+    return '; '.join((line[0], ', '.join(names))), STOPPED if flat else ATTENTION

@@ -57,6 +57,8 @@ class LinkFigures:
 class RobotView:
     """One robot as its row and its window show it.
 
+    ``number`` is its own for good, from 1; 0 where it has none.
+
     ``age_s`` is the age of the newest odometry [s]; speeds are the robot's own odometry [m/s,
     rad/s], ``heading_rad`` its yaw in (-pi, pi], x and y in metres in its ``odom`` frame; None
     where nothing has been heard. ``battery`` is a fraction in [0, 1]. ``recording`` is true while a
@@ -103,6 +105,7 @@ class RobotView:
     power: str = ''
     offers_power: bool = False
     hardware_stop: Optional[bool] = None
+    number: int = 0
 
 
 @dataclass(frozen=True)
@@ -132,6 +135,26 @@ class HeardView:
 
 
 @dataclass(frozen=True)
+class DeviceView:
+    """What an input node says of its device.
+
+    ``name`` is that of the device that is there, '' where there is none; ``note`` is why not and
+    what to do, or what the one there is waits for; both are '' where the node cannot tell.
+    ``kind`` is what it is, e.g. 'pad'.
+    """
+
+    source: str
+    name: str = ''
+    note: str = ''
+    kind: str = ''
+
+    @property
+    def absent(self) -> bool:
+        """Whether it is known that there is no device."""
+        return bool(self.note and not self.name)
+
+
+@dataclass(frozen=True)
 class ControlView:
     """Who is in control: this screen (``ours``), or who, e.g. "panel on lab-pc2 since 14:02"."""
 
@@ -144,7 +167,8 @@ class PanelView:
     """Everything the panel shows at one instant.
 
     ``mode`` is the source in force as the mux last said (None: the mux has not been heard);
-    ``sources`` are (name, label) of the drop-down in order. ``stop_all`` is true while everything
+    ``sources`` are (name, label) of the drop-down in order, each called by its device where that is
+    known; ``devices`` are what is known of these. ``stop_all`` is true while everything
     is stopped. ``limits`` are the operator's speed limits in force [m/s, rad/s]. ``status`` is the
     one line at the bottom, never empty; ``status_level`` one of 'calm', 'attention', 'stopped'.
     ``together`` is true while all selected robots are held to the pace of the slowest, ``pace``
@@ -158,6 +182,7 @@ class PanelView:
 
     ros: str = ROS_STARTING
     sources: Tuple[Tuple[str, str], ...] = ()
+    devices: Tuple[DeviceView, ...] = ()
     mode: Optional[str] = None
     stop_all: bool = False
     stop_note: str = ''

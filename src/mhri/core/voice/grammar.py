@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple
 
 from mhri.core.voice.language import GROUP_ACTIONS, Language, ROBOT_ACTIONS
-from mhri.core.voice.names import call_robots, number_words
+from mhri.core.voice.names import call_robots, number_words, numbered
 
 DRIVE, PACE, PANEL, MODE, STOP, WAKE = 'drive', 'pace', 'panel', 'mode', 'stop', 'wake'
 _Words = Tuple[str, ...]
@@ -58,7 +58,7 @@ class Grammar:
     """The phrases of a language with the robots of the panel's list.
 
     :param language: :class:`mhri.core.voice.language.Language`
-    :param robots: names in the panel's order
+    :param robots: names, each in the place of its number, from 1; '' where nobody has it
     :param knows: function that tells whether the model's dictionary has a word
     """
 
@@ -71,11 +71,12 @@ class Grammar:
                   for word in phrase.split()}
         # "robot one" may be a robot's name and a robot's number; then it is the name.
         taken -= set(language.numbers) & set(language.wake_words) - set(language.stop)
+        self.robots = tuple(robots)
         self.called, self.notes = call_robots(
-            robots, lambda word: word in language.pronunciations or knows(word), taken,
+            self.robots, lambda word: word in language.pronunciations or knows(word), taken,
             language.wake_words)
         self._robots: Dict[str, str] = {}
-        for number, (name, phrases) in enumerate(self.called.items(), 1):
+        for name, number in numbered(self.robots).items():
             for prefix in ('',) + language.numbers:
                 self._robots[' '.join([prefix, number_words(number)]).strip()] = name
         self._robots.update({phrase: name for name, phrases in self.called.items()
@@ -97,11 +98,6 @@ class Grammar:
         phrases = (self._fixed + tuple(self._robots) + language.joiners + language.please
                    + language.stop_before + language.stop_after)
         return sorted({word for phrase in phrases for word in phrase.split()})
-
-    @property
-    def robots(self) -> Tuple[str, ...]:
-        """The robots that can be called, in the panel's order."""
-        return tuple(self.called)
 
     def jsgf(self) -> str:
         """Return the grammar in the JSpeech Grammar Format; its public rule is ``said``."""

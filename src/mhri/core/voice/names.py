@@ -6,8 +6,9 @@ from typing import Any, Callable, Container, Dict, Iterable, List, Mapping, Opti
 
 from mhri.core.robots.names import name_problem
 
-# More robots than this are not told apart by voice.
+# More robots than this are not told apart by voice, and no higher number is spoken.
 MOST_ROBOTS = 30
+_LAST_NUMBER = 99
 # A word that the dictionary does not have is spelled, up to this length: "tb" is "t b".
 _SPELLED = 4
 _VOWELS = frozenset('aeiouy')
@@ -81,21 +82,49 @@ def spoken_names(name: str, knows: _Knows) -> Tuple[str, ...]:
     return tuple(' '.join(way) for way in ways if way)
 
 
+def in_places(names: Iterable[str], numbers: Any) -> Tuple[str, ...]:
+    """Return names so that the place of each, from 1, is its number; '' where nobody there has it.
+
+    One whose number is not known, or cannot be spoken, is left out.
+
+    :param numbers: {name: number}, as anybody may have set it; where there is none, places are
+    """
+    if not isinstance(numbers, dict) or not numbers:
+        return tuple(names)[:_LAST_NUMBER]
+    places = {numbers[name]: name for name in names
+              if type(numbers.get(name)) is int and 1 <= numbers[name] <= _LAST_NUMBER}
+    return tuple(places.get(number, '') for number in range(1, max(places, default=0) + 1))
+
+
+def numbered(robots: Iterable[Any]) -> Dict[str, int]:
+    """Return the first robots of a list as :func:`in_places` makes it: {name: number}."""
+    found: Dict[str, int] = {}
+    number = 0
+    for name in robots:
+        if name == '':
+            number += 1
+        elif isinstance(name, str) and not name_problem(name) and name not in found:
+            number += 1
+            found[name] = number
+            if len(found) == MOST_ROBOTS:
+                break
+    return found
+
+
 def call_robots(robots: Iterable[Any], knows: _Knows, taken: Container[str],
                 wake_words: Container[str] = ()) -> Tuple[Dict[str, Tuple[str, ...]], List[str]]:
     """Return how the robots of the panel's list can be called.
 
-    :param robots: names in the panel's order; what is no robot's name is left out
+    :param robots: names, each in the place of its number; what is no robot's name is left out
     :param taken: words that mean something else: a name with one of them goes by its number alone
     :param wake_words: a name may have these in it ("robot one"), but not be one
     :returns: ({name: phrases}, [sentence about a robot that goes by its number alone])
     """
     called: Dict[str, Tuple[str, ...]] = {}
     notes: List[str] = []
-    listed = [name for name in robots if isinstance(name, str) and not name_problem(name)]
-    listed = list(dict.fromkeys(listed))[:MOST_ROBOTS]
+    listed = numbered(robots)
     phrases = {name: spoken_names(name, knows) for name in listed}
-    for number, name in enumerate(listed, 1):
+    for name, number in listed.items():
         problem = _problem(name, phrases, taken, wake_words)
         called[name] = () if problem else phrases[name]
         if problem:

@@ -14,7 +14,6 @@ from mhri.gui.camera.picture import PictureView
 AUTO = 'auto'
 STATUS_PERIOD_S = 0.25
 NOTE_MS = 6000
-OLD_S = 1.0
 WAITING = 'waiting for the first picture'
 
 
@@ -37,8 +36,12 @@ def bandwidth_text(bits_per_s):
 def rate_text(status, slowed=None):
     """Return how often a new picture shows, and why not as often as it comes.
 
+    A rate that the camera budget holds back is said in its words: "thinned to 2 Hz: camera budget".
+
     :param slowed: (rate at most [Hz], robot that is in front instead); None: as often as it comes
     """
+    if status.thinned:
+        return status.thinned
     if slowed is None or status.rate_hz <= slowed[0]:
         return '{:.1f} Hz'.format(status.rate_hz)
     return '{:g} Hz: {} is in front'.format(*slowed)
@@ -63,16 +66,18 @@ def stream_warning(status):
 
     The first line is the warning itself, a second one the reason where it is known.
     """
-    if status.age_s is None or not (status.stale or status.age_s > OLD_S):
+    if status.age_s is None or not (
+            status.stale or status.age_s > status.old_after_s):
         return ''
     warning = 'OLD PICTURE, {}'.format(words.age_text(status.age_s))
-    return '{}\n{}'.format(warning, status.problem) if status.problem else warning
+    reason = status.problem or status.thinned
+    return '{}\n{}'.format(warning, reason) if reason else warning
 
 
 class CameraView(QWidget):
     """Shows what it is given, marks what is old; decides nothing about topics.
 
-    Child widgets: ``picture``, ``status_label``, ``transport_combo``, ``still_button``.
+    Child widgets: ``picture``, ``stream_label``, ``transport_combo``, ``still_button``.
     """
 
     #: the picture on show shall be kept as a file: its Frame
@@ -95,9 +100,9 @@ class CameraView(QWidget):
         self.setObjectName('camera_view')
         self.picture = PictureView(self)
         self.status_sign = Sign(self)
-        self.status_label = TextLine(self)
-        self.status_label.setObjectName('status_label')
-        self.status_label.setFont(theme.number_font(self.font()))
+        self.stream_label = TextLine(self)
+        self.stream_label.setObjectName('stream_label')
+        self.stream_label.setFont(theme.number_font(self.font()))
         self.transport_combo = QComboBox(self)
         self.still_button = QPushButton('Save still', self)
         self.still_button.setAutoDefault(False)
@@ -115,19 +120,19 @@ class CameraView(QWidget):
         self._note_timer = QTimer(self)
         self._note_timer.setSingleShot(True)
         self._note_timer.setInterval(NOTE_MS)
-        line, controls = QHBoxLayout(), QHBoxLayout()
+        self._tools = QWidget(self)
+        line = QHBoxLayout(self._tools)
+        line.setContentsMargins(0, 4, 0, 0)
         line.setSpacing(6)
-        line.addWidget(self.status_label, 1)
+        line.addWidget(self.stream_label, 3)
         line.addWidget(self.status_sign)
-        controls.setSpacing(6)
-        controls.addWidget(self.transport_combo, 1)
-        controls.addWidget(self.still_button)
+        line.addWidget(self.transport_combo, 1)
+        line.addWidget(self.still_button)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(4)
+        column.setSpacing(0)
         column.addWidget(self.picture, 1)
-        column.addLayout(line)
-        column.addLayout(controls)
+        column.addWidget(self._tools)
 
     def _connect(self):
         """Wire the controls."""
@@ -137,6 +142,17 @@ class CameraView(QWidget):
     def _restore(self):
         """Begin without a picture."""
         self.show_kind(None)
+
+    def show_tools(self, shown):
+        """Show the stream's figures and the controls below the picture, or the picture alone."""
+        self._tools.setVisible(shown)
+
+    def save_settings(self):
+        """Return what is kept between runs: nothing, since what there is changes."""
+        return {}
+
+    def restore_settings(self, settings):
+        """Take over a dict of :meth:`save_settings`."""
 
     @property
     def kind(self):
@@ -184,7 +200,7 @@ class CameraView(QWidget):
             trouble = old or (status.bad and status.problem)
             text = stream_text(status, slowed)
             self._say((theme.TRIANGLE, theme.ATTENTION) if trouble else None, text,
-                      (rate_text(status, slowed),) if slowed and text else ())
+                      (rate_text(status, slowed),) if text and (slowed or status.thinned) else ())
 
     def show_note(self, text, good=True):
         """Show a sentence in the status line for a while, e.g. where a still went."""
@@ -194,7 +210,7 @@ class CameraView(QWidget):
     def _say(self, sign, text, shorter=()):
         """Show a line with its sign."""
         self.status_sign.show_sign(sign)
-        self.status_label.show_text(text, shorter=shorter)
+        self.stream_label.show_text(text, shorter=shorter)
 
     def show_transports(self, names):
         """Offer what there is now; 'auto' comes first, and what was chosen stays, there or not."""

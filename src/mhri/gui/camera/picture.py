@@ -55,6 +55,8 @@ class PictureView(QWidget):
         """Set what never changes."""
         self.setObjectName('picture')
         self.setAttribute(Qt.WA_OpaquePaintEvent)
+        # Beside a picture it is dark in every theme.
+        self.setPalette(theme.over_picture(self.palette()))
         # From far, on top, to near; colour_at is the one place that knows the colours.
         self._scale = QImage(1, _SCALE_STEPS, QImage.Format_RGB32)
         for step in range(_SCALE_STEPS):
@@ -148,7 +150,10 @@ class PictureView(QWidget):
         self._point = QPointF(event.pos())
         self.update()
 
-    mousePressEvent = mouseMoveEvent  # noqa: N815
+    def mousePressEvent(self, event):  # noqa: N802
+        """Follow the pointer, and leave the click to the tile."""
+        self.mouseMoveEvent(event)
+        event.ignore()
 
     def leaveEvent(self, event):  # noqa: N802
         """Go back to the middle."""

@@ -13,6 +13,7 @@ from python_qt_binding.QtWidgets import (
     QLineEdit, QPlainTextEdit, QTextEdit, QWidget)
 
 from mhri.gui.driving.key_state import KeyState
+from mhri.gui.driving.stop_bar import CUT_AFTER_S
 
 _AHEAD, _BACK, _LEFT, _RIGHT = (1, 0), (-1, 0), (0, 1), (0, -1)
 
@@ -27,6 +28,11 @@ _DIGITS = {int(Qt.Key_0) + digit: digit for digit in range(10)}
 _ENTER = (int(Qt.Key_Return), int(Qt.Key_Enter))
 _SPACE = int(Qt.Key_Space)
 _TALK = int(Qt.Key_T)
+_TABS = {int(Qt.Key_Tab): 1, int(Qt.Key_Backtab): -1}
+# Keys of the screen, and what they are for.
+COMMANDS = {int(Qt.Key_F1): 'keys', int(Qt.Key_F2): 'drawer', int(Qt.Key_F6): 'focus',
+            int(Qt.Key_F11): 'full_screen',
+            int(Qt.Key_H): 'numbers', int(Qt.Key_P): 'stills', int(Qt.Key_R): 'record'}
 
 _KEYS = frozenset((QEvent.KeyPress, QEvent.KeyRelease, QEvent.ShortcutOverride))
 # After one of these the releases of held keys may go to somebody else.
@@ -91,8 +97,8 @@ class DriveKeys(QObject):
     the keys held then are dead until released. T held is push-to-talk. Digits are the switches of
     the robots. Return activates the focused button, since space never does. Without effect while a
     text field has the focus or a list is open, and with Ctrl, Alt or Meta; but Shift+Space stops
-    everything, always. A key acts once, however long it is held, and counts as let go when it is
-    (:mod:`mhri.gui.driving.key_state`).
+    everything, always, and held for 2 s cuts the power. A key acts once, however long it is held,
+    and counts as let go when it is (:mod:`mhri.gui.driving.key_state`).
 
     :param panel: the panel; a key that no widget has the focus for is its own
     :param keys: :class:`mhri.gui.driving.key_state.KeyState`
@@ -104,10 +110,20 @@ class DriveKeys(QObject):
     centre_pressed = Signal()
     #: Shift+Space
     stop_pressed = Signal()
+    #: both are held since then, for as long as the stop button has to be to cut the power
+    stop_held = Signal()
     #: a digit 1..9
     robot_pressed = Signal(int)
     #: the digit 0
     all_pressed = Signal()
+    #: Ctrl and a digit: the robot of that number and no other
+    alone_pressed = Signal(int)
+    #: Tab between the pictures: 1, or -1 with Shift
+    next_pressed = Signal(int)
+    #: Return where no button has the focus: drive the robot that is looked at
+    drive_pressed = Signal()
+    #: one of the keys of the screen: a value of ``COMMANDS``
+    command_pressed = Signal(str)
     #: T was pressed or let go (push-to-talk)
     talk_changed = Signal(bool)
 
@@ -123,6 +139,11 @@ class DriveKeys(QObject):
         self._talk = None
         # Of the keys that are down those that the X server knows of: not what a program made up.
         self._real = set()
+        self._stop_key = 0
+        self._stop_timer = QTimer(self)
+        self._stop_timer.setSingleShot(True)
+        self._stop_timer.setInterval(round(CUT_AFTER_S * 1000))
+        self._stop_timer.timeout.connect(self._on_stop_held)
         self._look_timer = QTimer(self)
         self._look_timer.setInterval(_LOOK_MS)
         self._look_timer.timeout.connect(self._look)
@@ -138,6 +159,7 @@ class DriveKeys(QObject):
 
     def release(self):
         """Count every key as released; one that is still down has to be pressed again."""
+        self._stop_timer.stop()
         self._held.clear()
         self._dead.clear()
         self._down = set(self._keys.down() or ())
@@ -198,9 +220,10 @@ class DriveKeys(QObject):
             return self._on_stop(event, kind)
         focus = QApplication.focusWidget() or watched
         if not self._listens(watched, focus) or event.modifiers() & (
-                Qt.ControlModifier | Qt.AltModifier | Qt.MetaModifier):
+                Qt.AltModifier | Qt.MetaModifier):
             return False
-        action = self._action(event, focus)
+        action = self._action_with_ctrl(event) if event.modifiers() & Qt.ControlModifier \
+            else self._action(event, focus)
         if action is None:
             return False
         if kind == QEvent.ShortcutOverride:
@@ -228,8 +251,18 @@ class DriveKeys(QObject):
         elif not event.isAutoRepeat():
             # Whatever else was pressed: to stop once more than needed does no harm.
             self.centre()
+            self._stop_key = event.nativeScanCode() if event.spontaneous() else 0
+            if not self._stop_timer.isActive():
+                # A repeat that Qt reads late looks like a press; its release was seen through.
+                self._stop_timer.start()
             self.stop_pressed.emit()
         return True
+
+    def _on_stop_held(self):
+        """Tell, unless the key is up in truth: its release may wait behind a slow view."""
+        down = self._keys.down()
+        if not self._stop_key or down is None or self._stop_key in down:
+            self.stop_held.emit()
 
     def _on_release(self, event):
         """Take a release wherever it arrives, so that no key is held for ever."""
@@ -237,6 +270,8 @@ class DriveKeys(QObject):
         ours = identity == self._talk or identity in self._held or identity in self._dead
         if event.isAutoRepeat() or event.nativeScanCode() in (self._keys.down() or ()):
             return ours
+        if event.key() in (_SPACE, int(Qt.Key_Shift)):
+            self._stop_timer.stop()
         self._down.discard(identity)
         if ours:
             self._let_go(identity)
@@ -271,6 +306,11 @@ class DriveKeys(QObject):
             if key in _ARROWS and self._keeps_arrows(focus):
                 return None
             return lambda: self._press(_identity(event), direction)
+        if key in COMMANDS:
+            return lambda: self.command_pressed.emit(COMMANDS[key])
+        if key in _TABS:
+            return (lambda: self.next_pressed.emit(_TABS[key])) if self._tabs_pictures(focus) \
+                else None
         digit = _digit(event)
         if digit is None:
             return None
@@ -281,12 +321,23 @@ class DriveKeys(QObject):
         """Tell whether a widget needs the arrow keys itself."""
         return isinstance(focus, _ARROW_USERS) or bool(focus.property(_KEEPS_ARROWS))
 
+    def _action_with_ctrl(self, event):
+        """Return what a press with Ctrl has to do, or None."""
+        digit = _digit(event)
+        return (lambda: self.alone_pressed.emit(digit)) if digit else None
+
     @staticmethod
-    def _enter_action(focus):
-        """Return what Return does to the focused widget, or None."""
-        if isinstance(focus, QAbstractButton) and focus.isEnabled():
-            return focus.click
-        return focus.showPopup if isinstance(focus, QComboBox) else None
+    def _tabs_pictures(focus):
+        """Tell whether Tab goes from picture to picture, and not through what can be clicked."""
+        return bool(focus.property(_AREA))
+
+    def _enter_action(self, focus):
+        """Return what Return does: to the focused widget, or to the robot that is looked at."""
+        if isinstance(focus, QAbstractButton):
+            return focus.click if focus.isEnabled() else None
+        if isinstance(focus, QComboBox):
+            return focus.showPopup
+        return self.drive_pressed.emit if focus.property(_AREA) else None
 
     def _set_talk(self, identity):
         """Hold the key of push-to-talk, or let it go (None)."""

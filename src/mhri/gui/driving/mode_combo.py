@@ -5,6 +5,7 @@ from python_qt_binding.QtCore import QSize, Qt, QTimer, Signal
 from python_qt_binding.QtWidgets import QComboBox, QStyle, QStyleOptionComboBox, QStylePainter
 
 from mhri.gui.screen import theme
+from mhri.gui.screen.labels import plain_tip
 from mhri.gui.screen.pending import Pending
 
 ANSWER_WITHIN_S = 2.0
@@ -62,16 +63,39 @@ class ModeCombo(QComboBox):
         """Return the label of a source; of an unknown one its name."""
         return dict(self._sources).get(name, name)
 
-    def show_mode(self, sources, mode):
-        """Show the sources, pairs (name, label), and the mode in force (None: not known)."""
+    def show_mode(self, sources, mode, devices=()):
+        """Show the sources, pairs (name, label), and the mode in force (None: not known).
+
+        :param devices: the :class:`mhri.core.screen.views.DeviceView` of those that have one
+        """
         if sources != self._sources:
-            self._sources = tuple(sources)
+            self._show_sources(tuple(sources))
+        self._mode = mode
+        self._show_notes({device.source: device.note for device in devices})
+        self._show()
+
+    def _show_sources(self, sources):
+        """Fill the list; one that is open stays so while devices come and go."""
+        same = [name for name, _ in sources] == [name for name, _ in self._sources]
+        self._sources = sources
+        if not same:
             self.clear()
-            for row, (name, label) in enumerate(sources):
+        for row, (name, label) in enumerate(sources):
+            if same:
+                self.setItemText(row, label)
+            else:
                 self.addItem(label, name)
                 self.setItemData(row, QSize(0, theme.touch_size(self)), Qt.SizeHintRole)
-        self._mode = mode
-        self._show()
+
+    def _show_notes(self, notes):
+        """Say of each device in its tool tip what has to be done."""
+        for row, (name, _) in enumerate(self._sources):
+            tip = plain_tip(notes.get(name, ''))
+            if tip != (self.itemData(row, Qt.ToolTipRole) or ''):
+                self.setItemData(row, tip, Qt.ToolTipRole)
+        tip = plain_tip(notes.get(self._mode, ''))
+        if tip != self.toolTip():
+            self.setToolTip(tip)
 
     def _on_activated(self, index):
         """Ask for the chosen source; the drop-down goes back to the mode in force until then."""

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Stop all, across the whole panel: one press to stop, two steps to release.
 
-Held for 2 s, or by a second step on the page that says what is stopped, it cuts the power of the
-motors of those robots that offer it.
+Held for 2 s (the button, or Shift+Space), or by a second step on the page that says what is
+stopped, it cuts the power of the motors of those robots that offer it.
 """
 from python_qt_binding.QtCore import Qt, QTimer, Signal
 from python_qt_binding.QtGui import QPainter
 from python_qt_binding.QtWidgets import (
-    QHBoxLayout, QPushButton, QSizePolicy, QStackedLayout, QVBoxLayout, QWidget)
+    QBoxLayout, QHBoxLayout, QPushButton, QSizePolicy, QStackedLayout, QVBoxLayout, QWidget)
 
 from mhri.core.screen.stop_words import NOBODY_HEARD
 from mhri.gui.screen import theme
@@ -105,15 +105,25 @@ class StopBar(QWidget):
         self._second = QStackedLayout(second)
         self._second.addWidget(self.release_button)
         self._second.addWidget(self.cancel_button)
-        row = QHBoxLayout(self._stopped_page)
+        row = self._row = QBoxLayout(QBoxLayout.LeftToRight, self._stopped_page)
         unit = self.fontMetrics().height()
         row.setContentsMargins(unit, 6, unit, 6)
         row.setSpacing(unit // 2)
-        row.addWidget(self._sign)
-        row.addLayout(words, 1)
-        row.addWidget(self.power_button)
-        row.addWidget(self.confirm_button)
-        row.addWidget(second)
+        told, buttons = QHBoxLayout(), QHBoxLayout()
+        for part in (told, buttons):
+            part.setSpacing(unit // 2)
+            row.addLayout(part)
+        told.addWidget(self._sign)
+        told.addLayout(words, 1)
+        buttons.addWidget(self.power_button)
+        buttons.addWidget(self.confirm_button)
+        buttons.addWidget(second)
+        row.setStretch(0, 1)
+
+    def show_narrow(self, narrow):
+        """Have the buttons of the second page below its words, where there is little width."""
+        self._row.setDirection(QBoxLayout.TopToBottom if narrow else QBoxLayout.LeftToRight)
+        self.stop_button.set_look('' if narrow else 'Shift+Space', 3.4 if narrow else 2.4)
 
     def _button(self, name, text):
         """Make one of the buttons of the second page, wide enough for any of its words."""

@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The stop button: acts when it is pressed, not when it is let go, by mouse and by any finger."""
+import weakref
+
 from python_qt_binding.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from python_qt_binding.QtGui import QPainter, QPen
 from python_qt_binding.QtWidgets import QAbstractButton, QApplication, QSizePolicy
@@ -9,8 +11,25 @@ from mhri.gui.screen import theme
 
 _ENDS = frozenset((QEvent.MouseButtonRelease, QEvent.TouchEnd, QEvent.TouchCancel,
                    QEvent.ApplicationDeactivate))
-# How much darker than the colour of the palette the button is [%].
-_AT_REST, _UNDER_POINTER, _DOWN = 112, 120, 140
+# How much darker than its ground the button is [%].
+_AT_REST, _UNDER_POINTER, _DOWN = 100, 108, 125
+_BUTTONS = weakref.WeakSet()
+
+
+def stop_places():
+    """Return where this program can be stopped by hand, as the X server counts.
+
+    :returns: {id of each window that is shown: [:meth:`StopButton.place` of each button in it]}
+    """
+    places = {int(widget.winId()): [] for widget in QApplication.topLevelWidgets()
+              if widget.isVisible() and widget.windowHandle()}
+    for button in list(_BUTTONS):
+        try:
+            if button.isVisible():
+                places.setdefault(int(button.window().winId()), []).append(button.place())
+        except RuntimeError:  # Qt has deleted it
+            _BUTTONS.discard(button)
+    return places
 
 
 class StopButton(QAbstractButton):
@@ -30,6 +49,7 @@ class StopButton(QAbstractButton):
         self._hint = ''
         self._lines = 2.0
         self._engaged = False
+        _BUTTONS.add(self)
         self.pressed.connect(self._watch)
         self.setAttribute(Qt.WA_AcceptTouchEvents)
         self.setFocusPolicy(Qt.TabFocus)
@@ -45,6 +65,16 @@ class StopButton(QAbstractButton):
         if engaged != self._engaged:
             self._engaged = engaged
             self.update()
+
+    def place(self):
+        """Return (left, top, width, height) of what is to be seen of it in its window [device px].
+
+        An area of nothing where all of it is scrolled away.
+        """
+        seen, scale = self.visibleRegion().boundingRect(), self.devicePixelRatioF()
+        corner = self.mapTo(self.window(), seen.topLeft())
+        return tuple(round(scale * length) for length in (
+            corner.x(), corner.y(), seen.width(), seen.height()))
 
     def sizeHint(self):  # noqa: N802
         """Return room for the text and for a gloved finger."""
@@ -82,15 +112,13 @@ class StopButton(QAbstractButton):
         """Paint the button; darker under the pointer, and more so while it is down."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.Antialiasing)
-        ink = theme.colour(theme.STOP, self.palette())
         unit = self.fontMetrics().height()
         text = Qt.white
         if self._engaged:
             text = theme.colour(theme.TEXT, self.palette())
             theme.paint_stopped_frame(painter, self.rect(), self.palette())
         else:
-            # Darker than the palette's: white small print on it has a contrast of 4.5 at least.
-            ground = ink.darker(
+            ground = theme.STOP_GROUND.darker(
                 _DOWN if self.isDown() else _UNDER_POINTER if self.underMouse() else _AT_REST)
             painter.setPen(QPen(ground.darker(125), 2))
             painter.setBrush(ground)

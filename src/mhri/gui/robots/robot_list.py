@@ -149,9 +149,9 @@ class RobotList(QScrollArea):
     def _show(self, numbers=True):
         """Show the robots whose rows can be seen, or nearly."""
         first, end = self._in_sight()
-        for place, robot in enumerate(self._robots[first:end], first + 1):
+        for robot in self._robots[first:end]:
             if robot.name in self._rows:
-                self._rows[robot.name].show_view(robot, place, robot.name in self._wanted, numbers)
+                self._rows[robot.name].show_view(robot, robot.name in self._wanted, numbers)
 
     def _in_sight(self):
         """Return (first, end) of the places that are to have a row."""
@@ -193,7 +193,7 @@ class RobotList(QScrollArea):
         """Make rows: {place: name}."""
         for place, name in missing.items():
             row = self._new_row(name)
-            row.show_view(self._robots[place], place + 1, name in self._wanted)
+            row.show_view(self._robots[place], name in self._wanted)
             row.show_current(name == self._current)
         self._place()
         for name in missing.values():
@@ -241,10 +241,10 @@ class RobotList(QScrollArea):
         self._select([])
 
     def toggle(self, number):
-        """Check or uncheck the robot of a number, from 1; a number without a robot does nothing."""
-        if 1 <= number <= len(self._robots):
-            name = self._robots[number - 1].name
-            self._flip(name)
+        """Check or uncheck the robot that bears a number; one that nobody bears does nothing."""
+        for robot in self._robots:
+            if robot.number == number > 0:
+                self._flip(robot.name)
 
     def toggle_all(self):
         """Check every robot or, if all are checked, none."""

@@ -5,6 +5,7 @@ from python_qt_binding.QtCore import QRectF, QSize, Qt, Signal
 from python_qt_binding.QtGui import QPainter, QPalette, QPen
 from python_qt_binding.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
+from mhri.core.robots.numbers import LAST_KEY
 from mhri.core.screen import views
 from mhri.gui.screen import theme, words
 from mhri.gui.screen.labels import BatteryLine, Pill, Sign, TextLine
@@ -13,7 +14,7 @@ DRIVING = 'DRIVING'
 MOVING = 'moving'
 RECORDING = 'rec'
 # What a name asks for before it gives way, in average characters; longer ones end in "...".
-_NAME_CHARACTERS = 12
+_NAME_CHARACTERS = 8
 _EDGE_PX = 6
 
 
@@ -57,7 +58,10 @@ class BigCheckBox(QCheckBox):
 
 
 class RobotRow(QWidget):
-    """Two lines of fixed height: identity and link; below it motion, or what is wrong instead."""
+    """Two lines of fixed height: identity and link; below it speed, then turn or what is wrong.
+
+    The speed is never replaced by a sentence; what is old is dimmed.
+    """
 
     #: the check box was clicked: name, checked
     checked = Signal(str, bool)
@@ -90,13 +94,14 @@ class RobotRow(QWidget):
         self.box.setAccessibleName('drive {}'.format(self.name))
         self.title = TextLine(self)
         self.title.setFont(theme.larger(font, 1.25, bold=True))
-        self.title.show_text(self.name)
+        self.title.show_text(self.name, shorter=words.name_ends(self.name))
         # The name is the last to give way in a narrow dock: the type goes first, then the age.
         metrics = self.title.fontMetrics()
         self.title.setMinimumWidth(min(
             theme.text_width(self.title.font(), self.name),
             _NAME_CHARACTERS * metrics.averageCharWidth()))
         self.kind = TextLine(self)
+        self.kind.setMinimumWidth(1)
         self.sign = Sign(self)
         self.link = self._fixed_line(numbers, 'waiting')
         self.recording = Pill(self)
@@ -104,6 +109,11 @@ class RobotRow(QWidget):
         self.age = self._fixed_line(numbers, '000 ms', Qt.AlignRight)
         self.linear = self._fixed_line(numbers, 'back 0.00 m/s')
         self.turn = self._fixed_line(numbers, 'right 0.00 rad/s')
+        # In a narrow drawer the turn does without its unit; beside a sentence the speed takes the
+        # room that it needs now.
+        for line in (self.linear, self.turn):
+            line.setSizePolicy(QSizePolicy.Preferred, QSizePolicy.Fixed)
+        self.turn.setMinimumWidth(0)
         self.trouble_sign = Sign(self)
         self.trouble = TextLine(self)
         self.filler = TextLine(self)
@@ -131,7 +141,7 @@ class RobotRow(QWidget):
         for widget, stretch in ((self.title, 3), (self.kind, 8), (self.recording, 0),
                                 (self.sign, 0), (self.link, 0), (self.age, 0)):
             first.addWidget(widget, stretch)
-        for widget, stretch in ((self.trouble_sign, 0), (self.trouble, 1), (self.linear, 0),
+        for widget, stretch in ((self.linear, 0), (self.trouble_sign, 0), (self.trouble, 1),
                                 (self.turn, 0), (self.filler, 1), (self.pill, 0),
                                 (self.battery, 0)):
             second.addWidget(widget, stretch)
@@ -154,25 +164,25 @@ class RobotRow(QWidget):
         """Tell of a click on the box."""
         self.checked.emit(self.name, on)
 
-    def show_view(self, view, number, checked, numbers=True):
+    def show_view(self, view, checked, numbers=True):
         """Show a robot.
 
         :param view: :class:`mhri.core.screen.views.RobotView`
-        :param number: its place in the list, from 1
         :param checked: whether the box is ticked
         :param numbers: whether numbers may change now; a changed state always shows at once
         """
         numbers = numbers or view.link != self._link
         self._link = view.link
-        self.number.show_text(str(number))
+        self._show_number(view.number)
         self.box.setChecked(checked)
-        self.kind.show_text(words.type_text(view), theme.MUTED)
+        self.kind.show_text(words.type_text(view), theme.MUTED, (view.type_label, ''))
         self.sign.show_sign(theme.LINK_SIGNS[view.link])
         self.link.show_text(words.LINK_WORDS[view.link])
         if numbers:
             self._show_numbers(view)
         self._show_second_line(view)
         self.recording.say(RECORDING if view.recording else '', filled=False)
+        self.recording.setVisible(view.recording)
         if view.driven != self._driven:
             self._driven = view.driven
             self.update()
@@ -181,12 +191,19 @@ class RobotRow(QWidget):
         """Show what changes all the time."""
         self.age.show_text(words.link_age(view), theme.MUTED)
         self.setToolTip(words.figures_text(view.figures))
-        self.linear.show_text(words.linear_text(view.linear_mps))
-        self.turn.show_text(words.turn_text(view.angular_rad_s))
-        self.battery.show_charge(view.battery)
+        old = view.link != views.LIVE
+        tone = theme.MUTED if old else theme.TEXT
+        self.linear.show_text(words.linear_text(view.linear_mps), tone)
+        turn = words.turn_text(view.angular_rad_s)
+        self.turn.show_text(turn, tone, shorter=(turn.rpartition(' ')[0] or turn, ''))
+        self.battery.show_charge(view.battery, old)
 
     def _show_second_line(self, view):
         """Show the proof of a stop, or what is wrong with the link, or how the robot moves."""
+        if view.driven:
+            self.pill.say(DRIVING)
+        else:
+            self.pill.say(MOVING if view.moving else '', theme.ATTENTION, filled=False)
         if view.proof is not None:
             self._show_trouble(theme.PROOF_SIGNS[view.proof.state], view.proof.text,
                                view.proof.state == views.PROOF_NOT_CONFIRMED)
@@ -195,15 +212,18 @@ class RobotRow(QWidget):
         else:
             sign = (theme.TRIANGLE, theme.ATTENTION) if view.slow else None
             self._show_trouble(sign, view.note, with_state=True)
-        if view.driven:
-            self.pill.say(DRIVING)
-        else:
-            self.pill.say(MOVING if view.moving else '', theme.ATTENTION, filled=False)
+
+    def _show_number(self, number):
+        """Show the robot's number; one that no key drives is dimmed."""
+        text = str(number) if number else ''
+        if len(text) > max(len(self.number.text()), 2):
+            self.number.fix_width('8' * len(text))
+        self.number.show_text(text, theme.TEXT if number <= LAST_KEY else theme.MUTED)
 
     def _show_trouble(self, sign, text, loud=False, with_state=False):
-        """Show a sentence in place of the motion; '' brings the motion back.
+        """Show a sentence in place of the turn; '' brings the turn back.
 
-        :param with_state: leave the robot's state and battery beside the sentence
+        :param with_state: leave the robot's state beside the sentence
         """
         speaking = bool(text)
         state = with_state or not speaking
@@ -212,14 +232,16 @@ class RobotRow(QWidget):
         if font.bold() != loud:
             font.setBold(loud)
             self.trouble.setFont(font)
-        self.trouble.show_text(text, shorter=words.beginnings(text))
+        self.trouble.show_text(text, shorter=words.beginnings(text, most=3))
+        # A sentence takes the room of a state that there is none of.
+        state = state and bool(self.pill.word or not speaking)
         if (speaking, state, sign is None) == self._trouble_shown:
             return
         self._trouble_shown = (speaking, state, sign is None)
+        self.linear.setMinimumWidth(0 if speaking else self.linear.maximumWidth())
         for widget, visible in ((self.trouble_sign, sign is not None), (self.trouble, speaking),
-                                (self.linear, not speaking), (self.turn, not speaking),
-                                (self.filler, not speaking), (self.pill, state),
-                                (self.battery, state)):
+                                (self.turn, not speaking), (self.filler, not speaking),
+                                (self.pill, state)):
             widget.setVisible(visible)
 
     def show_current(self, current):

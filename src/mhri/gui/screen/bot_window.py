@@ -1,87 +1,66 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""One robot's window: who it is, whether it is being driven, how it moves, what it sees."""
+"""One robot's tile: who it is, whether it is being driven, what it sees, how it moves."""
 from python_qt_binding.QtCore import QEvent, QSize, Qt, Signal
 from python_qt_binding.QtGui import QPainter, QPen
-from python_qt_binding.QtWidgets import QDialog, QSizePolicy
+from python_qt_binding.QtWidgets import QLayout, QWidget
 
 from mhri.core.screen import views
-from mhri.gui.screen import theme, words
-from mhri.gui.camera.camera_view import CameraView
+from mhri.core.screen.arrangement import USUAL_SHAPE
+from mhri.core.screen.view_rows import KEYS, load, PICTURES, RECORD, RGB, VIEW_ROWS
 from mhri.gui.driving.drive_keys import mark_drive_area
-from mhri.gui.screen.forms import load_form
-from mhri.gui.sensors.imu_graph import ImuGraph
-from mhri.gui.screen.labels import BatteryLine, Pill, Sign, TextLine
-from mhri.gui.screen.pending import Pace
-from mhri.gui.recording.recording_row import RecordingRow
-from mhri.gui.sensors.scan_view import ScanView
-from mhri.gui.screen.state_line import StateLine
 from mhri.gui.driving.stop_button import StopButton
-from mhri.gui.screen.view_switches import DEPTH, IMU, RECORD, RGB, SCAN, ViewSwitches
+from mhri.gui.recording.recording_row import RecordingRow
+from mhri.gui.screen import theme, words
+from mhri.gui.screen.forms import load_form
+from mhri.gui.screen.hud import Hud
+from mhri.gui.screen.labels import TextLine
+from mhri.gui.screen.pending import Pace
+from mhri.gui.screen.state_line import StateLine
+from mhri.gui.screen.tile_header import (
+    drive_state, LOOKS, NOT_SELECTED, PUT_BACK, TEAR_OFF, TileHeader)
+from mhri.gui.screen.view_switches import ViewSwitches
 
 NUMBERS_PERIOD_S = 0.25
-# With a picture and a graph a window is larger at first than with the motion dial alone.
-_PLAIN_SIZE = (760, 520)
-_VIEWS_SIZE = (930, 540)
-# Narrower than so many heights of a line, the header leaves the place out.
-_POSE_FROM_UNITS = 50
-# What a camera's picture is usually like; what a scan and a graph get of a window's width.
-_PICTURE_SHAPE = 4.0 / 3.0
-_SCAN_SHARE = 0.27
-_LEAST_GRAPH_SHARE = 0.33
-# In heights of a line: what the camera's line of figures needs.
-_LEAST_CAMERA_UNITS = 17
+_TORN_OFF_SIZE = (800, 640)
 
-DRIVING = 'DRIVING'
-SELECTED = 'selected'
-NOT_SELECTED = 'not selected'
-STOPPING = 'STOPPING'
-NOT_CONFIRMED = 'NOT CONFIRMED'
-STOPPED = 'STOPPED'
-
-# How each drive state looks: colour, whether the pill is filled, width of the window's edge [px].
-_LOOKS = {
-    DRIVING: (theme.DRIVE, True, 8),
-    SELECTED: (theme.DRIVE, False, 3),
-    NOT_SELECTED: (theme.MUTED, False, 1),
-    STOPPING: (theme.STOP, False, 8),
-    NOT_CONFIRMED: (theme.STOP, True, 8),
-    STOPPED: (theme.STOP, True, 8),
-}
-# What a stop is called that is proved so far.
-_STOPS = {views.PROOF_STOPPED: STOPPED, views.PROOF_NOT_CONFIRMED: NOT_CONFIRMED}
-_EDGE_PX = 8
+_EDGE_PX = 4
+# A small tile that has less room below its header [heights of a line] shows the header alone.
+_LEAST_PICTURE_UNITS = 2.5
 
 
-class BotWindow(QDialog):
+class BotWindow(QWidget):
     """What every type of robot has; a type with more brings a subclass (see ``windows``).
 
-    It shows what it is given and asks for nothing: a host looks at :meth:`wanted`, feeds ``graph``
-    (:class:`ImuGraph`), ``camera`` (:class:`CameraView`) and ``scan`` (:class:`ScanView`) with just
-    that, and serves ``recording`` (:class:`RecordingRow`).
-
-    Opening it never takes the keyboard away from what has it: the host raises it where the operator
-    asked for it. Escape does not close it, since closing stops a robot.
+    It shows what it is given and asks for nothing: a host looks at :meth:`wanted`, feeds
+    :meth:`view` of each of these with just that, and serves ``recording`` (:class:`RecordingRow`).
+    A class from elsewhere puts its own lines into ``motion_place.layout()``: they are always seen.
 
     :param ui_dir: folder of ``bot_window.ui``
     :param name: the robot's name
     :param type_label: the robot's type in words
     """
 
-    #: the window was closed: name of its robot
-    closed = Signal(str)
     stop_requested = Signal()
     #: another set of views is :meth:`wanted`
     views_changed = Signal()
+    #: a click on it: name of its robot
+    clicked = Signal(str)
+    #: a double click: this robot and no other
+    drive_requested = Signal(str)
+    #: it shall go into a window of its own, or back
+    tear_requested = Signal(str)
 
     def __init__(self, ui_dir, name, type_label, parent=None):
         super().__init__(parent)
         self.name = name
+        self.torn_off = False
         self._drive = None
         self._link = None
+        self._looked_at = False
         self._wanted = set()
         self._offered = frozenset()
-        self._splitter_set = False
+        self._views = {}
         self._numbers = Pace(NUMBERS_PERIOD_S)
         self._build(ui_dir, type_label)
         self._connect()
@@ -91,41 +70,27 @@ class BotWindow(QDialog):
         """Load the form and set what a form cannot say."""
         self.setFont(theme.base_font(self.font()))
         load_form(ui_dir, 'bot_window.ui', self, (
-            BatteryLine, CameraView, ImuGraph, Pill, RecordingRow, ScanView, Sign, StateLine,
-            StopButton, TextLine, ViewSwitches))
+            RecordingRow, StateLine, StopButton, TextLine, ViewSwitches))
         self.setObjectName('window_' + self.name)
-        self.setWindowFlags(Qt.Window)
-        self.setAttribute(Qt.WA_ShowWithoutActivating)
+        self.setAutoFillBackground(True)
         self.setFocusPolicy(Qt.ClickFocus)
         mark_drive_area(self)
-        unit = self.fontMetrics().height()
-        self.layout().setContentsMargins(*[_EDGE_PX + unit // 2] * 4)
-        self._build_header(type_label)
+        self.layout().setContentsMargins(*[_EDGE_PX] * 4)
+        # The stage says how large it is, whatever its parts would like.
+        self.layout().setSizeConstraint(QLayout.SetNoConstraint)
+        self.header = TileHeader(self.name, type_label, self)
+        self.hud = Hud(self)
+        for key in ('name_label', 'type_label', 'pill', 'link_sign', 'link_label',
+                    'battery_label', 'views_button', 'tear_button'):
+            setattr(self, key, getattr(self.header, key))
         self._build_figures()
-        self.stop_button.setFont(theme.larger(self.font(), 1.5, bold=True))
+        self.stop_button.setFont(theme.larger(self.font(), 1.3, bold=True))
         self.stop_button.set_look('Shift+Space', 2.2)
-        self.pose_label.hide()
+        self.stop_button.setObjectName('tile_stop_button')
+        self.stop_button.hide()
+        self.tools.hide()
+        self.motion_place.hide()
         self._arrange()
-
-    def _build_header(self, type_label):
-        """Set up the line that identifies the robot."""
-        numbers = theme.number_font(theme.larger(self.font(), 1.1))
-        self.name_label.setFont(theme.larger(self.font(), 1.7, bold=True))
-        self.name_label.show_text(self.name)
-        self.type_label.show_text(type_label, theme.MUTED)
-        self.pill.set_words(tuple(_LOOKS))
-        self.pill.setFont(theme.larger(self.font(), 1.1))
-        self.link_sign.setFont(numbers)
-        for label, sample in ((self.link_label, 'waiting 000 ms'),
-                              (self.speed_label, 'back 0.00 m/s'),
-                              (self.heading_label, 'heading -000 deg'),
-                              (self.battery_label, '100 %')):
-            label.setFont(numbers)
-            label.fix_width(sample)
-        # It may be squeezed, so that the window can become narrow enough to do without it.
-        self.pose_label.setFont(numbers)
-        self.pose_label.setMaximumWidth(theme.text_width(numbers, 'x -00.00 m  y -00.00 m'))
-        self.pose_label.setSizePolicy(QSizePolicy.Preferred, QSizePolicy.Fixed)
 
     def _build_figures(self):
         """Set up the captions and values of the odometry."""
@@ -142,77 +107,142 @@ class BotWindow(QDialog):
         """Wire the stop button, which acts when pressed, and the switches."""
         self.stop_button.pressed.connect(self.stop_requested)
         self.switches.changed.connect(self._arrange)
-        self.views_splitter.splitterMoved.connect(self._on_splitter_moved)
-        self.views_splitter.installEventFilter(self)
+        self.views_button.toggled.connect(self._show_tools)
+        self.tear_button.clicked.connect(lambda: self.tear_requested.emit(self.name))
 
     def _restore(self):
         """Begin with nothing heard."""
         self.show_view(views.RobotView(self.name, self.type_label.text()))
 
+    def view(self, key):
+        """Return the widget of a view of the registry; it is made when it is first asked for."""
+        row = next(row for row in VIEW_ROWS if row.key == key)
+        if row.widget not in self._views:
+            widget = self._views[row.widget] = load(row.widget)(self)
+            order = list(dict.fromkeys(row.widget for row in VIEW_ROWS))
+            before = [name for name in order[:order.index(row.widget)] if name in self._views]
+            self.views_splitter.insertWidget(len(before), widget)
+            widget.hide()
+            if hasattr(widget, 'show_tools'):
+                widget.show_tools(self.tools.isVisibleTo(self))
+            self.header.raise_()
+            self.hud.raise_()
+        return self._views[row.widget]
+
     def offer(self, keys):
-        """Offer what this robot can have: of 'imu', 'rgb', 'depth', 'scan', 'record'.
+        """Offer what this robot can have: keys of the registry, and 'record'.
 
         What the operator chose before comes back as soon as it is on offer again.
         """
         keys = frozenset(keys)
-        if keys == self._offered:
-            return
-        first = not self._offered
-        self._offered = keys
-        self.switches.offer(keys)
-        self._arrange()
-        if first and not self.isVisible():
-            self.resize(self.sizeHint())
+        if keys != self._offered:
+            self._offered = keys
+            self.switches.offer(keys)
+            self._arrange()
 
     def is_watched(self):
-        """Tell whether anybody can see the window: it is neither hidden nor minimised."""
-        return self.isVisible() and not self.isMinimized()
+        """Tell whether anybody can see the tile: it is neither hidden nor minimised."""
+        return self.isVisible() and not self.window().isMinimized()
 
     def wanted(self):
-        """Return the set of views to be fed now: empty while nobody can see the window."""
-        return self.switches.wanted() if self.is_watched() else set()
+        """Return the set of views to be fed now: empty while nobody can see the tile."""
+        return self._shown() if self.is_watched() else set()
+
+    def _shown(self):
+        """Return the views that the tile has room for: a small one shows its picture alone."""
+        chosen = self.switches.wanted()
+        if self.header.large:
+            return chosen
+        return chosen & PICTURES if self._has_room() else set()
+
+    def _has_room(self):
+        """Tell whether there is room for more than the header."""
+        least = _LEAST_PICTURE_UNITS * self.fontMetrics().height()
+        return self.header.large or self.height() - self.header.height() >= least
 
     def camera_size(self):
         """Return (width, height) that the picture has room for, in pixels of the screen."""
-        return self.camera.camera_size()
+        return self.view(RGB).camera_size()
+
+    def picture_shape(self):
+        """Return width by height of what the tile shows."""
+        frame = self.view(RGB).picture.frame if self._shown() & PICTURES else None
+        if frame is None or not all(frame.full_size):
+            return USUAL_SHAPE
+        width, height = frame.full_size
+        return min(4.0, max(0.25, width / height))
+
+    def show_large(self, large):
+        """Be a large tile, with all there is, or a small one."""
+        if large != self.header.large:
+            self.header.show_large(large)
+            self.hud.show_large(large)
+            self.tools.setVisible(large and self.views_button.isChecked())
+            self._arrange()
+
+    def show_looked_at(self, looked_at):
+        """Mark the tile of the robot that was chosen last."""
+        if looked_at != self._looked_at:
+            self._looked_at = looked_at
+            self.update()
+
+    def show_hud(self, shown):
+        """Show the numbers over the picture, or the picture alone; a sentence stays."""
+        self.hud.show_numbers(shown)
+
+    def show_torn_off(self, torn_off):
+        """Be in a window of its own, which has a stop button of its own, or on the screen."""
+        self.torn_off = torn_off
+        self.tear_button.setText(PUT_BACK if torn_off else TEAR_OFF)
+        self.stop_button.setVisible(torn_off)
+
+    def _show_tools(self, shown):
+        """Open or close the switches, the streams' figures and the recording."""
+        self.tools.setVisible(shown)
+        for widget in self._views.values():
+            if hasattr(widget, 'show_tools'):
+                widget.show_tools(shown)
+        self._arrange()
 
     def _arrange(self):
         """Lay out the views that are chosen; without any there is the picture of the motion."""
-        views_on = self.switches.wanted()
-        cameras = views_on & {RGB, DEPTH}
-        kind = next(iter(cameras), None)
-        if kind != self.camera.kind:
-            self.camera.show_kind(kind)
-        self.camera.setVisible(bool(cameras))
-        self.scan.setVisible(SCAN in views_on)
-        self.graph.setVisible(IMU in views_on)
-        self.views_splitter.setVisible(bool(views_on))
-        self.motion_page.setVisible(not views_on)
+        shown = self._shown()
+        kind = next(iter(shown & PICTURES), None)
+        visible = {id(self.view(key)) for key in shown}
+        for widget in self._views.values():
+            if hasattr(widget, 'show_kind') and id(widget) in visible and widget.kind != kind:
+                widget.show_kind(kind)
+            widget.setVisible(id(widget) in visible)
+        self.views_splitter.setVisible(bool(shown))
+        self.motion_page.setVisible(not shown and self._has_room())
         self.switches.setVisible(bool(self._offered - {RECORD}))
         self.recording.setVisible(RECORD in self._offered)
-        self._share_out()
+        self.motion_place.setVisible(self.header.large and self.motion_place.layout().count() > 0)
+        self._lay_over()
         self._tell_wanted()
 
-    def _on_splitter_moved(self, *_):
-        """Leave the widths to the operator from now on."""
-        self._splitter_set = True
+    def _covers_picture(self):
+        """Tell whether the header lies on the picture: where that is all there is."""
+        shown = self._shown()
+        return bool(shown) and shown <= PICTURES and not (
+            self.tools.isVisibleTo(self) or self.motion_place.isVisibleTo(self))
 
-    def _share_out(self):
-        """Give the picture the width that its height needs, a scan the same, the graph the rest."""
-        if self._splitter_set:
-            return
-        width, height = self.views_splitter.width(), self.views_splitter.height()
-        height -= self.camera.sizeHint().height() - self.camera.picture.sizeHint().height()
-        beside = self.camera.picture.width() - self.camera.picture.room().width()
-        scan = min(_SCAN_SHARE * width, height) if self.scan.isVisibleTo(self) else 0.0
-        graph = _LEAST_GRAPH_SHARE * width if self.graph.isVisibleTo(self) else 0.0
-        least = _LEAST_CAMERA_UNITS * self.fontMetrics().height()
-        camera = min(width - scan - graph, max(least, _PICTURE_SHAPE * height + beside)) \
-            if self.camera.kind else 0.0
-        if not graph:
-            scan = width - camera
-        self.views_splitter.setSizes([
-            round(size) for size in (camera, scan, max(0.0, width - camera - scan))])
+    def _lay_over(self):
+        """Place header and numbers over the rest."""
+        inside = self.rect().adjusted(_EDGE_PX, _EDGE_PX, -_EDGE_PX, -_EDGE_PX)
+        height = self.header.sizeHint().height()
+        self.header.setGeometry(inside.x(), inside.y(), inside.width(), height)
+        self.header_space.setFixedHeight(0 if self._covers_picture() else height)
+        picture = bool(self._shown() & PICTURES)
+        self.hud.setVisible(self._has_room() and (picture or bool(self.hud.sentence)))
+        units = 7.0 if self.header.large else 4.0
+        high = min(inside.height() - height, round(units * self.fontMetrics().height()))
+        foot = self.stop_button.height() if self.stop_button.isVisibleTo(self) else 0
+        width = self.view(next(iter(self._shown() & PICTURES))).width() \
+            if picture and self.header.large else inside.width()
+        self.hud.setGeometry(inside.x(), inside.bottom() + 1 - high - foot, width, max(1, high))
+        self.header.raise_()
+        self.hud.raise_()
 
     def _tell_wanted(self):
         """Tell of another set of wanted views, and of nothing else."""
@@ -223,12 +253,15 @@ class BotWindow(QDialog):
 
     def sizeHint(self):  # noqa: N802
         """Return a size at which everything on offer can be used."""
-        hint = QSize(*(_VIEWS_SIZE if self._offered - {RECORD} else _PLAIN_SIZE))
-        return hint.expandedTo(self.minimumSizeHint())
+        return QSize(*_TORN_OFF_SIZE)
+
+    def minimumSizeHint(self):  # noqa: N802
+        """Return next to nothing: the stage says how large a tile is."""
+        return QSize(4 * self.fontMetrics().height(), 2 * self.fontMetrics().height())
 
     @property
     def drive_state(self):
-        """One of DRIVING, SELECTED, NOT_SELECTED, STOPPING, NOT_CONFIRMED, STOPPED."""
+        """What :func:`mhri.gui.screen.tile_header.drive_state` says of the robot on show."""
         return self._drive
 
     def show_view(self, view, stop_all=False):
@@ -236,31 +269,27 @@ class BotWindow(QDialog):
 
         :param stop_all: whether stop-all is in force; a proof in the view says so, too
         """
-        due = self._numbers.due()
-        numbers = due or view.link != self._link
+        numbers = self._numbers.due() or view.link != self._link
         self._link = view.link
         self._show_drive_state(view, stop_all or view.proof is not None)
-        self.link_sign.show_sign(theme.LINK_SIGNS[view.link])
-        self.type_label.show_text(words.type_text(view), theme.MUTED)
+        self.header.show_view(view, numbers)
         self._show_sentence(view)
-        self.graph.show_old(view.link != views.LIVE)
+        for row in VIEW_ROWS:
+            widget = self._views.get(row.widget)
+            if widget is not None and hasattr(widget, 'show_old'):
+                widget.show_old(view.link != views.LIVE)
         if numbers:
             self._show_numbers(view)
 
     def _show_drive_state(self, view, stopped):
-        """Show in title, edge and pill whether this robot is driven right now."""
-        if stopped:
-            drive = _STOPS.get(view.proof.state, STOPPING) if view.proof else STOPPING
-        else:
-            drive = DRIVING if view.driven else SELECTED if view.selected else NOT_SELECTED
+        """Show in edge and pill whether this robot is driven right now."""
+        drive = drive_state(view, stopped)
         if drive == self._drive:
             return
         self._drive = drive
-        self.setWindowTitle('{} - {}'.format(self.name, drive))
-        ink, filled, _ = _LOOKS[drive]
-        self.pill.say(drive, ink, filled)
-        self.stop_button.setText(
-            'STOP ALL in force - see the panel' if stopped else 'STOP ALL')
+        self.header.show_drive(drive)
+        self.stop_button.setText('STOP ALL in force - release on the main screen'
+                                 if stopped else 'STOP ALL')
         self.stop_button.show_engaged(stopped)
         self.update()
 
@@ -274,29 +303,17 @@ class BotWindow(QDialog):
             text = view.note
         else:
             sign, text = None, view.note
-        self.sentence_sign.show_sign(sign)
-        self.sentence_label.show_text(text, shorter=words.beginnings(text))
-        self._make_room()
-
-    def _make_room(self):
-        """Leave the place out of a narrow header, and what a sentence needs the room of."""
-        wide = self.width() > _POSE_FROM_UNITS * self.fontMetrics().height()
-        speaking = bool(self.sentence_label.text())
-        self.pose_label.setVisible(wide and not speaking)
-        self.heading_label.setVisible(wide or not speaking)
+        before = self.hud.sentence
+        self.hud.show_sentence(text, sign)
+        if bool(before) != bool(text):
+            self._lay_over()
 
     def _show_numbers(self, view):
         """Show what changes all the time."""
         # What a silent robot said last is still worth knowing, but not as if it were now.
         tone = theme.TEXT if view.link == views.LIVE else theme.MUTED
-        self.link_label.show_text(words.link_text(view))
-        self.speed_label.show_text(words.linear_text(view.linear_mps), tone)
-        self.heading_label.show_text('heading ' + words.heading_text(view.heading_rad), tone)
-        self.battery_label.show_charge(view.battery)
+        self.hud.show_view(view)
         self.x_value.show_text('x ' + words.metres_text(view.x_m), tone)
-        if self.pose_label.isVisible():
-            self.pose_label.show_text('x {}  y {}'.format(
-                words.metres_text(view.x_m), words.metres_text(view.y_m)), tone)
         self.y_value.show_text('y ' + words.metres_text(view.y_m), tone)
         self.turn_value.show_text(words.turn_text(view.angular_rad_s), tone)
         self.max_linear_value.show_text(words.linear_text(view.max_linear_mps))
@@ -304,63 +321,61 @@ class BotWindow(QDialog):
 
     def save_settings(self):
         """Return what is kept between runs as a plain dict: choices, splitter."""
-        return {'views': self.switches.chosen(), 'graph': self.graph.save_settings(),
-                'recording': self.recording.save_settings(),
-                'splitter': self.views_splitter.sizes() if self._splitter_set else []}
+        kept = {row.key: self._views[row.widget].save_settings() for row in VIEW_ROWS
+                if row.widget in self._views}
+        return {'views': self.switches.chosen(), 'recording': self.recording.save_settings(),
+                'splitter': self.views_splitter.sizes(), 'of_views': kept}
 
     def restore_settings(self, settings):
         """Take over a dict of :meth:`save_settings`; what is missing or unknown stays as it is."""
         if 'views' in settings:
             self.switches.choose(settings['views'])
-        self.graph.restore_settings(settings.get('graph', {}))
+        for key, kept in settings.get('of_views', {}).items():
+            if key in KEYS:
+                self.view(key).restore_settings(kept)
         self.recording.restore_settings(settings.get('recording', {}))
         sizes = settings.get('splitter', [])
-        self._splitter_set = len(sizes) == self.views_splitter.count()
-        if self._splitter_set:
+        if len(sizes) == self.views_splitter.count():
             self.views_splitter.setSizes(sizes)
 
     def showEvent(self, event):  # noqa: N802
         """Ask for the views."""
         super().showEvent(event)
-        self._tell_wanted()
+        self._arrange()
 
     def hideEvent(self, event):  # noqa: N802
         """Ask for nothing any more."""
         super().hideEvent(event)
         self._tell_wanted()
 
-    def changeEvent(self, event):  # noqa: N802
-        """Ask for nothing while minimised."""
-        super().changeEvent(event)
-        if event.type() == QEvent.WindowStateChange:
-            self._tell_wanted()
-
     def resizeEvent(self, event):  # noqa: N802
-        """Leave the place out of a narrow header."""
+        """Keep header and numbers where they belong."""
         super().resizeEvent(event)
-        self._make_room()
+        self._arrange()
 
-    def eventFilter(self, watched, event):  # noqa: N802
-        """Share out another width of the views."""
-        if watched is self.views_splitter and event.type() == QEvent.Resize:
-            self._share_out()
-        return super().eventFilter(watched, event)
+    def event(self, event):
+        """Keep the numbers over the picture when the layout has moved it."""
+        done = super().event(event)
+        if event.type() == QEvent.LayoutRequest:
+            self._lay_over()
+        return done
 
-    def keyPressEvent(self, event):  # noqa: N802
-        """Leave Escape without effect: a slip must not close a window that drives."""
-        if event.key() == Qt.Key_Escape:
-            event.accept()
-        else:
-            super().keyPressEvent(event)
+    def mousePressEvent(self, event):  # noqa: N802
+        """Look at this robot."""
+        if event.button() == Qt.LeftButton:
+            self.clicked.emit(self.name)
+        super().mousePressEvent(event)
 
-    def closeEvent(self, event):  # noqa: N802
-        """Tell that the window closes."""
-        event.accept()
-        self.closed.emit(self.name)
+    def mouseDoubleClickEvent(self, event):  # noqa: N802
+        """Drive this robot and no other."""
+        if event.button() == Qt.LeftButton:
+            self.drive_requested.emit(self.name)
 
     def paintEvent(self, event):  # noqa: N802
         """Paint the edge that says whether this robot is driven."""
-        ink, _, width = _LOOKS[self._drive]
+        ink, _, width = LOOKS[self._drive]
+        if self._looked_at and self._drive == NOT_SELECTED:
+            ink, width = theme.TEXT, 2
         painter = QPainter(self)
         pen = QPen(theme.colour(ink, self.palette()), width)
         pen.setJoinStyle(Qt.MiterJoin)

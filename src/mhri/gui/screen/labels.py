@@ -3,11 +3,15 @@
 """Small pieces of every view: a line of text that never asks for room, a state shape, a pill."""
 from html import escape
 
-from python_qt_binding.QtCore import QRectF, QSize, Qt
+from python_qt_binding.QtCore import QRect, QRectF, QSize, Qt
 from python_qt_binding.QtGui import QPainter, QPalette, QPen
 from python_qt_binding.QtWidgets import QLabel, QSizePolicy, QWidget
 
+from mhri.core.screen import battery
 from mhri.gui.screen import theme, words
+
+# Of a text that may be wrapped.
+MOST_LINES = 3
 
 
 def plain_tip(text):
@@ -32,8 +36,15 @@ class TextLine(QLabel):
         super().__init__(parent)
         self._tone = theme.TEXT
         self._shorter = ()
+        self._wrapped = False
         self.setTextFormat(Qt.PlainText)
         self.setSizePolicy(QSizePolicy.Ignored, QSizePolicy.Fixed)
+
+    def set_wrapped(self, wrapped):
+        """Have up to :data:`MOST_LINES` lines, or one; the room of all of them is kept."""
+        self._wrapped = wrapped
+        self.updateGeometry()
+        self.update()
 
     def show_text(self, text, tone=theme.TEXT, shorter=()):
         """Show a text in one of the colours of the theme; the same again costs nothing.
@@ -49,12 +60,24 @@ class TextLine(QLabel):
             self._tone = tone
             self.update()
 
+    @property
+    def tone(self):
+        """The colour on show, one of the theme's."""
+        return self._tone
+
     def set_tone(self, tone):
         """Choose one of the colours of the theme."""
         self.show_text(self.text(), tone)
 
     def shown_text(self):
-        """Return what can be read in the width there is."""
+        """Return what can be read in the room there is."""
+        if self._wrapped:
+            room = QRect(0, 0, max(1, self.width()), MOST_LINES * self.fontMetrics().height())
+            for text in (self.text(), *self._shorter):
+                if self.fontMetrics().boundingRect(room, int(Qt.TextWordWrap), text).height() \
+                        <= room.height():
+                    return text
+            return (self._shorter or (self.text(),))[-1]
         return theme.fitting_text(self.fontMetrics(), (self.text(), *self._shorter), self.width())
 
     def fix_width(self, *samples):
@@ -63,13 +86,15 @@ class TextLine(QLabel):
         self.setFixedWidth(theme.text_width(self.font(), *samples))
 
     def minimumSizeHint(self):  # noqa: N802
-        """Return the height of one line and hardly any width."""
-        return QSize(self.fontMetrics().averageCharWidth() * 4, self.fontMetrics().height())
+        """Return the height of its lines and hardly any width."""
+        lines = MOST_LINES if self._wrapped else 1
+        return QSize(self.fontMetrics().averageCharWidth() * 4,
+                     lines * self.fontMetrics().height())
 
     def sizeHint(self):  # noqa: N802
-        """Return the height of one line and the width of the text."""
+        """Return the height of its lines and the width of the text."""
         return QSize(self.fontMetrics().horizontalAdvance(self.text()) + 2,
-                     self.fontMetrics().height())
+                     self.minimumSizeHint().height())
 
     def _hint(self):
         """Return the tool tip of a text that is told whole."""
@@ -85,25 +110,44 @@ class TextLine(QLabel):
         group = QPalette.Active if self.isEnabled() else QPalette.Disabled
         painter.setPen(theme.colour(self._tone, self.palette()) if self.isEnabled()
                        else self.palette().color(group, QPalette.WindowText))
-        painter.drawText(self.rect(), int(self.alignment() | Qt.TextSingleLine), shown)
+        painter.drawText(self.rect(), int(self.alignment() | (
+            Qt.TextWordWrap if self._wrapped else Qt.TextSingleLine)), shown)
 
 
 class BatteryLine(TextLine):
-    """A battery's charge as percent with a battery in front; nothing where there is none."""
+    """A battery's charge as percent with a battery in front; nothing where there is none.
+
+    Of a low one the battery has a colour, of a flat one the number is bold as well
+    (:mod:`mhri.core.screen.battery`).
+    """
 
     def __init__(self, parent=None):
         super().__init__(parent)
         self._fraction = None
+        self._level = battery.FINE
         self.setAlignment(Qt.AlignRight | Qt.AlignVCenter)
 
-    def show_charge(self, fraction):
-        """Show a charge in [0, 1]; None and NaN show nothing."""
+    @property
+    def level(self):
+        """The level of the charge on show, of :mod:`mhri.core.screen.battery`."""
+        return self._level
+
+    def show_charge(self, fraction, old=False):
+        """Show a charge in [0, 1]; None and NaN show nothing.
+
+        :param old: whether it is not from now: it is dimmed
+        """
         if fraction != self._fraction:
             self._fraction = fraction
+            self._level = battery.battery_level(fraction, self._level)
             text = words.battery_text(fraction)
-            self.setAccessibleName('battery {}'.format(text) if text else '')
-            self.show_text(text)
-            self.update()
+            state = '' if self._level == battery.FINE else ', ' + self._level
+            self.setAccessibleName('battery {}{}'.format(text, state) if text else '')
+            font = self.font()
+            font.setBold(self._level == battery.FLAT)
+            self.setFont(font)
+            self.setText(text)
+        self.set_tone(theme.MUTED if old else theme.TEXT)
 
     def fix_width(self, *samples):
         """Be exactly as wide as the battery and the widest of the samples."""
@@ -127,8 +171,8 @@ class BatteryLine(TextLine):
         painter.setRenderHint(QPainter.Antialiasing)
         unit = self.fontMetrics().height()
         mark = QRectF(1.0, (self.height() - 0.68 * unit) / 2.0, 0.42 * unit, 0.68 * unit)
-        theme.paint_battery(painter, mark, self._fraction,
-                            theme.colour(self._tone, self.palette()))
+        tone = self._tone if self._level == battery.FINE else theme.BATTERY_TONES[self._level]
+        theme.paint_battery(painter, mark, self._fraction, theme.colour(tone, self.palette()))
 
 
 class Sign(QWidget):

@@ -24,6 +24,10 @@ class StatusLine(QWidget):
         row.addWidget(self._line, 1)
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
 
+    def show_wrapped(self, wrapped):
+        """Write the sentence on as many lines as it needs, or on one."""
+        self._line.set_wrapped(wrapped)
+
     def show_status(self, text, level):
         """Show a sentence; the level is 'calm', 'attention' or 'stopped'."""
         self._sign.show_sign(_SIGNS[level])

@@ -1,29 +1,22 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The row that chooses what a bot window shows: graph, camera, laser scan."""
+"""The row that chooses what a tile shows: one picture, and what stands beside it."""
 from python_qt_binding.QtCore import Qt, Signal
 from python_qt_binding.QtWidgets import QButtonGroup, QHBoxLayout, QLabel, QSizePolicy, QWidget
 
+from mhri.core.screen.view_rows import KEYS, PICTURES, RGB, VIEW_ROWS
 from mhri.gui.driving.drive_keys import keep_arrows
 from mhri.gui.screen.switches import SwitchBox, SwitchRadio
 
-IMU = 'imu'
-RGB = 'rgb'
-DEPTH = 'depth'
-SCAN = 'scan'
-RECORD = 'record'
 OFF = 'off'
-
-# Label of each switch; a view that a robot cannot have is not offered. A further view is a row.
-CHECKS = ((IMU, 'IMU graph'), (SCAN, 'Laser scan'))
-CAMERAS = ((OFF, 'off'), (RGB, 'RGB'), (DEPTH, 'depth'))
-_AT_FIRST = frozenset((IMU, RGB))
+_AT_FIRST = frozenset((RGB,))
 
 
 class ViewSwitches(QWidget):
     """Check boxes and radio buttons; what the operator wants is kept while it is not on offer.
 
-    Child widgets: ``view_imu``, ``view_scan``, ``camera_off``, ``camera_rgb``, ``camera_depth``.
+    Child widgets, by the keys of the registry: ``camera_off``, ``camera_rgb``, ... and
+    ``view_scan``, ``view_imu``, ...
     """
 
     #: another set of views is wanted
@@ -40,32 +33,30 @@ class ViewSwitches(QWidget):
     def _build(self):
         """Make and place the switches."""
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
-        self.checks = {key: SwitchBox(label, self) for key, label in CHECKS}
-        self.cameras = {key: SwitchRadio(label, self) for key, label in CAMERAS}
-        self.camera_caption = QLabel('Camera', self)
+        # Made in reading order: Tab goes that way.
+        self.cameras = {OFF: SwitchRadio(OFF, self)}
+        self.cameras.update((row.key, SwitchRadio(row.label, self))
+                            for row in VIEW_ROWS if row.picture)
+        self.checks = {row.key: SwitchBox(row.label, self) for row in VIEW_ROWS if not row.picture}
+        self.camera_caption = QLabel('Picture', self)
         self._group = QButtonGroup(self)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         unit = self.fontMetrics().height()
         row.setSpacing(unit // 2)
-        row.addWidget(self.checks[IMU])
-        row.addSpacing(unit)
         row.addWidget(self.camera_caption)
         for key, button in self.cameras.items():
             button.setObjectName('camera_' + key)
-            button.setAccessibleName('camera ' + button.text())
+            button.setAccessibleName('picture ' + button.text())
             # With the keyboard on it the arrows choose; a click does not bring the keyboard there.
             keep_arrows(button)
             self._group.addButton(button)
             row.addWidget(button)
         row.addSpacing(unit)
-        row.addWidget(self.checks[SCAN])
-        row.addStretch(1)
         for key, box in self.checks.items():
             box.setObjectName('view_' + key)
-        reading = [self.checks[IMU], *self.cameras.values(), self.checks[SCAN]]
-        for one, other in zip(reading, reading[1:]):
-            self.setTabOrder(one, other)
+            row.addWidget(box)
+        row.addStretch(1)
 
     def _connect(self):
         """Wire the switches."""
@@ -77,12 +68,12 @@ class ViewSwitches(QWidget):
         self.offer(())
 
     def offer(self, keys):
-        """Offer these views of IMU, RGB, DEPTH, SCAN; what is not among them disappears."""
+        """Offer these views of the registry; what is not among them disappears."""
         before = self.wanted()
-        self._offered = frozenset(keys) & {IMU, RGB, DEPTH, SCAN}
+        self._offered = frozenset(keys) & KEYS
         for key, box in self.checks.items():
             box.setVisible(key in self._offered)
-        cameras = self._offered & {RGB, DEPTH}
+        cameras = self._offered & PICTURES
         self.camera_caption.setVisible(bool(cameras))
         for key, button in self.cameras.items():
             button.setVisible(bool(cameras) if key == OFF else key in cameras)
@@ -91,14 +82,14 @@ class ViewSwitches(QWidget):
             self.changed.emit()
 
     def wanted(self):
-        """Return the set of views that are chosen and on offer; of RGB and DEPTH one at most."""
+        """Return the set of views that are chosen and on offer; of pictures one at most."""
         return set(self._chosen & self._offered)
 
     def choose(self, keys):
-        """Choose exactly these views; of RGB and DEPTH one, the first of them."""
+        """Choose exactly these views; of pictures one, the first of them in the registry."""
         before = self.wanted()
-        keys = frozenset(keys) & {IMU, RGB, DEPTH, SCAN}
-        self._chosen = keys - {DEPTH} if {RGB, DEPTH} <= keys else keys
+        pictures = [row.key for row in VIEW_ROWS if row.picture and row.key in keys]
+        self._chosen = frozenset(keys) & KEYS - frozenset(pictures[1:])
         self._show()
         if self.wanted() != before:
             self.changed.emit()
@@ -112,7 +103,7 @@ class ViewSwitches(QWidget):
         wanted = self.wanted()
         for key, box in self.checks.items():
             box.setChecked(key in wanted)
-        camera = next(iter(wanted & {RGB, DEPTH}), OFF)
+        camera = next(iter(wanted & PICTURES), OFF)
         self.cameras[camera].setChecked(True)
         self._let_tab_reach_checked()
 
@@ -127,8 +118,8 @@ class ViewSwitches(QWidget):
         checked = {key for key, box in self.checks.items() if box.isChecked()}
         checked |= {key for key, button in self.cameras.items() if button.isChecked()}
         kept = self._chosen - self._offered
-        if self._offered & {RGB, DEPTH}:
-            kept -= {RGB, DEPTH}
+        if self._offered & PICTURES:
+            kept -= PICTURES
         chosen = frozenset(checked - {OFF}) | kept
         if chosen != self._chosen:
             self._chosen = chosen

@@ -12,8 +12,7 @@ class TurtleBotWindow(BotWindow):
         """Add the dial."""
         super()._build(ui_dir, type_label)
         self.dial = MotionDial(self)
-        self.motion_place.layout().addWidget(self.dial)
-        self.motion_place.show()
+        self.dial_place.layout().addWidget(self.dial)
 
     def _show_numbers(self, view):
         """Show the dial's part, too."""

@@ -115,12 +115,15 @@ class ImuGraph(QWidget):
         for chart in self.charts:
             chart.legend.show_old(old)
 
-    def show_series(self, series):
+    def show_value(self, series):
         """Draw a :class:`Series`; without effect while paused or hidden."""
         if self.paused or not self.isVisible():
             return
         self._series = series
         self._draw()
+
+    def show_age(self, age_s):
+        """Take the age of the newest value; the link says whether it is old (:meth:`show_old`)."""
 
     def _draw(self):
         """Draw the series that is there."""

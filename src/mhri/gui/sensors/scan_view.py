@@ -83,7 +83,7 @@ class ScanView(QWidget):
         """What is said while the scan is old, '' while it is live."""
         return self._warning
 
-    def show_scan(self, scan):
+    def show_value(self, scan):
         """Show a scan as :meth:`ScanFeed.take` returns it: NaN is no point."""
         ranges, angle_min, angle_increment, _ = scan
         self._follow(reach_for(ranges))
@@ -102,6 +102,13 @@ class ScanView(QWidget):
         if warning != self._warning:
             self._warning = warning
             self.update()
+
+    def save_settings(self):
+        """Return what is kept between runs: there is nothing to choose."""
+        return {}
+
+    def restore_settings(self, settings):
+        """Take over a dict of :meth:`save_settings`."""
 
     def clear(self, text):
         """Show words instead of a scan."""

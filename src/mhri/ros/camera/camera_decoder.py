@@ -5,16 +5,18 @@ import threading
 
 import rospy
 
+from mhri.core.camera.budget import AS_IT_COMES
 from mhri.core.camera.depth_colour import DepthColour
-from mhri.core.camera.images import FrameError, StreamStatus
+from mhri.core.camera.images import FrameError, OLD_AFTER_S, StreamStatus
 from mhri.core.camera.image_message import read_picture
-from mhri.core.camera.stream_meter import StreamMeter
+from mhri.core.camera.stream_meter import StreamMeter, WINDOW_S
 from mhri.core.screen.text import tidy_text
 
 # Room for the list of what can be read.
 _LONGEST_PROBLEM = 400
 SILENT_S = 2.0
-STALE_S = 1.0
+# A picture that is thinned is late when so many have not come.
+_MISSED = 2.5
 
 
 class Decoder:
@@ -45,6 +47,8 @@ class Decoder:
         self._good_at = self._bad_at = None
         self._shown = self._bad = 0
         self._problem = self._hint = ''
+        self._grant = AS_IT_COMES
+        self._period_s = 0.0
         threading.Thread(target=self._run, daemon=True, name='camera ' + name).start()
 
     def hear(self, message_type, data):
@@ -62,6 +66,14 @@ class Decoder:
             self._message = self._message or self._last
             self._changed.notify_all()
 
+    def expect(self, grant):
+        """Take note of how much is let through, a :class:`mhri.core.camera.budget.Grant`."""
+        with self._changed:
+            self._grant = grant
+            self._period_s = 1.0 / grant.rate_hz if grant.rate_hz else 0.0
+            self._meter.look_back(max(WINDOW_S, _MISSED * self._period_s))
+            self._changed.notify_all()
+
     def explain(self, hint):
         """Say why nothing comes; '' where something should."""
         with self._changed:
@@ -70,7 +82,8 @@ class Decoder:
     def hears(self, now):
         """Tell whether pictures come."""
         with self._changed:
-            return self._good_at is not None and now - self._good_at < SILENT_S
+            return self._good_at is not None and (
+                now - self._good_at < max(SILENT_S, _MISSED * self._period_s))
 
     def end(self):
         """Let the decoder end, with what it holds."""
@@ -93,10 +106,12 @@ class Decoder:
             age = None if self._good_at is None else now - self._good_at
             bad_since = self._bad_at is not None and (
                 self._good_at is None or self._bad_at > self._good_at)
+            old_after_s = max(OLD_AFTER_S, _MISSED * self._period_s)
             return StreamStatus(
                 self._transport, rate_hz, age, bits_per_s, self._shown, self._bad,
-                self._hint or self._problem,
-                age is not None and (bad_since or age > STALE_S))
+                self._grant.words if self._grant.rate_hz == 0.0 else self._hint or self._problem,
+                age is not None and (bad_since or age > old_after_s),
+                self._grant.words, old_after_s)
 
     def _run(self):
         """Decode the newest message whenever one is due (the decoder's thread)."""
@@ -112,8 +127,7 @@ class Decoder:
         """Decode one message; what cannot be decoded is counted and named."""
         message_type, data, received_s = message
         try:
-            frame, transport = read_picture(self._kind, message_type, data, view, self._colour,
-                                            received_s)
+            frame, transport = self.read(message_type, data, view, received_s)
         except FrameError as error:
             self._note_bad(str(error), received_s)
         except Exception as error:  # the guard of this thread
@@ -122,6 +136,13 @@ class Decoder:
             self._note_bad('cannot be decoded: {!r}'.format(error), received_s)
         else:
             self._note_good(frame, transport)
+
+    def read(self, message_type, data, view, received_s):
+        """Return (what a message holds, its transport in words).
+
+        :raises FrameError: it cannot be decoded
+        """
+        return read_picture(self._kind, message_type, data, view, self._colour, received_s)
 
     def _next(self, last):
         """Wait for a message and for its turn.
@@ -149,6 +170,7 @@ class Decoder:
             self._bad_at = received_s
             # It names what a message says of itself, which may be any text.
             self._problem = tidy_text(problem, _LONGEST_PROBLEM)
+            self._hint = ''
 
     def _note_good(self, frame, transport):
         with self._changed:

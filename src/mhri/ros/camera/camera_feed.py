@@ -3,22 +3,28 @@
 """One camera of one robot: found, subscribed, decoded at the size shown, newest picture only.
 
 While it is open it has two threads: one finds the topic and holds the subscription, the other
-decodes. Closed, it has none, and nothing arrives from the network.
+decodes; a third one while the network is thinned. Closed, or granted nothing, nothing arrives from
+the network; closed, it has none.
 """
 import threading
 import time
 
 import rospy
 
+from mhri.core.camera.budget import AS_IT_COMES, Figures
 from mhri.core.camera.images import StreamStatus
 from mhri.core.robots.names import topic_of
-from mhri.core.camera.transports import AUTO, choose_offer, find_offers, may_carry
+from mhri.core.camera.stream_meter import WINDOW_S
+from mhri.core.camera.transports import AUTO, choose_offer, find_offers, may_carry, RAW
 from mhri.ros.camera.camera_decoder import Decoder
+from mhri.ros.camera.samples import Samples
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.subscription import Subscription, reachable
 
 LOOK_S = 1.0           # between looks at the master while nothing comes
 LOOK_AGAIN_S = 5.0     # ... and while pictures come: a better transport may turn up
+# How long a subscription has to last before it tells how often the camera sends.
+SETTLED_S = WINDOW_S + 0.5
 
 
 class CameraFeed:
@@ -36,6 +42,12 @@ class CameraFeed:
     :param depth_range_m: (near, far) of the colours [m]; None: as the scene has it
     """
 
+    @classmethod
+    def of(cls, robot, kind, key):
+        """Return the feed of a camera (``key``: 'rgb' or 'depth'), None for a type without it."""
+        topics = getattr(kind, key)
+        return cls(robot, topics, key) if topics else None
+
     def __init__(self, robot, topics, kind, transport=AUTO, clock=time.monotonic,
                  depth_range_m=None):
         self.robot = robot
@@ -48,21 +60,40 @@ class CameraFeed:
         self._finder = None
         self._session = None
         self._wanted = (None, None)
+        self._grant = AS_IT_COMES
         self._offers = []
+        # The subscription, or what stands in for it; since when, and of which topic the last one.
+        self._line = None
+        self._changed_at = clock()
+        self._topic = ''
+        self._known = {}
 
     def open(self):
         """Begin to look for the camera and to decode; returns at once."""
         with self._changed:
             if self._session is not None:
                 return
-            self._session = Decoder(self.robot, self.kind, lambda: self._wanted, self._clock,
-                                    self._depth_range)
+            self._session = self.new_session(self._wishes)
+            self._session.expect(self._grant)
+            self._changed_at = self._clock()
             if self._finder is None:
                 # One that is still giving a topic back to the master goes on with this instead.
                 self._finder = threading.Thread(target=self._find, daemon=True,
                                                 name='camera finder ' + self.robot)
                 self._finder.start()
             self._changed.notify_all()
+
+    def new_session(self, wanted):
+        """Return the :class:`Decoder` of one opening; ``wanted`` is for it."""
+        return Decoder(self.robot, self.kind, wanted, self._clock, self._depth_range)
+
+    def find_offers(self, published):
+        """Return the offers, best first, among {topic: type} of what is published."""
+        return find_offers(self.kind, self._topics, published)
+
+    def line_of(self, session, offer):
+        """Return the class of a subscription to an offer, and what it is made with."""
+        return Subscription, offer.topic, session.hear
 
     def close(self, wait_s=0.0):
         """Decode nothing more and give the topic back; the latter on the feed's own thread.
@@ -86,6 +117,48 @@ class CameraFeed:
         session = self._session
         if session is not None and changed:
             session.wake()
+
+    def grant(self, grant):
+        """Let through what a :class:`mhri.core.camera.budget.Grant` says, from now on.
+
+        Granted nothing, it keeps what it has shown and gives the topic back.
+        """
+        with self._changed:
+            changed, self._grant = grant != self._grant, grant
+            session = self._session
+            self._changed.notify_all()
+        if session is not None and changed:
+            session.expect(grant)
+
+    def _wishes(self):
+        """Return what the decoder shall do: (size or None, rate at most [Hz] or None)."""
+        (view, max_hz), grant = self._wanted, self._grant
+        rates = [rate for rate in (max_hz, None if grant.sampled else grant.rate_hz) if rate]
+        return view, min(rates, default=None)
+
+    def figures(self):
+        """Return the :class:`mhri.core.camera.budget.Figures` of what it takes of the network."""
+        now = self._clock()
+        with self._changed:
+            session, line, topic, grant = self._session, self._line, self._topic, self._grant
+            lasts_s = now - self._changed_at
+            bits, native_hz = self._known.get(topic, (None, None))
+            heavy = (self._transport == RAW and not grant.lighter
+                     and any(offer.transport != RAW for offer in self._offers))
+        if session is None or grant.rate_hz == 0.0:
+            return Figures(bits, native_hz, heavy)
+        status = session.status(now)
+        if line is None or isinstance(line, Subscription) and not status.rate_hz:
+            # Nothing comes: for long, or only not yet?
+            return Figures(bits, native_hz, heavy) if lasts_s < SETTLED_S else Figures(0.0, 0.0)
+        if status.rate_hz:
+            bits = status.bits_per_s / status.rate_hz
+        if isinstance(line, Samples):
+            native_hz = line.native_hz or native_hz
+        elif lasts_s >= SETTLED_S:
+            native_hz = status.rate_hz
+        self._known[topic] = (bits, native_hz)
+        return Figures(bits, native_hz, heavy)
 
     def take(self):
         """Return the newest :class:`Frame`, None where there is no new one since the last call."""
@@ -114,61 +187,84 @@ class CameraFeed:
 
     def _find(self):
         """Hold the subscription that is wanted; the thread ends when none is."""
-        subscription = served = None
+        served = None
         while True:
             with self._changed:
-                session, transport = self._session, self._transport
-                if session is None and subscription is None:
+                wish = session, transport, grant = self._wish()
+                if session is None and self._line is None:
                     self._finder = None
                     return
-            if subscription is not None and session is not served:
-                subscription = _give_back(subscription)
+            if self._line is not None and (session is not served or grant.rate_hz == 0.0):
+                self._hold(None)
                 continue
             served = session
-            try:
-                subscription = self._look(session, subscription, transport)
-            except MasterError as error:
-                session.explain(str(error))
-            except Exception as error:  # the guard of this thread
-                rospy.logerr_throttle(5.0, '{}: looking for its camera: {!r}'.format(
-                    self.robot, error))
-                session.explain('cannot look for the camera: {}'.format(error))
-            self._rest(session, transport)
+            if grant.rate_hz != 0.0:
+                self._look_guarded(session, AUTO if grant.lighter else transport, grant)
+            self._rest(wish)
 
-    def _rest(self, session, transport):
+    def _wish(self):
+        """Return what decides over the subscription."""
+        return self._session, self._transport, self._grant
+
+    def _look_guarded(self, session, transport, grant):
+        try:
+            self._look(session, transport, grant)
+        except MasterError as error:
+            session.explain(str(error))
+        except Exception as error:  # the guard of this thread
+            rospy.logerr_throttle(5.0, '{}: looking for its camera: {!r}'.format(
+                self.robot, error))
+            session.explain('cannot look for the camera: {}'.format(error))
+
+    def _rest(self, wish):
         """Wait until it is time for another look, or something is to be done."""
-        look_s = LOOK_AGAIN_S if session.hears(self._clock()) else LOOK_S
+        look_s = LOOK_AGAIN_S if wish[0].hears(self._clock()) else LOOK_S
         with self._changed:
-            if self._session is session and self._transport == transport:
+            if self._wish() == wish:
                 self._changed.wait(look_s)
 
-    def _look(self, session, subscription, transport):
-        """Look at the master; return the subscription that is right now, or None.
+    def _hold(self, make, *args):
+        """Give back what there is, and make another; None: none."""
+        with self._changed:
+            line, self._line = self._line, None
+            self._changed_at = self._clock()
+        if line is not None:
+            _give_back(line)
+        line = make(*args) if make else None
+        with self._changed:
+            self._line, self._changed_at = line, self._clock()
+            self._topic = line.topic if line else self._topic
+
+    def _look(self, session, transport, grant):
+        """Look at the master; hold the subscription that is right now, or none.
 
         :raises MasterError: the master cannot be reached
         """
         published = dict(MasterApi(rospy.get_name()).call('getPublishedTopics', '/' + self.robot))
-        offers = find_offers(self.kind, self._topics, published)
+        offers = self.find_offers(published)
         with self._changed:
             self._offers = offers if self._session is session else []
-        offer = choose_offer(offers, transport)
+        offer, line = choose_offer(offers, transport), self._line
         if offer is None:
             session.explain(self._nothing(transport, offers))
-            if subscription and not may_carry(self.kind, transport, subscription.topic):
-                return _give_back(subscription)
-        elif subscription is None or subscription.topic != offer.topic:
-            return self._subscribe(session, subscription, offer)
-        return subscription
+            if line and not may_carry(self.kind, transport, line.topic):
+                self._hold(None)
+        elif grant.sampled:
+            if not (line and line.topic == offer.topic
+                    and getattr(line, 'rate_hz', None) == grant.rate_hz):
+                native_hz = self._known.get(offer.topic, (None, None))[1]
+                self._hold(Samples, offer.topic, session.hear, session.explain, grant.rate_hz,
+                           native_hz, self._clock)
+        elif not (isinstance(line, Subscription) and line.topic == offer.topic):
+            self._subscribe(session, offer)
 
-    def _subscribe(self, session, subscription, offer):
-        """Change over to an offer where its sender answers; return the subscription in force."""
+    def _subscribe(self, session, offer):
+        """Change over to an offer where its sender answers."""
         if not reachable(rospy.get_name(), offer.topic):
             session.explain('{} is registered, but its sender does not answer'.format(offer.topic))
-            return subscription
-        if subscription is not None:
-            _give_back(subscription)
+            return
         session.explain('nothing has come on {} yet'.format(offer.topic))
-        return Subscription(offer.topic, session.hear)
+        self._hold(*self.line_of(session, offer))
 
     def _nothing(self, transport, offers):
         """Say why there is nothing to subscribe."""
@@ -179,9 +275,8 @@ class CameraFeed:
 
 
 def _give_back(subscription):
-    """Unsubscribe; return None, the subscription there is then."""
+    """Unsubscribe."""
     try:
         subscription.close()
     except Exception as error:  # rospy raises all sorts while it shuts down
         rospy.logwarn('%s: unsubscribing: %r', subscription.topic, error)
-    return None

@@ -4,16 +4,18 @@
 
 Publishes ``/mhri_joy/rumble`` (``std_msgs/Empty``) and ``/mhri_voice/push_to_talk``
 (``std_msgs/Bool``: on change, and at 5 Hz while it is held); subscribes ``/mhri_voice/heard``
-(``mhri/Heard``).
+(``mhri/Heard``) and ``device_state`` of each (:mod:`mhri.ros.devices.device_state`).
 """
 import threading
 
 import rospy
 from std_msgs.msg import Bool, Empty
 
+from mhri.core.screen.source_rows import called_by_device, source_rows, suspend_services
 from mhri.core.screen.text import tidy_text
 from mhri.core.screen.views import HeardView
 from mhri.msg import Heard
+from mhri.ros.devices.device_state import DeviceStates
 
 # Said again while it is held, so that a panel that dies does not leave the ear open.
 TALK_PERIOD_S = 0.2
@@ -28,6 +30,8 @@ class DeviceClient:
                                      tcp_nodelay=True)
         self._heard_topic = rospy.Subscriber('/mhri_voice/heard', Heard, self._hear, queue_size=10)
         self._heard = None
+        self._sources = ()
+        self._states = DeviceStates()
         self._changed = threading.Condition()
         self._talking = False
         self._closed = False
@@ -37,9 +41,19 @@ class DeviceClient:
         self._heard = HeardView(tidy_text(message.text), tidy_text(message.command),
                                 message.accepted, tidy_text(message.reason))
 
-    def heard(self):
-        """Return the newest :class:`mhri.core.screen.views.HeardView`, None before the first."""
-        return self._heard
+    def follow(self, rows):
+        """Hear which devices the sources have (blocking: it asks the master).
+
+        :param rows: the parameter ``/mux/sources``
+        """
+        self._sources = source_rows(rows)
+        self._states.follow(suspend_services(rows))
+
+    def view(self):
+        """Return what a :class:`mhri.core.screen.views.PanelView` says of devices, as a dict."""
+        devices = self._states.views()
+        return {'sources': called_by_device(self._sources, devices), 'devices': devices,
+                'heard': self._heard}
 
     def rumble(self):
         """Shake the pad: a robot was lost."""
@@ -71,3 +85,4 @@ class DeviceClient:
         """Give every topic back (blocking: it asks the master)."""
         for topic in (self._rumble, self._talk, self._heard_topic):
             topic.unregister()
+        self._states.unregister()

@@ -8,6 +8,7 @@ Interfaces of the node (the names are passed in):
   ``header.frame_id`` is ``profile:<name>``, the profile that says what the axes mean, or ''; the
   last word of a device that is lost or suspended has `` lost`` behind that
 - serves ``mhri/SetSuspended``; a node starts suspended
+- ``device_state`` beside the service (:mod:`mhri.ros.devices.device_state`): which device is there
 - ``/diagnostics`` at 1 Hz: which device is open, or why none is
 """
 import threading
@@ -19,6 +20,7 @@ from sensor_msgs.msg import Joy
 
 from mhri.core.devices.publish_throttle import Pacer
 from mhri.inputs.reader import DeviceAbsent, DeviceLost
+from mhri.ros.devices.device_state import DeviceState
 from mhri.ros.diagnostics import publish_diagnostics
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.graph.rospy_inside import PromptPublisher
@@ -30,6 +32,8 @@ READING = 'reading'
 CLOSED = 'closed'
 
 LOOK_PERIOD_S = 1.0
+# How often a suspended node sees whether its device is there.
+FIND_PERIOD_S = 2.0
 # Behind header.frame_id of a device's last word: the mux asks for neutral before it drives again.
 LOST = ' lost'
 # After it, for listeners that go by the time alone.
@@ -58,7 +62,7 @@ class InputNode:
     def __init__(self, reader, topic, service, clock=time.monotonic):
         self._reader = reader
         self._kind = getattr(reader, 'kind', 'device')
-        self._service_name = service
+        self._service_name = rospy.resolve_name(service)
         self._clock = clock
         self._changed = threading.Condition(threading.RLock())
         self._state = SUSPENDED
@@ -72,6 +76,7 @@ class InputNode:
         self._called_at = None
         self._silent_until = self._next_look = clock()
         self._diagnostics = None
+        self._there = DeviceState(self._service_name, self._kind)
         self._thread = threading.Thread(target=self._run, name='device', daemon=True)
         self.resumed = threading.Event()
         self._joy = PromptPublisher(topic, Joy)
@@ -169,16 +174,35 @@ class InputNode:
         self._published += 1
 
     def _run(self):
-        """Serve one session after the other; a suspended one waits here."""
+        """Serve one session after the other."""
         while True:
+            self._rest()
             with self._changed:
-                while self._state == SUSPENDED:
-                    self._changed.wait()
                 if self._state == CLOSED:
                     return
                 session = self._session
             self._next_look = self._clock()
             self._look(session)
+
+    def _rest(self):
+        """Wait while suspended, and say now and then which device is there."""
+        while True:
+            with self._changed:
+                if self._state != SUSPENDED:
+                    return
+            self._there.tell(*self._find())
+            with self._changed:
+                if self._state == SUSPENDED:
+                    self._changed.wait(FIND_PERIOD_S)
+
+    def _find(self):
+        """Return (the name of the device that could be opened, why there is none)."""
+        try:
+            return self._call(self._reader.find), ''
+        except DeviceAbsent as reason:
+            return '', str(reason)
+        except Exception as error:  # a guard of this thread: whatever a driver raises
+            return '', 'the driver failed: {}: {}'.format(type(error).__name__, error)
 
     def _is_current(self, session):
         with self._changed:
@@ -235,6 +259,7 @@ class InputNode:
             if session != self._session:
                 return
             self._state, self._device, self._words = READING, device, ''
+        self._there.tell(self._reader.name or device, '')
         rospy.loginfo('reading %s', device)
 
     def _step(self, session):
@@ -255,6 +280,7 @@ class InputNode:
             if due is not None:
                 self._publish(due)
                 self._last = due
+        self._there.tell(self._reader.name or self._device, self._reader.note)
 
     def _lose(self, session, reason):
         """Send the neutral Joy, and say why once."""
@@ -265,6 +291,7 @@ class InputNode:
             lost, new = self._state == READING, self._words != reason
             self._losses += lost
             self._state, self._words, self._device = LOOKING, reason, ''
+        self._there.tell('', reason)
         if lost:
             rospy.logwarn('the %s is lost: %s', self._kind, reason)
         elif new:

@@ -100,8 +100,9 @@ class Mux:
         self._memory = Worker('stop_memory')
         self._watch = MasterWatch(
             on_lost=lambda reason: self._hold('master'),
-            parameters={SOURCES_PARAMETER: [{'name': source.name, 'label': source.label}
-                                            for source in config.sources]},
+            parameters={SOURCES_PARAMETER: [
+                {'name': source.name, 'label': source.label,
+                 'suspend_service': source.suspend_service or ''} for source in config.sources]},
             period_s=MASTER_PERIOD_S, patience_s=MASTER_PATIENCE_S)
         self._config = config
         self._topics = {source.name: SourceTopic(source, clock) for source in config.sources}
@@ -113,7 +114,7 @@ class Mux:
         self._diagnostics = MuxDiagnostics(
             self._arbiter, self._changed, clock, config, self._topics,
             {'gates': self._gates.words, 'suspend': self._suspender.state,
-             'tasks': self._tasks.counts})
+             'tasks': self._tasks.counts, 'strangers': self._gates.strangers.words})
 
     def start(self, stopped):
         """Open for business.

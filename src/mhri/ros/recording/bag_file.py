@@ -2,11 +2,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A bag on the disk: made where there is none, written chunk by chunk, closed whole."""
 import errno
+import io
 import itertools
 import os
 import stat
+import sys
+from types import SimpleNamespace
 
-from mhri.core.recording import bag_format
+import genpy
+import rosbag
+
 from mhri.core.recording.recording import (
     ACTIVE, default_name, fallback_note, numbered, PathRefused, ros_home, split_path, system_folder)
 
@@ -19,6 +24,7 @@ _WORDS = {errno.EACCES: 'no permission', errno.EPERM: 'no permission',
 
 # What Linux takes (PATH_MAX) less room for a name; asked before anything is made.
 _LONGEST_PATH = 4096 - 256
+_NS = 10 ** 9
 
 
 def words_of(error):
@@ -30,8 +36,111 @@ def words_of(error):
     return str(error)
 
 
+class Publisher(str):
+    """The topic of one publisher, equal to no other's.
+
+    ``rosbag.Bag`` keeps one connection for each topic that it is given. With this for a topic, each
+    publisher has a connection and a header of its own, as ``rosbag record`` has it: they may differ
+    in caller, latching and even type.
+
+    :param fields: {name: text} as it introduced itself; ``topic``, ``type``, ``md5sum`` and
+        ``message_definition`` must be among them
+    """
+
+    __eq__ = object.__eq__
+    __ne__ = object.__ne__
+    __hash__ = object.__hash__
+
+    def __new__(cls, fields):
+        """Take the topic's name."""
+        self = super().__new__(cls, fields['topic'])
+        self.fields = fields
+        # What the library asks of a message class, which need not be installed here.
+        self.kind = SimpleNamespace(_md5sum=fields['md5sum'],
+                                    _full_text=fields['message_definition'])
+        return self
+
+
+class _Tail(io.BytesIO):
+    """A file whose end is in memory until it is saved, all or nothing.
+
+    ``rosbag.Bag`` writes a chunk piece by piece and then goes back to its header: on the disk, a
+    program that is killed would leave a chunk without a size, a full disk half a chunk.
+
+    :param file_descriptor: of an empty file; closed with this
+    ``saved`` is the length of the file on the disk.
+    """
+
+    mode = 'w+b'
+
+    def __init__(self, file_descriptor):
+        super().__init__()
+        self._fd = file_descriptor
+        self._base = 0
+        self.saved = 0
+
+    def tell(self):
+        """Return the position in the file."""
+        return self._base + super().tell()
+
+    def seek(self, offset, whence=os.SEEK_SET):
+        """Go to a position; before one that is on the disk already, what is here is saved.
+
+        :raises OSError: as :meth:`save`
+        """
+        if whence == os.SEEK_SET:
+            if offset < self._base:
+                self.save()
+                self._base = offset
+            offset -= self._base
+        return self._base + super().seek(offset, whence)
+
+    def save(self):
+        """Write what is in memory.
+
+        :raises OSError: nothing was written, and memory is empty
+        """
+        data, done = memoryview(self.getvalue()), 0
+        try:
+            while done < len(data):
+                done += os.pwrite(self._fd, data[done:], self._base + done)
+        except OSError:
+            self.cut(self.saved)
+            raise
+        self._base += done
+        self.saved = max(self.saved, self._base)
+        self._forget()
+
+    def cut(self, length):
+        """Give up what is in memory, and of the file all that is beyond a length."""
+        self._forget()
+        os.ftruncate(self._fd, length)
+        self._base = self.saved = length
+
+    def _forget(self):
+        super().seek(0)
+        self.truncate()
+
+    def close(self):
+        """Save, and have the disk keep it.
+
+        :raises OSError: the disk failed; the file is closed all the same
+        """
+        if self.closed:
+            return
+        try:
+            self.save()
+            os.fsync(self._fd)
+        finally:
+            os.close(self._fd)
+            super().close()
+
+
 class BagFile:
     """A rosbag 2.0 file called ``<path>.active`` until it is closed. Not thread-safe.
+
+    Written by ``rosbag.Bag``. Beneath its public interface are only its lists of chunks (the newest
+    is given up where the disk has no room) and of messages (kept for readers, endless).
 
     :param path: what it will be called; ``path.active`` is made and must not exist
     :raises OSError: it cannot be made or written
@@ -39,51 +148,47 @@ class BagFile:
 
     def __init__(self, path):
         self.path = path
-        self.messages = 0
         self._active = path + ACTIVE
-        self._connections = {}
-        self._chunks = []
         self._fd = os.open(self._active, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
-        self._end = 0
+        self._tail = _Tail(self._fd)
         try:
-            self._append(bag_format.VERSION_LINE + bag_format.file_header())
+            # Chunks end where it is told to, see write().
+            self._bag = rosbag.Bag(self._tail, 'w', chunk_threshold=sys.maxsize)
+            self._tail.save()
         except OSError:
-            os.close(self._fd)
             os.unlink(self._active)
+            self._tail.close()
             raise
 
     @property
     def size(self):
         """The bytes written."""
-        return self._end
+        return self._tail.saved
 
-    def _append(self, data):
-        """Write at the end, all or nothing.
+    @property
+    def messages(self):
+        """The number of messages written."""
+        return self._bag.get_message_count()
 
-        :raises OSError: nothing was written
-        """
-        view = memoryview(data)
-        done = 0
-        try:
-            while done < len(data):
-                done += os.pwrite(self._fd, view[done:], self._end + done)
-        except OSError:
-            os.ftruncate(self._fd, self._end)
-            raise
-        self._end += done
+    def write(self, messages):
+        """Write messages as a chunk with its index, in one piece.
 
-    def write(self, chunk, introduced):
-        """Write a chunk with its index in one piece.
-
-        :param introduced: the :class:`mhri.core.recording.bag_format.Connection` that are new in it
+        :param messages: (:class:`Publisher`, receipt time [ns], frame: the length (4 bytes) and
+            bytes of a serialised message), at least one
         :raises OSError: the file is as it was before
         """
-        data, info = chunk.finish(self._end)
-        position = self._end
-        self._append(data)
-        self._chunks.append((position, info, chunk.messages))
-        self._connections.update((connection.number, connection) for connection in introduced)
-        self.messages += chunk.messages
+        for publisher, time_ns, frame in messages:
+            fields = publisher.fields
+            self._bag.write(
+                publisher, (fields['type'], frame[4:], fields['md5sum'], publisher.kind),
+                genpy.Time(*divmod(time_ns, _NS)), raw=True, connection_header=fields)
+        self._bag.flush()
+        self._bag._connection_indexes.clear()
+        try:
+            self._tail.save()
+        except OSError:
+            self._bag._chunks.pop()
+            raise
 
     def sync(self):
         """Have the disk keep what is written, whatever happens to this machine (blocking).
@@ -108,28 +213,21 @@ class BagFile:
         """
         try:
             self._write_index()
-            os.fsync(self._fd)
         finally:
-            os.close(self._fd)
+            self._tail.close()
         return self._rename()
 
     def _write_index(self):
+        chunks = self._bag._chunks
         while True:
-            index = b''.join([connection.record for connection in self._connections.values()]
-                             + [info for _, info, _ in self._chunks])
-            start = self._end
             try:
-                self._append(index)
-                break
+                self._bag.close()
+                return
             except OSError as error:
-                if error.errno not in (errno.ENOSPC, errno.EDQUOT) or not self._chunks:
+                full = error.errno in (errno.ENOSPC, errno.EDQUOT)
+                if self._tail.closed or not (full and chunks):
                     raise
-                self._end, _, messages = self._chunks.pop()
-                self.messages -= messages
-                os.ftruncate(self._fd, self._end)
-        os.pwrite(self._fd, bag_format.file_header(start, len(self._connections),
-                                                   len(self._chunks)),
-                  len(bag_format.VERSION_LINE))
+                self._tail.cut(chunks.pop().pos)
 
     def _rename(self):
         folder, name = os.path.split(self.path)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The thread that a disk may hold up: writes chunks, watches the space, closes the file."""
+"""The thread that a disk may hold up: writes messages, watches the space, closes the file."""
 import logging
 import queue
 import threading
@@ -13,7 +13,7 @@ _LOG = logging.getLogger(__name__)
 
 
 class BagWriter:
-    """Writes chunks in the order in which they are put, none of them dropped.
+    """Writes messages in the order in which they are put, none of them dropped.
 
     ``failure`` says why nothing more can be written, ``warning`` what is wrong with the disk now
     ('' while all is well); ``closed`` is an event: the file is closed and has its name, or cannot.
@@ -41,10 +41,14 @@ class BagWriter:
         self._judge(self.file.free_bytes())
         threading.Thread(target=self._run, name='bag_writer', daemon=True).start()
 
-    def put(self, chunk, introduced):
-        """Queue a chunk with the connections that are new in it; returns at once."""
-        self._put_bytes += chunk.size
-        self._queue.put((chunk, introduced))
+    def put(self, messages, size):
+        """Queue messages for one chunk of the file; returns at once.
+
+        :param messages: as :meth:`mhri.ros.recording.bag_file.BagFile.write` takes them
+        :param size: their bytes
+        """
+        self._put_bytes += size
+        self._queue.put((messages, size))
         if self.queue_bytes >= self._limits.warn_queue_bytes:
             # The thread that writes may be the one that the disk holds up.
             self._judge(None)
@@ -73,10 +77,10 @@ class BagWriter:
     def _run(self):
         broken = False
         try:
-            for chunk, introduced in iter(self._queue.get, None):
+            for messages, size in iter(self._queue.get, None):
                 if not broken:
-                    broken = not self._write(chunk, introduced)
-                self._done_bytes += chunk.size
+                    broken = not self._write(messages)
+                self._done_bytes += size
             self.file.close()
         except Exception as error:  # the guard of this thread: said to the operator, and logged
             _LOG.exception('%s could not be closed', self.file.path)
@@ -84,10 +88,10 @@ class BagWriter:
         finally:
             self.closed.set()
 
-    def _write(self, chunk, introduced):
+    def _write(self, messages):
         """Write one chunk; return whether more may follow."""
         try:
-            self.file.write(chunk, introduced)
+            self.file.write(messages)
             if self._clock() - self._synced_at >= self._limits.sync_s:
                 self.file.sync()
                 self._synced_at = self._clock()

@@ -10,7 +10,7 @@ import genpy.message
 from rosgraph.network import (
     read_ros_handshake_header, ROSHandshakeException, write_ros_handshake_header)
 
-from mhri.core.recording.bag_format import FrameSplitter
+from mhri.core.recording.frames import FrameSplitter
 from mhri.ros.graph.master_api import ERRORS, TimedTransport
 
 _SMALL, _LARGE = 64 * 1024, 1024 * 1024
@@ -33,14 +33,14 @@ class RawLink:
     :param uri: the XML-RPC address of the publisher's node
     :param caller_id: the name under which to connect
     :param timeout_s: the most that each step may take [s]
-    ``fields`` is what the publisher says of itself; ``connection`` is for the one who records.
+    ``fields`` is what the publisher says of itself; ``publisher`` is for the one who records.
 
     :raises LinkError: it does not answer, does not publish this topic, or speaks something else
     """
 
     def __init__(self, topic, uri, caller_id, timeout_s=3.0):
         self.key = (topic, uri)
-        self.connection = None
+        self.publisher = None
         self._splitter = FrameSplitter()
         self._socket = None
         self._early = b''
@@ -117,6 +117,14 @@ class RawLink:
         """Hang up."""
         if self._socket is not None:
             self._socket.close()
+
+    def cut(self):
+        """Hang up with a reset: the publisher learns of it before it sends the next message.
+
+        Of a connection that was merely closed rospy learns by that message, and sends it whole.
+        """
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack('ii', 1, 0))
+        self.close()
 
 
 def _definition(found):

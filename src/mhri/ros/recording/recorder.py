@@ -15,11 +15,10 @@ import time
 
 import rospy
 
-from mhri.core.recording.bag_format import Chunk, Connection
 from mhri.core.recording.recording import (
     ENDED, FAILED, OFF, PathRefused, RateMeter, RECORDING, RecordingLimits, RecordingStatus,
     size_text)
-from mhri.ros.recording.bag_file import open_bag, words_of
+from mhri.ros.recording.bag_file import open_bag, Publisher, words_of
 from mhri.ros.recording.bag_writer import BagWriter
 from mhri.ros.recording.raw_reader import RawReader
 from mhri.ros.recording.tap_node import TapNode
@@ -77,10 +76,10 @@ class Recorder:
         self._ended = threading.Event()
         self._begun_s = self._ended_s = None
         self._meter = RateMeter()
-        self._chunk = Chunk()
+        self._publishers = {}
+        self._chunk = []
+        self._chunk_size = 0
         self._chunk_due_s = None
-        self._connections = {}
-        self._new = []
         self._messages = 0
         self._bytes = 0
         self._complete = False
@@ -124,7 +123,7 @@ class Recorder:
                   'message_definition': kind._full_text, 'callerid': rospy.get_name()}
         with self._lock:
             if not self._complete:
-                self._add(self._connection(fields), struct.pack('<I', len(data)) + data)
+                self._add(self._publisher(fields), struct.pack('<I', len(data)) + data)
         self._reader.wake()
 
     def status(self):
@@ -177,39 +176,31 @@ class Recorder:
 
     def _on_frame(self, link, frame):
         with self._lock:
-            connection = link.connection
-            if connection is None:
-                connection = link.connection = self._connection(link.fields)
-            self._add(connection, frame)
+            publisher = link.publisher
+            if publisher is None:
+                publisher = link.publisher = self._publisher(link.fields)
+            self._add(publisher, frame)
 
-    def _add(self, connection, frame):
+    def _add(self, publisher, frame):
         """Take one message into the chunk (under the lock)."""
-        chunk = self._chunk
-        chunk.add(connection, self._clock_ns(), frame)
+        self._chunk.append((publisher, self._clock_ns(), frame))
+        self._chunk_size += len(frame)
         self._messages += 1
         self._bytes += len(frame)
         if self._chunk_due_s is None:
             self._chunk_due_s = time.monotonic() + self._limits.chunk_s
-        if chunk.size >= self._limits.chunk_bytes:
+        if self._chunk_size >= self._limits.chunk_bytes:
             self._flush()
 
-    def _connection(self, fields):
-        """Return the connection of a publisher; one that comes back keeps its number."""
-        key = tuple(sorted(fields.items()))
-        connection = self._connections.get(key)
-        if connection is None:
-            connection = Connection(len(self._connections), fields)
-            self._connections[key] = connection
-            self._chunk.introduce(connection)
-            self._new.append(connection)
-        return connection
+    def _publisher(self, fields):
+        """Return the publisher of this description; one that comes back is the same."""
+        return self._publishers.setdefault(tuple(sorted(fields.items())), Publisher(fields))
 
     def _flush(self):
         """Hand the chunk to the writer (under the lock)."""
-        if self._chunk.messages:
-            self._writer.put(self._chunk, self._new)
-            self._chunk = Chunk()
-            self._new = []
+        if self._chunk:
+            self._writer.put(self._chunk, self._chunk_size)
+            self._chunk, self._chunk_size = [], 0
         self._chunk_due_s = None
 
     def _on_turn(self):

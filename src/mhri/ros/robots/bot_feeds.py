@@ -1,23 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What one bot window can show of its robot: a row for each view, opened while it is wanted."""
-from mhri.core.camera.images import DEPTH, RGB
-from mhri.ros.camera.camera_feed import CameraFeed
-from mhri.ros.sensors.imu_feed import ImuFeed
+"""What a tile can show of its robot: a feed for each view, opened while it is wanted."""
+from mhri.core.screen.view_rows import load, RECORD, VIEW_ROWS
 from mhri.ros.sensors.mocap_feed import MocapFeed
-from mhri.ros.sensors.scan_feed import ScanFeed
 
-IMU, SCAN, RECORD, MOCAP = 'imu', 'scan', 'record', 'mocap'
-
-# A further view is a further row: key, whether a type has it, what makes its feed.
-_ROWS = (
-    (IMU, lambda kind: kind.imu or kind.odometry,
-     lambda robot, kind: ImuFeed(robot, kind.imu, kind.odometry, kind.odometry_type)),
-    (RGB, lambda kind: kind.rgb, lambda robot, kind: CameraFeed(robot, kind.rgb, RGB)),
-    (DEPTH, lambda kind: kind.depth, lambda robot, kind: CameraFeed(robot, kind.depth, DEPTH)),
-    (SCAN, lambda kind: kind.scan, lambda robot, kind: ScanFeed(robot, kind.scan)),
-    (MOCAP, lambda kind: True, lambda robot, kind: MocapFeed(robot)),
-)
+MOCAP = 'mocap'
 
 
 class BotFeeds:
@@ -29,21 +16,21 @@ class BotFeeds:
     """
 
     def __init__(self, robot, robot_type, worker):
-        self._robot = robot
         self._type = robot_type
         self._worker = worker
-        self._makers = {key: make for key, has, make in _ROWS if has(robot_type)}
-        self._feeds = {}
+        made = {row.key: load(row.feed).of(robot, robot_type, row.key) for row in VIEW_ROWS}
+        self._feeds = {key: feed for key, feed in made.items() if feed is not None}
+        self._feeds[MOCAP] = MocapFeed(robot)
         self._wanted = frozenset()
         self._open = frozenset()
 
     def offers(self):
         """Return the keys of the views that a robot of this type can have."""
-        return frozenset(self._makers) - {MOCAP} | ({RECORD} if self._type.imu else frozenset())
+        return frozenset(self._feeds) - {MOCAP} | ({RECORD} if self._type.imu else frozenset())
 
     def want(self, keys):
         """Say which views are to be fed from now on; returns at once."""
-        keys = frozenset(keys) & frozenset(self._makers)
+        keys = frozenset(keys) & frozenset(self._feeds)
         if keys != self._wanted:
             self._wanted = keys
             self._worker.do(self._switch)
@@ -53,8 +40,6 @@ class BotFeeds:
         for key in self._open - self._wanted:
             self._feeds[key].close()
         for key in self._wanted - self._open:
-            if key not in self._feeds:
-                self._feeds[key] = self._makers[key](self._robot, self._type)
             self._feeds[key].open()
         self._open = self._wanted
 
@@ -67,7 +52,13 @@ class BotFeeds:
         """Return an open feed, None where it is not wanted or not open yet."""
         return self._feeds.get(key) if key in self._open and key in self._wanted else None
 
+    def refused(self):
+        """Return {key: messages left out so far because they cannot be} of feeds that had any."""
+        counts = {key: feed.refused() for key, feed in list(self._feeds.items())
+                  if hasattr(feed, 'refused')}
+        return {key: count for key, count in counts.items() if count}
+
     def bits_per_s(self):
-        """Return what the pictures of this robot take of the network now [bit/s]."""
-        feeds = [self.get(key) for key in (RGB, DEPTH)]
-        return sum(feed.status().bits_per_s for feed in feeds if feed is not None)
+        """Return what pictures and clouds of this robot take of the network now [bit/s]."""
+        feeds = [self.get(row.key) for row in VIEW_ROWS]
+        return sum(feed.status().bits_per_s for feed in feeds if hasattr(feed, 'status'))

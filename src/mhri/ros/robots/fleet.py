@@ -151,17 +151,15 @@ class Fleet:
             link = self._links.get(name)
         return link.feeds if link else None
 
-    def view(self, name, selected, recording=False):
-        """Return the :class:`RobotView` of one robot."""
+    def view(self, name, **ours):
+        """Return the :class:`RobotView` of one robot; ``ours`` is what the screen knows of it."""
         with self._lock:
             link = self._links.get(name)
             problems = self._problems.get(name)
         if link is None:
-            return RobotView(name=name, selected=selected, recording=recording,
-                             note='looking for it')
+            return RobotView(name=name, note='looking for it', **ours)
         view = link.view()
-        return replace(view, selected=selected, recording=recording,
-                       note=view.note or (problems[0] if problems else ''))
+        return replace(view, note=view.note or (problems[0] if problems else ''), **ours)
 
     def close(self):
         """Give the topics of all robots back (blocking)."""

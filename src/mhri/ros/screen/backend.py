@@ -18,7 +18,6 @@ from mhri.core.driving.control import Claim
 from mhri.core.driving.group_speed import pace_words
 from mhri.core.recording.recording import CHOICES, RECORDING
 from mhri.core.driving.selection import Selection
-from mhri.core.screen.source_rows import source_rows
 from mhri.core.screen.status import status_line
 from mhri.core.screen.views import (
     ControlView, PanelView, ROS_CONNECTED, ROS_CUT_OFF, ROS_NO_MASTER, ROS_STARTING, RobotView)
@@ -67,7 +66,6 @@ class ScreenBackend:
         self._requests = None
         self._diagnostics = None
         self._devices = None
-        self._sources = ()
         self._first_limits = None
         self._first_mode = None
         self._pressed = False
@@ -118,7 +116,7 @@ class ScreenBackend:
         self.repeat_selection()
         self._requests = PanelRequests(self._events)
         self._devices = DeviceClient()
-        self._diagnostics = PanelDiagnostics(self).start()
+        self._diagnostics = PanelDiagnostics(self, self._gates, mux).start()
         self._feeder.start()
         self._worker.start()
         self._worker.do(self._supervise)
@@ -128,7 +126,7 @@ class ScreenBackend:
         """Mend what is missing: the sources of the mux, the links and types of robots."""
         if self._watch.state != LOST:
             self._meet_mux()
-            self._jobs.settle_parameters(list(self.selection.robots) if self.drives() else None)
+            self._jobs.settle_parameters(self.selection.numbered() if self.drives() else None)
             self.recordings.limits = self.settings.recording_limits()
             self._fleet.supervise()
 
@@ -141,7 +139,7 @@ class ScreenBackend:
         except MasterError as error:
             rospy.logdebug('the sources cannot be read now: %s', error)
             return
-        self._sources = source_rows(rows)
+        self._devices.follow(rows)
         mode = self._mux.state()[0]
         if self._first_mode and mode:
             if self._first_mode != mode:
@@ -319,10 +317,11 @@ class ScreenBackend:
         return self._robot_view(name, name in self.selection.selected)
 
     def _robot_view(self, name, selected):
+        ours = {'selected': selected, 'number': self.selection.numbers.of(name)}
         if self._ros == ROS_STARTING or self._mux is None:
-            return RobotView(name=name, selected=selected)
-        return self._fleet.view(name, selected,
-                                self.recordings.status(name).state == RECORDING)
+            return RobotView(name=name, **ours)
+        recording = self.recordings.status(name).state == RECORDING
+        return self._fleet.view(name, recording=recording, **ours)
 
     def _state_of_ros(self):
         """Return the state of the connection, one of ``ROS_*``."""
@@ -348,14 +347,14 @@ class ScreenBackend:
         together = self._together if gates is None else gates.together
         share = 1.0 if gates is None else gates.share
         view = PanelView(
-            ros=self._state_of_ros(), sources=self._sources, mode=mode,
+            ros=self._state_of_ros(), mode=mode,
             stop_all=self._stopped_by_gates or (self._mux.stopped if self._mux else self._pressed),
             stop_note=self._stop_note,
             limits=limits or self._first_limits or (0.5, 1.5),
             robots=robots, together=together, pace=pace_words(robots, together, share),
             slowed=share < 1.0,
             camera_bits_per_s=self._fleet.camera_bits_per_s(),
-            heard=self._devices.heard() if self._devices else None,
+            **(self._devices.view() if self._devices else {}),
             control=self._control(), answers=answers,
             stop_taken=answers and self._stopped_by_gates,
             **({'advice': self._mux.advice, 'dead_man': self._mux.dead_man} if self._mux else {}))

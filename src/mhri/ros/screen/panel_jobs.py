@@ -15,6 +15,8 @@ from mhri.ros.resources import read_resource, resource_path
 
 # The robots in the panel's list, in its order: gates, voice and pad read it.
 ROBOTS_PARAMETER = '/mhri/robots'
+# ... and their numbers: the voice reads it.
+NUMBERS_PARAMETER = '/mhri/robot_numbers'
 
 
 class PanelJobs:
@@ -35,11 +37,12 @@ class PanelJobs:
     def settle_parameters(self, robots):
         """Read the panel's parameters, and write the list of robots for gates, voice and pad.
 
-        :param robots: names; None where another screen is in control: its list counts
+        :param robots: {name: number}; None where another screen is in control: its list counts
         """
         calls = [('getParam', NAMESPACE)]
         if robots not in (None, self._told_robots):
-            calls.append(('setParam', ROBOTS_PARAMETER, robots))
+            calls += [('setParam', NUMBERS_PARAMETER, robots),
+                      ('setParam', ROBOTS_PARAMETER, list(robots))]
         try:
             parameters = MasterApi(rospy.get_name()).call_many(calls)[0]
         except MasterError as error:

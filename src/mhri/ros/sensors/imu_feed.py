@@ -138,6 +138,12 @@ class ImuFeed:
         installed here is left out
     """
 
+    @classmethod
+    def of(cls, robot, kind, key):
+        """Return the feed of a robot, None for a type with neither an IMU nor odometry."""
+        return cls(robot, kind.imu, kind.odometry, kind.odometry_type) \
+            if kind.imu or kind.odometry else None
+
     def __init__(self, robot, imu_topics, odometry_topics, odometry_type='nav_msgs/Odometry',
                  clock=time.monotonic):
         self._clock = clock
@@ -163,7 +169,7 @@ class ImuFeed:
         for intake in self._intakes.values():
             intake.unsubscribe()
 
-    def series(self):
+    def take(self):
         """Return the :class:`mhri.core.sensors.series.Series` of this moment; cheap at any rate."""
         rings = dict(self._empty)
         rings.update({keys: intake.snapshot() for keys, intake in self._intakes.items()})

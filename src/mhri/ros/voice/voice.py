@@ -10,8 +10,9 @@ Interfaces beside those of :class:`mhri.ros.devices.input_node.InputNode`:
 - subscribes ``~push_to_talk`` (``std_msgs/Bool``; true counts for ``push_to_talk_s`` of the
   language, 10 s, unless it is sent again), ``/mux/mode`` (``mhri/ControlMode``),
   ``/robot_controller/robot_select`` (``mhri/RobotSelect``)
-- reads ``/mhri/robots`` (list of names in the panel's order) once a second while it listens; where
-  the panel has not written it, the selected robots are those that can be called
+- reads ``/mhri/robots`` (list of names) and ``/mhri/robot_numbers`` ({name: number}) once a second
+  while it listens; where the panel has not written them, the selected robots are those that can be
+  called
 """
 import threading
 import time
@@ -20,13 +21,17 @@ import rospy
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool
 
+from mhri.core.driving.seat import MOST_ROBOTS
+from mhri.core.robots.names import name_problem
 from mhri.core.voice.grammar import MODE, PANEL, STOP
+from mhri.core.voice.names import in_places
 from mhri.msg import ControlMode, Heard, PanelRequest, RobotSelect
+from mhri.ros.driving.in_force import InForce, STOP_SERVICE
 from mhri.ros.graph.live_parameter import LiveParameter
 from mhri.ros.worker import Worker
 
 ROBOTS_PARAMETER = '/mhri/robots'
-STOP_SERVICE = '/mux/set_stop_all'
+NUMBERS_PARAMETER = '/mhri/robot_numbers'
 VOICE_SOURCE = 'voice'
 # A stop that the mux does not take is repeated for so long; it is said aloud then.
 _INSIST_S = 3.0
@@ -37,7 +42,8 @@ def robot_names(value):
     """Return the names in a parameter that anybody may have set to anything."""
     if not isinstance(value, (list, tuple)):
         return ()
-    return tuple(name for name in value if isinstance(name, str))
+    return tuple(name for name in value[:MOST_ROBOTS] if isinstance(name, str)
+                 and name_problem(name) is None)
 
 
 class VoiceLink:
@@ -52,6 +58,7 @@ class VoiceLink:
         self._reader = None
         self._lock = threading.Lock()
         self._listed = self._selected = ()
+        self._numbers = {}
         self._heard = rospy.Publisher('~heard', Heard, queue_size=10)
         self._request = rospy.Publisher('/panel_in/request', PanelRequest, queue_size=10)
         self._mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
@@ -66,9 +73,11 @@ class VoiceLink:
         """
         self._reader = reader
         rospy.Subscriber('~push_to_talk', Bool, self._on_push, queue_size=10, tcp_nodelay=True)
-        rospy.Subscriber('/mux/mode', ControlMode, self._on_mode, queue_size=10)
+        InForce(STOP_SERVICE).start().subscribe('/mux/mode', ControlMode, self._on_mode,
+                                                queue_size=10)
         rospy.Subscriber('/robot_controller/robot_select', RobotSelect, self._on_selection,
                          queue_size=1)
+        LiveParameter(NUMBERS_PARAMETER, {}, self._on_numbers, wanted).start()
         LiveParameter(ROBOTS_PARAMETER, [], self._on_robots, wanted).start()
 
     def _on_push(self, message):
@@ -80,13 +89,24 @@ class VoiceLink:
     def _on_robots(self, value):
         with self._lock:
             self._listed = robot_names(value)
-            self._reader.set_robots(self._listed or self._selected)
+            self._tell_robots()
+
+    def _on_numbers(self, value):
+        with self._lock:
+            self._numbers = value
+            self._tell_robots()
+
+    def _tell_robots(self):
+        """Tell the reader whom it can call; call it with the lock held."""
+        self._reader.set_robots(in_places(self._listed, self._numbers) if self._listed
+                                else self._selected)
 
     def _on_selection(self, message):
         with self._lock:
             # A robot that was seen once keeps its number.
-            self._selected = tuple(dict.fromkeys(self._selected + tuple(message.robots)))
-            self._reader.set_robots(self._listed or self._selected)
+            self._selected = tuple(dict.fromkeys(
+                self._selected + robot_names(message.robots)))[:MOST_ROBOTS]
+            self._tell_robots()
 
     def on_heard(self, heard):
         """Publish what was heard."""

@@ -3,10 +3,10 @@
 """What the doctor found, each with the command that mends it."""
 from html import escape
 
-from python_qt_binding.QtCore import QSize, Qt, Signal
+from python_qt_binding.QtCore import Qt, Signal
 from python_qt_binding.QtGui import QGuiApplication
 from python_qt_binding.QtWidgets import (
-    QDialog, QHBoxLayout, QPushButton, QTextBrowser, QVBoxLayout)
+    QHBoxLayout, QPushButton, QTextBrowser, QVBoxLayout, QWidget)
 
 from mhri.core.doctor.judgement import as_lines
 from mhri.core.doctor.facts import FAULT, FINE, WARNING
@@ -18,8 +18,8 @@ _MARKS = {FAULT: ('\u2612', theme.STOP), WARNING: ('\u25b2', theme.ATTENTION),
           FINE: ('\u25cf', theme.LIVE)}
 
 
-class DoctorWindow(QDialog):
-    """A window that is never modal: robots may move while it is read."""
+class DoctorPage(QWidget):
+    """A page beside the pictures: robots may move while it is read."""
 
     #: "Examine again"
     examine_requested = Signal()
@@ -33,8 +33,7 @@ class DoctorWindow(QDialog):
 
     def _build(self):
         """Make and place the parts."""
-        self.setObjectName('doctor_window')
-        self.setWindowTitle('mhri doctor')
+        self.setObjectName('doctor_page')
         self.setFont(theme.base_font(self.font()))
         self.summary = TextLine(self)
         self.summary.setFont(theme.larger(self.font(), 1.2, bold=True))
@@ -43,14 +42,15 @@ class DoctorWindow(QDialog):
         for button in (self.again_button, self.copy_button):
             button.setMinimumHeight(theme.touch_size(self))
             button.setFocusPolicy(Qt.TabFocus)
-            button.setAutoDefault(False)
         self.text = QTextBrowser(self)
         self.text.setOpenLinks(False)
         head = QHBoxLayout()
-        head.addWidget(self.summary, 1)
         head.addWidget(self.again_button)
         head.addWidget(self.copy_button)
+        head.addStretch(1)
         column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.summary)
         column.addLayout(head)
         column.addWidget(self.text, 1)
 
@@ -58,14 +58,6 @@ class DoctorWindow(QDialog):
         """Wire the buttons."""
         self.again_button.clicked.connect(self.examine_requested)
         self.copy_button.clicked.connect(self._copy)
-
-    def sizeHint(self):  # noqa: N802
-        """Return a size at which a few findings can be read."""
-        return QSize(720, 440)
-
-    def minimumSizeHint(self):  # noqa: N802
-        """Return the least at which findings and their remedies can be read."""
-        return super().minimumSizeHint().expandedTo(QSize(600, 340))
 
     def show_busy(self):
         """Say that the examination is under way; what was found before stays to be read."""

@@ -1,19 +1,25 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Joins one bot window with what feeds it; everything here runs on the GUI thread."""
+"""Joins one tile with what feeds it; everything here runs on the GUI thread."""
 import os
+from dataclasses import replace
 from datetime import datetime
 
 import cv2
 
-from mhri.core.camera.images import DEPTH, RGB
+from mhri.core.camera.budget import DRIVEN, LOOKED_AT, REST
+from mhri.core.recording.recording import RECORDING
 from mhri.core.robots.mocap import DriftMeter, Pose
+from mhri.core.screen.view_rows import CLOUD, IMU, PICTURES, RGB, SCAN, VIEW_ROWS
 from mhri.core.screen.views import StateView
 from mhri.gui.camera.camera_view import still_name
 from mhri.presenters.draw_guard import DrawGuard
-from mhri.ros.robots.bot_feeds import IMU, MOCAP, SCAN
+from mhri.presenters.rviz_cloud import RvizCloud
+from mhri.ros.camera.camera_budget import Wish
+from mhri.ros.robots.bot_feeds import MOCAP
 
-_CAMERA_NAMES = {RGB: 'RGB', DEPTH: 'depth'}
+# How a stream is called where there is little room.
+_SHORT = {IMU: 'IMU', SCAN: 'scan', CLOUD: 'cloud'}
 
 
 def recordings_folder():
@@ -21,8 +27,8 @@ def recordings_folder():
     return os.path.expanduser(os.environ.get('ROS_HOME') or '~/.ros')
 
 
-class WindowHost:
-    """One robot's window and its feeds.
+class TileHost:
+    """One robot's tile and its feeds.
 
     :param window: :class:`mhri.gui.screen.bot_window.BotWindow`
     :param operator: :class:`mhri.ros.screen.backend.ScreenBackend`
@@ -35,10 +41,9 @@ class WindowHost:
         self._name = window.name
         self._notes = []
         self._drift = DriftMeter()
-        # The robot that is highlighted instead of this one: its camera has the full rate then.
-        self.behind = ''
-        window.camera.transport_chosen.connect(self._choose_transport)
-        window.camera.still_requested.connect(self._save_still)
+        self._wired = False
+        self._rviz = None
+        self._held_back = ''
         window.recording.record_requested.connect(self._record)
         window.recording.stop_record_requested.connect(self._stop_recording)
         self._operator_folder()
@@ -49,26 +54,44 @@ class WindowHost:
         :param view: :class:`mhri.core.screen.views.RobotView`
         """
         window = self.window
-        window.show_view(view, stop_all)
+        # Whatever else there is to say matters more than why the picture is slow.
+        window.show_view(replace(view, note=view.note or self._held_back), stop_all)
+        self._held_back = ''
         feeds = self._operator.feeds(self._name)
         if feeds is None:
             return
         window.offer(feeds.offers())
+        if not self._wired and feeds.offers() & PICTURES:
+            self._wired = True
+            window.view('rgb').transport_chosen.connect(self._choose_transport)
+            window.view('rgb').still_requested.connect(self._save_still)
         feeds.want(window.wanted() | {MOCAP} if window.is_watched() else ())
+        status = self._operator.recordings.status(self._name)
         window.recording.offer_extras(self._operator.recordable(self._name))
-        window.recording.show_recording(self._operator.recordings.status(self._name))
-        series = feeds.get(IMU)
-        if series is not None:
-            window.graph.show_series(series.series())
-        scan = feeds.get(SCAN)
-        if scan is not None:
-            self._draw_scan(scan)
-        camera = feeds.get(window.camera.kind) if window.camera.kind in (RGB, DEPTH) else None
-        if camera is not None:
-            self._draw_camera(camera)
+        window.recording.show_recording(status)
+        window.header.show_recording(status if status.state == RECORDING else None)
+        for key in window.wanted():
+            feed = feeds.get(key)
+            if feed is not None:
+                self._draw_view(key, feed)
         self._draw_state(view, feeds)
-        while self._notes:
-            window.camera.show_note(*self._notes.pop())
+        while self._notes and RGB in feeds.offers():
+            window.view('rgb').show_note(*self._notes.pop())
+
+    def _draw_view(self, key, feed):
+        """Hand a view what its feed has."""
+        widget = self.window.view(key)
+        if hasattr(feed, 'set_view'):
+            self._draw_camera(widget, feed)
+            return
+        if key == CLOUD and self._rviz is None:
+            self._rviz = RvizCloud(widget, feed)
+        value = feed.take()
+        if value is not None:
+            widget.show_value(value)
+        widget.show_age(feed.age_s())
+        if hasattr(feed, 'status'):
+            widget.show_status(feed.status())
 
     def _draw_state(self, view, feeds):
         """Show how old each stream is, and what motion capture says.
@@ -76,10 +99,10 @@ class WindowHost:
         The age of the odometry is that of the link, in the header.
         """
         ages = []
-        for key, name in ((IMU, 'IMU'), (SCAN, 'scan'), *_CAMERA_NAMES.items()):
-            feed = feeds.get(key)
+        for row in VIEW_ROWS:
+            feed = feeds.get(row.key)
             if feed is not None:
-                ages.append((name, feed.age_s()))
+                ages.append((_SHORT.get(row.key, row.label), feed.age_s()))
         tracker = feeds.get(MOCAP)
         captured = tracker.pose() if tracker else None
         if captured is not None:
@@ -99,36 +122,53 @@ class WindowHost:
     def _stop_recording(self):
         self._operator.recordings.stop(self._name)
 
-    def _draw_scan(self, feed):
-        scan = feed.take()
-        if scan is not None:
-            self.window.scan.show_scan(scan)
-        self.window.scan.show_age(feed.age_s())
-
-    def _draw_camera(self, feed):
+    def _draw_camera(self, camera, feed):
+        """Ask for pictures as large and as often as this tile is worth, and show the newest."""
         width, height = self.window.camera_size()
-        settings = self._operator.settings
-        if not self.behind:
+        large = self.window.header.large
+        thumbnail_hz = self._operator.settings.thumbnail_hz
+        if large:
             feed.set_view(width, height)
         else:
-            small = min(width, settings.thumbnail_width_px)
-            feed.set_view(small, max(1, round(height * small / max(1, width))),
-                          settings.thumbnail_hz)
+            feed.set_view(width, height, thumbnail_hz)
         frame = feed.take()
-        camera = self.window.camera
         if frame is not None:
             camera.show_frame(frame)
         status = feed.status()
-        camera.show_status(status, (settings.thumbnail_hz, self.behind) if self.behind else None)
+        # Where there was no picture yet, its place says it.
+        self._held_back = status.thinned if status.age_s is not None else ''
+        camera.show_status(status, None if large else (thumbnail_hz, 'another'))
         if status.age_s is None and status.problem:
             camera.show_placeholder(status.problem)
         camera.show_transports(feed.transports())
 
+    def camera_wish(self, selected):
+        """Return the :class:`Wish` of the picture on show, None without one.
+
+        :param selected: whether the robot is checked
+        """
+        feeds = self._operator.feeds(self._name)
+        feed = feeds.get(self._picture()) if feeds else None
+        if not hasattr(feed, 'grant'):
+            return None
+        rest = LOOKED_AT if self.window.header.large else REST
+        return Wish(self._name, DRIVEN if selected else rest, feed, self.window.is_watched())
+
     def _choose_transport(self, name):
         feeds = self._operator.feeds(self._name)
-        feed = feeds.get(self.window.camera.kind) if feeds else None
+        feed = feeds.get(self._picture()) if feeds else None
         if feed is not None:
             feed.choose(name)
+
+    def _picture(self):
+        """Return the key of the picture on show, None without one."""
+        return next(iter(self.window.wanted() & PICTURES), None)
+
+    def save_still(self):
+        """Keep the picture on show as a file, where there is one."""
+        frame = self.window.view('rgb').picture.frame if self._picture() else None
+        if frame is not None:
+            self._save_still(frame)
 
     def _save_still(self, frame):
         """Write the picture on show to the folder of the recordings, off the GUI thread."""

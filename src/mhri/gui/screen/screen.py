@@ -1,19 +1,22 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The panel: robots on the left, driving on the right, stop-all and one sentence below."""
-from python_qt_binding.QtCore import QPoint, QRect, Qt, QTimer, Signal
+"""The screen: the pictures of all robots, STOP ALL, and the panel in a drawer at the left."""
+from python_qt_binding.QtCore import QSize, Qt, QTimer, Signal
 from python_qt_binding.QtWidgets import QPushButton, QWidget
 
 from mhri.core.screen.stop_words import stop_words
 from mhri.core.screen.views import PanelView, ROS_CUT_OFF
 from mhri.gui.screen import theme, words
 from mhri.gui.driving.control_bar import ControlBar
+from mhri.gui.events.event_button import EventButton
 from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.gui.driving.drive_keys import DriveKeys, mark_drive_area
 from mhri.gui.screen.forms import load_form
 from mhri.gui.screen.labels import Sign, TextLine
 from mhri.gui.driving.mode_combo import ModeCombo
 from mhri.gui.screen.pending import Pace
+from mhri.gui.screen.screen_layout import ScreenLayout
+from mhri.gui.screen.stage import Stage
 from mhri.gui.robots.robot_list import RobotList
 from mhri.gui.driving.speed_limits import SpeedLimits
 from mhri.gui.screen.status_line import StatusLine
@@ -27,17 +30,17 @@ STOP_RECORDING = 'Stop recording ({})'
 # What came of looking or recording is news for so long.
 RESULT_MS = 20000
 
-_WIDGETS = (ControlBar, ModeCombo, RobotList, Sign, SpeedLimits, StatusLine, StopBar, TextLine,
-            VirtualJoystick)
+_WIDGETS = (ControlBar, EventButton, ModeCombo, RobotList, Sign, SpeedLimits, Stage, StatusLine,
+            StopBar, TextLine, VirtualJoystick)
 
 
-class PanelWidget(QWidget):
+class ScreenWidget(QWidget):
     """Everything an operator needs, in one widget for rqt and for a window of its own.
 
     Values in (:meth:`show_view`), signals out; it decides nothing and knows no ROS. The host
     installs :attr:`drive_keys` as an event filter of the application.
 
-    :param ui_dir: folder of ``panel.ui``
+    :param ui_dir: folder of ``screen.ui``
     """
 
     #: "Look for Connected Bots"
@@ -53,10 +56,12 @@ class PanelWidget(QWidget):
     remove_requested = Signal(str)
     #: every name that should be selected now, in list order
     selection_requested = Signal(list)
-    #: a row was highlighted: its window comes to the front
-    activated = Signal(str)
-    #: double click or Return on a row: its window opens, without selecting
-    open_requested = Signal(str)
+    #: this robot and no other is to be driven, and looked at
+    drive_requested = Signal(str)
+    #: the robot that is looked at has changed
+    looked_at = Signal(str)
+    #: the pictures on show are to be kept as files
+    stills_requested = Signal()
     #: name of a source
     mode_requested = Signal(str)
     #: forward (ahead +) and turn (left +), each in [-1, 1]; at once on every change
@@ -87,7 +92,8 @@ class PanelWidget(QWidget):
     def _build(self, ui_dir):
         """Load the form and set what a form cannot say."""
         self.setFont(theme.base_font(self.font()))
-        load_form(ui_dir, 'panel.ui', self, _WIDGETS)
+        load_form(ui_dir, 'screen.ui', self, _WIDGETS)
+        self.arrangement = ScreenLayout(self)
         self.drive_keys = DriveKeys(self)
         mark_drive_area(self)
         # A click beside a text field ends the typing, so that the keys drive again.
@@ -99,11 +105,13 @@ class PanelWidget(QWidget):
             button.setMinimumHeight(touch)
             if isinstance(button, QPushButton):
                 button.setFocusPolicy(Qt.TabFocus)
-                button.setMinimumWidth(button.sizeHint().width() + touch // 2)
+                button.setMinimumWidth(theme.text_width(button.font(), button.text()) + touch // 2)
         for label, side in ((self.linear_label, Qt.AlignRight), (self.turn_label, Qt.AlignLeft)):
             label.setFont(theme.number_font(theme.larger(self.font(), 1.1)))
             label.setAlignment(side | Qt.AlignVCenter)
         self.drive_note.setAlignment(Qt.AlignCenter)
+        self.drawer_button.setMinimumWidth(
+            theme.text_width(self.font(), self.drawer_button.text()) + touch)
         self.record_button.setMinimumWidth(touch // 2 + max(
             theme.text_width(self.font(), text) for text in (RECORD, STOP_RECORDING.format(88))))
         self.cameras_label.setFont(theme.number_font(self.font()))
@@ -113,8 +121,6 @@ class PanelWidget(QWidget):
         self._result_timer = QTimer(self)
         self._result_timer.setSingleShot(True)
         self._result_timer.setInterval(RESULT_MS)
-        self.splitter.setCollapsible(0, False)
-        self.splitter.setCollapsible(1, False)
 
     def _connect(self):
         """Wire widgets to signals."""
@@ -128,10 +134,10 @@ class PanelWidget(QWidget):
         self.record_button.clicked.connect(self._record)
         self.all_button.clicked.connect(self.robot_list.select_all)
         self.none_button.clicked.connect(self.robot_list.select_none)
-        for name in ('selection_requested', 'activated', 'open_requested'):
-            getattr(self.robot_list, name).connect(getattr(self, name))
-        self.robot_list.activated.connect(lambda *_: self._show_buttons())
-        self.robot_list.cleared.connect(self._show_buttons)
+        self.robot_list.selection_requested.connect(self.selection_requested)
+        self.robot_list.open_requested.connect(self.drive_requested)
+        self.robot_list.activated.connect(self._on_highlight)
+        self.robot_list.cleared.connect(lambda: self._on_highlight(''))
         self.mode_combo.mode_requested.connect(self.mode_requested)
         self.speed_limits.limits_requested.connect(self.limits_requested)
         self.speed_limits.together_requested.connect(self.together_requested)
@@ -146,8 +152,14 @@ class PanelWidget(QWidget):
         self.drive_keys.moved.connect(self._on_stick)
         self.drive_keys.centre_pressed.connect(self.centre_stick)
         self.drive_keys.stop_pressed.connect(self.stop_bar.request_stop)
+        self.drive_keys.stop_held.connect(self.stop_bar.power_cut_requested)
         self.drive_keys.robot_pressed.connect(self.robot_list.toggle)
         self.drive_keys.all_pressed.connect(self.robot_list.toggle_all)
+        self.drive_keys.alone_pressed.connect(self._drive_number)
+        self.drive_keys.next_pressed.connect(lambda steps: self.look_at(
+            self.stage.next_name(steps)))
+        self.drive_keys.drive_pressed.connect(self._drive_looked_at)
+        self.drive_keys.command_pressed.connect(self._on_command)
 
     def _restore(self):
         """Begin with an empty view, and with nothing said."""
@@ -165,7 +177,7 @@ class PanelWidget(QWidget):
         self.robot_list.show_in_force(view.control.ours)
         self.robot_list.show_robots(view.robots, numbers)
         self.control_bar.show_control(view.control)
-        self.mode_combo.show_mode(view.sources, view.mode)
+        self.mode_combo.show_mode(view.sources, view.mode, view.devices)
         self.speed_limits.show_limits(view.limits)
         self.speed_limits.show_pace(view.together, view.pace, view.slowed)
         self.stop_bar.show_cut_off(view.ros == ROS_CUT_OFF)
@@ -175,6 +187,9 @@ class PanelWidget(QWidget):
         self.status_line.show_status(view.status, view.status_level)
         self._show_buttons()
         self._show_stick(numbers)
+        self.stage.show_driven([robot.name for robot in view.robots if robot.selected])
+        self.stage.watch_shapes()
+        self.arrangement.show_stick(view.mode == VIRTUAL_JOYSTICK)
         if numbers:
             cameras = words.bandwidth_text(view.camera_bits_per_s)
             self.cameras_label.show_text(cameras, theme.MUTED)
@@ -204,12 +219,50 @@ class PanelWidget(QWidget):
             self.setFocus()
         self.show_name_problem('')
 
-    def keep_in_sight(self):
-        """Return the rectangle on the screen (``QRect``) of stop bar and bottom line."""
-        top = self.stop_bar.mapToGlobal(QPoint(0, 0)).y()
-        area = QRect(self.mapToGlobal(QPoint(0, 0)), self.size())
-        area.setTop(top)
-        return area
+    def look_at(self, name):
+        """Show this robot large; '' leaves it to those that are driven."""
+        if name:
+            self.robot_list.activate(name)
+        else:
+            self.robot_list.clear()
+
+    def _on_highlight(self, name):
+        """Look at the robot whose row is highlighted."""
+        self.stage.look_at(name)
+        self._show_buttons()
+        self.looked_at.emit(name)
+
+    def _drive_number(self, number):
+        """Drive the robot of a number and no other."""
+        for robot in self._view.robots:
+            if robot.number == number > 0:
+                self.drive_requested.emit(robot.name)
+
+    def _drive_looked_at(self):
+        """Drive the robot that is looked at and no other."""
+        name = self.stage.looked_at or next(iter(self.stage.large), '')
+        if name:
+            self.drive_requested.emit(name)
+
+    def _on_command(self, command):
+        """Do what a key of the screen says."""
+        if command == 'drawer':
+            self.drawer_button.toggle()
+        elif command == 'focus':
+            self.arrangement.change_focus()
+        elif command == 'numbers':
+            self.stage.show_numbers(not self.stage.numbers_shown)
+        elif command == 'full_screen':
+            self.window().setWindowState(self.window().windowState() ^ Qt.WindowFullScreen)
+        elif command == 'record':
+            self._record()
+        elif command == 'stills':
+            self.stills_requested.emit()
+
+    def minimumSizeHint(self):  # noqa: N802
+        """Return the least at which it can be used; parts that are too large then give way."""
+        unit = self.fontMetrics().height()
+        return QSize(38 * unit, 26 * unit)
 
     def stick(self):
         """Return (forward, turn), each in [-1, 1], as held by pointer or keys now."""
@@ -234,15 +287,14 @@ class PanelWidget(QWidget):
 
     def save_settings(self):
         """Return what only concerns the looks as a plain dict of JSON values."""
-        settings = {'splitter': self.splitter.sizes()}
+        settings = self.arrangement.save_settings()
         if self.isWindow():
             settings['geometry'] = geometry_of(self)
         return settings
 
     def restore_settings(self, settings):
         """Take back what :meth:`save_settings` returned; :func:`usable_state` has looked at it."""
-        if len(settings.get('splitter', ())) == self.splitter.count():
-            self.splitter.setSizes(settings['splitter'])
+        self.arrangement.restore_settings(settings)
         if 'geometry' in settings and self.isWindow():
             restore_geometry(self, settings['geometry'])
 

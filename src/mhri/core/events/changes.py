@@ -1,0 +1,320 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What has changed from one view of the screen to the next, as an operator would tell it.
+
+What flaps is told once: a state has to hold for a while before it counts, the longer the less it
+matters to know of it at once.
+"""
+from typing import Callable, Dict, Generic, Iterator, List, NamedTuple, Optional, Tuple, TypeVar
+
+from mhri.core.driving.motor_power import CUT, CUT_SENT, FAILED, UNTOUCHED
+from mhri.core.recording.recording import ENDED, FAILED as NOT_RECORDED, RECORDING, RecordingStatus
+from mhri.core.robots.link_quality import link_warning
+from mhri.core.screen.battery import battery_level, FINE, FLAT, LOW
+from mhri.core.screen.views import (
+    GONE, LIVE, PanelView, PROOF_NOT_CONFIRMED, PROOF_STOPPED, ROS_CONNECTED, ROS_CUT_OFF,
+    ROS_NO_MASTER, RobotView, SILENT, UNANSWERED, WAITING)
+
+# For so long [s] something has to hold before it is told. What is lost is told at once.
+BACK_S = 2.0
+BAD_LINK_S = 2.0
+GOOD_LINK_S = 5.0
+GUARD_S = 2.0
+SERVICE_S = 1.0
+SETTLED_S = 1.0
+
+_T = TypeVar('_T')
+# Kind and words.
+_Told = Iterator[Tuple[str, str]]
+# What the drive service answers where it does not do what it was asked for begins so.
+_REFUSALS = ('not ', 'motor power unchanged')
+_FAILED = FAILED.format('')
+_BATTERY_WORDS = {LOW: 'battery {:.0f} %: charge it soon', FLAT: 'battery {:.0f} %: charge it now',
+                  FINE: 'battery {:.0f} % again'}
+
+
+class Change(NamedTuple):
+    """One thing that has changed: ``robot`` ('' for all), its kind and a sentence.
+
+    The kind is "subject.what", e.g. ``link.lost``; what is told last of a subject holds. ``again``
+    is true where it only says more of what was told already.
+    """
+
+    robot: str
+    kind: str
+    text: str
+    again: bool = False
+
+
+class Held(Generic[_T]):
+    """A value that counts once it has held for a while; time is monotonic seconds."""
+
+    def __init__(self, value: _T) -> None:
+        self.value = value
+        #: since when it has been as it is now [s]
+        self.since = 0.0
+        self._next = value
+
+    def take(self, value: _T, hold_s: float, now: float) -> bool:
+        """Take in what is so now; tell whether it counts from now on and did not before."""
+        if value != self._next:
+            self._next, self.since = value, now
+        if value == self.value or now - self.since < hold_s:
+            return False
+        self.value = value
+        return True
+
+
+class RobotChanges:
+    """What changes about one robot."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._old = RobotView(name)
+        self._link = WAITING
+        self._lost_at = 0.0
+        self._lost_driven = False
+        self._live = Held(False)
+        self._bad = Held(False)
+        self._guarded = Held(False)
+        self._guard_lost = False
+        self._battery = FINE
+        self._power = UNTOUCHED
+        self._pressed = False
+
+    def see(self, view: RobotView, answers: bool, now: float) -> List[Change]:
+        """Return what has changed since the last view.
+
+        :param answers: whether the gates are heard; without them nobody knows of guard and power
+        """
+        told = list(self._see_link(view, now))
+        found = [*self._see_driving(view), *self._see_battery(view), *self._see_switch(view)]
+        if view.link == LIVE:
+            found += self._see_quality(view, now)
+        if answers:
+            found += self._see_power(view)
+            if view.link == LIVE:
+                found += self._see_guard(view, now)
+        self._old = view
+        return told + [Change(self._name, kind, text) for kind, text in found]
+
+    def _see_link(self, view: RobotView, now: float) -> Iterator[Change]:
+        """Tell of found, silent, gone, back; a robot is back once it has been for a while."""
+        self._live.take(view.link == LIVE, BACK_S if self._link in (SILENT, GONE) else 0.0, now)
+        if view.link == LIVE and self._link == WAITING:
+            self._link = LIVE
+            yield Change(self._name, 'link.found', 'found')
+        elif self._live.value and self._link in (SILENT, GONE):
+            self._link = LIVE
+            yield Change(self._name, 'link.back',
+                         'back after {:.0f} s'.format(max(1.0, self._live.since - self._lost_at)))
+        elif (view.link, self._link) in ((SILENT, LIVE), (GONE, LIVE), (GONE, SILENT)):
+            yield self._lose(view, now)
+
+    def _lose(self, view: RobotView, now: float) -> Change:
+        """Tell of a robot that is heard no longer."""
+        again = self._link == SILENT
+        self._link = view.link
+        if not again:
+            self._lost_at = now
+            # Whoever is not heard is sent zeros and may have been unchecked: before counts as well.
+            self._lost_driven = any(seen.selected or seen.driven for seen in (view, self._old))
+        kind, word = ('link.silent', 'silent') if view.link == SILENT else ('link.gone', 'gone')
+        if self._lost_driven:
+            kind, word = 'link.lost', 'still gone' if again else 'lost while driven'
+        return Change(self._name, kind, word + (': ' + view.note if view.note else ''), again)
+
+    def _see_driving(self, view: RobotView) -> _Told:
+        """Tell of the check and of the proof of a stop."""
+        if view.selected != self._old.selected:
+            yield ('drive.checked', 'checked') if view.selected else \
+                ('drive.unchecked', 'unchecked')
+        before = self._old.proof.state if self._old.proof else None
+        if view.proof is not None and view.proof.state != before:
+            if view.proof.state == PROOF_STOPPED:
+                yield 'proof.stopped', view.proof.text
+            elif view.proof.state == PROOF_NOT_CONFIRMED:
+                yield 'proof.doubtful', view.proof.text
+
+    def _see_battery(self, view: RobotView) -> _Told:
+        """Tell of a battery that is low, flat, or charged again."""
+        level = battery_level(view.battery, self._battery)
+        if level != self._battery and view.battery is not None:
+            yield 'battery.' + level, _BATTERY_WORDS[level].format(100.0 * view.battery)
+        self._battery = level
+
+    def _see_switch(self, view: RobotView) -> _Told:
+        """Tell of the robot's own emergency stop."""
+        pressed = self._pressed if view.hardware_stop is None else view.hardware_stop
+        if pressed != self._pressed:
+            yield ('hardware.pressed', 'its own emergency stop is pressed') if pressed else \
+                ('hardware.released', 'its own emergency stop is released')
+        self._pressed = pressed
+
+    def _see_quality(self, view: RobotView, now: float) -> _Told:
+        """Tell of a link that is bad, and of one that is good again."""
+        warning = link_warning(view.figures)
+        if self._bad.take(bool(warning), BAD_LINK_S if warning else GOOD_LINK_S, now):
+            yield ('quality.bad', 'bad link: ' + warning) if warning else \
+                ('quality.good', 'the link is good again')
+
+    def _see_power(self, view: RobotView) -> _Told:
+        """Tell what has become of the power of its motors; what is under way is told at its end."""
+        before = self._power
+        if view.power.startswith(_FAILED) or view.power in (CUT, CUT_SENT, UNTOUCHED):
+            self._power = view.power
+        if self._power == before:
+            return
+        if view.power.startswith(_FAILED):
+            yield 'power.failed', 'motor power not changed: ' + view.power[len(_FAILED):]
+        elif view.power == UNTOUCHED:
+            yield 'power.back', 'motor power given back'
+        else:
+            yield 'power.cut', 'motor power cut' + (
+                '' if view.power == CUT else ': told to the robot, which cannot confirm it')
+
+    def _see_guard(self, view: RobotView, now: float) -> _Told:
+        """Tell of a guard that was there and is not any more."""
+        if not self._guarded.take(view.guarded, 0.0 if view.guarded else GUARD_S, now):
+            return
+        if not view.guarded:
+            yield 'guard.lost', 'its guard does not answer: nothing on the robot checks commands'
+        elif self._guard_lost:
+            yield 'guard.back', 'its guard is back'
+        self._guard_lost = not view.guarded
+
+
+class RecordingChanges:
+    """What becomes of the recordings.
+
+    :param status_of: function that returns the :class:`RecordingStatus` of a robot
+    """
+
+    def __init__(self, status_of: Callable[[str], RecordingStatus]) -> None:
+        self._status_of = status_of
+        self._old: Dict[str, RecordingStatus] = {}
+
+    def see(self, names: Tuple[str, ...]) -> List[Change]:
+        """Return what has changed; a robot that has left the list counts until its file is closed.
+
+        :param names: the robots in the list
+        """
+        told: List[Change] = []
+        for name in dict.fromkeys((*names, *self._old)):
+            status, old = self._status_of(name), self._old.get(name, RecordingStatus())
+            told += [Change(name, kind, text) for kind, text in self._tell(old, status)]
+            if name in names or status.state == RECORDING:
+                self._old[name] = status
+            else:
+                self._old.pop(name, None)
+        return told
+
+    @staticmethod
+    def _tell(old: RecordingStatus, status: RecordingStatus) -> _Told:
+        """Tell of begin, end and trouble."""
+        if status.state == NOT_RECORDED:
+            if (old.state, old.note) != (status.state, status.note):
+                yield 'recording.failed', 'not recorded: ' + status.note
+        elif status.state == ENDED != old.state:
+            yield 'recording.ended', status.note or 'recording ended: ' + status.path
+        elif status.state == RECORDING:
+            if old.state != RECORDING:
+                yield 'recording.begun', 'recording to ' + status.path if status.path \
+                    else 'recording'
+            if status.attention and not (old.attention and old.state == RECORDING):
+                yield 'recording.warning', 'recording: ' + status.note
+
+
+class ScreenChanges:
+    """What changes about the whole screen and everything on it.
+
+    :param status_of: as of :class:`RecordingChanges`
+    """
+
+    def __init__(self, status_of: Callable[[str], RecordingStatus]) -> None:
+        self._old: Optional[PanelView] = None
+        self._robots: Dict[str, RobotChanges] = {}
+        self._recordings = RecordingChanges(status_of)
+        self._mode: Optional[str] = None
+        self._master = True
+        self._mux = Held(True)
+        self._gates = Held(True)
+        self._advice = Held('')
+        self._limits: Optional[Held[Tuple[float, float]]] = None
+
+    def see(self, view: PanelView, now: float) -> List[Change]:
+        """Return what has changed since the last view, in the order in which to tell it.
+
+        :param now: seconds of a clock that never goes back
+        """
+        old = self._old or PanelView(ros=view.ros)
+        told = [Change('', kind, text) for kind, text in (
+            *self._see_ros(old, view), *self._see_services(view, now),
+            *self._see_driver(old, view), *self._see_source(view, now))]
+        told += self._see_list(view, now)
+        told += self._recordings.see(tuple(robot.name for robot in view.robots))
+        self._old = view
+        return told
+
+    def _see_list(self, view: PanelView, now: float) -> Iterator[Change]:
+        """Tell of robots that come and go, and of what changes about each."""
+        names = {robot.name for robot in view.robots}
+        for name in [name for name in self._robots if name not in names]:
+            del self._robots[name]
+            yield Change(name, 'robot.removed', 'taken off the list')
+        for robot in view.robots:
+            if robot.name not in self._robots:
+                self._robots[robot.name] = RobotChanges(robot.name)
+                if self._old is not None:
+                    yield Change(robot.name, 'robot.added', 'added to the list')
+            yield from self._robots[robot.name].see(robot, view.answers, now)
+
+    def _see_ros(self, old: PanelView, view: PanelView) -> _Told:
+        """Tell of the master, and of this screen's own end."""
+        if view.ros == ROS_CUT_OFF != old.ros:
+            yield 'screen.cut_off', 'this screen is cut off and shows nothing new: restart it'
+        elif view.ros == ROS_NO_MASTER and self._master:
+            self._master = False
+            yield 'master.lost', 'no ROS master: looking again every second'
+        elif view.ros == ROS_CONNECTED and not self._master:
+            self._master = True
+            yield 'master.back', 'the ROS master is there again'
+
+    def _see_services(self, view: PanelView, now: float) -> _Told:
+        """Tell of mux and gates that fall silent, and come back."""
+        if view.ros != ROS_CONNECTED:
+            return
+        if self._mux.take(view.mode is not None, SERVICE_S, now):
+            yield ('mux.back', 'what decides who drives runs again') if self._mux.value else \
+                ('mux.silent', 'what decides who drives is not running')
+        if self._gates.take(view.answers, SERVICE_S, now):
+            yield ('gates.back', 'the drive service answers again') if view.answers else \
+                ('gates.silent', UNANSWERED + ': no robot can be driven')
+
+    def _see_driver(self, old: PanelView, view: PanelView) -> _Told:
+        """Tell of stop-all, of who drives, and of what was refused."""
+        if view.stop_all != old.stop_all:
+            yield ('stop.engaged', 'STOP ALL') if view.stop_all else \
+                ('stop.released', 'STOP ALL released')
+        if view.control.ours != old.control.ours:
+            yield ('control.taken', 'this screen drives now') if view.control.ours else \
+                ('control.lost', '{} drives now: this screen looks on'.format(
+                    view.control.who or 'somebody else'))
+        if view.stop_note != old.stop_note and view.stop_note.lower().startswith(_REFUSALS):
+            yield 'request.refused', view.stop_note
+
+    def _see_source(self, view: PanelView, now: float) -> _Told:
+        """Tell of another source, of one that cannot drive, and of another speed limit."""
+        if view.mode is None:
+            return
+        if self._mode not in (None, view.mode):
+            yield 'mode.changed', 'driving with {}'.format(
+                dict(view.sources).get(view.mode, view.mode))
+        self._mode = view.mode
+        if self._advice.take(view.advice, SETTLED_S, now):
+            yield ('source.trouble', view.advice) if view.advice else \
+                ('source.fine', 'what drives is heard again')
+        if self._limits is None:
+            self._limits = Held(view.limits)
+        if self._limits.take(view.limits, SETTLED_S, now):
+            yield 'limits.changed', 'speed limit {:.2f} m/s, {:.2f} rad/s'.format(*view.limits)

@@ -1,0 +1,151 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where the tiles of the screen go: the pictures as large as they can be, no two over each other.
+
+Tiles are large (what the operator drives by) or small (the rest, a strip beside or below). Every
+way of placing them is tried: the large ones as large as they can be, the small ones of use.
+"""
+from dataclasses import dataclass
+from math import ceil, sqrt
+from typing import Iterator, Sequence, Tuple
+
+# What the strip of small tiles may get of the stage.
+_STRIP_SHARES = tuple(share / 100.0 for share in range(10, 52, 2))
+# A small picture is of use up to this part of the width of a large one; till there, a pixel of its
+# width counts so much.
+_SMALL_ENOUGH = 0.26
+_SMALL_COUNTS = 1.3
+# So much more has to be seen in another arrangement before the tiles move.
+WORTH_MOVING = 1.06
+# Shape (width by height) of a picture that is not there yet.
+USUAL_SHAPE = 4.0 / 3.0
+_GROUP_AT_MOST = 4
+
+AUTO, ONE, ALIKE = 'auto', 'one', 'alike'
+
+
+@dataclass(frozen=True)
+class Box:
+    """A rectangle on the stage, in pixels."""
+
+    x: int
+    y: int
+    width: int
+    height: int
+
+    def picture(self, shape: float) -> float:
+        """Return the area [px²] that a picture of this shape (width by height) has in it."""
+        height = min(self.height, self.width / shape)
+        return height * height * shape
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """A box for each large and each small tile, in order, and the area that is picture [px²]."""
+
+    large: Tuple[Box, ...] = ()
+    small: Tuple[Box, ...] = ()
+    picture_px: float = 0.0
+
+
+def choose_large(robots: Sequence[str], driven: Sequence[str], looked_at: str,
+                 style: str = AUTO) -> Tuple[str, ...]:
+    """Return the robots whose tiles are large, in the order of ``robots``.
+
+    By itself (AUTO): a group of up to four that is driven together, else the one looked at, else
+    the one that is driven, else the first. ONE shows one alone, ALIKE all.
+
+    :param driven: the robots that are checked
+    :param looked_at: the robot that was chosen last, '' for none
+    """
+    if style == ALIKE:
+        return tuple(robots)
+    group = [name for name in robots if name in driven]
+    if style == AUTO and 2 <= len(group) <= _GROUP_AT_MOST and looked_at in ('', *group):
+        return tuple(group)
+    for name in (looked_at, *group, *robots):
+        if name in robots:
+            return (name,)
+    return ()
+
+
+def _grid(box: Box, shapes: Sequence[float], columns: int, gap: int) -> Tuple[Box, ...]:
+    """Return a box for each shape, row by row, so many beside each other."""
+    rows = ceil(len(shapes) / columns)
+    width = (box.width - gap * (columns - 1)) // columns
+    height = (box.height - gap * (rows - 1)) // rows
+    return tuple(Box(box.x + index % columns * (width + gap), box.y + index // columns *
+                     (height + gap), width, height) for index in range(len(shapes)))
+
+
+def _seen(boxes: Sequence[Box], shapes: Sequence[float]) -> float:
+    """Return the area of all pictures [px²]."""
+    return sum(box.picture(shape) for box, shape in zip(boxes, shapes))
+
+
+def _worth(large_px: float, larges: int, small_px: float, smalls: int) -> float:
+    """Return how good pictures of these areas [px²] are to drive by, in pixels of width."""
+    large = sqrt(large_px / larges)
+    return large + _SMALL_COUNTS * min(sqrt(small_px / smalls), _SMALL_ENOUGH * large)
+
+
+def _best_grid(box: Box, shapes: Sequence[float], gap: int) -> Tuple[Box, ...]:
+    """Return the grid that shows most of the pictures."""
+    return max((_grid(box, shapes, columns, gap) for columns in range(1, len(shapes) + 1)),
+               key=lambda boxes: _seen(boxes, shapes), default=())
+
+
+def _snug(boxes: Tuple[Box, ...], shapes: Sequence[float], gap: int,
+          room: Box) -> Tuple[Box, ...]:
+    """Return the boxes of a strip no higher than their pictures need, from the top."""
+    rows = sorted({box.y for box in boxes})
+    heights = [max(min(box.height, ceil(box.width / shape))
+                   for box, shape in zip(boxes, shapes) if box.y == y) for y in rows]
+    tops = [room.y + sum(heights[:row]) + gap * row for row in range(len(rows))]
+    return tuple(Box(box.x, tops[rows.index(box.y)], box.width, heights[rows.index(box.y)])
+                 for box in boxes)
+
+
+def _splits(width: int, height: int, gap: int) -> Iterator[Tuple[Box, Box]]:
+    """Yield (room of the large tiles, room of the strip): the strip at the right, then below."""
+    for share in _STRIP_SHARES:
+        strip = round(width * share)
+        yield (Box(0, 0, width - strip - gap, height),
+               Box(width - strip, 0, strip, height))
+        strip = round(height * share)
+        yield (Box(0, 0, width, height - strip - gap),
+               Box(0, height - strip, width, strip))
+
+
+def arrange(width: int, height: int, large: Sequence[float], small: Sequence[float],
+            least: Tuple[int, int], gap: int) -> Arrangement:
+    """Return where the tiles go.
+
+    :param width: of the stage [px]; ``height`` the same
+    :param large: shape (width by height) of the picture of each large tile
+    :param small: the same of each small one
+    :param least: least width and height of a small tile [px]; kept wherever that is possible
+    :param gap: between two tiles [px]
+    """
+    whole = Box(0, 0, max(1, width), max(1, height))
+    if not large or not small:
+        boxes = _best_grid(whole, tuple(large) or tuple(small), gap)
+        seen = _seen(boxes, tuple(large) or tuple(small))
+        return Arrangement(boxes, (), seen) if large else Arrangement((), boxes, seen)
+    best, best_score = Arrangement(), (-1, -1.0)
+    for room, strip in _splits(whole.width, whole.height, gap):
+        if min(room.width, room.height, strip.width, strip.height) < 1:
+            continue
+        larges = _best_grid(room, large, gap)
+        large_px = _seen(larges, large)
+        for columns in range(1, len(small) + 1):
+            smalls = _grid(strip, small, columns, gap)
+            if min(min(box.width, box.height) for box in smalls) < 1:
+                continue
+            small_px = _seen(smalls, small)
+            fits = all(box.width >= least[0] and box.height >= least[1] for box in smalls)
+            score = (int(fits), _worth(large_px, len(large), small_px, len(small)))
+            if score > best_score:
+                best_score = score
+                best = Arrangement(larges, _snug(smalls, small, gap, strip), large_px + small_px)
+    return best

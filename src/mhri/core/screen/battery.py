@@ -1,0 +1,25 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""When a robot's battery is worth a word: the same thresholds for row, tile, line and event."""
+from typing import Optional
+
+# Levels of a battery, best first.
+FINE, LOW, FLAT = 'fine', 'low', 'flat'
+LOW_AT = 0.30
+FLAT_AT = 0.15
+# A battery sags while the robot drives: a level is left only by so much more charge.
+HYSTERESIS = 0.03
+
+
+def battery_level(fraction: Optional[float], before: str = FINE) -> str:
+    """Return the level of a battery: FINE, LOW (30 % or less) or FLAT (15 % or less).
+
+    :param fraction: its charge in [0, 1]; None and NaN leave the level as it was
+    :param before: the level so far
+    """
+    if fraction is None or fraction != fraction:
+        return before
+    for level, limit, worse in ((FLAT, FLAT_AT, (FLAT,)), (LOW, LOW_AT, (LOW, FLAT))):
+        if fraction <= limit + (HYSTERESIS if before in worse else 0.0):
+            return level
+    return FINE

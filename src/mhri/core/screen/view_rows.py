@@ -1,0 +1,57 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The registry of views: what a tile can show of its robot.
+
+A further view is a file in ``gui/`` (the widget), one in ``ros/`` (its feed), and one row here. The
+classes are named and not imported: neither side knows the other, and what nobody looks at is not
+loaded.
+
+A feed class has ``of(robot, kind, key)``, which returns a feed or, where a robot of this type has
+none, None; a feed has ``open()``, ``close()``, ``take()`` (the newest value, None where nothing is
+new) and ``age_s()``. A widget class has ``show_value(value)``, ``show_age(age_s)``,
+``save_settings()`` and ``restore_settings(settings)``. Where a feed has ``status()``, a
+:class:`mhri.core.camera.images.StreamStatus`, its bits are counted with those of the pictures, and
+its widget has ``show_status(status)``.
+"""
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any, Tuple
+
+IMU, SCAN, CLOUD, RGB, DEPTH, RECORD = 'imu', 'scan', 'cloud', 'rgb', 'depth', 'record'
+
+
+@dataclass(frozen=True)
+class ViewRow:
+    """One view: key, label of its switch, class of its feed and of its widget.
+
+    ``picture`` is true for those of which a tile shows one at a time; rows of the same widget share
+    it.
+    """
+
+    key: str
+    label: str
+    feed: str
+    widget: str
+    picture: bool = False
+
+
+VIEW_ROWS: Tuple[ViewRow, ...] = (
+    ViewRow(RGB, 'RGB', 'mhri.ros.camera.camera_feed.CameraFeed',
+            'mhri.gui.camera.camera_view.CameraView', picture=True),
+    ViewRow(DEPTH, 'depth', 'mhri.ros.camera.camera_feed.CameraFeed',
+            'mhri.gui.camera.camera_view.CameraView', picture=True),
+    ViewRow(CLOUD, 'Point cloud', 'mhri.ros.sensors.cloud_feed.CloudFeed',
+            'mhri.gui.sensors.cloud_view.CloudView'),
+    ViewRow(SCAN, 'Laser scan', 'mhri.ros.sensors.scan_feed.ScanFeed',
+            'mhri.gui.sensors.scan_view.ScanView'),
+    ViewRow(IMU, 'IMU graph', 'mhri.ros.sensors.imu_feed.ImuFeed',
+            'mhri.gui.sensors.imu_graph.ImuGraph'),
+)
+PICTURES = frozenset(row.key for row in VIEW_ROWS if row.picture)
+KEYS = frozenset(row.key for row in VIEW_ROWS)
+
+
+def load(name: str) -> Any:
+    """Return the class that a row names as ``package.module.Class``."""
+    module, _, attribute = name.rpartition('.')
+    return getattr(import_module(module), attribute)

@@ -1,0 +1,183 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Numbers over the picture: speed, turn, heading; and in one sentence why the robot stands."""
+from python_qt_binding.QtCore import QPointF, QRectF, Qt
+from python_qt_binding.QtGui import QColor, QFontMetrics, QPainter, QPainterPath, QPen, QPixmap
+from python_qt_binding.QtWidgets import QWidget
+
+from mhri.core.screen import views
+from mhri.gui.screen import theme, words
+
+_EDGE = 0.22
+_DIM = QColor(190, 190, 190)
+
+
+def hud_lines(view):
+    """Return what is written at the lower left, as a list of lines.
+
+    :param view: :class:`mhri.core.screen.views.RobotView`
+    """
+    if view.linear_mps is None and view.angular_rad_s is None:
+        return []
+    return [words.BETWEEN_FIGURES.join((words.linear_text(view.linear_mps),
+                                        words.turn_text(view.angular_rad_s))),
+            'heading {}'.format(words.heading_text(view.heading_rad))]
+
+
+class Hud(QWidget):
+    """Words with a dark edge, readable on white and on black; clicks go through to the picture.
+
+    They are painted once for each change, not with each picture beneath.
+    """
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self._lines = ()
+        self._sentence = ''
+        self._sign = None
+        self._old = False
+        self._large = True
+        self._shown = True
+        self._picture = None
+        self._build()
+
+    def _build(self):
+        """Let clicks through."""
+        self.setObjectName('hud')
+        self.setAttribute(Qt.WA_TransparentForMouseEvents)
+        self.setFocusPolicy(Qt.NoFocus)
+        self.setPalette(theme.over_picture(self.palette()))
+
+    @property
+    def lines(self):
+        """The lines on show."""
+        return self._lines
+
+    @property
+    def sign(self):
+        """(shape, colour name) before the sentence, or None."""
+        return self._sign
+
+    @property
+    def sentence(self):
+        """The sentence on show, '' for none."""
+        return self._sentence
+
+    def show_large(self, large):
+        """Write large, or small."""
+        self._large = large
+        self._renew()
+
+    def show_numbers(self, shown):
+        """Show the numbers, or the sentence alone."""
+        self._show(shown=shown)
+
+    def show_view(self, view, extra=()):
+        """Show the numbers of a :class:`RobotView`, and further lines below them."""
+        self._show(lines=(*hud_lines(view), *extra), old=view.link != views.LIVE)
+
+    def show_sentence(self, text, sign=None):
+        """Say why the robot stands, or what is wrong; '' for nothing."""
+        self._show(sentence=text, sign=sign)
+
+    def _show(self, **changes):
+        """Renew the picture where anything changes."""
+        changed = False
+        for name, value in changes.items():
+            name = '_' + name
+            changed |= getattr(self, name) != value
+            setattr(self, name, value)
+        if changed:
+            self._renew()
+
+    def _renew(self):
+        """Paint anew at the next occasion."""
+        self._picture = None
+        self.update()
+
+    def resizeEvent(self, event):  # noqa: N802
+        """Fit the width."""
+        super().resizeEvent(event)
+        self._renew()
+
+    def changeEvent(self, event):  # noqa: N802
+        """Follow the font."""
+        super().changeEvent(event)
+        self._renew()
+
+    def paintEvent(self, event):  # noqa: N802
+        """Paint the words."""
+        if self._picture is None:
+            self._picture = self._paint_words()
+        QPainter(self).drawPixmap(0, 0, self._picture)
+
+    def _paint_words(self):
+        """Return the words as a picture that can be seen through."""
+        ratio = self.devicePixelRatioF()
+        picture = QPixmap(self.size() * ratio)
+        picture.setDevicePixelRatio(ratio)
+        picture.fill(Qt.transparent)
+        painter = QPainter(picture)
+        painter.setRenderHint(QPainter.Antialiasing)
+        unit = self.fontMetrics().height()
+        y = self.height() - 0.6 * unit
+        font = theme.number_font(theme.larger(self.font(), 1.35 if self._large else 1.0, bold=True))
+        ink = _DIM if self._old else QColor(Qt.white)
+        for line in reversed(self._fitting(font, self.width() - 1.4 * unit)):
+            y -= self._paint_line(painter, line, font, ink, 0.7 * unit, y)
+        if self._sentence:
+            self._paint_sentence(painter, y - 0.2 * unit)
+        painter.end()
+        return picture
+
+    def _fitting(self, font, width):
+        """Return the lines that are written in a width [px]; a small tile has one alone."""
+        metrics, lines = QFontMetrics(font), []
+        for line in self._lines if self._shown else ():
+            if metrics.horizontalAdvance(line) <= width:
+                lines.append(line)
+            else:
+                lines += line.split(words.BETWEEN_FIGURES)
+        return lines if self._large else lines[:1]
+
+    @staticmethod
+    def _paint_line(painter, text, font, ink, x, y):
+        """Paint a line with a dark edge, its foot at y; return its height."""
+        painter.setFont(font)
+        metrics = painter.fontMetrics()
+        path = QPainterPath()
+        path.addText(QPointF(x, y - metrics.descent()), font, text)
+        painter.setPen(QPen(QColor(0, 0, 0, 230), _EDGE * metrics.height(), Qt.SolidLine,
+                            Qt.RoundCap, Qt.RoundJoin))
+        painter.setBrush(Qt.NoBrush)
+        painter.drawPath(path)
+        painter.setPen(Qt.NoPen)
+        painter.setBrush(ink)
+        painter.drawPath(path)
+        return metrics.height()
+
+    def _paint_sentence(self, painter, foot):
+        """Paint the sentence on a dark ground, with its sign, over the lines."""
+        font = theme.larger(self.font(), 1.25 if self._large else 1.0, bold=self._large)
+        painter.setFont(font)
+        metrics, unit = painter.fontMetrics(), self.fontMetrics().height()
+        side = metrics.height() if self._sign else 0
+        left = 0.6 * unit + 1.3 * side
+        room = QRectF(left, 0, self.width() - left - unit, max(unit, foot))
+        flags = int(Qt.AlignLeft | Qt.AlignBottom | Qt.TextWordWrap)
+        texts = [words.kept_together(text) for text in (
+            self._sentence, *words.beginnings(self._sentence, most=4))]
+        text = next((text for text in texts if metrics.boundingRect(
+            room.toRect(), flags, text).height() <= room.height()), texts[-1])
+        needed = metrics.boundingRect(room.toRect(), flags, text)
+        ground = QRectF(0.4 * unit, needed.top() - 0.15 * unit,
+                        needed.right() - 0.4 * unit + 0.5 * unit, needed.height() + 0.3 * unit)
+        painter.setPen(Qt.NoPen)
+        painter.setBrush(theme.OVER_PICTURE)
+        painter.drawRoundedRect(ground, 4, 4)
+        if self._sign:
+            shape, colour = self._sign
+            theme.paint_sign(painter, QRectF(ground.left() + 0.2 * unit, needed.top(), side, side),
+                             shape, theme.colour(colour, self.palette()), QColor(Qt.black))
+        painter.setPen(Qt.white)
+        painter.drawText(room, flags, text)

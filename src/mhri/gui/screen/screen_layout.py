@@ -1,0 +1,200 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where the parts of the screen are: the drawer at the left, the stage, the foot with STOP ALL.
+
+The foot is below everything, or at the bottom of the drawer, whichever leaves more to the pictures:
+a 4:3 picture on a wide screen leaves room beside it, a wide one leaves room below.
+"""
+from python_qt_binding.QtCore import QEvent, QObject, Qt
+from python_qt_binding.QtWidgets import QBoxLayout, QLayout
+
+from mhri.core.screen.arrangement import WORTH_MOVING
+from mhri.gui.screen import theme
+
+ROBOTS, DRIVE = 'Robots', 'Drive'
+# Width of the drawer at first, in heights of a line.
+_DRAWER_UNITS = 24.0
+# Height of the foot at the bottom of the drawer.
+_SIDE_FOOT_UNITS = 13.0
+
+
+class ScreenLayout(QObject):
+    """Moves the parts of a screen; it follows its size and that of its stage.
+
+    :param screen: :class:`mhri.gui.screen.screen.ScreenWidget`, its form loaded
+    """
+
+    def __init__(self, screen):
+        super().__init__(screen)
+        self._screen = screen
+        self._in_side = False
+        self._tall = True
+        self._floating = False
+        self._busy = False
+        self._build()
+        self._connect()
+
+    def _build(self):
+        """Set what a form cannot say."""
+        screen = self._screen
+        # It becomes as small as it is made: the parts give way before the screen does.
+        screen.layout().setSizeConstraint(QLayout.SetNoConstraint)
+        screen.tabs.addTab(ROBOTS)
+        screen.tabs.setExpanding(False)
+        # Hidden at first, it would think that it has no tabs.
+        screen.tabs.setMinimumHeight(theme.touch_size(screen))
+        screen.tabs.setDrawBase(False)
+        screen.tabs.setFocusPolicy(Qt.TabFocus)
+        screen.tabs.setAccessibleName('Pages of the panel')
+        unit = screen.fontMetrics().height()
+        screen.splitter.setSizes([round(_DRAWER_UNITS * unit), screen.width()])
+        screen.splitter.setStretchFactor(0, 0)
+        screen.splitter.setStretchFactor(1, 1)
+        screen.drawer_button.setChecked(True)
+        screen.drawer_button.setFocusPolicy(Qt.TabFocus)
+        screen.drawer_button.setMinimumHeight(theme.touch_size(screen))
+
+    def _connect(self):
+        """Follow what changes."""
+        screen = self._screen
+        screen.installEventFilter(self)
+        screen.stage.rearranged.connect(self.arrange)
+        screen.tabs.currentChanged.connect(self._turn)
+        screen.drawer_button.toggled.connect(self._show_drawer)
+        screen.splitter.splitterMoved.connect(lambda *_: self.arrange())
+
+    @property
+    def drawer_open(self):
+        """Whether the drawer is open."""
+        return self._screen.drawer_button.isChecked()
+
+    def add_page(self, title, page):
+        """Give the drawer a further page."""
+        self._screen.tabs.addTab(title)
+        self._screen.pages.addWidget(page)
+
+    def show_page(self, page):
+        """Open the drawer at a page."""
+        self._screen.drawer_button.setChecked(True)
+        pages = self._pages()
+        if page in pages:
+            self._screen.tabs.setCurrentIndex(pages.index(page))
+
+    def change_focus(self):
+        """Take the keyboard from the pictures to the panel, or back."""
+        screen = self._screen
+        focus = screen.window().focusWidget()
+        if focus is not None and screen.drawer.isAncestorOf(focus):
+            screen.stage.setFocus(Qt.TabFocusReason)
+        else:
+            screen.drawer_button.setChecked(True)
+            screen.robot_list.setFocus(Qt.TabFocusReason)
+
+    def _pages(self):
+        """Return the pages in the order of the tabs."""
+        screen = self._screen
+        pages = [screen.pages.widget(index) for index in range(screen.pages.count())]
+        return [page for page in pages if page is not screen.drive_page or not self._tall]
+
+    def _turn(self, index):
+        """Show the page of a tab."""
+        pages = self._pages()
+        if 0 <= index < len(pages):
+            self._screen.pages.setCurrentWidget(pages[index])
+
+    def _show_drawer(self, shown):
+        """Open or close the drawer."""
+        screen = self._screen
+        screen.drawer.setVisible(shown)
+        if not shown and screen.drawer.isAncestorOf(screen.focusWidget() or screen):
+            screen.stage.setFocus()
+        self.arrange()
+
+    def show_stick(self, wanted):
+        """Let the virtual joystick float over the pictures where the drawer does not show it."""
+        floating = wanted and not self._screen.drawer_button.isChecked()
+        if floating == self._floating or self._screen.joystick.dragging:
+            return
+        self._floating = floating
+        if floating:
+            self._screen.stage.show_float(self._screen.joystick)
+        else:
+            self._screen.stage.show_float(None)
+            self._screen.drive_side.layout().insertWidget(1, self._screen.joystick, 1)
+            self._screen.joystick.show()
+
+    def eventFilter(self, watched, event):  # noqa: N802
+        """Follow the size of the screen and its font."""
+        if event.type() in (QEvent.Resize, QEvent.Show, QEvent.FontChange, QEvent.LayoutRequest):
+            self.arrange()
+        return False
+
+    def arrange(self):
+        """Place foot and drawer anew."""
+        if self._busy:
+            return
+        self._busy = True
+        try:
+            self._arrange()
+        finally:
+            self._busy = False
+
+    def _arrange(self):
+        screen = self._screen
+        is_open = self.drawer_open
+        side = max(screen.drawer.minimumSizeHint().width(), screen.splitter.sizes()[0]) \
+            if is_open else 0
+        foot = screen.foot.sizeHint().height()
+        width, height = screen.width(), screen.height()
+        beside = screen.stage.picture_px(width - side, height) if is_open else 0.0
+        below = screen.stage.picture_px(width - side, height - foot)
+        share = beside / below if below else 2.0
+        fits = screen.drawer.minimumSizeHint().height() + _SIDE_FOOT_UNITS * \
+            screen.fontMetrics().height() <= height
+        in_side = is_open and fits and share > (1.0 if self._in_side else WORTH_MOVING)
+        if in_side != self._in_side and not screen.joystick.dragging:
+            self._move_foot(in_side)
+        screen.side.setVisible(is_open)
+        self._fit_drawer(height - (foot if not self._in_side else screen.foot.sizeHint().height()))
+
+    def _move_foot(self, in_side):
+        """Put the foot at the bottom of the drawer, or below everything."""
+        screen = self._screen
+        self._in_side = in_side
+        screen.foot_row.setDirection(QBoxLayout.BottomToTop if in_side else QBoxLayout.LeftToRight)
+        screen.foot_row.setStretch(0, 0 if in_side else 3)
+        screen.foot_row.setStretch(1, 0 if in_side else 2)
+        screen.stop_bar.show_narrow(in_side)
+        screen.status_line.show_wrapped(in_side)
+        (screen.side_column if in_side else screen.screen_layout).addWidget(screen.foot)
+        screen.foot.show()
+
+    def _fit_drawer(self, height):
+        """Have robots and driving on one page where both fit, else on two."""
+        screen = self._screen
+        needed = screen.tabs.sizeHint().height() + 24 + sum(
+            part.minimumSizeHint().height() for part in (screen.robots_side, screen.drive_side))
+        tall = height >= needed
+        if tall == self._tall or screen.joystick.dragging:
+            return
+        self._tall = tall
+        if tall:
+            current = screen.tabs.currentIndex()
+            screen.robots_page_column.addWidget(screen.drive_side)
+            screen.tabs.removeTab(1)
+            screen.tabs.setCurrentIndex(max(0, current - 1))
+        else:
+            screen.drive_page_column.addWidget(screen.drive_side)
+            screen.tabs.insertTab(1, DRIVE)
+        screen.drive_side.show()
+        self._turn(screen.tabs.currentIndex())
+
+    def save_settings(self):
+        """Return what is kept between runs."""
+        return {'splitter': self._screen.splitter.sizes(), 'drawer': self.drawer_open}
+
+    def restore_settings(self, settings):
+        """Take back what :meth:`save_settings` returned."""
+        if len(settings.get('splitter', ())) == self._screen.splitter.count():
+            self._screen.splitter.setSizes(settings['splitter'])
+        self._screen.drawer_button.setChecked(settings.get('drawer', True) is not False)

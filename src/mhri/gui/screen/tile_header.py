@@ -1,0 +1,214 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The line across the top of a tile: which robot, whether it is driven, how its link is."""
+from python_qt_binding.QtCore import Qt
+from python_qt_binding.QtGui import QPainter
+from python_qt_binding.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QWidget
+
+from mhri.core.screen import views
+from mhri.gui.recording.recording_row import clock_text
+from mhri.gui.screen import theme, words
+from mhri.gui.screen.labels import BatteryLine, Pill, Sign, TextLine
+
+VIEWS, VIEWS_IN_SHORT = 'Views', '…'
+TEAR_OFF, PUT_BACK = 'Tear off', 'Put back'
+TYPE, AGE, LINK, PILL, BATTERY = 'type', 'age', 'link', 'pill', 'battery'
+# What is left out where there is no room, in this order; small tiles never have the first ones.
+_LEFT_OUT = (TYPE, AGE, TEAR_OFF, VIEWS, LINK, PILL, BATTERY)
+_OF_SMALL = 6
+
+DRIVING = 'DRIVING'
+SELECTED = 'selected'
+NOT_SELECTED = 'not selected'
+STOPPING = 'STOPPING'
+NOT_CONFIRMED = 'NOT CONFIRMED'
+STOPPED = 'STOPPED'
+
+# How each drive state looks: colour, whether the pill is filled, width of the tile's edge [px]; the
+# last is that of a robot which nobody drives.
+LOOKS = {
+    DRIVING: (theme.DRIVE, True, 4),
+    SELECTED: (theme.DRIVE, False, 2),
+    STOPPING: (theme.STOP, False, 4),
+    NOT_CONFIRMED: (theme.STOP, True, 4),
+    STOPPED: (theme.STOP, True, 4),
+    NOT_SELECTED: (theme.MUTED, False, 1),
+}
+# What a stop is called that is proved so far.
+_STOPS = {views.PROOF_STOPPED: STOPPED, views.PROOF_NOT_CONFIRMED: NOT_CONFIRMED}
+
+
+def drive_state(view, stopped):
+    """Return in a word whether a robot is driven: a key of :data:`LOOKS`.
+
+    :param view: :class:`mhri.core.screen.views.RobotView`
+    :param stopped: whether stop-all is in force
+    """
+    if stopped:
+        return _STOPS.get(view.proof.state, STOPPING) if view.proof else STOPPING
+    return DRIVING if view.driven else SELECTED if view.selected else NOT_SELECTED
+
+
+class TileHeader(QWidget):
+    """Lies on the picture, light on dark in every theme; small tiles leave out what can be left.
+
+    Child widgets: ``number_label``, ``name_label``, ``type_label``, ``pill``, ``link_sign``,
+    ``link_label``, ``battery_label``, ``rec_label``, ``views_button``, ``tear_button``.
+    """
+
+    def __init__(self, name, type_label, parent=None):
+        super().__init__(parent)
+        self.large = True
+        self._view = None
+        self._with_age = True
+        self._build(name, type_label)
+
+    def _build(self, name, type_label):
+        """Make and place the parts."""
+        self.setObjectName('tile_header')
+        self.setPalette(theme.over_picture(self.palette()))
+        self.number_label, self.name_label = TextLine(self), TextLine(self)
+        self.type_label, self.link_label = TextLine(self), TextLine(self)
+        self.rec_label, self.battery_label = TextLine(self), BatteryLine(self)
+        self.pill, self.link_sign = Pill(self), Sign(self)
+        self.name_label.show_text(name, shorter=words.name_ends(name))
+        self.type_label.show_text(type_label, theme.MUTED)
+        self.views_button = QPushButton(VIEWS, self)
+        self.views_button.setCheckable(True)
+        self.views_button.setAccessibleName(VIEWS)
+        self.views_button.setToolTip('what this tile shows, its recording and its streams')
+        self.tear_button = QPushButton(TEAR_OFF, self)
+        self.tear_button.setToolTip('into a window of its own, for another monitor')
+        for part, key in ((self.number_label, 'number_label'), (self.name_label, 'name_label'),
+                          (self.type_label, 'type_label'), (self.pill, 'pill'),
+                          (self.link_sign, 'link_sign'), (self.link_label, 'link_label'),
+                          (self.battery_label, 'battery_label'), (self.rec_label, 'rec_label'),
+                          (self.views_button, 'views_button'), (self.tear_button, 'tear_button')):
+            part.setObjectName(key)
+        for button in (self.views_button, self.tear_button):
+            button.setFocusPolicy(Qt.TabFocus)
+            button.setAutoDefault(False)
+        row = self._row = QHBoxLayout(self)
+        for part in (self.number_label, self.name_label, self.pill, None, self.link_sign,
+                     self.link_label, self.battery_label, self.rec_label, self.type_label, None,
+                     self.views_button, self.tear_button):
+            if part is None:
+                row.addStretch()
+            else:
+                row.addWidget(part)
+        self.rec_label.hide()
+        self.number_label.hide()
+        self.show_large(True)
+
+    def show_large(self, large):
+        """Be the header of a large tile, or of a small one."""
+        self.large = large
+        base = theme.base_font(self.window().font() if self.window() else self.font())
+        unit = self.fontMetrics().height()
+        self._row.setContentsMargins(unit // 2, 2, 2 if large else unit // 3, 2)
+        self._row.setSpacing(unit // 2 if large else unit // 4)
+        bold = theme.larger(base, 1.4 if large else 1.05, bold=True)
+        numbers = theme.number_font(base)
+        for part, font in ((self.name_label, bold), (self.number_label, bold),
+                           (self.link_label, numbers), (self.battery_label, numbers),
+                           (self.rec_label, numbers), (self.link_sign, numbers),
+                           (self.pill, base)):
+            part.setFont(font)
+        self.battery_label.fix_width('100 %')
+        self.rec_label.fix_width('REC 00:00')
+        for button in (self.views_button, self.tear_button):
+            button.setMinimumHeight(theme.touch_size(self))
+        for place in range(self._row.count()):
+            if self._row.itemAt(place).spacerItem():
+                self._row.setStretch(place, int((place > 4) == large))
+        self.show_drive(self.pill.word)
+
+    def show_drive(self, word):
+        """Say in the pill how the robot is driven; small tiles leave out that it is not."""
+        if word:
+            self.pill.say(word, *LOOKS[word][:2])
+        self.pill.setVisible(bool(word) and (self.large or word != NOT_SELECTED))
+        self.fit()
+
+    def fit(self):
+        """Leave out what there is no room for, always in the same order; the name goes last."""
+        name = self.name_label
+        natural = theme.text_width(name.font(), name.text())
+        name.setSizePolicy(QSizePolicy.Preferred, QSizePolicy.Fixed)
+        name.setMaximumWidth(natural)
+        name.setMinimumWidth(min(natural, 4 * name.fontMetrics().averageCharWidth()))
+        self.number_label.fix_width(self.number_label.text() or '0')
+        for count in range(0 if self.large else _OF_SMALL, len(_LEFT_OUT) + 1):
+            self._leave_out(_LEFT_OUT[:count])
+            if self._needed(natural) <= self.width():
+                break
+
+    def _leave_out(self, parts):
+        """Show everything but some parts of :data:`_LEFT_OUT`."""
+        self._with_age = AGE not in parts
+        self.link_label.fix_width('waiting 000 ms' if self._with_age else 'waiting')
+        self._show_link()
+        self.views_button.setText(VIEWS if VIEWS not in parts else VIEWS_IN_SHORT)
+        self.views_button.setFixedWidth(
+            theme.touch_size(self) + theme.text_width(self.views_button.font(),
+                                                      self.views_button.text()) // 2)
+        self.pill.set_words((self.pill.word,) if PILL in parts else tuple(LOOKS))
+        self.type_label.fix_width(self.type_label.text())
+        for part, key in ((self.type_label, TYPE), (self.link_label, LINK),
+                          (self.tear_button, TEAR_OFF), (self.battery_label, BATTERY)):
+            part.setVisible(key not in parts)
+        self.views_button.setVisible(self.large)
+
+    def _needed(self, name_width):
+        """Return the width that everything on show needs [px]."""
+        parts = [item.widget() for item in map(self._row.itemAt, range(self._row.count()))
+                 if item.widget() and not item.widget().isHidden()]
+        margins = self._row.contentsMargins()
+        # Each of the two stretches has the gap of a part.
+        return (margins.left() + margins.right() + self._row.spacing() * len(parts) + sum(
+            name_width if part is self.name_label else max(
+                part.minimumWidth(), min(part.sizeHint().width(), part.maximumWidth()))
+            for part in parts))
+
+    def resizeEvent(self, event):  # noqa: N802
+        """Fit the width there is."""
+        super().resizeEvent(event)
+        self.fit()
+
+    def _show_link(self):
+        """Say how the link is, with its age where there is room."""
+        if self._view is not None:
+            tone = theme.TEXT if self._view.link == views.LIVE else theme.MUTED
+            self.link_label.show_text(words.link_text(self._view) if self._with_age
+                                      else words.LINK_WORDS[self._view.link], tone)
+
+    def show_view(self, view, numbers=True):
+        """Show a :class:`RobotView`; the numbers of it only if ``numbers``."""
+        self.link_sign.show_sign(theme.LINK_SIGNS[view.link])
+        self.link_sign.setToolTip(words.LINK_WORDS[view.link])
+        number = str(view.number) if view.number else ''
+        if number != self.number_label.text():
+            self.number_label.show_text(number, theme.MUTED)
+            self.number_label.setVisible(bool(number))
+            self.fit()
+        kind = words.type_text(view)
+        if kind != self.type_label.text():
+            self.type_label.show_text(kind, theme.MUTED)
+            self.fit()
+        if not numbers:
+            return
+        self._view = view
+        self._show_link()
+        self.battery_label.show_charge(view.battery, view.link != views.LIVE)
+
+    def show_recording(self, status):
+        """Show how long a recording has been running, None where none is."""
+        if self.rec_label.isHidden() != (status is None):
+            self.rec_label.setVisible(status is not None)
+            self.fit()
+        if status is not None:
+            self.rec_label.show_text('REC ' + clock_text(status.duration_s))
+
+    def paintEvent(self, event):  # noqa: N802
+        """Paint the ground."""
+        QPainter(self).fillRect(self.rect(), theme.OVER_PICTURE)

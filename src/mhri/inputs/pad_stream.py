@@ -1,0 +1,79 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A process that reads a pad for whoever must not wait for its driver, e.g. a screen.
+
+It writes a JSON object a line to standard output, on change::
+
+    {"kind": "absent", "reason": "..."}
+    {"kind": "pad", "name": "...", "guid": "..."}
+    {"kind": "state", "axes": [0.1, null], "buttons": [0, 1]}
+
+An axis is null until something is known of it. It ends with its standard input.
+"""
+import json
+import os
+import select
+import sys
+
+from mhri.core.devices.pads import choose_pad
+from mhri.inputs.reader import DeviceAbsent, DeviceLost
+from mhri.inputs.sdl import Joysticks
+
+LOOK_S = 0.5
+# A screen draws at most so often, and a button is held for longer.
+STATE_S = 0.02
+
+
+class Ended(Exception):
+    """Nobody listens any more."""
+
+
+def _wait(stdin, seconds):
+    """Let time pass.
+
+    :raises Ended: standard input was closed
+    """
+    if select.select([stdin], [], [], seconds)[0] and not os.read(stdin.fileno(), 4096):
+        raise Ended()
+
+
+def _follow(joysticks, say, wait):
+    """Read the first pad until it is lost.
+
+    :raises DeviceLost: it is gone
+    :raises DeviceAbsent: it cannot be opened
+    :raises LookupError: there is none
+    """
+    info = choose_pad('', joysticks.look(), [])
+    pad = joysticks.open(info)
+    try:
+        say(kind='pad', name=info.name, guid=info.guid)
+        while True:
+            axes, buttons = pad.state()
+            say(kind='state', axes=axes, buttons=buttons)
+            wait(STATE_S)
+    finally:
+        pad.close()
+
+
+def main(joysticks=None, stdin=None, stdout=None):
+    """Read pads, one after the other, until standard input is closed."""
+    joysticks, stdin = joysticks or Joysticks(), stdin or sys.stdin
+    said = {}
+
+    def say(**line):
+        if said.get(line['kind']) != line:
+            if line['kind'] != 'state':
+                said.clear()
+            said[line['kind']] = line
+            print(json.dumps(line), file=stdout or sys.stdout, flush=True)
+
+    try:
+        while True:
+            try:
+                _follow(joysticks, say, lambda seconds: _wait(stdin, seconds))
+            except (DeviceLost, DeviceAbsent, LookupError) as reason:
+                say(kind='absent', reason=str(reason))
+            _wait(stdin, LOOK_S)
+    except (Ended, BrokenPipeError):
+        pass

@@ -1,0 +1,170 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Joins the page on which a pad is calibrated with the pad; everything here is on the GUI thread.
+
+The pad is read by a process of its own (:mod:`mhri.inputs.pad_stream`), and only while the page is
+in sight. So that nothing drives, the page begins with STOP ALL, and the mode leaves the pad.
+"""
+import json
+import os
+
+from python_qt_binding.QtCore import QObject, QProcess, QTimer, Signal
+
+from mhri.core.config import ConfigError
+from mhri.core.devices.calibration_page import CalibrationPage, READY, SAVING
+from mhri.core.devices.pads import choose_profile
+from mhri.gui.devices.pad_calibration import PadCalibration
+from mhri.gui.screen.screen import VIRTUAL_JOYSTICK
+from mhri.inputs.child import command
+from mhri.inputs.pad_calibration import write_profile
+from mhri.ros.devices.pad_profiles import own_folder, pad_profiles, shipped_names
+
+TITLE = 'Pad'
+PAD = 'pad'
+# Soon enough for a person to see a stick follow the hand.
+DRAW_MS = 50
+# A process that reads a pad and ends is started again no sooner.
+RESTART_MS = 2000
+MOST_BYTES = 100_000
+
+
+class PadHost(QObject):
+    """Shows the page, feeds it and writes what comes of it.
+
+    :param operator: :class:`mhri.ros.screen.backend.ScreenBackend`
+    :param screen: :class:`mhri.gui.screen.screen.ScreenWidget`
+    :param program: the command of the process that reads the pad
+    """
+
+    _written = Signal(bool, str, bool)
+
+    def __init__(self, operator, screen, program=None, parent=None):
+        super().__init__(parent)
+        self._operator = operator
+        self._program = program or command('mhri.inputs.pad_stream')
+        self._dialogue = CalibrationPage(shipped_names())
+        self._begun = b''
+        self._closed = False
+        self._view = None
+        self._build(screen)
+        self._connect()
+
+    def _build(self, screen):
+        self.page = PadCalibration()
+        screen.arrangement.add_page(TITLE, self.page)
+        self._reader = QProcess(self)
+        self._reader.setProcessChannelMode(QProcess.ForwardedErrorChannel)
+        self._draw_timer = QTimer(self)
+        self._draw_timer.setInterval(DRAW_MS)
+        self._restart_timer = QTimer(self)
+        self._restart_timer.setSingleShot(True)
+        self._restart_timer.setInterval(RESTART_MS)
+
+    def _connect(self):
+        self.page.shown.connect(self._on_shown)
+        self.page.confirmed.connect(self._confirm)
+        self.page.restart_requested.connect(self._dialogue.again)
+        self._reader.readyReadStandardOutput.connect(self._read)
+        self._reader.finished.connect(self._on_end)
+        self._draw_timer.timeout.connect(self._draw)
+        self._restart_timer.timeout.connect(self._start)
+        self._written.connect(self._on_written)
+
+    def show_view(self, view):
+        """Take in the :class:`mhri.core.screen.views.PanelView` of this moment."""
+        self._view = view
+        self._dialogue.on_stop(view.stop_all and view.stop_taken)
+
+    def _on_shown(self, shown):
+        """Read the pad while the page is in sight."""
+        if shown and not self._closed:
+            self._start()
+            self._draw_timer.start()
+        else:
+            self._end_reader()
+            self._dialogue.close()
+            self._draw()
+
+    def _start(self):
+        if self._reader.state() == QProcess.NotRunning:
+            self._begun = b''
+            self._reader.start(self._program[0], self._program[1:])
+
+    def _end_reader(self):
+        """Let the reading end: it does so by itself when nobody holds its standard input."""
+        self._draw_timer.stop()
+        self._restart_timer.stop()
+        self._reader.closeWriteChannel()
+
+    def _on_end(self, *_):
+        """Begin to read again, where the process failed, or was still ending as it was wanted."""
+        if self.page.isVisible() and not self._closed:
+            self._dialogue.on_line({'kind': 'absent', 'reason': 'the reading of the pad ended'})
+            self._restart_timer.start()
+
+    def _read(self):
+        """Take in what the process has said."""
+        *lines, self._begun = (self._begun + bytes(self._reader.readAllStandardOutput())
+                               ).split(b'\n')
+        self._begun = self._begun[-MOST_BYTES:]
+        for text in lines:
+            try:
+                line = json.loads(text)
+            except ValueError:
+                continue  # whatever a driver prints on the same channel
+            if isinstance(line, dict):
+                self._dialogue.on_line(line)
+
+    def _draw(self):
+        self.page.show_calibration(self._dialogue.view())
+
+    def _confirm(self):
+        """Do what the large button says."""
+        begins = self._dialogue.state == READY
+        self._dialogue.confirm()
+        if begins:
+            self._leave_pad()
+            self._operator.stop_all()
+        elif self._dialogue.state == SAVING:
+            path = os.path.join(own_folder(), self._dialogue.name + '.yaml')
+            self._operator.do(self._save, path, self._dialogue.text(), self._dialogue.replaces,
+                              self._dialogue.name, self._dialogue.pad)
+        self._draw()
+
+    def _leave_pad(self):
+        """Have nothing driven by a pad: its buttons would go on choosing robots."""
+        view = self._view
+        if view and any(device.source == view.mode and device.kind == PAD
+                        for device in view.devices):
+            self._operator.request_mode(VIRTUAL_JOYSTICK)
+
+    def _save(self, path, text, replace, name, pad):
+        """Write the profile (on a worker), and look whether it is the one for this pad."""
+        try:
+            write_profile(path, text, replace)
+            used = choose_profile(pad_profiles(), *pad)[0].name
+        except FileExistsError:
+            self._written.emit(False, '{} is there already.'.format(path), True)
+        except (OSError, ConfigError) as error:
+            self._written.emit(False, 'cannot write {}: {}'.format(
+                path, getattr(error, 'strerror', None) or error), False)
+        else:
+            self._written.emit(True, 'Saved: {}. {}'.format(
+                path, 'Choose the pad in "Drive with" to drive with it.' if used == name else
+                'But the profile "{}" is for this pad, too, and comes first: remove one of '
+                'them.'.format(used)), False)
+
+    def _on_written(self, done, sentence, exists):
+        if done:
+            self._dialogue.saved(sentence)
+        else:
+            self._dialogue.refused(sentence, exists)
+        self._draw()
+
+    def close(self):
+        """End the reading with the screen."""
+        self._closed = True
+        self._end_reader()
+        if self._reader.state() != QProcess.NotRunning and not self._reader.waitForFinished(200):
+            self._reader.kill()
+            self._reader.waitForFinished(200)

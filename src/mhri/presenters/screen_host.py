@@ -1,0 +1,262 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Joins the two halves of the screen: the operator's ROS side and the widgets.
+
+One of the few modules that know both. Everything here runs on the GUI thread; the ROS side is asked
+by timers and never waited for.
+"""
+import gc
+
+from python_qt_binding.QtCore import QObject, QTimer
+from python_qt_binding.QtWidgets import QApplication
+
+from mhri.core.robots.names import tidy_name
+from mhri.core.screen.saved_state import usable_state
+from mhri.core.screen.views import GONE, SILENT
+from mhri.presenters.doctor_host import DoctorHost
+from mhri.presenters.draw_guard import DrawGuard
+from mhri.presenters.event_host import EventHost
+from mhri.gui.screen.screen import ScreenWidget
+from mhri.presenters.pad_host import PadHost
+from mhri.presenters.requests_host import RequestsHost
+from mhri.presenters.stop_watch import StopWatch
+from mhri.presenters.tiles_host import TilesHost
+from mhri.ros.resources import resource_path
+
+DRAW_MS = 50
+STICK_MS = 50
+# How often the selection is said again: the operator's lease ends where this thread hangs.
+LEASE_MS = 500
+# A row takes about 2 ms to make: more at once would be felt at the stick.
+ADD_AT_ONCE = 6
+
+
+class ScreenHost(QObject):
+    """The screen, its tiles and what feeds them; rqt and the standalone window hold one each.
+
+    :param operator: :class:`mhri.ros.screen.backend.ScreenBackend`, started by :meth:`start`
+    """
+
+    def __init__(self, operator, parent=None):
+        super().__init__(parent)
+        self.operator = operator
+        self._to_add = []
+        self._lost = set()
+        self._mode = None
+        self._closed = False
+        self._build()
+        self.requests = RequestsHost(operator, self.screen.show_look_result, self._select,
+                                     self.tiles.recording_wish)
+        self.events = EventHost(operator.recordings.status, self.screen)
+        self.doctor = DoctorHost(operator, self.screen)
+        self.pad = PadHost(operator, self.screen, parent=self)
+        self._connect()
+
+    @property
+    def windows(self):
+        """The tiles: {name: :class:`mhri.gui.screen.bot_window.BotWindow`}."""
+        return self.tiles.windows
+
+    def _build(self):
+        ui_dir = resource_path()
+        self.screen = ScreenWidget(ui_dir)
+        self.tiles = TilesHost(self.operator, self.screen.stage, ui_dir,
+                               self.screen.show_look_result, self)
+        self._guard = DrawGuard(self.screen)
+        QApplication.instance().installEventFilter(self.screen.drive_keys)
+        self._draw_timer = QTimer(self)
+        self._draw_timer.setInterval(DRAW_MS)
+        self._stick_timer = QTimer(self)
+        self._stick_timer.setInterval(STICK_MS)
+        self._lease_timer = QTimer(self)
+        self._lease_timer.setInterval(LEASE_MS)
+        self._stop_watch = StopWatch(self.operator.master_uri, self)
+
+    def _connect(self):
+        panel, operator = self.screen, self.operator
+        panel.look_requested.connect(self._look)
+        panel.add_requested.connect(self._add)
+        panel.remove_requested.connect(self._remove)
+        panel.record_requested.connect(self.requests.record)
+        panel.stop_record_requested.connect(self.requests.stop_recording)
+        panel.selection_requested.connect(self._select)
+        panel.drive_requested.connect(self._drive)
+        panel.stills_requested.connect(self.tiles.save_stills)
+        self.tiles.clicked.connect(panel.look_at)
+        self.tiles.drive_requested.connect(self._drive)
+        self.tiles.closed.connect(self._leave)
+        panel.mode_requested.connect(self._request_mode)
+        panel.stick_moved.connect(operator.send_stick)
+        panel.limits_requested.connect(operator.request_limits)
+        panel.together_requested.connect(operator.keep_together)
+        panel.talk_requested.connect(operator.talk)
+        panel.stop_requested.connect(operator.stop_all)
+        panel.release_requested.connect(operator.release)
+        panel.power_cut_requested.connect(lambda: operator.set_motor_power(False))
+        panel.control_requested.connect(operator.take_control)
+        self._draw_timer.timeout.connect(lambda: self._guard.run(self.draw))
+        self._stick_timer.timeout.connect(self._repeat_stick)
+        self._lease_timer.timeout.connect(operator.repeat_selection)
+        self._stop_watch.said.connect(panel.show_look_result)
+
+    def start(self, robots=(), selected=()):
+        """Begin; returns at once.
+
+        :param robots: names to add to the list
+        :param selected: names to add and select
+        """
+        self.operator.selection.numbers.meet((*robots, *selected))
+        for name in dict.fromkeys((*robots, *selected)):
+            self._add(name)
+        if selected:
+            self._select(list(selected))
+        self.operator.start()
+        # What has been loaded by now stays: looking through it takes the collector 60 ms, in which
+        # no thread runs.
+        gc.freeze()
+        self._draw_timer.start()
+        self._stick_timer.start()
+        self._lease_timer.start()
+        self._stop_watch.start()
+        self.events.start()
+        self.draw()
+
+    def draw(self):
+        """Take what there is to see and hand it to the widgets."""
+        for name, parameters in self._to_add[:ADD_AT_ONCE]:
+            self.operator.add(name, parameters)
+        del self._to_add[:ADD_AT_ONCE]
+        view = self.operator.view()
+        self._mode = view.mode or self._mode
+        self.screen.show_view(view)
+        self._feel_losses(view)
+        self.tiles.show_view(view)
+        self.events.show(view)
+        self.pad.show_view(view)
+        for kind, value in self.operator.take_events():
+            if kind == 'found':
+                self._show_found(value)
+            elif kind == 'examined':
+                self.doctor.show(*value)
+            elif kind != 'request':
+                self.screen.show_look_result(value)
+            elif view.control.ours:
+                self._carry_out(*value)
+        self.requests.tell_ends()
+
+    def _carry_out(self, action, names):
+        """Do what was asked for from elsewhere; what is refused is an event."""
+        refused = self.requests.carry_out(action, names)
+        if refused:
+            self.events.note('request.refused', refused)
+
+    def _feel_losses(self, view):
+        """Shake the pad when a selected robot is lost."""
+        lost = {robot.name for robot in view.robots
+                if robot.selected and robot.link in (SILENT, GONE)}
+        if lost - self._lost:
+            self.operator.alarm()
+        self._lost = lost
+
+    def _repeat_stick(self):
+        """Say again where the stick is: a source that is not heard for 0.5 s counts as lost."""
+        self.operator.send_stick(*self.screen.stick())
+
+    def _look(self):
+        self.screen.show_look_result('looking', busy=True)
+        self.operator.look()
+
+    def _show_found(self, found):
+        """Say what was found; the robots that answer come into the list a few with each drawing."""
+        new = [item.name for item in found.live]
+        self.operator.selection.numbers.meet(new)
+        self._to_add += [(name, found.facts[name]) for name in new]
+        words = ['found {}'.format(', '.join(new)) if new else 'no new robot answers']
+        if found.leftovers:
+            words.append('{}: registered, but nothing answers (switched off?), not added'.format(
+                ', '.join(item.name for item in found.leftovers)))
+        words += ['{}: {}'.format(item.name, item.problem) for item in found.refused]
+        self.screen.show_look_result('; '.join(words))
+
+    def _add(self, name):
+        name = tidy_name(name)
+        problem = self.operator.add(name)
+        if problem:
+            self.screen.show_name_problem(problem)
+        else:
+            self.screen.clear_name()
+        self.draw()
+
+    def _remove(self, name):
+        self.tiles.drop(name)
+        self.requests.end_recording(name)
+        self.operator.remove(name)
+        self.draw()
+
+    def _select(self, names):
+        self.operator.select(names)
+        self.draw()
+
+    def _request_mode(self, name):
+        self._mode = name
+        self.operator.request_mode(name)
+
+    def _drive(self, name):
+        """Drive this robot and no other, and look at it."""
+        if self.operator.drives():
+            self.screen.look_at(name)
+            self._select([name])
+
+    def _leave(self, name):
+        """Drive a robot no more whose window was closed: its zero leaves here, at once."""
+        self._select([other for other in self.operator.selection.selected if other != name])
+
+    def save_state(self):
+        """Return what is kept between runs as a plain dict: never which robots are selected."""
+        places, looks, torn = self.tiles.save_state()
+        selection = self.operator.selection
+        state = {'robots': list(selection.robots), 'numbers': selection.numbers.kept(),
+                 'mode': self._mode,
+                 'limits': list(self.operator.view().limits), 'windows': places, 'torn_off': torn,
+                 'together': self.operator.view().together, 'looks': looks,
+                 'panel': self.screen.save_settings(), 'events': self.events.save_settings()}
+        return usable_state(state)[0]
+
+    def restore_state(self, state):
+        """Take over a dict of :meth:`save_state`; call it before :meth:`start`.
+
+        :returns: what of it cannot be used and is left out, in words
+        """
+        state, problems = usable_state(state)
+        self.operator.selection.numbers.restore(state.get('numbers', {}))
+        self.operator.selection.numbers.meet(state.get('robots', []))
+        for name in state.get('robots', []):
+            self.operator.add(name)
+        if state.get('mode'):
+            self._mode = state['mode']
+            self.operator.restore_mode(state['mode'])
+        if state.get('limits'):
+            self.operator.request_limits(*state['limits'])
+        self.operator.keep_together(state.get('together') is True)
+        self.tiles.restore_state(state.get('windows', {}), state.get('looks', {}),
+                                 state.get('torn_off', ()))
+        self.screen.restore_settings(state.get('panel', {}))
+        self.events.restore_settings(state.get('events', {}))
+        return problems
+
+    def close(self, forget=False):
+        """Stop the robots first, then close everything; ``forget`` as in the backend."""
+        if self._closed:
+            return
+        self._closed = True
+        self._guard.end()
+        self._draw_timer.stop()
+        self._stick_timer.stop()
+        self._lease_timer.stop()
+        self.operator.close(forget)
+        QApplication.instance().removeEventFilter(self.screen.drive_keys)
+        self.screen.drive_keys.close()
+        self.events.close()
+        self.tiles.close()
+        self._stop_watch.close()
+        self.pad.close()

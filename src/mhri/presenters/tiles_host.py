@@ -1,0 +1,227 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The tiles of all robots: made one after the other, drawn one after the other, torn off, put back.
+
+Everything here runs on the GUI thread.
+"""
+import json
+
+from python_qt_binding.QtCore import QObject, QTimer, Signal
+import rospy
+
+from mhri.gui.screen.geometry import geometry_of, restore_geometry
+from mhri.gui.screen.torn_off import TornOff
+from mhri.gui.screen.window_maker import WindowMaker
+from mhri.presenters.tile_host import TileHost
+from mhri.ros.camera.camera_budget import CameraBudget
+
+SLICE_MS = 4
+# More tiles than that show no more: the rest of the robots are in the list alone.
+MOST_TILES = 40
+
+
+class TilesHost(QObject):
+    """Knows the tiles; :attr:`windows` is {name: tile} in the order of the robots.
+
+    :param operator: :class:`mhri.ros.screen.backend.ScreenBackend`
+    :param stage: :class:`mhri.gui.screen.stage.Stage`
+    :param ui_dir: folder of the forms
+    :param tell: function that shows the operator a sentence
+    """
+
+    #: a tile was clicked: name of its robot
+    clicked = Signal(str)
+    #: this robot and no other is to be driven
+    drive_requested = Signal(str)
+    #: the window of a tile that was torn off was closed by its frame
+    closed = Signal(str)
+
+    def __init__(self, operator, stage, ui_dir, tell, parent=None):
+        super().__init__(parent)
+        self.windows = {}
+        self.hosts = {}
+        self._operator = operator
+        self._stage = stage
+        self._ui_dir = ui_dir
+        self._tell = tell
+        self._maker = WindowMaker()
+        self._cameras = CameraBudget(lambda: operator.settings)
+        self._keys = {}
+        self._places = {}
+        self._looks = {}
+        self._torn = {}
+        self._to_tear = set()
+        self._due = []
+        self._stopped = False
+        self._timer = QTimer(self)
+        self._timer.setInterval(SLICE_MS)
+        self._timer.timeout.connect(self.draw_next)
+
+    def show_view(self, view):
+        """Follow a :class:`PanelView`: make a tile that is missing, and draw all of them soon."""
+        robots = view.robots[:MOST_TILES]
+        names = [robot.name for robot in robots]
+        for name in [name for name in self.windows if name not in names]:
+            self.drop(name)
+        # One with each drawing: a tile takes some time to make.
+        missing = next((robot for robot in robots
+                        if robot.name not in self.windows and robot.type_label), None)
+        if missing is not None:
+            self.make(missing.name)
+        self._stage.show_tiles({name: self.windows[name] for name in names
+                                if name in self.windows})
+        # Those that wait keep their order: else the last one never has its turn on a busy machine.
+        turns = {robot.name: turn for turn, robot in enumerate(self._due)}
+        self._due = sorted((robot for robot in robots if robot.name in self.hosts),
+                           key=lambda robot: turns.get(robot.name, len(turns)))
+        self._stopped = view.stop_all
+        self._timer.start()
+        wishes = [self.hosts[robot.name].camera_wish(robot.selected) for robot in self._due]
+        self._cameras.settle(filter(None, wishes))
+
+    def draw_next(self):
+        """Draw one tile, and return whether another is due.
+
+        They have their turn later, so that a click never waits for all.
+
+        Those that were not reached before the next round come first in it.
+        """
+        if not self._due:
+            self._timer.stop()
+            return False
+        robot = self._due.pop(0)
+        host = self.hosts.get(robot.name)
+        if host is not None:
+            host.guard.run(self._guarded, robot.name, host.draw, robot, self._stopped)
+        return bool(self._due)
+
+    def make(self, name):
+        """Make a robot's tile; it is shown with the next view."""
+        view = self._operator.robot_view(name)
+        tile, problem = self._maker.make(view.window, self._ui_dir, name, view.type_label)
+        if problem:
+            rospy.logwarn('%s: %s', name, problem)
+            self._tell('{}: {}'.format(name, problem))
+        # Before it is in any window: it would come up as one of its own.
+        tile.setParent(self._stage)
+        tile.stop_requested.connect(self._operator.stop_all)
+        tile.clicked.connect(self.clicked)
+        tile.drive_requested.connect(self.drive_requested)
+        tile.tear_requested.connect(self.toggle_torn)
+        self.windows[name] = tile
+        self._keys[name] = view.window
+        self.hosts[name] = TileHost(tile, self._operator)
+        self._guarded(name, self._furnish, name, tile, view)
+
+    def _furnish(self, name, tile, view):
+        """Show a new tile as it was left, where it was left."""
+        feeds = self._operator.feeds(name)
+        if feeds is not None:
+            tile.offer(feeds.offers())
+        tile.restore_settings(self._looks.get(name, {}))
+        tile.show_view(view)
+        if name in self._to_tear:
+            self._to_tear.discard(name)
+            self.toggle_torn(name)
+
+    def _guarded(self, name, job, *args):
+        """Do something with a robot's tile; a lab's own one that fails gives way to mhri's."""
+        key = self._keys[name]
+        try:
+            job(*args)
+        except Exception as error:
+            if not self._maker.trusts(key):
+                raise
+            self._maker.distrust(key, '{} failed ({}: {}); mend it and start mhri again'.format(
+                key, type(error).__name__, error))
+            self._discard(name)
+            self.make(name)
+            self._stage.show_tiles({name: self.windows[name] for name in self.windows})
+
+    def toggle_torn(self, name):
+        """Put a tile into a window of its own, or back on the stage."""
+        if name in self._torn:
+            self._put_back(name)
+            return
+        window = self._torn[name] = TornOff(self.windows[name])
+        window.closed.connect(self._on_closed)
+        if name in self._places:
+            restore_geometry(window, self._places[name])
+        window.show()
+        self._stage.refresh()
+
+    def _on_closed(self, name):
+        """Put the tile back; the robot of a window that was closed is not driven any more."""
+        self._put_back(name)
+        self.closed.emit(name)
+
+    def _put_back(self, name):
+        window = self._torn.pop(name)
+        self._places[name] = geometry_of(window)
+        tile = window.tile
+        window.give_back()
+        tile.setParent(self._stage)
+        self._stage.refresh()
+
+    def drop(self, name):
+        """Let a robot's tile go, and keep how it looked."""
+        if name in self.windows:
+            self._keep_look(name)
+            self._discard(name)
+
+    def _discard(self, name):
+        """Let a tile and its feeds go."""
+        if name in self._torn:
+            self._put_back(name)
+        self.hosts.pop(name).close()
+        tile = self.windows.pop(name)
+        self._stage.show_tiles(dict(self.windows))
+        tile.hide()
+        tile.setParent(None)
+        tile.deleteLater()
+
+    def recording_wish(self, name):
+        """Return (path, choices) of a recording: those of its tile, or as they were there."""
+        if name in self.windows:
+            row = self.windows[name].recording
+            return row.path, row.chosen_extras()
+        extras = self._looks.get(name, {}).get('recording', {}).get('extras', ())
+        return '', [key for key in self._operator.recordable(name) if key in extras]
+
+    def save_stills(self):
+        """Keep every picture on show as a file."""
+        for host in self.hosts.values():
+            host.save_still()
+
+    def _keep_look(self, name):
+        tile = self.windows[name]
+        if name in self._torn:
+            self._places[name] = geometry_of(self._torn[name])
+        try:
+            look = tile.save_settings()
+            json.dumps(look)
+        except Exception as error:
+            if not self._maker.trusts(self._keys[name]):
+                raise
+            rospy.logwarn('the look of the window of %s is not kept: %s', name, error)
+            return
+        self._looks[name] = look
+
+    def save_state(self):
+        """Return (where torn-off windows were, what tiles show, which are torn off)."""
+        for name in self.windows:
+            self._keep_look(name)
+        return self._places, self._looks, sorted(self._torn)
+
+    def restore_state(self, places, looks, torn):
+        """Take back what :meth:`save_state` returned."""
+        self._places.update(places)
+        self._looks.update(looks)
+        self._to_tear.update(torn)
+
+    def close(self):
+        """End: no tile is drawn any more."""
+        self._timer.stop()
+        for name in list(self.windows):
+            self._keep_look(name)
+            self._discard(name)

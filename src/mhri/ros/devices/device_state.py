@@ -1,0 +1,76 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which device an input node has, for the screen: ``device_state`` beside its ``set_suspended``.
+
+``diagnostic_msgs/DiagnosticStatus``, latched, on change: ``name`` is what the device is, e.g.
+'pad'; ``hardware_id`` the name of the one that is open, or would be if the node were resumed, ''
+where there is none; ``message`` why there is none and what to do, or what has to be done to the one
+there is; OK where there is one, WARN where there is none, STALE where the node cannot tell without
+opening it.
+"""
+from diagnostic_msgs.msg import DiagnosticStatus
+import rospy
+
+from mhri.core.screen.text import tidy_text
+from mhri.core.screen.views import DeviceView
+
+
+def state_topic(service):
+    """Return the name of the topic that belongs to a service ``set_suspended``."""
+    return service.rpartition('/')[0] + '/device_state'
+
+
+class DeviceState:
+    """The node's side.
+
+    :param service: resolved name of its ``set_suspended``
+    :param kind: what the device is, e.g. 'pad'
+    """
+
+    def __init__(self, service, kind):
+        self._kind = kind
+        self._told = None
+        self._topic = rospy.Publisher(state_topic(service), DiagnosticStatus, queue_size=1,
+                                      latch=True)
+
+    def tell(self, device, note):
+        """Say what is there; the same again costs nothing."""
+        if (device, note) != self._told:
+            self._told = device, note
+            level = DiagnosticStatus.OK if device else \
+                DiagnosticStatus.WARN if note else DiagnosticStatus.STALE
+            self._topic.publish(level=level, name=self._kind, message=note, hardware_id=device)
+
+
+class DeviceStates:
+    """The panel's side: what the input nodes say, for as long as they are there."""
+
+    def __init__(self):
+        self._subscribers = {}
+        self._said = {}
+
+    def follow(self, services):
+        """Hear the nodes of the sources there are now (blocking: it asks the master).
+
+        :param services: {source: name of its ``set_suspended``}
+        """
+        for key in set(self._subscribers) - set(services.items()):
+            self._subscribers.pop(key).unregister()
+        for key in set(services.items()) - set(self._subscribers):
+            self._subscribers[key] = rospy.Subscriber(
+                state_topic(key[1]), DiagnosticStatus, self._hear, callback_args=key[0],
+                queue_size=1)
+
+    def _hear(self, message, source):
+        self._said[source] = DeviceView(source, *map(tidy_text, (
+            message.hardware_id, message.message, message.name)))
+
+    def views(self):
+        """Return a :class:`mhri.core.screen.views.DeviceView` of each that is known now."""
+        return tuple(self._said[source] for (source, _), subscriber in
+                     sorted(list(self._subscribers.items()))
+                     if source in self._said and subscriber.get_num_connections())
+
+    def unregister(self):
+        """Stop listening (blocking: it asks the master)."""
+        self.follow({})

@@ -1,0 +1,241 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""STOP by a real click and real keys while a view of the real panel blocks the GUI thread."""
+import json
+import os
+import subprocess
+import sys
+import threading
+import time
+
+import psutil
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.ros_system import System, wait_for  # noqa: E402
+from support.stuck_panel import HANGS  # noqa: E402
+
+SUPPORT = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'support')
+PATIENCE_S = 60.0
+HANG_S = 10.0
+# A window of another program, which takes whatever is typed into it.
+OTHER = ('from python_qt_binding.QtWidgets import QApplication, QLineEdit\n'
+         'app = QApplication(["other"])\nline = QLineEdit()\nline.setWindowTitle("other")\n'
+         'line.resize(300, 300)\nline.move(1500, 600)\nline.show()\napp.exec_()\n')
+
+
+def xdotool(*words):
+    """Do something by hand; return the words of the answer."""
+    return subprocess.run(('xdotool',) + tuple(map(str, words)), stdout=subprocess.PIPE,
+                          universal_newlines=True, timeout=PATIENCE_S).stdout.split()
+
+
+def pass_time(span_s):
+    """Let some time pass, which is part of what happens here."""
+    time.sleep(span_s)
+
+
+class Desk:
+    """An operator before a panel that can be made to hang, with a robot that a pedal drives."""
+
+    def __init__(self, system, folder):
+        import rospy
+        from sensor_msgs.msg import Joy
+        from std_msgs.msg import Bool
+        from mhri.msg import ControlMode
+        from support.velocity import VelocityEnd
+        self._folder = str(folder)
+        self._axes, self.done = [0.0, 0.0], threading.Event()
+        self._stops = []
+        self.robot = VelocityEnd('/bot1/cmd_vel')
+        rospy.Subscriber('/robot_controller/stop_all', Bool, self._on_stop, tcp_nodelay=True)
+        self._mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=1, latch=True)
+        self._joy = rospy.Publisher('/mux_in/pedal', Joy, queue_size=1, tcp_nodelay=True)
+        self._thread = threading.Thread(target=self._press_pedal, daemon=True)
+        self._thread.start()
+        self.panel = system.start(sys.executable, os.path.join(SUPPORT, 'stuck_panel.py'),
+                                  self._folder, '--fresh', '--select', 'bot1')
+        system.start(sys.executable, '-c', OTHER)
+        self.window, self.other = (
+            wait_for(lambda: xdotool('search', '--onlyvisible', '--name', name), PATIENCE_S,
+                     'the window ' + name, poll_s=0.1)[0] for name in ('^mhri$', '^other$'))
+        self._mode.publish(source='pedal')
+        self.watch = wait_for(self._find_watch, PATIENCE_S, 'the watch', poll_s=0.1)
+
+    def _find_watch(self):
+        """Return the process of the watch once its line to the mux is up."""
+        for process in psutil.Process(self.panel.pid).children():
+            if any('stop_watch' in word for word in process.cmdline()) and process.connections():
+                return process
+        return None
+
+    def _press_pedal(self):
+        from sensor_msgs.msg import Joy
+        while not self.done.wait(0.02):
+            self._joy.publish(Joy(axes=list(self._axes)))
+
+    def _on_stop(self, message):
+        self._stops.append((time.monotonic(), message.data))
+
+    def stopped_at(self, since):
+        """Return when stop-all was first in force after a time [s, monotonic], or None."""
+        return next((at for at, stopped in list(self._stops) if stopped and at >= since), None)
+
+    def path(self, name):
+        return os.path.join(self._folder, name)
+
+    def is_stuck(self):
+        return os.path.exists(self.path('stuck'))
+
+    def places(self):
+        """Return where the stop button, once it is shown, and the middle of the panel are [px]."""
+        def read():
+            try:
+                with open(self.path('places')) as file:
+                    return json.load(file)
+            except OSError:
+                return None
+        return wait_for(read, PATIENCE_S, 'the stop button to be shown', poll_s=0.05)
+
+    def drive(self):
+        """Drive the robot, from neutral on.
+
+        Once the screen is back it does itself what was pressed while it hung: that stop is released
+        here as well.
+        """
+        def drives():
+            self._axes[1] = 0.0
+            if not self.release():
+                return False
+            begun = time.monotonic()
+            self._axes[1] = 0.5
+            deadline = begun + 1.0
+            while time.monotonic() < deadline:
+                if any(forward for _, forward, _ in self.robot.after(begun)):
+                    return True
+                time.sleep(0.01)
+            return False
+        wait_for(drives, PATIENCE_S, 'the pedal to drive the robot', poll_s=0.1)
+
+    def release(self):
+        """Release stop-all; tell whether it is."""
+        import rospy
+        from std_srvs.srv import SetBool
+        return rospy.ServiceProxy('/mux/set_stop_all', SetBool)(False).success
+
+    def hang(self, how):
+        """Let the view hang; return once it has for 0.5 s: the lease of the robot still runs."""
+        with open(self.path('todo'), 'w') as file:
+            file.write(str(HANG_S))
+        os.rename(self.path('todo'), self.path(how))
+        wait_for(self.is_stuck, PATIENCE_S, 'the view to hang')
+        pass_time(0.5)
+        assert not self._stops[-1][1]
+
+    def wait_stop(self, since):
+        """Wait for stop-all, which must come while the view hangs; return when."""
+        when = wait_for(lambda: self.stopped_at(since), PATIENCE_S, 'stop-all')
+        assert self.is_stuck(), 'stop-all came only when the view hung no more'
+        return when
+
+    def recover(self):
+        """Wait for the end of the hang, with the pedal at rest."""
+        self._axes[1] = 0.0
+        wait_for(lambda: not self.is_stuck(), PATIENCE_S, 'the end of the hang')
+        # By then the screen has done itself what was pressed, and shows that it is stopped.
+        pass_time(1.0)
+        if os.path.exists(self.path('places')):
+            os.remove(self.path('places'))
+        wait_for(lambda: self.release() and os.path.exists(self.path('places')), PATIENCE_S,
+                 'the release', poll_s=0.2)
+
+    def said(self):
+        """Return what the panel has logged."""
+        with open(self.panel.log, errors='replace') as log:
+            return log.read()
+
+
+@pytest.fixture(scope='module')
+def desk(tmp_path_factory):
+    import rospy
+    with System() as system:
+        system.screen()
+        system.start_master()
+        rospy.init_node('stop_while_hung_test', disable_signals=True)
+        system.node('mux', '__name:=mux')
+        system.node('gates')
+        system.env['ROS_NAMESPACE'] = '/bot1'
+        system.start(sys.executable, os.path.join(SUPPORT, 'plain_robot.py'), 'cmd_vel', 'odom',
+                     '__name:=base')
+        del system.env['ROS_NAMESPACE']
+        made = Desk(system, tmp_path_factory.mktemp('desk'))
+        yield made
+        made.done.set()
+        rospy.signal_shutdown('done')
+
+
+def click(place):
+    """Press the left button and let it go at once."""
+    xdotool('mousemove', *place, 'mousedown', 1, 'mouseup', 1)
+
+
+@pytest.mark.parametrize('how', sorted(HANGS))
+@pytest.mark.parametrize('by', ['click', 'keys'])
+def test_stop_works_while_a_view_hangs(desk, how, by):
+    xdotool('windowfocus', '--sync', desk.window)
+    desk.drive()
+    place = desk.places()[0]
+    desk.hang(how)
+    told = desk.said().count('the robots were stopped without it')
+    pressed = time.monotonic()
+    if by == 'click':
+        click(place)
+    else:
+        xdotool('key', 'shift+space')
+    stopped = desk.wait_stop(pressed)
+    zero = wait_for(lambda: next((at for at, forward, turn in desk.robot.after(pressed)
+                                  if not forward and not turn), None), PATIENCE_S, 'the zero')
+    last = max(at for at, forward, _ in desk.robot.received if forward)
+    print('\nMEASURED screen hung ({}), STOP by {}: in force after {:.0f} ms, the robot has its '
+          'zero after {:.0f} ms (last command {:.0f} ms after the press)'.format(
+              how, by, *(1e3 * (at - pressed) for at in (stopped, zero, last))))
+    desk.recover()
+    wait_for(lambda: desk.said().count('the robots were stopped without it') > told, PATIENCE_S,
+             'the panel to say so')
+
+
+def test_what_is_no_press_of_stop_stops_nothing(desk):
+    xdotool('windowfocus', '--sync', desk.window)
+    desk.drive()
+    place, elsewhere = desk.places()
+    desk.hang('sleep')
+    begun = time.monotonic()
+    click(elsewhere)
+    xdotool('key', 'space', 'key', 'shift+a')
+    xdotool('mousemove', *place, 'click', '4', 'click', '5')
+    xdotool('windowfocus', '--sync', desk.other, 'key', 'shift+space')
+    # Another window before the button.
+    xdotool('windowmove', '--sync', desk.other, place[0] - 150, place[1] - 150,
+            'windowraise', desk.other)
+    click(place)
+    xdotool('windowmove', '--sync', desk.other, 1500, 600)
+    assert desk.stopped_at(begun) is None
+    # It did see all of that: what comes next is taken up.
+    pressed = time.monotonic()
+    click(place)
+    assert desk.wait_stop(pressed) >= pressed
+    assert desk.stopped_at(begun) >= pressed
+    desk.recover()
+
+
+def test_it_costs_nothing_and_ends_with_the_panel(desk):
+    used = sum(desk.watch.cpu_times()[:2])
+    begun = time.monotonic()
+    pass_time(10.0)
+    share = (sum(desk.watch.cpu_times()[:2]) - used) / (time.monotonic() - begun)
+    print('\nMEASURED watch of STOP: {:.2f} % of a core, {:.0f} MB'.format(
+        100 * share, desk.watch.memory_info().rss / 1e6))
+    assert share < 0.05, 'promised: 0.5 %; see the figure'
+    System.kill(desk.panel, family=False)
+    wait_for(lambda: not desk.watch.is_running(), PATIENCE_S, 'the watch to end')

@@ -1,0 +1,126 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The line of the watch to the mux: what it says there, and what it makes of each answer."""
+import io
+import socket
+import struct
+import threading
+from xmlrpc.server import SimpleXMLRPCServer
+
+import pytest
+from rosgraph.network import read_ros_handshake_header, write_ros_handshake_header
+from std_srvs.srv import SetBool
+
+from mhri.ros.driving import stop_line
+from mhri.ros.driving.stop_line import StopLine
+
+STOPPED, REFUSED, FAILED, HANGS_UP, SILENT = 'stopped', 'refused', 'failed', 'hangs up', 'silent'
+
+
+def framed(message):
+    """Return a message as it goes over the wire, behind its length."""
+    buffer = io.BytesIO()
+    message.serialize(buffer)
+    return struct.pack('<I', len(buffer.getvalue())) + buffer.getvalue()
+
+
+class Mux:
+    """A master and a service that answers as it is told to, connection after connection."""
+
+    def __init__(self, *answers):
+        self.answers, self.headers, self.requests = list(answers), [], []
+        self.known = True
+        self._listening = socket.create_server(('127.0.0.1', 0))
+        self._master = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False, allow_none=True)
+        self._master.register_function(self._look_up, 'lookupService')
+        self.uri = 'http://127.0.0.1:{}'.format(self._master.server_address[1])
+        for work in (self._serve, self._master.serve_forever):
+            threading.Thread(target=work, daemon=True).start()
+
+    def _look_up(self, caller, service):
+        assert service == '/mux/set_stop_all'
+        return [1, '', 'rosrpc://127.0.0.1:{}'.format(self._listening.getsockname()[1])] \
+            if self.known else [-1, 'no provider', '']
+
+    def _serve(self):
+        while True:
+            try:
+                connection, _ = self._listening.accept()
+            except OSError:
+                return
+            with connection:
+                self._talk(connection)
+
+    def _talk(self, connection):
+        self.headers.append(read_ros_handshake_header(connection, io.BytesIO(), 4096))
+        write_ros_handshake_header(connection, {'callerid': '/mux'})
+        wanted = framed(SetBool._request_class(True))
+        while self.answers:
+            request = connection.recv(len(wanted))
+            if not request:
+                return
+            assert request == wanted
+            self.requests.append(request)
+            answer = self.answers.pop(0)
+            if answer == HANGS_UP:
+                return
+            if answer == FAILED:
+                connection.sendall(struct.pack('<BI', 0, 3) + b'bad')
+            elif answer != SILENT:
+                connection.sendall(b'\x01' + framed(
+                    SetBool._response_class(answer == STOPPED, 'a sentence')))
+        connection.recv(1)
+
+    def close(self):
+        self._master.shutdown()
+        self._master.server_close()
+        self._listening.close()
+
+
+@pytest.fixture(name='mux')
+def _mux(monkeypatch):
+    monkeypatch.setattr(stop_line, '_TIMEOUT_S', 0.5)
+    made = []
+
+    def make(*answers):
+        made.append(Mux(*answers))
+        return made[-1]
+    yield make
+    for each in made:
+        each.close()
+
+
+@pytest.mark.parametrize('answers, wanted', [
+    ([STOPPED], True),
+    ([HANGS_UP, STOPPED], True),
+    ([SILENT, STOPPED], True),
+    ([HANGS_UP, HANGS_UP], False),
+    ([REFUSED, REFUSED], False),
+    ([FAILED, FAILED], False),
+    ([REFUSED, STOPPED], True),
+], ids=str)
+def test_what_comes_of_it(mux, answers, wanted):
+    there = mux(*answers)
+    line = StopLine(there.uri)
+    assert line.stop() is wanted and there.answers == []
+    line.close()
+
+
+def test_the_line_is_held_open(mux):
+    """So the master may be lost when it matters."""
+    there = mux(STOPPED, STOPPED)
+    line = StopLine(there.uri)
+    assert line.fileno() is None and line.connect() and line.fileno() is not None
+    there.known = False
+    assert line.stop() and line.stop() and len(there.headers) == 1
+    header = there.headers[0]
+    assert (header['service'], header['persistent']) == ('/mux/set_stop_all', '1')
+    line.close()
+    assert line.fileno() is None and not line.connect()
+
+
+def test_nobody_there():
+    with socket.create_server(('127.0.0.1', 0)) as closed:
+        uri = 'http://127.0.0.1:{}'.format(closed.getsockname()[1])
+    line = StopLine(uri)
+    assert not line.connect() and not line.stop()

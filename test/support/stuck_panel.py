@@ -1,0 +1,81 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The panel with a view that hangs when it is told to: argv[1] is the folder for the telling.
+
+A file ``sleep`` or ``hold`` there, with seconds in it, lets the view block that long while it is
+painted: asleep, or with Python's lock held. ``stuck`` is there while it does; ``places`` says where
+the stop button, while it is shown, and the middle of the window are [px of the screen].
+"""
+import ctypes
+import json
+import os
+import sys
+import time
+
+from python_qt_binding.QtCore import QTimer
+from python_qt_binding.QtWidgets import QWidget
+
+from mhri.gui.driving.stop_bar import StopBar
+import mhri.nodes.panel
+
+HANGS = {'sleep': time.sleep, 'hold': lambda s: ctypes.PyDLL(None).usleep(int(1e6 * s))}
+
+
+class StuckView(QWidget):
+    """A small view."""
+
+    def __init__(self, folder, window):
+        super().__init__(window)
+        self._folder, self._todo = folder, None
+        self.setGeometry(0, 0, 20, 20)
+        self.show()
+        self._timer = QTimer(self)
+        self._timer.timeout.connect(self._look)
+        self._timer.start(20)
+
+    def _look(self):
+        button = self.window().findChild(StopBar).stop_button
+        if button.isVisible():
+            self._write('places', json.dumps([
+                [at.x(), at.y()] for at in (
+                    button.mapToGlobal(button.rect().center()),
+                    self.window().mapToGlobal(self.window().rect().center()))]))
+        for word in HANGS:
+            path = os.path.join(self._folder, word)
+            if os.path.exists(path):
+                with open(path) as file:
+                    self._todo = HANGS[word], float(file.read())
+                os.remove(path)
+                # What is seen now is to be known to the watch by then.
+                QTimer.singleShot(500, self.update)
+
+    def _write(self, name, text):
+        path = os.path.join(self._folder, name)
+        with open(path + '.part', 'w') as file:
+            file.write(text)
+        os.rename(path + '.part', path)
+
+    def paintEvent(self, event):  # noqa: N802
+        """Hang where that was asked for."""
+        if self._todo is not None:
+            (hang, seconds), self._todo = self._todo, None
+            self._write('stuck', '')
+            hang(seconds)
+            os.remove(os.path.join(self._folder, 'stuck'))
+
+
+def main():
+    """Run the panel; the view comes with its window."""
+    folder = sys.argv.pop(1)
+    made = mhri.nodes.panel.Standalone
+
+    def with_view(*args, **kwargs):
+        program = made(*args, **kwargs)
+        program.view = StuckView(folder, program.window)
+        return program
+    mhri.nodes.panel.Standalone = with_view
+    mhri.nodes.panel.main()
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,96 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which device is there is known without opening any."""
+from pathlib import Path
+import shutil
+import sys
+
+import pytest
+
+from mhri.core.devices.pads import load_profiles, PadInfo
+from mhri.core.devices.pedals import load_pedal_profiles
+from mhri.inputs import event_nodes
+from mhri.inputs.pad import PadReader
+from mhri.inputs.pedal import PedalReader
+from mhri.inputs.reader import DeviceAbsent, Reader
+
+REPO = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(REPO / 'test'))
+
+from support.kernel_pads import (  # noqa: E402
+    F710, KEYBOARD, MOTION, MOUSE, NAMELESS, plug, PS3)
+
+RUDDER = ('Saitek Pro Flight Rudder Pedals', '0003', '06a3', '0763', '0100', '0')
+
+
+def profiles():
+    """Return the shipped profiles of pads."""
+    files = sorted((REPO / 'resource' / 'pads').glob('*.yaml'))
+    return load_profiles([(path.stem, str(path), path.read_text()) for path in files])[0]
+
+
+@pytest.fixture
+def system(tmp_path, monkeypatch):
+    """A folder that takes the place of /sys/class/input."""
+    monkeypatch.setattr(event_nodes, 'SYS_INPUT', str(tmp_path))
+    return tmp_path
+
+
+def test_pads_and_nothing_else(system):
+    for number, device in enumerate((KEYBOARD, MOUSE, F710, MOTION, NAMELESS, PS3), 3):
+        plug(system, number, device)
+    assert event_nodes.find_pads() == [
+        PadInfo(0, 'Logitech Gamepad F710', '030000006d0400001fc2000005030000'),
+        PadInfo(1, 'Home-made stick', ''),
+        PadInfo(2, 'Sony PLAYSTATION(R)3 Controller', '050000004c0500006802000000800000')]
+
+
+def test_a_system_without_input_devices(system):
+    shutil.rmtree(str(system))
+    assert event_nodes.find_pads() == []
+
+
+def test_a_pad_reader_names_the_pad_it_would_open(system):
+    reader = PadReader(profiles, joysticks=())
+    with pytest.raises(DeviceAbsent, match='plug one in'):
+        reader.find()
+    plug(system, 4, NAMELESS)
+    assert reader.find() == 'Home-made stick'
+    plug(system, 5, F710)
+    assert reader.find() == 'Logitech Gamepad F710', 'the one that a profile knows'
+    reader.want('home')
+    assert reader.find() == 'Home-made stick'
+    reader.want('PS5')
+    with pytest.raises(DeviceAbsent, match='PS5'):
+        reader.find()
+
+
+def test_profiles_are_read_anew_only_when_a_pad_came_or_went(system):
+    asked = []
+    reader = PadReader(lambda: asked.append(1) or profiles(), joysticks=())
+    made = plug(system, 4, F710)
+    assert {reader.find() for _ in range(5)} == {'Logitech Gamepad F710'} and len(asked) == 1
+    shutil.rmtree(made)
+    for _ in range(3):
+        with pytest.raises(DeviceAbsent):
+            reader.find()
+    assert len(asked) == 2
+
+
+def test_a_pedal_reader_names_switches_and_rudder_pedals(system):
+    folder = REPO / 'resource' / 'pedals'
+    files = sorted(folder.glob('*.yaml'))
+    known = load_pedal_profiles([(str(path), path.read_text()) for path in files])[0]
+    reader = PedalReader(lambda: known)
+    plug(system, 2, KEYBOARD)
+    with pytest.raises(DeviceAbsent, match='Connect it'):
+        reader.find()
+    made = plug(system, 3, ('PCsensor FootSwitch', '0003', '3553', 'b001', '0110', '7fff 0'))
+    assert reader.find() == 'PCsensor FootSwitch'
+    shutil.rmtree(made)
+    (Path(plug(system, 4, RUDDER)) / 'device' / 'js0').mkdir()
+    assert reader.find() == RUDDER[0]
+
+
+def test_a_reader_that_cannot_tell_says_nothing():
+    assert Reader().find() == ''

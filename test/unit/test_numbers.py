@@ -1,0 +1,87 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A robot's number is its own for good: keys drive by it."""
+import random
+
+import pytest
+
+from mhri.core.driving.selection import Selection
+from mhri.core.robots.numbers import MOST_NUMBERS, natural_key, RobotNumbers
+from mhri.core.screen.saved_state import usable_state
+
+
+def met(*batches):
+    """Return numbers that have met robots, batch by batch."""
+    numbers = RobotNumbers()
+    for batch in batches:
+        numbers.meet(batch)
+    return numbers
+
+
+@pytest.mark.parametrize('names', [
+    ['bot1', 'bot2', 'bot10', 'bot11'], ['bot', 'bot1', 'bot1a', 'bot_1'],
+    ['a2b3', 'a2b20', 'a10b1'], ['bot1', 'Bot2', 'bot3'], ['bot1', 'bot01'][::-1],
+    ['r' + '9' * 62, 'r1' + '0' * 62]])
+def test_natural_order(names):
+    dice = random.Random(1)
+    for _ in range(10):
+        mixed = dice.sample(names, len(names))
+        assert sorted(mixed, key=natural_key) == names
+
+
+@pytest.mark.parametrize('batches, kept', [
+    ([['bot10', 'bot2', 'bot1']], {'bot1': 1, 'bot2': 2, 'bot10': 3}),
+    ([['bot10'], ['bot2', 'bot1', 'bot10']], {'bot10': 1, 'bot1': 2, 'bot2': 3}),
+    ([['bot1', 'bot1']], {'bot1': 1}), ([[]], {})])
+def test_numbers_are_given_when_first_seen(batches, kept):
+    assert met(*batches).kept() == kept and list(met(*batches).kept()) == list(kept)
+
+
+def test_a_number_is_never_given_to_another_robot():
+    numbers = RobotNumbers()
+    numbers.restore({'bot2': 2, 'bot5': 5})
+    numbers.meet(['bot9', 'bot5', 'bot7', 'bot8', 'bot6'])
+    assert numbers.kept() == {'bot6': 1, 'bot2': 2, 'bot7': 3, 'bot8': 4, 'bot5': 5, 'bot9': 6}
+    assert (numbers.of('bot9'), numbers.of('nobody')) == (6, 0)
+
+
+def test_what_was_given_in_this_run_counts_for_more_than_a_file():
+    numbers = met(['bot1'])
+    numbers.restore({'bot1': 4, 'bot2': 1, 'bot3': 7})
+    assert numbers.kept() == {'bot1': 1, 'bot3': 7}
+
+
+def test_more_robots_than_a_file_keeps_have_numbers_still():
+    numbers = met(['r{}'.format(number) for number in range(1, MOST_NUMBERS + 3)])
+    assert numbers.of('r{}'.format(MOST_NUMBERS + 2)) == MOST_NUMBERS + 2
+    assert usable_state({'numbers': numbers.kept()}) == ({'numbers': numbers.kept()}, ())
+    assert len(numbers.kept()) == MOST_NUMBERS
+
+
+def test_whatever_comes_and_goes_a_number_stays():
+    """Random adding, removing, looking and restarting, beside a dict that never forgets."""
+    dice, known, selection = random.Random(7), {}, Selection()
+    for _ in range(2000):
+        name = 'bot{}'.format(dice.randrange(40))
+        action = dice.choice(('add', 'remove', 'look', 'restart'))
+        if action == 'add':
+            selection.add(name)
+        elif action == 'remove':
+            selection.remove(name)
+        elif action == 'look':
+            found = ['bot{}'.format(dice.randrange(40)) for _ in range(3)]
+            selection.numbers.meet(found)
+            for other in found:
+                selection.add(other)
+        else:
+            kept, robots = selection.numbers.kept(), selection.robots
+            selection = Selection()
+            selection.numbers.restore(kept)
+            for other in robots:
+                selection.add(other)
+        now = selection.numbers.kept()
+        assert {name: now[name] for name in known} == known
+        assert len(set(now.values())) == len(now) and set(selection.robots) <= set(now)
+        assert list(selection.robots) == sorted(selection.robots, key=now.get)
+        known = now
+    assert sorted(known.values()) == list(range(1, 41))
