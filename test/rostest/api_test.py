@@ -129,7 +129,8 @@ class ApiTest(unittest.TestCase):
             template = robot_types()[0][kind]
             own = {'/tf'} | {'/{}/{}'.format(robot, topic) for topic in (
                 *template.command, *template.imu, *template.odometry, *template.scan,
-                *template.battery, template.motor_power.name, *camera_topics(template))}
+                *template.cloud, *template.battery, template.motor_power.name,
+                *camera_topics(template))}
             wanted = {(direction, name.replace('<robot>', robot), kind)
                       for direction, name, kind in pages
                       if name.replace('<robot>', robot) in own}

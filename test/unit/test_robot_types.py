@@ -30,14 +30,15 @@ def shipped():
 CONTRACT = {
     'turtlebot2': ((0.65, 3.14), ('teleop/input', 'cmd_vel_mux/input/teleop'),
                    ('mobile_base/sensors/imu_data',), ('odom',), ('camera/rgb/image_raw',),
-                   ('camera/depth_registered/image_raw',), ('scan',), ()),
+                   ('camera/depth_registered/image_raw',), ('camera/depth_registered/points',),
+                   ('scan',), ()),
     'turtlebot3': ((0.22, 1.82), ('cmd_vel',), ('imu',), ('odom',),
-                   ('camera/rgb/image_raw', 'raspicam_node/image'), (), ('scan',),
+                   ('camera/rgb/image_raw', 'raspicam_node/image'), (), (), ('scan',),
                    ('battery_state',)),
-    'turtlesim': ((2.0, 2.0), ('turtle1/cmd_vel',), (), ('turtle1/pose',), (), (), (), ()),
+    'turtlesim': ((2.0, 2.0), ('turtle1/cmd_vel',), (), ('turtle1/pose',), (), (), (), (), ()),
     'generic': ((0.5, 1.0), ('cmd_vel',), ('imu', 'imu/data'), ('odom',),
                 ('camera/rgb/image_raw', 'camera/image_raw'), ('camera/depth/image_raw',),
-                ('scan',), ('battery_state',)),
+                ('camera/depth/points', 'points'), ('scan',), ('battery_state',)),
 }
 
 
@@ -46,8 +47,8 @@ def test_shipped_templates_are_those_of_the_contract(name):
     """Topics and limits are public interface."""
     kind = shipped()[name]
     limits = (kind.limits.linear_mps, kind.limits.angular_rad_s)
-    assert (limits, kind.command, kind.imu, kind.odometry, kind.rgb, kind.depth, kind.scan,
-            kind.battery) == CONTRACT[name]
+    assert (limits, kind.command, kind.imu, kind.odometry, kind.rgb, kind.depth, kind.cloud,
+            kind.scan, kind.battery) == CONTRACT[name]
     assert kind.odometry_type == ('turtlesim/Pose' if name == 'turtlesim' else 'nav_msgs/Odometry')
 
 

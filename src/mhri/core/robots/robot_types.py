@@ -17,7 +17,7 @@ _HARDWARE: Dict[str, Callable[[Section], Any]] = {
 # http://wiki.ros.org/Names, without "~": a robot has no private topics of ours.
 _TOPIC = re.compile(r'/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*\Z')
 _MOST_LETTERS = 250
-_TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'scan', 'battery')
+_TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'cloud', 'scan', 'battery')
 
 
 @dataclass(frozen=True)
@@ -98,6 +98,7 @@ class RobotType:
     odometry_type: str = 'nav_msgs/Odometry'
     rgb: Tuple[str, ...] = ()
     depth: Tuple[str, ...] = ()
+    cloud: Tuple[str, ...] = ()
     scan: Tuple[str, ...] = ()
     battery: Tuple[str, ...] = ()
     known_by: Dict[str, str] = field(default_factory=dict)

@@ -3,16 +3,18 @@
 """Where the tiles of the screen go: the pictures as large as they can be, no two over each other.
 
 Tiles are large (what the operator drives by) or small (the rest, a strip beside or below). Every
-way of placing them is tried, and the one that shows most picture is taken.
+way of placing them is tried: the large ones as large as they can be, the small ones of use.
 """
 from dataclasses import dataclass
-from math import ceil
+from math import ceil, sqrt
 from typing import Iterator, Sequence, Tuple
 
 # What the strip of small tiles may get of the stage.
 _STRIP_SHARES = tuple(share / 100.0 for share in range(10, 52, 2))
-# A picture that is looked at counts, one in the corner of the eye counts less.
-_SMALL_COUNTS = 0.3
+# A small picture is of use up to this part of the width of a large one; till there, a pixel of its
+# width counts so much.
+_SMALL_ENOUGH = 0.26
+_SMALL_COUNTS = 1.3
 # So much more has to be seen in another arrangement before the tiles move.
 WORTH_MOVING = 1.06
 # Shape (width by height) of a picture that is not there yet.
@@ -81,6 +83,12 @@ def _seen(boxes: Sequence[Box], shapes: Sequence[float]) -> float:
     return sum(box.picture(shape) for box, shape in zip(boxes, shapes))
 
 
+def _worth(large_px: float, larges: int, small_px: float, smalls: int) -> float:
+    """Return how good pictures of these areas [px²] are to drive by, in pixels of width."""
+    large = sqrt(large_px / larges)
+    return large + _SMALL_COUNTS * min(sqrt(small_px / smalls), _SMALL_ENOUGH * large)
+
+
 def _best_grid(box: Box, shapes: Sequence[float], gap: int) -> Tuple[Box, ...]:
     """Return the grid that shows most of the pictures."""
     return max((_grid(box, shapes, columns, gap) for columns in range(1, len(shapes) + 1)),
@@ -136,7 +144,7 @@ def arrange(width: int, height: int, large: Sequence[float], small: Sequence[flo
                 continue
             small_px = _seen(smalls, small)
             fits = all(box.width >= least[0] and box.height >= least[1] for box in smalls)
-            score = (int(fits), large_px + _SMALL_COUNTS * small_px)
+            score = (int(fits), _worth(large_px, len(large), small_px, len(small)))
             if score > best_score:
                 best_score = score
                 best = Arrangement(larges, _snug(smalls, small, gap, strip), large_px + small_px)

@@ -14,7 +14,7 @@ DRIVING = 'DRIVING'
 MOVING = 'moving'
 RECORDING = 'rec'
 # What a name asks for before it gives way, in average characters; longer ones end in "...".
-_NAME_CHARACTERS = 12
+_NAME_CHARACTERS = 8
 _EDGE_PX = 6
 
 
@@ -94,13 +94,14 @@ class RobotRow(QWidget):
         self.box.setAccessibleName('drive {}'.format(self.name))
         self.title = TextLine(self)
         self.title.setFont(theme.larger(font, 1.25, bold=True))
-        self.title.show_text(self.name)
+        self.title.show_text(self.name, shorter=words.name_ends(self.name))
         # The name is the last to give way in a narrow dock: the type goes first, then the age.
         metrics = self.title.fontMetrics()
         self.title.setMinimumWidth(min(
             theme.text_width(self.title.font(), self.name),
             _NAME_CHARACTERS * metrics.averageCharWidth()))
         self.kind = TextLine(self)
+        self.kind.setMinimumWidth(1)
         self.sign = Sign(self)
         self.link = self._fixed_line(numbers, 'waiting')
         self.recording = Pill(self)
@@ -174,13 +175,14 @@ class RobotRow(QWidget):
         self._link = view.link
         self._show_number(view.number)
         self.box.setChecked(checked)
-        self.kind.show_text(words.type_text(view), theme.MUTED)
+        self.kind.show_text(words.type_text(view), theme.MUTED, (view.type_label, ''))
         self.sign.show_sign(theme.LINK_SIGNS[view.link])
         self.link.show_text(words.LINK_WORDS[view.link])
         if numbers:
             self._show_numbers(view)
         self._show_second_line(view)
         self.recording.say(RECORDING if view.recording else '', filled=False)
+        self.recording.setVisible(view.recording)
         if view.driven != self._driven:
             self._driven = view.driven
             self.update()
@@ -193,7 +195,7 @@ class RobotRow(QWidget):
         tone = theme.MUTED if old else theme.TEXT
         self.linear.show_text(words.linear_text(view.linear_mps), tone)
         turn = words.turn_text(view.angular_rad_s)
-        self.turn.show_text(turn, tone, shorter=(turn.rpartition(' ')[0] or turn,))
+        self.turn.show_text(turn, tone, shorter=(turn.rpartition(' ')[0] or turn, ''))
         self.battery.show_charge(view.battery, old)
 
     def _show_second_line(self, view):
@@ -230,7 +232,7 @@ class RobotRow(QWidget):
         if font.bold() != loud:
             font.setBold(loud)
             self.trouble.setFont(font)
-        self.trouble.show_text(text, shorter=words.beginnings(text))
+        self.trouble.show_text(text, shorter=words.beginnings(text, most=3))
         # A sentence takes the room of a state that there is none of.
         state = state and bool(self.pill.word or not speaking)
         if (speaking, state, sign is None) == self._trouble_shown:

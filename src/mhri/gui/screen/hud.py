@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Numbers over the picture: speed, turn, heading; and in one sentence why the robot stands."""
 from python_qt_binding.QtCore import QPointF, QRectF, Qt
-from python_qt_binding.QtGui import QColor, QPainter, QPainterPath, QPen, QPixmap
+from python_qt_binding.QtGui import QColor, QFontMetrics, QPainter, QPainterPath, QPen, QPixmap
 from python_qt_binding.QtWidgets import QWidget
 
 from mhri.core.screen import views
@@ -19,8 +19,8 @@ def hud_lines(view):
     """
     if view.linear_mps is None and view.angular_rad_s is None:
         return []
-    return ['{}   {}'.format(words.linear_text(view.linear_mps),
-                             words.turn_text(view.angular_rad_s)),
+    return [words.BETWEEN_FIGURES.join((words.linear_text(view.linear_mps),
+                                        words.turn_text(view.angular_rad_s))),
             'heading {}'.format(words.heading_text(view.heading_rad))]
 
 
@@ -123,13 +123,22 @@ class Hud(QWidget):
         y = self.height() - 0.6 * unit
         font = theme.number_font(theme.larger(self.font(), 1.35 if self._large else 1.0, bold=True))
         ink = _DIM if self._old else QColor(Qt.white)
-        lines = self._lines if self._large else self._lines[:1]
-        for line in reversed(lines if self._shown else ()):
+        for line in reversed(self._fitting(font, self.width() - 1.4 * unit)):
             y -= self._paint_line(painter, line, font, ink, 0.7 * unit, y)
         if self._sentence:
             self._paint_sentence(painter, y - 0.2 * unit)
         painter.end()
         return picture
+
+    def _fitting(self, font, width):
+        """Return the lines that are written in a width [px]; a small tile has one alone."""
+        metrics, lines = QFontMetrics(font), []
+        for line in self._lines if self._shown else ():
+            if metrics.horizontalAdvance(line) <= width:
+                lines.append(line)
+            else:
+                lines += line.split(words.BETWEEN_FIGURES)
+        return lines if self._large else lines[:1]
 
     @staticmethod
     def _paint_line(painter, text, font, ink, x, y):
@@ -156,9 +165,10 @@ class Hud(QWidget):
         left = 0.6 * unit + 1.3 * side
         room = QRectF(left, 0, self.width() - left - unit, max(unit, foot))
         flags = int(Qt.AlignLeft | Qt.AlignBottom | Qt.TextWordWrap)
-        text = next((text for text in (self._sentence, *words.beginnings(self._sentence))
-                     if metrics.boundingRect(room.toRect(), flags, text).height()
-                     <= room.height()), self._sentence)
+        texts = [words.kept_together(text) for text in (
+            self._sentence, *words.beginnings(self._sentence, most=4))]
+        text = next((text for text in texts if metrics.boundingRect(
+            room.toRect(), flags, text).height() <= room.height()), texts[-1])
         needed = metrics.boundingRect(room.toRect(), flags, text)
         ground = QRectF(0.4 * unit, needed.top() - 0.15 * unit,
                         needed.right() - 0.4 * unit + 0.5 * unit, needed.height() + 0.3 * unit)

@@ -105,11 +105,13 @@ class ScreenWidget(QWidget):
             button.setMinimumHeight(touch)
             if isinstance(button, QPushButton):
                 button.setFocusPolicy(Qt.TabFocus)
-                button.setMinimumWidth(button.sizeHint().width() + touch // 2)
+                button.setMinimumWidth(theme.text_width(button.font(), button.text()) + touch // 2)
         for label, side in ((self.linear_label, Qt.AlignRight), (self.turn_label, Qt.AlignLeft)):
             label.setFont(theme.number_font(theme.larger(self.font(), 1.1)))
             label.setAlignment(side | Qt.AlignVCenter)
         self.drive_note.setAlignment(Qt.AlignCenter)
+        self.drawer_button.setMinimumWidth(
+            theme.text_width(self.font(), self.drawer_button.text()) + touch)
         self.record_button.setMinimumWidth(touch // 2 + max(
             theme.text_width(self.font(), text) for text in (RECORD, STOP_RECORDING.format(88))))
         self.cameras_label.setFont(theme.number_font(self.font()))

@@ -41,6 +41,8 @@ class ScreenLayout(QObject):
         screen.layout().setSizeConstraint(QLayout.SetNoConstraint)
         screen.tabs.addTab(ROBOTS)
         screen.tabs.setExpanding(False)
+        # Hidden at first, it would think that it has no tabs.
+        screen.tabs.setMinimumHeight(theme.touch_size(screen))
         screen.tabs.setDrawBase(False)
         screen.tabs.setFocusPolicy(Qt.TabFocus)
         screen.tabs.setAccessibleName('Pages of the panel')
