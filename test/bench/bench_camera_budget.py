@@ -129,7 +129,7 @@ def main():
         import rospy
         rospy.init_node('bench', disable_signals=True)
         player = psutil.Process(
-            play_cameras(system, NAMES, *((1.0, 15) if short else (4.0, 2))).pid)
+            play_cameras(system, NAMES, *((1.0, 30) if short else (4.0, 6))).pid)
         master = rospy.get_master()
         wait_for(lambda: len([topic for topic, _ in master.getPublishedTopics('/')[2]
                               if TOPIC in topic]) == len(NAMES), 60.0, 'the cameras', 0.2)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The whole panel is killed (SIGKILL) while it records a robot: what is in the file then.
 
-The panel is a program of its own on a screen of its own; its check box is found by its looks and
-clicked with the pointer of the X server. What the robot published is known from another node.
+The panel is a program of its own on a screen of its own, and is asked to record as a pad's button
+asks. What the robot published is known from another node.
 """
 from glob import glob
 import os
@@ -12,7 +12,6 @@ import sys
 import threading
 import time
 
-import cv2
 import pytest
 import rosbag
 
@@ -21,8 +20,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 from support.ros_system import wait_for  # noqa: E402
 
 IMU = '/bot1/mobile_base/sensors/imu_data'
-START_S = 60.0
-LEAST_ALIKE = 0.8
+START_S = 120.0
 
 
 class Listener:
@@ -62,36 +60,18 @@ def recordings(system):
     return glob(os.path.join(system.home, 'bot1_*.bag.active'))
 
 
-def place_of_check():
-    """Return the middle of the check box "Save IMU Data" on the screen [px], or None."""
-    from python_qt_binding.QtWidgets import QApplication
-    from mhri.gui.screen import theme
-    from mhri.gui.screen.switches import SwitchBox
-    from support.panel_session import pixels
-    app = QApplication.instance() or QApplication(['looker'])
-    box = SwitchBox('Save IMU Data')
-    box.setFont(theme.base_font(box.font()))
-    box.resize(box.sizeHint())
-    looks = pixels(box.grab().toImage())
-    screen = pixels(app.primaryScreen().grabWindow(0).toImage())
-    likeness = cv2.matchTemplate(screen, looks, cv2.TM_CCOEFF_NORMED)
-    _, best, _, (x, y) = cv2.minMaxLoc(likeness)
-    return (x + looks.shape[1] // 2, y + looks.shape[0] // 2) if best > LEAST_ALIKE else None
-
-
 def begin_recording(system):
-    """Click the check box until a file is there: a window may still move when it is seen first."""
+    """Ask until a file is there: the panel hears nothing before it has started."""
+    import rospy
+    from mhri.msg import PanelRequest
+    requests = rospy.Publisher('/panel_in/request', PanelRequest, queue_size=1)
+
     def begun():
-        place = place_of_check()
-        if place is None:
-            return False
-        subprocess.run(['xdotool', 'mousemove', '--sync', str(place[0]), str(place[1]), 'click',
-                        '1'], check=True, timeout=START_S)
-        try:
-            return wait_for(lambda: recordings(system), 15, 'a file')
-        except AssertionError:
-            return False
-    wait_for(begun, START_S, 'the recording', poll_s=0.2)
+        if requests.get_num_connections():
+            requests.publish(PanelRequest(action=PanelRequest.RECORD, robots=['bot1']))
+        return recordings(system)
+    wait_for(begun, START_S, 'the recording', poll_s=0.5)
+    requests.unregister()
 
 
 def bag_size(system):

@@ -80,3 +80,25 @@ def test_without_an_x_server_nothing_is_known(monkeypatch):
     monkeypatch.setattr('mhri.gui.driving.key_state.QGuiApplication.platformName',
                         lambda: 'wayland')
     assert KeyState().down() is None
+
+
+def test_shift_and_space_held_for_two_seconds_cut_the_power(panel, heard, down):
+    stopped, cut = heard(panel.stop_requested), heard(panel.power_cut_requested)
+    down('shift')
+    down('space')
+    begun = time.monotonic()
+    run_for(HELD_S)
+    assert stopped and cut
+    print('MEASURED Shift+Space held: power cut within {:.1f} s'.format(time.monotonic() - begun))
+
+
+def test_a_release_that_waits_behind_a_slow_view_counts(panel, heard, down):
+    cut = heard(panel.power_cut_requested)
+    down('shift')
+    down('space')
+    run_for(0.3)
+    xdotool('keyup', 'space')
+    # The thread that draws is busy: when it looks again, release and timer are both due.
+    time.sleep(2.5)
+    run_for(1.0)
+    assert cut == []

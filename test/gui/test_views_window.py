@@ -9,7 +9,7 @@ from python_qt_binding.QtWidgets import QAbstractButton
 from mhri.gui.driving.drive_keys import DriveKeys
 from mhri.gui.screen.windows import TurtleBotWindow
 
-ALL = frozenset(('imu', 'rgb', 'depth', 'scan', 'record'))
+ALL = frozenset(('imu', 'rgb', 'depth', 'cloud', 'scan', 'record'))
 
 
 @pytest.fixture
@@ -64,11 +64,11 @@ def test_every_switch_is_reached_and_set_with_the_keyboard(window, operator):
     window.switches.cameras['rgb'].setFocus()
     operator.hit(window.switches.cameras['rgb'], Qt.Key_Right)
     assert window.wanted() == {'depth', 'imu'}
-    for key in ('scan', 'imu'):
+    for key in ('cloud', 'scan', 'imu'):
         QTest.keyClick(window, Qt.Key_Tab)
         operator.wait_until(window.switches.checks[key].hasFocus)
         operator.hit(window.switches.checks[key], Qt.Key_Space)
-    assert window.wanted() == {'depth', 'scan'}
+    assert window.wanted() == {'depth', 'cloud', 'scan'}
 
 
 def test_a_click_leaves_the_keyboard_to_the_drive_keys(window, operator, application, panel):
@@ -122,7 +122,8 @@ def test_settings_come_back(window, operator, ui_dir):
 
 
 @pytest.mark.parametrize('settings', [
-    {}, {'views': []}, {'views': ['gone', 'rgb', 'depth'], 'splitter': [1, 2], 'of_views': {'arm': {}}}])
+    {}, {'views': []},
+    {'views': ['gone', 'rgb', 'depth'], 'splitter': [1, 2], 'of_views': {'arm': {}}}])
 def test_settings_of_another_version_do_no_harm(window, settings):
     window.restore_settings(settings)
     assert window.wanted() <= {'imu', 'rgb'}

@@ -9,8 +9,8 @@ from python_qt_binding.QtWidgets import QApplication, QLineEdit, QSpinBox, QText
 from mhri.gui.driving.drive_keys import DriveKeys, mark_drive_area
 from mhri.gui.screen.windows import window_class
 
-W, A, S, D, UP, LEFT, RIGHT, DOWN, SPACE, ONE, NINE, ZERO = (
-    25, 38, 39, 40, 111, 113, 114, 116, 65, 10, 18, 19)
+W, A, S, D, UP, LEFT, RIGHT, DOWN, SPACE, ONE, NINE, ZERO, SHIFT = (
+    25, 38, 39, 40, 111, 113, 114, 116, 65, 10, 18, 19, 50)
 
 AHEAD, BACK, TO_LEFT, TO_RIGHT = (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)
 
@@ -317,3 +317,35 @@ def test_no_shortcut_of_the_host_takes_a_key_of_ours(panel, key, scan, modifiers
     QApplication.sendEvent(panel, event)
     assert event.isAccepted() == ours
     assert panel.stick() == (0.0, 0.0), 'an override is a question, not a press'
+
+
+@pytest.fixture
+def cut(panel, heard, monkeypatch):
+    """What cuts the power of the motors, where Shift+Space has to be held for 0.2 s alone."""
+    panel.drive_keys._stop_timer.setInterval(200)
+    return heard(panel.power_cut_requested)
+
+
+def test_shift_and_space_held_cut_the_power_once(panel, operator, heard, cut):
+    stopped = heard(panel.stop_requested)
+    operator.press(panel, Qt.Key_Space, SPACE, Qt.ShiftModifier)
+    for _ in range(3):
+        operator.release(panel, Qt.Key_Space, SPACE, Qt.ShiftModifier, repeat=True)
+        operator.press(panel, Qt.Key_Space, SPACE, Qt.ShiftModifier, repeat=True)
+    operator.wait_until(lambda: cut)
+    assert stopped == [()] and cut == [()]
+
+
+@pytest.mark.parametrize('key, scan, modifiers', [
+    (Qt.Key_Space, SPACE, Qt.ShiftModifier), (Qt.Key_Space, SPACE, Qt.NoModifier),
+    (Qt.Key_Shift, SHIFT, Qt.NoModifier)])
+def test_shift_or_space_let_go_before_cuts_nothing(panel, operator, cut, key, scan, modifiers):
+    operator.press(panel, Qt.Key_Space, SPACE, Qt.ShiftModifier)
+    operator.release(panel, key, scan, modifiers)
+    assert not panel.drive_keys._stop_timer.isActive() and cut == []
+
+
+def test_another_window_that_takes_the_keys_cuts_nothing(panel, operator, cut):
+    operator.press(panel, Qt.Key_Space, SPACE, Qt.ShiftModifier)
+    QApplication.sendEvent(panel, QEvent(QEvent.WindowDeactivate))
+    assert not panel.drive_keys._stop_timer.isActive() and cut == []

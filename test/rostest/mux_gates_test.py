@@ -22,7 +22,7 @@ from rostest_tools import (
 import rospy
 import rostest
 from std_msgs.msg import Bool, String
-from std_srvs.srv import SetBool
+from std_srvs.srv import SetBool, Trigger
 
 from mhri.msg import GatesState, RobotSelect, TeamTwist
 from mhri.ros.driving.neighbour import Neighbour
@@ -34,6 +34,8 @@ class Gates:
 
     def __init__(self):
         self._topic = rospy.Publisher('/gates/state', GatesState, queue_size=10, latch=True)
+        # Who serves it is believed.
+        rospy.Service('/gates/take_control', Trigger, lambda request: (True, ''))
         self._state = GatesState()
         self._changed = threading.Condition()
         self._silent = False

@@ -3,8 +3,9 @@
 """The panel without a screen: its backend, asked for its view 20 times a second, to be attacked.
 
 ``backend_process.py LOG``; a line of the standard input is ``select NAME...``,
-``take``, ``mode SOURCE`` or ``limits LINEAR ANGULAR``. A line of
-the log is: when [s, CLOCK_MONOTONIC], how long one round took [s], events, the status.
+``take``, ``mode SOURCE``, ``stick FORWARD TURN``, ``view ROBOT KEY...`` or
+``limits LINEAR ANGULAR``. A line of the log is: when [s, CLOCK_MONOTONIC], how long one round took
+[s], events, (status, mode, stop_all).
 """
 import sys
 import threading
@@ -36,7 +37,8 @@ def main():
                 repeat_at = begun + 0.5
             events, view = backend.take_events(), backend.view()
             log.write('{!r} {:.4f} {} {!r}\n'.format(
-                begun, time.monotonic() - begun, len(events), view.status))
+                begun, time.monotonic() - begun, len(events),
+                (view.status, view.mode, view.stop_all)))
     backend.close()
 
 
@@ -46,6 +48,10 @@ def obey(backend, word, *names):
         backend.take_control()
     elif word == 'mode':
         backend.request_mode(*names)
+    elif word == 'stick':
+        backend.send_stick(*map(float, names))
+    elif word == 'view':
+        backend.feeds(names[0]).want(names[1:])
     elif word == 'limits':
         backend.request_limits(*map(float, names))
     else:

@@ -153,6 +153,13 @@ class UnderFire:
         self.operator = self.speaker(os.path.join(HERE, 'backend_process.py'), self.operator_log)
         self.backend = self.start('backend', self.operator)
 
+    def start_screen(self):
+        """Start a second screen, drawn by Xvfb: it looks on and does not drive."""
+        self.system.screen()
+        self.start('screen', self.system.node(
+            'panel', '--settings', os.path.join(self.system.home, 'screen.json'), '--robots',
+            ' '.join(self.names), '__name:=onlooker'))
+
     def order(self, *words):
         """Tell the operator's backend to do something."""
         self.operator.stdin.write(' '.join(words) + '\n')
@@ -245,7 +252,7 @@ class UnderFire:
     def sizes(self):
         """Return {name: (memory [MB], threads, descriptors)} of those under attack."""
         return {process.name: process.sizes() for process in self.processes
-                if process.name in ('mux', 'gates', 'backend')}
+                if process.name in ('mux', 'gates', 'backend', 'screen')}
 
     def lines(self):
         """Return {name: lines written}."""

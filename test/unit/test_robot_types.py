@@ -30,14 +30,15 @@ def shipped():
 CONTRACT = {
     'turtlebot2': ((0.65, 3.14), ('teleop/input', 'cmd_vel_mux/input/teleop'),
                    ('mobile_base/sensors/imu_data',), ('odom',), ('camera/rgb/image_raw',),
-                   ('camera/depth_registered/image_raw',), ('scan',), ()),
+                   ('camera/depth_registered/image_raw',), ('camera/depth_registered/points',),
+                   ('scan',), ()),
     'turtlebot3': ((0.22, 1.82), ('cmd_vel',), ('imu',), ('odom',),
-                   ('camera/rgb/image_raw', 'raspicam_node/image'), (), ('scan',),
+                   ('camera/rgb/image_raw', 'raspicam_node/image'), (), (), ('scan',),
                    ('battery_state',)),
-    'turtlesim': ((2.0, 2.0), ('turtle1/cmd_vel',), (), ('turtle1/pose',), (), (), (), ()),
+    'turtlesim': ((2.0, 2.0), ('turtle1/cmd_vel',), (), ('turtle1/pose',), (), (), (), (), ()),
     'generic': ((0.5, 1.0), ('cmd_vel',), ('imu', 'imu/data'), ('odom',),
                 ('camera/rgb/image_raw', 'camera/image_raw'), ('camera/depth/image_raw',),
-                ('scan',), ('battery_state',)),
+                ('camera/depth/points', 'points'), ('scan',), ('battery_state',)),
 }
 
 
@@ -46,8 +47,8 @@ def test_shipped_templates_are_those_of_the_contract(name):
     """Topics and limits are public interface."""
     kind = shipped()[name]
     limits = (kind.limits.linear_mps, kind.limits.angular_rad_s)
-    assert (limits, kind.command, kind.imu, kind.odometry, kind.rgb, kind.depth, kind.scan,
-            kind.battery) == CONTRACT[name]
+    assert (limits, kind.command, kind.imu, kind.odometry, kind.rgb, kind.depth, kind.cloud,
+            kind.scan, kind.battery) == CONTRACT[name]
     assert kind.odometry_type == ('turtlesim/Pose' if name == 'turtlesim' else 'nav_msgs/Odometry')
 
 
@@ -139,6 +140,7 @@ OVERRIDES = {
 UNCHECKED = {
     'mhri.odometry_type': {'mhri': {'odometry_type': 'foo/Bar'}},
     'mhri.command': {'mhri': {'command': []}},
+    'mhri.imu': {'mhri': {'imu': ['imu', 'no name!']}},
     'robot_type': {'robot_type': ['turtlebot2']},
     'robot_model': {'robot_model': {'a': 1}},
 }
@@ -200,6 +202,26 @@ def test_template_error_names_file_and_key(key):
     with pytest.raises(ConfigError) as error:
         parse_robot_type(BAD[key], 'crawler.yaml')
     assert str(error.value).startswith('crawler.yaml: {}:'.format(key))
+
+
+NO_NAMES = (
+    '', '/', '//x', 'x/', 'a//b', 'no name!', '~cmd', '1st', '\u00e9', 'cmd_vel\n', 'a' * 5000,
+    'x{y}', '..', '$(reboot)')
+
+
+@pytest.mark.parametrize('name', NO_NAMES)
+def test_a_topic_that_is_no_name_is_refused(name):
+    """rospy would report it where it is used, and the robot never be reached."""
+    kind, errors = resolve_robot_type(shipped(), 'bot1', {'mhri': {'command': [name]}})
+    assert kind == shipped()['generic'] and len(errors) == 1
+    assert str(errors[0]).startswith('/bot1: mhri.command: expected names of topics, e.g. cmd_vel')
+
+
+@pytest.mark.parametrize('name', ['cmd_vel', '/cmd_vel', 'a/b_2/c', '/turtle1/cmd_vel', 'a/2d'])
+def test_a_topic_that_ros_takes_is_taken(name):
+    """Relative or not; a segment behind the first may begin with a digit."""
+    kind, errors = resolve_robot_type(shipped(), 'bot1', {'mhri': {'command': [name]}})
+    assert kind.command == (name,) and not errors
 
 
 def test_one_bad_file_never_hides_the_good_ones():

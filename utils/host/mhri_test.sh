@@ -23,7 +23,7 @@ ran and nothing failed.
   --only GROUP   run one group only (may be given again): lint, unit, oldest, scripts, rostest,
                  gui, faults, bench, or fast
   --jobs N       run N files at the same time where no times are measured, the others alone
-                 (default: one more than there are processors, at most 4); 1: one after the other
+                 (default: the number of processors, at most 4); 1: one after the other
   --bench        run the benchmarks (test/bench) in full instead of their short form
   -h, --help     this text
 
@@ -64,7 +64,7 @@ parse_arguments() {
     shift
   done
   [ "${#ONLY[@]}" -gt 0 ] || ONLY=("${GROUPS_IN_ORDER[@]}")
-  if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 4 ? $(nproc) + 1 : 4)); fi
+  if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 4 ? $(nproc) : 4)); fi
 }
 
 # Tools that Debian and Ubuntu do not package, in the workspace, at fixed versions.

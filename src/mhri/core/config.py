@@ -287,6 +287,11 @@ def parse_yaml(text: str, origin: str) -> Section:
     return Section(data, origin)
 
 
+def short(error: Exception) -> str:
+    """Return what an error says as one printable line of :data:`MAX_ERROR` characters at most."""
+    return _cut(str(error), MAX_ERROR, MAX_ERROR // 2)
+
+
 def too_large(origin: str) -> ConfigError:
     """Return (not raise) the :class:`ConfigError` of a file larger than :data:`MAX_BYTES`."""
     return ConfigError(origin, '', 'is larger than {} MB; a configuration of mhri is a few kB: is '

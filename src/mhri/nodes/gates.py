@@ -1,6 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``gates``: runs :class:`mhri.ros.driving.gates.Gates` as ``/mhri_gates``."""
+"""The executable ``gates``: runs :class:`mhri.ros.driving.gates.Gates` as ``/mhri_gates``.
+
+``gates --stand-by`` does so in a process that another one, all loaded, takes the place of when it
+is killed (:mod:`mhri.ros.stand_by`).
+"""
 import gc
 import signal
 import sys
@@ -14,6 +18,7 @@ from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.graph.rospy_inside import ended_by_hand
 from mhri.ros.resources import robot_types
+from mhri.ros.stand_by import stand_by
 
 
 def main():
@@ -22,6 +27,8 @@ def main():
     Ended by ``rosnode kill`` the exit status is 1, so that ``mhri.launch`` starts it again.
     """
     types, errors = robot_types()
+    if '--stand-by' in sys.argv:
+        stand_by('the gates')
     limit_handshakes()
     rospy.init_node('mhri_gates', disable_rostime=True)
     log.install()

@@ -18,6 +18,8 @@ import rospy
 
 from mhri.inputs.pad import PadReader
 from mhri.ros.devices.input_node import InputNode
+from mhri.ros.graph import log
+from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.live_parameter import LiveParameter
 from mhri.ros.devices.pad_profiles import own_folder, pad_profiles, shipped_names
 from mhri.ros.devices.rumble import Rumble
@@ -29,7 +31,9 @@ def main():
     if '--calibrate' in argv:
         from mhri.inputs.pad_calibration import calibrate
         sys.exit(calibrate(argv, own_folder(), shipped_names()))
+    limit_handshakes()
     rospy.init_node('mhri_joy')
+    log.install()
     # A terminal that is closed must not end the node without a neutral stick.
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     reader = PadReader(pad_profiles)

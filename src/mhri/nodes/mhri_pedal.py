@@ -19,24 +19,29 @@ import sys
 
 import rospy
 
+from mhri.core.config import shown
 from mhri.core.devices.pedals import DRIVE, ENABLE, ROLES
 from mhri.inputs.pedal import PedalReader
 from mhri.ros.devices.enabling_node import EnablingNode
 from mhri.ros.devices.input_node import InputNode
+from mhri.ros.graph import log
+from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.live_parameter import LiveParameter
 from mhri.ros.devices.pedal_profiles import PedalProfiles
 
 
 def main():
     """Run until shut down; exit with 1 where the role is none."""
+    limit_handshakes()
     rospy.init_node('mhri_pedal')
+    log.install()
     # A terminal that is closed must not end the node without a neutral pedal.
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     role = rospy.get_param('~role', DRIVE)
     if role not in ROLES:
         # Guessing could make a pedal drive that was meant to stop.
-        sys.exit('mhri_pedal cannot start: ~role is {!r}, expected {}'.format(
-            role, ' or '.join(ROLES)))
+        sys.exit('mhri_pedal cannot start: ~role is {}, expected {}'.format(
+            shown(role), ' or '.join(ROLES)))
     reader = PedalReader(PedalProfiles(), role)
     node_class = EnablingNode if role == ENABLE else InputNode
     node = node_class(reader, '/mux_in/pedal', '~set_suspended')

@@ -16,10 +16,13 @@ import sys
 
 import rospy
 
-from mhri.core.config import ConfigError
+from mhri.core.config import ConfigError, short
 from mhri.core.voice.language import parse_language
 from mhri.inputs.voice import VoiceReader
+from mhri.ros import parameters
 from mhri.ros.devices.input_node import InputNode
+from mhri.ros.graph import log
+from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.live_parameter import LiveParameter
 from mhri.ros.resources import read_text, resource_path
 from mhri.ros.voice.voice import VoiceLink
@@ -27,15 +30,17 @@ from mhri.ros.voice.voice import VoiceLink
 
 def main():
     """Run until shut down; exit with 1 where the language's file cannot be used."""
+    limit_handshakes()
     rospy.init_node('mhri_voice')
+    log.install()
     # A terminal that is closed must not end the node without a neutral Joy.
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
-    name = rospy.get_param('~language', 'english')
-    path = name if '/' in name else resource_path('voice', name + '.yaml')
     try:
+        name = parameters.text('~language', 'english')
+        path = name if '/' in name else resource_path('voice', name + '.yaml')
         language = parse_language(read_text(path), path)
     except (ConfigError, OSError) as error:
-        sys.exit('mhri_voice cannot start: {}'.format(error))
+        sys.exit('mhri_voice cannot start: {}'.format(short(error)))
     link = VoiceLink()
     reader = VoiceReader(language, path, link.on_heard, link.on_act)
     node = InputNode(reader, '/mux_in/voice', '~set_suspended')

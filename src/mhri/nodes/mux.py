@@ -1,6 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``mux``: reads its parameters and runs :class:`mhri.ros.driving.mux.Mux`."""
+"""The executable ``mux``: reads its parameters and runs :class:`mhri.ros.driving.mux.Mux`.
+
+``mux --stand-by`` does so in a process that another one, all loaded, takes the place of when it is
+killed (:mod:`mhri.ros.stand_by`).
+"""
 from dataclasses import replace
 import gc
 import signal
@@ -11,12 +15,14 @@ import rospy
 
 from mhri.core.config import ConfigError
 from mhri.core.driving.sources import enabling_problem, parse_mux_config
+from mhri.ros import parameters
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.driving.mux import Mux, STOP_PARAMETER
 from mhri.ros.driving.mux_takeover import end_other_muxes
 from mhri.ros.resources import profile_reader, read_text, resource_path
+from mhri.ros.stand_by import stand_by
 
 
 def config_path(argv):
@@ -40,30 +46,19 @@ def adjusted(config):
 
     :raises ConfigError: a parameter that cannot be used
     """
-    enabling = rospy.get_param('~enabling', config.enabling or '')
-    problem = 'expected text, got {!r}'.format(enabling) if not isinstance(enabling, str) \
-        else enabling_problem(config.sources, enabling)
+    enabling = parameters.text('~enabling', config.enabling or '')
+    problem = enabling_problem(config.sources, enabling)
     if problem:
         raise ConfigError(rospy.resolve_name('~enabling'), '', problem)
-    config = replace(config, enabling=enabling or None, automatic_switching=_flag(
+    config = replace(config, enabling=enabling or None, automatic_switching=parameters.flag(
         '~automatic_switching', config.automatic_switching))
-    return config if _flag('~dead_man', config.dead_man) else config.without_dead_man()
-
-
-def _flag(name, default):
-    """Return a parameter that is true or false.
-
-    :raises ConfigError: it is neither
-    """
-    value = rospy.get_param(name, default)
-    if not isinstance(value, bool):
-        raise ConfigError(rospy.resolve_name(name), '',
-                          'expected true or false, got {!r}'.format(value))
-    return value
+    return config if parameters.flag('~dead_man', config.dead_man) else config.without_dead_man()
 
 
 def main():
     """Run until shut down; exit with 1 where the sources' file cannot be used."""
+    if '--stand-by' in sys.argv:
+        stand_by('the mux')
     try:
         path = config_path(sys.argv) or resource_path('mux.yaml')
         config = parse_mux_config(read_text(path), path, profile_reader(path))

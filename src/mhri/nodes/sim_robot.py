@@ -8,7 +8,6 @@ place of the plan that the number at the end of the name says), ``~depth_format`
 ``rvl``, of compressedDepth), ``~mocap`` (true: a motion capture system tells its pose), ``~seed``
 (whole number; default: chance).
 """
-import math
 import random
 import re
 import sys
@@ -20,16 +19,23 @@ import rosgraph
 import rosgraph.network
 import rospy
 
-from mhri.core.config import ConfigError
+from mhri.core.config import ConfigError, short, shown
 from mhri.core.robots.robot_types import resolve_robot_type
+from mhri.ros import parameters
+from mhri.ros.graph import log
+from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.resources import read_resource, read_text, resource_path, robot_types
 from mhri.sim.body import Body, Bumper, parse_bodies
-from mhri.sim.camera_node import SimCamera
+from mhri.sim.camera_node import DEPTH_FORMATS, SimCamera
 from mhri.sim.node import SimRobot
 from mhri.sim.plan import parse_plan
 from mhri.sim.sensors import ImuSensor, Laser
 from mhri.sim.world import World, WorldFull, world_path
+
+
+# No building is as far away [m], and no heading turned as often [rad]; NaN is none either.
+FARTHEST = 1000.0
 
 
 def start_pose(plan, name, radius_m):
@@ -46,8 +52,9 @@ def start_pose(plan, name, radius_m):
                 pose[index] = float(value)
             except (TypeError, ValueError):
                 raise ConfigError(rospy.resolve_name('~' + key), '',
-                                  'expected a number, got {!r}'.format(value))
-    if not (all(map(math.isfinite, pose)) and plan.distance(pose[0], pose[1]) >= radius_m):
+                                  'expected a number, got {}'.format(shown(value)))
+    if not (all(abs(part) <= FARTHEST for part in pose)
+            and plan.distance(pose[0], pose[1]) >= radius_m):
         raise ConfigError(rospy.resolve_name('~x'), '', 'a body of {:g} m radius cannot stand at '
                           'x {:g}, y {:g} of this plan'.format(radius_m, pose[0], pose[1]))
     return tuple(pose)
@@ -76,47 +83,73 @@ def body_type(name, template):
     return bodies[key]
 
 
-def build(name, parameters):
+def seed_of():
+    """Return the parameter ``~seed``, a whole number from 0 up; None where there is none.
+
+    :raises ConfigError: it is no such number
+    """
+    seed = rospy.get_param('~seed', None)
+    if seed is not None and (type(seed) is not int or seed < 0):
+        raise ConfigError(rospy.resolve_name('~seed'), '',
+                          'expected a whole number from 0 up, got {}'.format(shown(seed)))
+    return seed
+
+
+def depth_format():
+    """Return the parameter ``~depth_format``.
+
+    :raises ConfigError: it is none of those that there are
+    """
+    value = parameters.text('~depth_format', DEPTH_FORMATS[0])
+    if value not in DEPTH_FORMATS:
+        raise ConfigError(rospy.resolve_name('~depth_format'), '', 'expected {}, got {}'.format(
+            ' or '.join(DEPTH_FORMATS), shown(value)))
+    return value
+
+
+def build(name, of_robot):
     """Return the :class:`SimRobot` that the parameters of a robot's namespace describe.
 
     :raises ConfigError: an unknown type or model, a plan or a start place that cannot be used
     :raises WorldFull: there are too many robots
     :raises OSError: a file cannot be read
     """
-    template, errors = resolve_robot_type(robot_types()[0], name, parameters)
+    template, errors = resolve_robot_type(robot_types()[0], name, of_robot)
     if errors:
         raise errors[0]
     kind = body_type(name, template)
-    path = rospy.get_param('~plan', '') or resource_path('sim', 'plan.yaml')
+    path = parameters.text('~plan', '') or resource_path('sim', 'plan.yaml')
     plan = parse_plan(read_text(path), path)
     pose = start_pose(plan, name, kind.radius_m)
-    seed = rospy.get_param('~seed', None)
+    seed = seed_of()
     chance = random.Random(seed)
     laser = Laser(plan.walls, kind.scan_min_m, kind.scan_max_m, np.random.default_rng(seed))
     world = World(world_path(building_key(plan)), name, kind, time.monotonic)
     body = Body(kind, template.limits, pose, Bumper(kind.radius_m, plan.distance, world.discs),
                 chance)
     SimCamera(name, template, plan, lambda: (body.x, body.y, body.yaw), world.others,
-              rospy.get_param('~depth_format', 'png')).start()
+              depth_format()).start()
     return SimRobot(name, template, body, ImuSensor(chance), laser, world, plan.discs(),
-                    bool(rospy.get_param('~mocap', False)))
+                    parameters.flag('~mocap', False))
 
 
 def main():
     """Run until shut down; exit with 1 and a reason where the robot cannot be built."""
+    limit_handshakes()
     rospy.init_node('base')
+    log.install()
     name = rospy.get_namespace().strip('/')
     if not name or '/' in name:
         rospy.logfatal('start a simulated robot inside a group named after it: '
                        'roslaunch mhri turtlebot.launch name:=bot1')
         sys.exit(1)
-    parameters = {key: rospy.get_param(key) for key in ('robot_type', 'robot_model')
-                  if rospy.has_param(key)}
+    of_robot = {key: rospy.get_param(key) for key in ('robot_type', 'robot_model')
+                if rospy.has_param(key)}
     try:
-        robot = build(name, parameters)
+        robot = build(name, of_robot)
     except (ConfigError, WorldFull, OSError, ValueError) as error:
-        rospy.logfatal('%s cannot be simulated: %s', name, error)
+        rospy.logfatal('%s cannot be simulated: %s', name, short(error))
         sys.exit(1)
     MasterWatch(parameters={rospy.resolve_name(key): value
-                            for key, value in parameters.items()}).start()
+                            for key, value in of_robot.items()}).start()
     robot.run()

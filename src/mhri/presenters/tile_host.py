@@ -10,15 +10,16 @@ import cv2
 from mhri.core.camera.budget import DRIVEN, LOOKED_AT, REST
 from mhri.core.recording.recording import RECORDING
 from mhri.core.robots.mocap import DriftMeter, Pose
-from mhri.core.screen.view_rows import IMU, PICTURES, RGB, VIEW_ROWS
+from mhri.core.screen.view_rows import CLOUD, IMU, PICTURES, RGB, SCAN, VIEW_ROWS
 from mhri.core.screen.views import StateView
 from mhri.gui.camera.camera_view import still_name
 from mhri.presenters.draw_guard import DrawGuard
+from mhri.presenters.rviz_cloud import RvizCloud
 from mhri.ros.camera.camera_budget import Wish
 from mhri.ros.robots.bot_feeds import MOCAP
 
 # How a stream is called where there is little room.
-_SHORT = {IMU: 'IMU', 'scan': 'scan'}
+_SHORT = {IMU: 'IMU', SCAN: 'scan', CLOUD: 'cloud'}
 
 
 def recordings_folder():
@@ -41,6 +42,7 @@ class TileHost:
         self._notes = []
         self._drift = DriftMeter()
         self._wired = False
+        self._rviz = None
         self._held_back = ''
         window.recording.record_requested.connect(self._record)
         window.recording.stop_record_requested.connect(self._stop_recording)
@@ -82,10 +84,14 @@ class TileHost:
         if hasattr(feed, 'set_view'):
             self._draw_camera(widget, feed)
             return
+        if key == CLOUD and self._rviz is None:
+            self._rviz = RvizCloud(widget, feed)
         value = feed.take()
         if value is not None:
             widget.show_value(value)
         widget.show_age(feed.age_s())
+        if hasattr(feed, 'status'):
+            widget.show_status(feed.status())
 
     def _draw_state(self, view, feeds):
         """Show how old each stream is, and what motion capture says.

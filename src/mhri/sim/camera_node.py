@@ -7,6 +7,7 @@
 - ``<depth>`` ``sensor_msgs/Image`` 16UC1 [mm], 0 nothing within 10 m, and
   ``<depth>/compressedDepth`` ``sensor_msgs/CompressedImage`` png or rvl, 640x480, 15 Hz, pixel by
   pixel that of the RGB picture
+- ``<cloud>`` ``sensor_msgs/PointCloud2``, 640x480, 5 Hz: depth and colour as points
 - ``camera_info`` beside each ``sensor_msgs/CameraInfo``, at the rate of the picture
 
 All in the frame ``<robot>/camera_rgb_optical_frame``. What nobody subscribes is neither drawn nor
@@ -17,14 +18,17 @@ import time
 
 import cv2
 import rospy
-from sensor_msgs.msg import CameraInfo, CompressedImage, Image
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2, PointField
 
 from mhri.core.camera.depth_codec import encode_depth
 from mhri.core.camera.jpeg import encode_jpeg
 from mhri.sim.camera import Camera, CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, WIDTH
+from mhri.sim.cloud import cloud_of, LAYOUT
 
 RGB_HZ = 30
 DEPTH_EVERY = 2
+# Ten megabytes each.
+CLOUD_EVERY = 6
 # No frame takes longer, but on a machine that is overloaded.
 FRAME_S = 0.5
 JPEG_QUALITY = 80
@@ -69,6 +73,29 @@ class _Stream:
         return message
 
 
+class _Cloud:
+    """The topic of the cloud: organised, as depth_image_proc makes one of a Kinect's pictures."""
+
+    def __init__(self, topic, frame_id):
+        self._publisher = rospy.Publisher(topic, PointCloud2, queue_size=1)
+        self._message = PointCloud2(
+            height=HEIGHT, width=WIDTH, is_bigendian=False, is_dense=False,
+            point_step=LAYOUT.itemsize, row_step=LAYOUT.itemsize * WIDTH,
+            fields=[PointField(name, LAYOUT.fields[name][1], PointField.FLOAT32, 1)
+                    for name in ('x', 'y', 'z', 'rgb')])
+        self._message.header.frame_id = frame_id
+
+    def wanted(self):
+        """Tell whether anybody subscribes it."""
+        return self._publisher.get_num_connections() > 0
+
+    def publish(self, depth, rgb, stamp):
+        """Send the cloud of a depth picture [mm] and the colours of its pixels."""
+        self._message.header.stamp = stamp
+        self._message.data = cloud_of(depth, rgb).tobytes()
+        self._publisher.publish(self._message)
+
+
 def compress(rgb):
     """Return (format, data) of a picture (h, w, 3) uint8, red, green, blue."""
     return 'rgb8; jpeg compressed bgr8', encode_jpeg(rgb, JPEG_QUALITY)
@@ -110,10 +137,11 @@ class SimCamera:
         self._depth = _Stream(
             prefix + template.depth[0], 'compressedDepth', '16UC1', frame_id,
             lambda depth: encode_depth(depth, depth_format)) if template.depth else None
+        self._cloud = _Cloud(prefix + template.cloud[0], frame_id) if template.cloud else None
 
     def start(self):
         """Begin; it ends with the node, or with :meth:`stop`."""
-        if self._rgb or self._depth:
+        if self._rgb or self._depth or self._cloud:
             # OpenCV's own threads would spin on every core, in the way of the physics' next step.
             cv2.setNumThreads(1)
             rospy.on_shutdown(self.stop)
@@ -132,7 +160,7 @@ class SimCamera:
         due, tick = time.monotonic(), 0
         try:
             while not self._done.wait(max(0.0, due - time.monotonic())):
-                self._frame(tick % DEPTH_EVERY == 0)
+                self._frame(tick % DEPTH_EVERY == 0, tick % CLOUD_EVERY == 0)
                 missed = max(0, int((time.monotonic() - due) / period_s))
                 tick += 1 + missed
                 due += period_s * (1 + missed)
@@ -142,7 +170,7 @@ class SimCamera:
             if not (self._done.is_set() or rospy.is_shutdown()):
                 raise
 
-    def _frame(self, with_depth):
+    def _frame(self, with_depth, with_cloud):
         """Draw and send what is due and wanted, all of one moment."""
         due = [stream for stream, is_due in ((self._rgb, True), (self._depth, with_depth))
                if stream and is_due]
@@ -150,9 +178,12 @@ class SimCamera:
         stamp = rospy.Time.now()
         for stream in due:
             stream.publish_info(stamp)
-        if not wanted:
+        with_cloud = with_cloud and self._cloud is not None and self._cloud.wanted()
+        if not wanted and not with_cloud:
             return
         view = self._camera.look(*self._pose_source(), self._others_source())
         for stream in wanted:
             draw = self._camera.rgb if stream is self._rgb else self._camera.depth
             stream.publish(draw(view), stamp)
+        if with_cloud:
+            self._cloud.publish(self._camera.depth(view), self._camera.rgb(view), stamp)

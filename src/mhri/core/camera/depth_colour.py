@@ -13,8 +13,8 @@ import cv2
 import numpy as np
 
 from mhri.core.camera.images import Range
+from mhri.core.camera.range_follower import RangeFollower
 
-SMOOTH_S = 1.0
 LEAST_SPAN_M = 0.5
 _SAMPLES = 20_000
 _HATCH = ((96, 96, 96), (160, 160, 160))
@@ -41,14 +41,12 @@ class DepthColour:
     """Colours the pictures of one stream; the range follows the scene without flickering.
 
     :param fixed_range_m: (near, far) [m], near < far; None: from the 2nd to the 98th percentile of
-        the valid pixels, smoothed over :data:`SMOOTH_S` seconds and never less than
-        :data:`LEAST_SPAN_M` wide
+        the valid pixels, smoothed over a second and never less than :data:`LEAST_SPAN_M` wide
     """
 
     def __init__(self, fixed_range_m: Optional[Range] = None) -> None:
         self._fixed = fixed_range_m
-        self._range: Optional[Range] = None
-        self._at = 0.0
+        self._follower = RangeFollower(LEAST_SPAN_M, 0.0)
         self._hatch: Optional[np.ndarray] = None
 
     def colour(self, depth_m: np.ndarray, now: float) -> Tuple[np.ndarray, Optional[Range]]:
@@ -72,20 +70,7 @@ class DepthColour:
     def _follow(self, depth_m: np.ndarray, now: float) -> Optional[Range]:
         """Return the range after one more picture."""
         step = max(1, math.isqrt(depth_m.size // _SAMPLES))
-        sample = depth_m[::step, ::step]
-        sample = sample[sample == sample]
-        if len(sample) == 0:
-            return self._range
-        near, far = (float(value) for value in np.percentile(sample, (2, 98)))
-        if far - near < LEAST_SPAN_M:
-            middle = max((near + far) / 2, LEAST_SPAN_M / 2)
-            near, far = middle - LEAST_SPAN_M / 2, middle + LEAST_SPAN_M / 2
-        if self._range is not None:
-            weight = 1.0 - math.exp(-max(0.0, now - self._at) / SMOOTH_S)
-            near = self._range[0] + weight * (near - self._range[0])
-            far = self._range[1] + weight * (far - self._range[1])
-        self._range, self._at = (near, far), now
-        return self._range
+        return self._follower.follow(depth_m[::step, ::step], now)
 
     def _hatched(self, shape: Tuple[int, ...]) -> np.ndarray:
         """Return a picture of nothing but hatch."""

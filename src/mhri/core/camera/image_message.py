@@ -7,7 +7,9 @@ data), ``sensor_msgs/Image`` is (header, height, width, string encoding, is_bige
 data), the header (seq, stamp, string frame_id). It is read where it lies: no picture is copied.
 """
 import struct
-from typing import Any, Optional, Tuple
+from typing import Any, Optional, Tuple, Type
+
+import numpy as np
 
 from mhri.core.camera.depth_codec import decode_depth
 from mhri.core.camera.depth_colour import DepthColour
@@ -20,11 +22,16 @@ RAW_TYPE = 'sensor_msgs/Image'
 _LONGEST_NAME = 4096
 
 
-class _Wire:
-    """Reads the fields of a serialised message in order."""
+class Wire:
+    """Reads the fields of a serialised message in order.
 
-    def __init__(self, what: str, data: Data) -> None:
+    :param what: how the message calls itself, for the error's text
+    :param error: raised where it ends early
+    """
+
+    def __init__(self, what: str, data: Data, error: Type[ValueError] = FrameError) -> None:
         self._what = what
+        self._error = error
         self._data = memoryview(data)
         self._place = 0
 
@@ -33,7 +40,7 @@ class _Wire:
         try:
             values = struct.unpack_from(form, self._data, self._place)
         except struct.error:
-            raise FrameError('{}: truncated message of {} bytes'.format(
+            raise self._error('{}: truncated message of {} bytes'.format(
                 self._what, len(self._data)))
         self._place += struct.calcsize(form)
         return values
@@ -42,7 +49,7 @@ class _Wire:
         """Return a uint8[] as a view."""
         (length,) = self.numbers('<I')
         if self._place + length > len(self._data):
-            raise FrameError('{}: truncated, {} of {} bytes'.format(
+            raise self._error('{}: truncated, {} of {} bytes'.format(
                 self._what, len(self._data) - self._place, length))
         self._place += length
         return self._data[self._place - length:self._place]
@@ -51,7 +58,7 @@ class _Wire:
         """Return a string."""
         value = self.array()
         if len(value) > _LONGEST_NAME:
-            raise FrameError('{}: corrupted, a name of {} bytes'.format(self._what, len(value)))
+            raise self._error('{}: corrupted, a name of {} bytes'.format(self._what, len(value)))
         return bytes(value).decode('utf-8', 'replace')
 
 
@@ -60,7 +67,7 @@ def read_compressed(data: Data) -> Tuple[str, memoryview]:
 
     :raises FrameError: it ends early
     """
-    wire = _Wire(COMPRESSED_TYPE, data)
+    wire = Wire(COMPRESSED_TYPE, data)
     wire.numbers('<III')
     wire.text()
     return wire.text(), wire.array()
@@ -71,7 +78,7 @@ def read_raw(data: Data) -> RawImage:
 
     :raises FrameError: it ends early
     """
-    wire = _Wire(RAW_TYPE, data)
+    wire = Wire(RAW_TYPE, data)
     wire.numbers('<III')
     wire.text()
     height, width = wire.numbers('<II')
@@ -107,12 +114,21 @@ def _read_rgb(message_type: str, data: Data, view: Optional[Size],
     return Frame(RGB, rgb, None, full, None, received_s), transport
 
 
+def read_depth(message_type: str, data: Data,
+               view: Optional[Size] = None) -> Tuple[np.ndarray, Size, str]:
+    """Return (depth float32 (h, w) [m], NaN invalid; size as sent; transport) of a message.
+
+    :raises FrameError: another type, or a picture that cannot be decoded
+    """
+    if message_type == COMPRESSED_TYPE:
+        return decode_depth(*read_compressed(data), view)
+    if message_type != RAW_TYPE:
+        raise FrameError('{} is not a picture'.format(message_type))
+    return (*decode_raw_depth(read_raw(data), view), 'raw')
+
+
 def _read_depth(message_type: str, data: Data, view: Optional[Size], colour: DepthColour,
                 received_s: float) -> Tuple[Frame, str]:
-    if message_type == RAW_TYPE:
-        depth, full = decode_raw_depth(read_raw(data), view)
-        transport = 'raw'
-    else:
-        depth, full, transport = decode_depth(*read_compressed(data), view)
+    depth, full, transport = read_depth(message_type, data, view)
     rgb, depth_range = colour.colour(depth, received_s)
     return Frame(DEPTH, rgb, depth, full, depth_range, received_s), transport

@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Robot types: the topics, limits and window of each kind of robot, as validated data."""
+import re
 from dataclasses import dataclass, field, replace
 from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Tuple
 
-from mhri.core.config import ConfigError, Section, parse_yaml
+from mhri.core.config import ConfigError, Section, parse_yaml, shown
 from mhri.core.robots.robot_hardware import (
     HardwareStopSpec, MotorPowerSpec, read_hardware_stop, read_motor_power)
 
@@ -13,7 +14,10 @@ ODOMETRY_TYPES = ('nav_msgs/Odometry', 'turtlesim/Pose')
 SILENT_AFTER_S = 1.0
 _HARDWARE: Dict[str, Callable[[Section], Any]] = {
     'motor_power': read_motor_power, 'hardware_stop': read_hardware_stop}
-_TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'scan', 'battery')
+# http://wiki.ros.org/Names, without "~": a robot has no private topics of ours.
+_TOPIC = re.compile(r'/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*\Z')
+_MOST_LETTERS = 250
+_TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'cloud', 'scan', 'battery')
 
 
 @dataclass(frozen=True)
@@ -94,6 +98,7 @@ class RobotType:
     odometry_type: str = 'nav_msgs/Odometry'
     rgb: Tuple[str, ...] = ()
     depth: Tuple[str, ...] = ()
+    cloud: Tuple[str, ...] = ()
     scan: Tuple[str, ...] = ()
     battery: Tuple[str, ...] = ()
     known_by: Dict[str, str] = field(default_factory=dict)
@@ -207,6 +212,10 @@ def _silent_after_s(section: Section) -> float:
 def _topics(section: Section, key: str) -> Tuple[str, ...]:
     """Read a list of topics; only ``command`` may not be empty."""
     topics = section.texts(key, ())
+    for topic in topics:
+        if len(topic) > _MOST_LETTERS or not _TOPIC.match(topic):
+            raise section.error(key, 'expected names of topics, e.g. cmd_vel, got {}'.format(
+                shown(topic)))
     if key == 'command' and not topics:
         raise section.error('command', 'name at least one velocity topic')
     return topics

@@ -9,13 +9,15 @@ loaded.
 A feed class has ``of(robot, kind, key)``, which returns a feed or, where a robot of this type has
 none, None; a feed has ``open()``, ``close()``, ``take()`` (the newest value, None where nothing is
 new) and ``age_s()``. A widget class has ``show_value(value)``, ``show_age(age_s)``,
-``save_settings()`` and ``restore_settings(settings)``.
+``save_settings()`` and ``restore_settings(settings)``. Where a feed has ``status()``, a
+:class:`mhri.core.camera.images.StreamStatus`, its bits are counted with those of the pictures, and
+its widget has ``show_status(status)``.
 """
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, Tuple
 
-IMU, SCAN, RGB, DEPTH, RECORD = 'imu', 'scan', 'rgb', 'depth', 'record'
+IMU, SCAN, CLOUD, RGB, DEPTH, RECORD = 'imu', 'scan', 'cloud', 'rgb', 'depth', 'record'
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,8 @@ VIEW_ROWS: Tuple[ViewRow, ...] = (
             'mhri.gui.camera.camera_view.CameraView', picture=True),
     ViewRow(DEPTH, 'depth', 'mhri.ros.camera.camera_feed.CameraFeed',
             'mhri.gui.camera.camera_view.CameraView', picture=True),
+    ViewRow(CLOUD, 'Point cloud', 'mhri.ros.sensors.cloud_feed.CloudFeed',
+            'mhri.gui.sensors.cloud_view.CloudView'),
     ViewRow(SCAN, 'Laser scan', 'mhri.ros.sensors.scan_feed.ScanFeed',
             'mhri.gui.sensors.scan_view.ScanView'),
     ViewRow(IMU, 'IMU graph', 'mhri.ros.sensors.imu_feed.ImuFeed',

@@ -13,6 +13,7 @@ from python_qt_binding.QtWidgets import (
     QLineEdit, QPlainTextEdit, QTextEdit, QWidget)
 
 from mhri.gui.driving.key_state import KeyState
+from mhri.gui.driving.stop_bar import CUT_AFTER_S
 
 _AHEAD, _BACK, _LEFT, _RIGHT = (1, 0), (-1, 0), (0, 1), (0, -1)
 
@@ -96,8 +97,8 @@ class DriveKeys(QObject):
     the keys held then are dead until released. T held is push-to-talk. Digits are the switches of
     the robots. Return activates the focused button, since space never does. Without effect while a
     text field has the focus or a list is open, and with Ctrl, Alt or Meta; but Shift+Space stops
-    everything, always. A key acts once, however long it is held, and counts as let go when it is
-    (:mod:`mhri.gui.driving.key_state`).
+    everything, always, and held for 2 s cuts the power. A key acts once, however long it is held,
+    and counts as let go when it is (:mod:`mhri.gui.driving.key_state`).
 
     :param panel: the panel; a key that no widget has the focus for is its own
     :param keys: :class:`mhri.gui.driving.key_state.KeyState`
@@ -109,6 +110,8 @@ class DriveKeys(QObject):
     centre_pressed = Signal()
     #: Shift+Space
     stop_pressed = Signal()
+    #: both are held since then, for as long as the stop button has to be to cut the power
+    stop_held = Signal()
     #: a digit 1..9
     robot_pressed = Signal(int)
     #: the digit 0
@@ -136,6 +139,11 @@ class DriveKeys(QObject):
         self._talk = None
         # Of the keys that are down those that the X server knows of: not what a program made up.
         self._real = set()
+        self._stop_key = 0
+        self._stop_timer = QTimer(self)
+        self._stop_timer.setSingleShot(True)
+        self._stop_timer.setInterval(round(CUT_AFTER_S * 1000))
+        self._stop_timer.timeout.connect(self._on_stop_held)
         self._look_timer = QTimer(self)
         self._look_timer.setInterval(_LOOK_MS)
         self._look_timer.timeout.connect(self._look)
@@ -151,6 +159,7 @@ class DriveKeys(QObject):
 
     def release(self):
         """Count every key as released; one that is still down has to be pressed again."""
+        self._stop_timer.stop()
         self._held.clear()
         self._dead.clear()
         self._down = set(self._keys.down() or ())
@@ -242,8 +251,18 @@ class DriveKeys(QObject):
         elif not event.isAutoRepeat():
             # Whatever else was pressed: to stop once more than needed does no harm.
             self.centre()
+            self._stop_key = event.nativeScanCode() if event.spontaneous() else 0
+            if not self._stop_timer.isActive():
+                # A repeat that Qt reads late looks like a press; its release was seen through.
+                self._stop_timer.start()
             self.stop_pressed.emit()
         return True
+
+    def _on_stop_held(self):
+        """Tell, unless the key is up in truth: its release may wait behind a slow view."""
+        down = self._keys.down()
+        if not self._stop_key or down is None or self._stop_key in down:
+            self.stop_held.emit()
 
     def _on_release(self, event):
         """Take a release wherever it arrives, so that no key is held for ever."""
@@ -251,6 +270,8 @@ class DriveKeys(QObject):
         ours = identity == self._talk or identity in self._held or identity in self._dead
         if event.isAutoRepeat() or event.nativeScanCode() in (self._keys.down() or ()):
             return ours
+        if event.key() in (_SPACE, int(Qt.Key_Shift)):
+            self._stop_timer.stop()
         self._down.discard(identity)
         if ours:
             self._let_go(identity)

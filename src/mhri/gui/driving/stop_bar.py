@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Stop all, across the whole panel: one press to stop, two steps to release.
 
-Held for 2 s, or by a second step on the page that says what is stopped, it cuts the power of the
-motors of those robots that offer it.
+Held for 2 s (the button, or Shift+Space), or by a second step on the page that says what is
+stopped, it cuts the power of the motors of those robots that offer it.
 """
 from python_qt_binding.QtCore import Qt, QTimer, Signal
 from python_qt_binding.QtGui import QPainter

@@ -183,6 +183,7 @@ class EventList(QWidget):
         head.setSpacing(round(0.5 * self.fontMetrics().height()))
         for widget, stretch in ((self.robot_combo, 1), (self.severity_combo, 1), (self.sounds, 0)):
             head.addWidget(widget, stretch)
+        head.addStretch(1)
         self.model = EventModel(self)
         self.filter = EventFilter(self)
         self.filter.setSourceModel(self.model)

@@ -154,6 +154,7 @@ class ScreenWidget(QWidget):
         self.drive_keys.moved.connect(self._on_stick)
         self.drive_keys.centre_pressed.connect(self.centre_stick)
         self.drive_keys.stop_pressed.connect(self.stop_bar.request_stop)
+        self.drive_keys.stop_held.connect(self.stop_bar.power_cut_requested)
         self.drive_keys.robot_pressed.connect(self.robot_list.toggle)
         self.drive_keys.all_pressed.connect(self.robot_list.toggle_all)
         self.drive_keys.alone_pressed.connect(self._drive_number)

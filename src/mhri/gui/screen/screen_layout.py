@@ -52,6 +52,8 @@ class ScreenLayout(QObject):
         theme.apply(screen, self._theme)
         screen.tabs.addTab(ROBOTS)
         screen.tabs.setExpanding(False)
+        # Hidden at first, it would think that it has no tabs.
+        screen.tabs.setMinimumHeight(theme.touch_size(screen))
         screen.tabs.setDrawBase(False)
         screen.tabs.setFocusPolicy(Qt.TabFocus)
         screen.tabs.setAccessibleName('Pages of the panel')

@@ -127,8 +127,7 @@ class Decoder:
         """Decode one message; what cannot be decoded is counted and named."""
         message_type, data, received_s = message
         try:
-            frame, transport = read_picture(self._kind, message_type, data, view, self._colour,
-                                            received_s)
+            frame, transport = self.read(message_type, data, view, received_s)
         except FrameError as error:
             self._note_bad(str(error), received_s)
         except Exception as error:  # the guard of this thread
@@ -137,6 +136,13 @@ class Decoder:
             self._note_bad('cannot be decoded: {!r}'.format(error), received_s)
         else:
             self._note_good(frame, transport)
+
+    def read(self, message_type, data, view, received_s):
+        """Return (what a message holds, its transport in words).
+
+        :raises FrameError: it cannot be decoded
+        """
+        return read_picture(self._kind, message_type, data, view, self._colour, received_s)
 
     def _next(self, last):
         """Wait for a message and for its turn.
@@ -164,6 +170,7 @@ class Decoder:
             self._bad_at = received_s
             # It names what a message says of itself, which may be any text.
             self._problem = tidy_text(problem, _LONGEST_PROBLEM)
+            self._hint = ''
 
     def _note_good(self, frame, transport):
         with self._changed:

@@ -73,8 +73,7 @@ class CameraFeed:
         with self._changed:
             if self._session is not None:
                 return
-            self._session = Decoder(self.robot, self.kind, self._wishes, self._clock,
-                                    self._depth_range)
+            self._session = self.new_session(self._wishes)
             self._session.expect(self._grant)
             self._changed_at = self._clock()
             if self._finder is None:
@@ -83,6 +82,18 @@ class CameraFeed:
                                                 name='camera finder ' + self.robot)
                 self._finder.start()
             self._changed.notify_all()
+
+    def new_session(self, wanted):
+        """Return the :class:`Decoder` of one opening; ``wanted`` is for it."""
+        return Decoder(self.robot, self.kind, wanted, self._clock, self._depth_range)
+
+    def find_offers(self, published):
+        """Return the offers, best first, among {topic: type} of what is published."""
+        return find_offers(self.kind, self._topics, published)
+
+    def line_of(self, session, offer):
+        """Return the class of a subscription to an offer, and what it is made with."""
+        return Subscription, offer.topic, session.hear
 
     def close(self, wait_s=0.0):
         """Decode nothing more and give the topic back; the latter on the feed's own thread.
@@ -230,7 +241,7 @@ class CameraFeed:
         :raises MasterError: the master cannot be reached
         """
         published = dict(MasterApi(rospy.get_name()).call('getPublishedTopics', '/' + self.robot))
-        offers = find_offers(self.kind, self._topics, published)
+        offers = self.find_offers(published)
         with self._changed:
             self._offers = offers if self._session is session else []
         offer, line = choose_offer(offers, transport), self._line
@@ -253,7 +264,7 @@ class CameraFeed:
             session.explain('{} is registered, but its sender does not answer'.format(offer.topic))
             return
         session.explain('nothing has come on {} yet'.format(offer.topic))
-        self._hold(Subscription, offer.topic, session.hear)
+        self._hold(*self.line_of(session, offer))
 
     def _nothing(self, transport, offers):
         """Say why there is nothing to subscribe."""

@@ -4,6 +4,8 @@
 import rospy
 from std_msgs.msg import Bool, Empty
 
+from mhri.ros.driving.in_force import InForce, STOP_SERVICE
+
 
 class Rumble:
     """Calls ``shake`` when stop-all is engaged, and at every message of a topic.
@@ -15,7 +17,8 @@ class Rumble:
     def __init__(self, shake, topic):
         self._shake = shake
         self._stopped = True
-        rospy.Subscriber('/robot_controller/stop_all', Bool, self._on_stop_all, queue_size=10)
+        InForce(STOP_SERVICE).start().subscribe('/robot_controller/stop_all', Bool,
+                                                self._on_stop_all, queue_size=10)
         rospy.Subscriber(topic, Empty, self._on_lost, queue_size=1)
 
     def _on_stop_all(self, message):

@@ -29,16 +29,15 @@ from mhri.core.robots.link_quality import link_share
 from mhri.core.robots.names import name_problem
 from mhri.msg import GroupSpeed, RobotSelect, TeamTwist
 from mhri.ros.convert import from_twist
-from mhri.ros.driving.mux_in_force import MuxInForce
+from mhri.ros.driving.in_force import InForce, STOP_SERVICE, Strangers, TAKE_SERVICE
 from mhri.ros.driving.neighbour import Neighbour
 from mhri.ros.driving.robot_gate import RobotGate
 from mhri.ros.driving.roster import Roster
 from mhri.ros.graph.rospy_inside import caller_of, link_of, on_publisher_gone
 
 TICK_S = 0.05
-# Whoever was refused is named for so long [s], and so many of them at once.
+# Whoever was refused is named for so long [s].
 REFUSED_S = 30.0
-MOST_STRANGERS = 32
 
 
 class Gates:
@@ -64,10 +63,10 @@ class Gates:
         self._share = 1.0
         self._closed = False
         self._session = '{:x}'.format(time.time_ns())
-        self._strangers = {}
+        self._strangers = Strangers(clock)
         self._states = []
         self._neighbour = Neighbour('the mux', lambda: self.on_change(), lambda: self.on_change())
-        self._mux = MuxInForce(self._refuse, self._on_new_mux)
+        self._mux = InForce(STOP_SERVICE, self._refuse, self._on_new_mux)
         self._roster = Roster(types, self._open, self._close_gate, self._unheard)
 
     def start(self):
@@ -84,7 +83,7 @@ class Gates:
         rospy.Subscriber('/robot_controller/stop_all', Bool, self._on_stop, queue_size=10,
                          tcp_nodelay=True)
         rospy.Subscriber('/gates_in/group_speed', GroupSpeed, self._on_group_speed, queue_size=10)
-        rospy.Service('/gates/take_control', Trigger, self._on_take)
+        rospy.Service(TAKE_SERVICE, Trigger, self._on_take)
         rospy.Service('/gates/set_motor_power', SetBool, self._on_motor_power)
         self._neighbour.start()
         threading.Thread(target=self._run, name='gates', daemon=True).start()
@@ -98,9 +97,7 @@ class Gates:
         with self._lock:
             refused = ['{}: robot_select, {} times'.format(name, count)
                        for name, count in self._seat.refused.items()]
-            refused += ['{}: {}, {} times'.format(caller, topic, count)
-                        for (caller, topic), (count, at) in self._strangers.items()
-                        if self._clock() - at < REFUSED_S]
+            refused += self._strangers.words(REFUSED_S)
             return dict(operator=self._seat.operator, since=self._seat.since,
                         leased=self._seat.state == 'leased', mux=self._mux.caller,
                         stop_all=bool(self._stop), together=self._together, share=self._share,
@@ -111,12 +108,8 @@ class Gates:
         return bool(self._mux.caller) and not self._neighbour.silent
 
     def _refuse(self, caller, topic):
-        """Count who is not believed; the names are bounded."""
-        key = (caller, topic)
-        with self._lock:
-            if len(self._strangers) >= MOST_STRANGERS and key not in self._strangers:
-                self._strangers.pop(next(iter(self._strangers)))
-            self._strangers[key] = (self._strangers.get(key, (0,))[0] + 1, self._clock())
+        """Count who is not believed."""
+        self._strangers.refuse(caller, topic)
         self.on_change()
 
     def _each(self, act):

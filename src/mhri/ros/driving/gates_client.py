@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The panel's side of the gates: what they said last, and what is asked of them.
 
-Subscribes ``/gates/state`` (``mhri/GatesState``, 2 Hz and on change). Publishes
+Subscribes ``/gates/state`` (``mhri/GatesState``, 2 Hz and on change; the gates in force alone are
+believed, :mod:`mhri.ros.driving.in_force`). Publishes
 ``/gates_in/group_speed`` (``mhri/GroupSpeed``, latched). Calls ``/gates/take_control``
 (``std_srvs/Trigger``) and ``/gates/set_motor_power`` (``std_srvs/SetBool``) on a thread of its own.
 """
@@ -15,11 +16,12 @@ from std_srvs.srv import SetBool, Trigger
 
 from mhri.core.driving.control import who_drives
 from mhri.msg import GatesState, GroupSpeed, RobotGate
+from mhri.ros.driving.in_force import InForce, Strangers, TAKE_SERVICE
 from mhri.ros.worker import Worker
 
 # They speak at 2 Hz: a word late by this much is a word that does not come.
 SILENT_S = 0.9
-TAKE_SERVICE, POWER_SERVICE = '/gates/take_control', '/gates/set_motor_power'
+POWER_SERVICE = '/gates/set_motor_power'
 
 
 class GatesClient:
@@ -27,6 +29,7 @@ class GatesClient:
 
     :param on_state: called with (``mhri/GatesState``, received at [s]) on a ROS thread, in order
     :param clock: function that returns seconds, monotonic
+    ``strangers`` are those who speak as the gates and are not.
     """
 
     def __init__(self, on_state, clock=time.monotonic):
@@ -41,13 +44,16 @@ class GatesClient:
         self._group = None
         self._topics = []
         self._worker = Worker('gates_calls')
+        self.strangers = Strangers()
+        self._force = InForce(TAKE_SERVICE, self.strangers.refuse)
 
     def start(self):
         """Begin to listen; call it after ``rospy.init_node``."""
         self._heard_at = self._clock()
         self._group = rospy.Publisher('/gates_in/group_speed', GroupSpeed, queue_size=1, latch=True)
-        self._topics = [self._group, rospy.Subscriber(
+        self._topics = [self._group, self._force.subscribe(
             '/gates/state', GatesState, self._hear, queue_size=10, tcp_nodelay=True)]
+        self._force.start()
         self._worker.start()
         return self
 
@@ -125,6 +131,7 @@ class GatesClient:
     def close(self):
         """Stop the worker; returns at once."""
         self._worker.stop()
+        self._force.stop()
 
     def unregister(self):
         """Give every topic back (blocking: it asks the master)."""

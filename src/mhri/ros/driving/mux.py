@@ -114,7 +114,7 @@ class Mux:
         self._diagnostics = MuxDiagnostics(
             self._arbiter, self._changed, clock, config, self._topics,
             {'gates': self._gates.words, 'suspend': self._suspender.state,
-             'tasks': self._tasks.counts})
+             'tasks': self._tasks.counts, 'strangers': self._gates.strangers.words})
 
     def start(self, stopped):
         """Open for business.

@@ -6,8 +6,8 @@ Publishes ``/mux_in/mode_select`` (``mhri/ControlMode``) and ``/mux_in/speed_lim
 (``geometry_msgs/Twist``, latched); while this screen drives also ``/mux_in/joy``
 (``sensor_msgs/Joy``) and ``/robot_controller/robot_select`` (``mhri/RobotSelect``, latched).
 Subscribes ``/mux/mode``, ``/mux/speed_limit``, ``/mux/waits_for``, ``/mux/advice``,
-``/mux/dead_man``, ``/robot_controller/stop_all``.
-Calls ``/mux/set_stop_all`` on a thread of its own.
+``/mux/dead_man``, ``/robot_controller/stop_all``, and believes the mux in force alone
+(:mod:`mhri.ros.driving.in_force`). Calls ``/mux/set_stop_all`` on a thread of its own.
 """
 import threading
 
@@ -21,10 +21,10 @@ from mhri.core.driving.limits import speed_limit_problem
 from mhri.core.screen.text import tidy_text
 from mhri.msg import ControlMode, RobotSelect
 from mhri.ros.convert import to_twist
-from mhri.ros.graph.rospy_inside import PromptPublisher
+from mhri.ros.driving.in_force import InForce, STOP_SERVICE, Strangers
+from mhri.ros.graph.rospy_inside import PromptPublisher, publishers
 from mhri.ros.worker import Worker
 
-STOP_SERVICE = '/mux/set_stop_all'
 RETRY_S = 0.5
 
 
@@ -34,6 +34,7 @@ class MuxClient:
     :param on_answer: called with a sentence when a stop or release was answered, on the worker
     :param on_mode: called when the mux has said its mode, on a ROS thread
     :param pressed: whether stop-all was pressed before there was a mux to tell
+    ``strangers`` are those who speak as the mux and are not.
     """
 
     def __init__(self, on_answer, on_mode, pressed=False):
@@ -55,15 +56,19 @@ class MuxClient:
         self._wheel_lock = threading.Lock()
         self._select_mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
         self._speed = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=1, latch=True)
-        self._heard = rospy.Subscriber('/mux/mode', ControlMode, self._hear_mode, queue_size=10)
-        self._topics = [
-            self._heard, self._select_mode, self._speed,
-            rospy.Subscriber('/mux/speed_limit', Twist, self._on_limits, queue_size=10),
-            rospy.Subscriber('/mux/waits_for', String, self._on_waits, queue_size=10),
-            rospy.Subscriber('/mux/advice', String, self._on_advice, queue_size=10),
-            rospy.Subscriber('/mux/dead_man', Bool, self._on_dead_man, queue_size=10),
-            rospy.Subscriber('/robot_controller/stop_all', Bool, self._hear_stop, queue_size=10,
-                             tcp_nodelay=True)]
+        self.strangers = Strangers()
+        self._force = InForce(STOP_SERVICE, self.strangers.refuse)
+        self._heard, *heard = [
+            self._force.subscribe(name, kind, hear, queue_size=10, tcp_nodelay=True)
+            for name, kind, hear in (
+                ('/mux/mode', ControlMode, self._hear_mode),
+                ('/mux/speed_limit', Twist, self._on_limits),
+                ('/mux/waits_for', String, self._on_waits),
+                ('/mux/advice', String, self._on_advice),
+                ('/mux/dead_man', Bool, self._on_dead_man),
+                ('/robot_controller/stop_all', Bool, self._hear_stop))]
+        self._topics = [self._heard, self._select_mode, self._speed] + heard
+        self._force.start()
         self._stopper = Worker('stop_all', self._keep_stopping, RETRY_S).start()
         if pressed:
             self._stopper.do(self._engage)
@@ -110,7 +115,7 @@ class MuxClient:
 
     def state(self):
         """Return (mode, limits, waits_for) as the mux last said; all None while it is not there."""
-        if not self._heard.get_num_connections():
+        if self._force.caller not in publishers(self._heard):
             return None, None, None
         with self._lock:
             return self._mode, self._limits, self._waits_for
@@ -167,6 +172,7 @@ class MuxClient:
     def close(self):
         """Stop the worker; returns at once."""
         self._stopper.stop()
+        self._force.stop()
 
     def unregister(self):
         """Give every topic back (blocking: it asks the master)."""

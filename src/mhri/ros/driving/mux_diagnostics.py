@@ -12,7 +12,8 @@ class MuxDiagnostics:
     :param arbiter: read under ``lock``
     :param topics: {source: :class:`mhri.ros.driving.source_topic.SourceTopic`}
     :param words: {'gates': function that returns a sentence, 'suspend': one that returns the state
-        of a service, 'tasks': one that returns {words: count}}
+        of a service, 'tasks': one that returns {words: count}, 'strangers': one that returns who
+        was not believed}
     """
 
     def __init__(self, arbiter, lock, clock, config, topics, words):
@@ -57,6 +58,8 @@ class MuxDiagnostics:
         status.add('gates', self._words['gates']())
         for kind, count in sorted(self._words['tasks']().items()):
             status.add('tasks ' + kind, count)
+        for words in self._words['strangers']():
+            status.add('not believed', words)
         status.add('state', state)
         status.add('waits for', waits or 'nothing')
         status.add('speed limit', '{:.2f} m/s, {:.2f} rad/s'.format(linear, angular))

@@ -1,16 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What the mux has from the gates: the stop they remember, the operator, their sign of life."""
-import rospy
-
 from mhri.core.driving.stop_echo import StopEcho
 from mhri.msg import GatesState
+from mhri.ros.driving.in_force import InForce, Strangers, TAKE_SERVICE
 from mhri.ros.driving.neighbour import Neighbour
 from mhri.ros.graph.rospy_inside import caller_of, link_of
 
 
 class GatesWatch:
-    """Subscribes ``/gates/state`` (``mhri/GatesState``).
+    """Subscribes ``/gates/state`` (``mhri/GatesState``), and believes the gates in force alone.
 
     The functions are called on rospy's threads or the watch's own.
 
@@ -26,18 +25,21 @@ class GatesWatch:
         self._echo = StopEcho()
         self._link = None
         self._operator = ''
-        self._subscriber = None
+        self.strangers = Strangers()
+        self._force = InForce(TAKE_SERVICE, self.strangers.refuse)
         self._neighbour = Neighbour('the gates', on_silent)
 
     def start(self):
         """Begin to listen and to watch."""
         self._neighbour.start()
-        self._subscriber = rospy.Subscriber('/gates/state', GatesState, self._on_message,
-                                            queue_size=1, tcp_nodelay=True)
+        self._force.subscribe('/gates/state', GatesState, self._on_message, queue_size=1,
+                              tcp_nodelay=True)
+        self._force.start()
 
     def stop(self):
         """End the watch; returns at once."""
         self._neighbour.stop()
+        self._force.stop()
 
     def in_control(self, caller):
         """Tell whether a node may be the operator in control, as far as the gates have said."""

@@ -25,8 +25,9 @@ _LOOK_S = 0.1
 _LEARN_AGAIN_S = 1.0
 # A watch that comes round so late was stopped itself, and knows nothing of the other one.
 _OWN_SLEEP_S = 0.5
-# A shell that restarts it may be in between, and what the shell runs it by.
-_GENERATIONS = 3
+# In between may be a shell that restarts it, what the shell runs it by, and a process that stands
+# by (:mod:`mhri.ros.stand_by`).
+_GENERATIONS = 4
 _LAUNCHERS = ('roslaunch', 'rostest')
 
 

@@ -72,8 +72,11 @@ class Roster:
             try:
                 self._look()
                 self._announce(time.monotonic())
-            except (MasterError, ValueError, OSError) as error:
+            except (MasterError, OSError) as error:
                 rospy.logdebug('the robots cannot be looked at now: %s', error)
+            except Exception as error:  # without this thread no robot would ever be added
+                rospy.logerr_throttle(
+                    10.0, 'the robots could not be looked at: {}'.format(repr(error)[:300]))
 
     def _look(self):
         """Compare what is wanted with what is open.

@@ -5,12 +5,17 @@
 rospy's own master proxy has none: a master that is out of reach (not refused, but silent) blocks
 the caller for minutes.
 """
+import contextlib
 import http.client
+import xml.parsers.expat
 import xmlrpc.client
 
 import rosgraph
 
 ERRORS = (OSError, xmlrpc.client.Error, http.client.HTTPException)
+# Whatever else answers there makes xmlrpc raise these as well: no XML, no text, not three values.
+_NONSENSE = (xml.parsers.expat.ExpatError, ValueError, TypeError, LookupError, AttributeError,
+             ArithmeticError)
 
 
 class MasterError(Exception):
@@ -49,10 +54,8 @@ class MasterApi:
 
         :raises MasterError: no answer in time, or an answer that is not "success"
         """
-        try:
+        with self._errors():
             code, message, value = getattr(self._proxy, method)(self._caller_id, *args)
-        except ERRORS as error:
-            raise MasterError('no answer from the ROS master at {}: {}'.format(self.uri, error))
         if code != 1:
             raise MasterError('the ROS master at {} refused {}: {}'.format(
                 self.uri, method, message))
@@ -63,15 +66,25 @@ class MasterApi:
 
         :param calls: [(method, arg, ...)]
         :returns: their values in order; None where the master refused the single call
-        :raises MasterError: no answer in time
+        :raises MasterError: no answer in time, or one that cannot be understood
         """
         batch = xmlrpc.client.MultiCall(self._proxy)
         for method, *args in calls:
             getattr(batch, method)(self._caller_id, *args)
-        try:
+        with self._errors():
             return [value if code == 1 else None for code, _, value in batch()]
+
+    @contextlib.contextmanager
+    def _errors(self):
+        """Turn what a call may raise into the one named error."""
+        try:
+            yield
         except ERRORS as error:
-            raise MasterError('no answer from the ROS master at {}: {}'.format(self.uri, error))
+            raise MasterError('no answer from the ROS master at {}: {}'.format(
+                self.uri, str(error)[:200]))
+        except _NONSENSE as error:
+            raise MasterError('what answers at {} is no ROS master: {}'.format(
+                self.uri, repr(error)[:200]))
 
     def node_uri(self, name):
         """Return the URI under which a node is registered, or None where it is not.

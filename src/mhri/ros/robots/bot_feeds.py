@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What a tile can show of its robot: a feed for each view, opened while it is wanted."""
-from mhri.core.screen.view_rows import load, PICTURES, RECORD, VIEW_ROWS
+from mhri.core.screen.view_rows import load, RECORD, VIEW_ROWS
 from mhri.ros.sensors.mocap_feed import MocapFeed
 
 MOCAP = 'mocap'
@@ -52,7 +52,13 @@ class BotFeeds:
         """Return an open feed, None where it is not wanted or not open yet."""
         return self._feeds.get(key) if key in self._open and key in self._wanted else None
 
+    def refused(self):
+        """Return {key: messages left out so far because they cannot be} of feeds that had any."""
+        counts = {key: feed.refused() for key, feed in list(self._feeds.items())
+                  if hasattr(feed, 'refused')}
+        return {key: count for key, count in counts.items() if count}
+
     def bits_per_s(self):
-        """Return what the pictures of this robot take of the network now [bit/s]."""
-        feeds = [self.get(key) for key in PICTURES]
-        return sum(feed.status().bits_per_s for feed in feeds if feed is not None)
+        """Return what pictures and clouds of this robot take of the network now [bit/s]."""
+        feeds = [self.get(row.key) for row in VIEW_ROWS]
+        return sum(feed.status().bits_per_s for feed in feeds if hasattr(feed, 'status'))

@@ -116,7 +116,7 @@ class ScreenBackend:
         self.repeat_selection()
         self._requests = PanelRequests(self._events)
         self._devices = DeviceClient()
-        self._diagnostics = PanelDiagnostics(self).start()
+        self._diagnostics = PanelDiagnostics(self, self._gates, mux).start()
         self._feeder.start()
         self._worker.start()
         self._worker.do(self._supervise)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the panel tells ``/diagnostics``: the links of its robots."""
+"""What the panel tells ``/diagnostics``: the links of its robots, and what it did not believe."""
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from mhri.core.screen.views import LIVE
@@ -11,10 +11,12 @@ class PanelDiagnostics:
     """Publishes ``diagnostic_msgs/DiagnosticArray`` on ``/diagnostics`` at 1 Hz.
 
     :param operator: :class:`mhri.ros.screen.backend.ScreenBackend`
+    :param clients: those of gates and mux, whose ``strangers`` were not believed
     """
 
-    def __init__(self, operator):
+    def __init__(self, operator, *clients):
         self._operator = operator
+        self._clients = clients
         self._done = None
 
     def start(self):
@@ -39,4 +41,10 @@ class PanelDiagnostics:
             status.add(view.name, '{}, {}{}'.format(
                 view.type_label or 'type unknown', view.link,
                 ', ' + view.note if view.note else ''))
+            feeds = self._operator.feeds(view.name)
+            for words, count in sorted(feeds.refused().items()) if feeds else ():
+                status.add('{}: {} refused'.format(view.name, words), count)
+        for client in self._clients:
+            for words in client.strangers.words():
+                status.add('not believed', words)
         return status

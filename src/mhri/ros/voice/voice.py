@@ -21,15 +21,17 @@ import rospy
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool
 
+from mhri.core.driving.seat import MOST_ROBOTS
+from mhri.core.robots.names import name_problem
 from mhri.core.voice.grammar import MODE, PANEL, STOP
 from mhri.core.voice.names import in_places
 from mhri.msg import ControlMode, Heard, PanelRequest, RobotSelect
+from mhri.ros.driving.in_force import InForce, STOP_SERVICE
 from mhri.ros.graph.live_parameter import LiveParameter
 from mhri.ros.worker import Worker
 
 ROBOTS_PARAMETER = '/mhri/robots'
 NUMBERS_PARAMETER = '/mhri/robot_numbers'
-STOP_SERVICE = '/mux/set_stop_all'
 VOICE_SOURCE = 'voice'
 # A stop that the mux does not take is repeated for so long; it is said aloud then.
 _INSIST_S = 3.0
@@ -40,7 +42,8 @@ def robot_names(value):
     """Return the names in a parameter that anybody may have set to anything."""
     if not isinstance(value, (list, tuple)):
         return ()
-    return tuple(name for name in value if isinstance(name, str))
+    return tuple(name for name in value[:MOST_ROBOTS] if isinstance(name, str)
+                 and name_problem(name) is None)
 
 
 class VoiceLink:
@@ -70,7 +73,8 @@ class VoiceLink:
         """
         self._reader = reader
         rospy.Subscriber('~push_to_talk', Bool, self._on_push, queue_size=10, tcp_nodelay=True)
-        rospy.Subscriber('/mux/mode', ControlMode, self._on_mode, queue_size=10)
+        InForce(STOP_SERVICE).start().subscribe('/mux/mode', ControlMode, self._on_mode,
+                                                queue_size=10)
         rospy.Subscriber('/robot_controller/robot_select', RobotSelect, self._on_selection,
                          queue_size=1)
         LiveParameter(NUMBERS_PARAMETER, {}, self._on_numbers, wanted).start()
@@ -100,7 +104,8 @@ class VoiceLink:
     def _on_selection(self, message):
         with self._lock:
             # A robot that was seen once keeps its number.
-            self._selected = tuple(dict.fromkeys(self._selected + tuple(message.robots)))
+            self._selected = tuple(dict.fromkeys(
+                self._selected + robot_names(message.robots)))[:MOST_ROBOTS]
             self._tell_robots()
 
     def on_heard(self, heard):

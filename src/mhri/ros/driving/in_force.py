@@ -1,0 +1,204 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The one mux and the one gates in force: whoever serves their service is believed, by caller id.
+
+Anybody may publish what they publish. Their service has one server, which the master knows.
+"""
+import threading
+import time
+
+import rospy
+
+from mhri.ros.graph.master_api import MasterApi, MasterError
+from mhri.ros.graph.rospy_inside import caller_of, link_of
+
+STOP_SERVICE, TAKE_SERVICE = '/mux/set_stop_all', '/gates/take_control'
+# Whoever speaks as one and is none makes the master be asked, but not more often than this [s].
+ASK_S = 0.2
+# So many strangers are told apart, and the words of so many wait on a topic.
+MOST_STRANGERS, MOST_WAITING = 32, 8
+
+
+class InForce:
+    """Knows whose words count: those of the node that serves a service.
+
+    The master is asked on a thread of its own, at the start and whenever somebody else speaks: a
+    newer server takes the service over, a stranger does not.
+
+    :param service: its absolute name
+    :param on_refused: called with the caller id and the topic that it said something on
+    :param on_new: called on the thread that found it out when the one in force is another, or
+        another process or connection of the same name
+    """
+
+    def __init__(self, service, on_refused=lambda caller, topic: None,
+                 on_new=lambda caller: None):
+        self._service = service
+        self._on_refused = on_refused
+        self._on_new = on_new
+        self._caller = ''
+        self._uri = None
+        self._links = {}
+        self._ears = []
+        self._ask = threading.Event()
+        self._done = threading.Event()
+
+    @property
+    def caller(self):
+        """Caller id of the one in force, '' while none is known."""
+        return self._caller
+
+    def start(self):
+        """Begin to look; returns at once."""
+        self._ask.set()
+        threading.Thread(target=self._run, name='in_force ' + self._service, daemon=True).start()
+        return self
+
+    def stop(self):
+        """End the thread; returns at once."""
+        self._done.set()
+        self._ask.set()
+
+    def believes(self, message, topic):
+        """Tell whether a message comes from the one in force.
+
+        :param topic: what it was said on, for the count of what is refused
+        """
+        caller = caller_of(message)
+        if caller != self._caller:
+            self._ask.set()
+            if self._caller:
+                self._on_refused(caller, topic)
+            return False
+        link = link_of(message)
+        if self._links.get(topic) is not link:
+            known, self._links[topic] = topic in self._links, link
+            if known:
+                self._links = {topic: link}
+                self._on_new(caller)
+        return True
+
+    def subscribe(self, topic, kind, hear, **options):
+        """Return a ``rospy.Subscriber`` that hears the one in force alone.
+
+        What somebody says before it is known who is in force waits: latched words come only once.
+        """
+        ear = _Ear(self, topic, hear)
+        self._ears.append(ear)
+        return rospy.Subscriber(topic, kind, ear.on_message, **options)
+
+    def waiting(self):
+        """Return of how many who are not in force the newest word is kept."""
+        return sum(ear.waiting() for ear in self._ears)
+
+    def _run(self):
+        api = MasterApi(rospy.get_name(), timeout_s=1.0)
+        while not (rospy.is_shutdown() or self._done.is_set()):
+            self._ask.wait()
+            self._ask.clear()
+            try:
+                self._look(api)
+            except MasterError as error:
+                # Without a master the one that is known stays in force.
+                rospy.logdebug('who serves %s cannot be asked now: %s', self._service, error)
+            except Exception as error:  # without this thread a newer server would not be believed
+                rospy.logerr_throttle(10.0, 'who serves {} could not be asked: {}'.format(
+                    self._service, repr(error)[:300]))
+            self._done.wait(ASK_S)
+
+    def _look(self, api):
+        """Ask who serves the service; the whole graph only where that has changed.
+
+        :raises MasterError: the master cannot be asked now
+        """
+        begun = time.monotonic()
+        uri = api.call_many([('lookupService', self._service)])[0]
+        if uri and uri == self._uri:
+            for ear in self._ears:
+                ear.forget(begun)
+        if uri in (None, self._uri):
+            return
+        servers = dict(api.call('getSystemState')[2]).get(self._service, [])
+        if not servers:
+            return
+        self._uri = uri
+        if servers[-1] != self._caller:
+            self._caller, self._links = servers[-1], {}
+            self._on_new(self._caller)
+            for ear in self._ears:
+                ear.catch_up(self._caller)
+
+
+class _Ear:
+    """What is said on one topic: the believed words at once, the newest of others kept aside."""
+
+    def __init__(self, force, topic, hear):
+        self._force = force
+        self._topic = topic
+        self._hear = hear
+        self._lock = threading.Lock()
+        self._waiting = {}
+
+    def on_message(self, message):
+        """Pass a message on, or keep it for when its sender is in force."""
+        with self._lock:
+            if self._force.believes(message, self._topic):
+                self._waiting.clear()
+                self._hear(message)
+                return
+            caller = caller_of(message)
+            self._waiting.pop(caller, None)
+            self._waiting[caller] = message, time.monotonic()
+            while len(self._waiting) > MOST_WAITING:
+                del self._waiting[next(iter(self._waiting))]
+
+    def waiting(self):
+        """Return how many words are kept."""
+        with self._lock:
+            return len(self._waiting)
+
+    def forget(self, before):
+        """Let go what was said before the master was asked, by others than the one in force."""
+        with self._lock:
+            self._waiting = {caller: said for caller, said in self._waiting.items()
+                             if said[1] >= before}
+
+    def catch_up(self, caller):
+        """Pass on what the one that has just come into force had said before."""
+        with self._lock:
+            if caller in self._waiting:
+                message, _ = self._waiting.pop(caller)
+                if self._force.believes(message, self._topic):
+                    self._hear(message)
+
+
+class Strangers:
+    """Counts who was not believed, by (caller, topic); names and lengths are bounded.
+
+    :param clock: function that returns seconds, monotonic
+    """
+
+    def __init__(self, clock=time.monotonic):
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._counts = {}
+
+    def refuse(self, caller, topic):
+        """Count one."""
+        key = (caller[:200], topic)
+        with self._lock:
+            if len(self._counts) >= MOST_STRANGERS and key not in self._counts:
+                self._counts.pop(next(iter(self._counts)))
+            self._counts[key] = (self._counts.get(key, (0,))[0] + 1, self._clock())
+
+    def clear(self):
+        """Forget them all."""
+        with self._lock:
+            self._counts.clear()
+
+    def words(self, within_s=float('inf')):
+        """Return ``CALLER: TOPIC, N times`` of each who was refused within some seconds."""
+        with self._lock:
+            return ['{}: {}, {} times'.format(caller, topic, count)
+                    for (caller, topic), (count, at) in self._counts.items()
+                    if self._clock() - at < within_s]

@@ -1,0 +1,157 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A robot's newest point cloud: as it is sent, or made of a depth picture and its lens."""
+import time
+
+from sensor_msgs.msg import CameraInfo
+
+from mhri.core.camera.image_message import read_depth
+from mhri.core.camera.images import DEPTH, FrameError
+from mhri.core.camera.transports import find_offers, Offer
+from mhri.core.robots.names import topic_of
+from mhri.core.sensors.point_cloud import (
+    CLOUD_TYPE, CloudError, from_depth, Lens, parse_cloud, read_cloud)
+from mhri.ros.camera.camera_decoder import Decoder
+from mhri.ros.camera.camera_feed import CameraFeed
+from mhri.ros.graph.subscription import Subscription
+from mhri.ros.sensors.refusals import Refusals
+
+# More a second nobody looks at, and each costs tens of milliseconds.
+MOST_HZ = 5.0
+_INFO_TYPE = 'sensor_msgs/CameraInfo'
+
+
+def info_topic(depth_topic):
+    """Return the topic of a depth picture's lens: ``camera_info`` beside it (image_transport)."""
+    return depth_topic.rpartition('/')[0] + '/camera_info'
+
+
+class CloudDecoder(Decoder):
+    """Reads clouds, and depth pictures once their lens is known.
+
+    :param name: whose clouds they are, for the log
+    """
+
+    def __init__(self, name, wanted, clock):
+        self._refusals = Refusals(name, clock)
+        self._lens = None
+        super().__init__(name, DEPTH, wanted, clock)
+
+    def hear_lens(self, _, data):
+        """Store the newest ``sensor_msgs/CameraInfo`` (rospy's thread)."""
+        try:
+            info = CameraInfo().deserialize(bytes(data))
+        except Exception as error:  # genpy raises all sorts for bytes that are no message
+            self._refusals.note('a {} of these bytes ({!r})'.format(_INFO_TYPE, error))
+            return
+        self._lens = Lens(info.K[0], info.K[4], info.K[2], info.K[5], info.width, info.height)
+
+    def read(self, message_type, data, view, received_s):
+        """Return (:class:`mhri.core.sensors.point_cloud.Cloud`, its transport in words).
+
+        :raises FrameError: it cannot be read, or its lens has not come yet
+        """
+        try:
+            if message_type == CLOUD_TYPE:
+                return parse_cloud(read_cloud(data), received_s), 'cloud'
+            if self._lens is None:
+                raise FrameError('nothing has come on camera_info yet')
+            depth_m, _, transport = read_depth(message_type, data)
+            return from_depth(depth_m, self._lens, received_s=received_s), transport
+        except (CloudError, FrameError) as error:
+            self._refusals.note(str(error))
+            raise FrameError(str(error))
+
+
+class _WithLens(Subscription):
+    """A subscription to a depth picture, and to its lens as well."""
+
+    def __init__(self, topic, on_bytes, lens_topic, on_lens):
+        super().__init__(topic, on_bytes)
+        self._lens = Subscription(lens_topic, on_lens)
+
+    def close(self):
+        try:
+            super().close()
+        finally:
+            self._lens.close()
+
+
+class _CloudStream(CameraFeed):
+    """Finds, subscribes and decodes as a camera's feed does, but clouds."""
+
+    def __init__(self, robot, clouds, depths, clock):
+        super().__init__(robot, clouds + depths, DEPTH, clock=clock)
+        self._clouds = [topic_of(robot, topic) for topic in clouds]
+        self._depths = [topic_of(robot, topic) for topic in depths]
+        self.cloud_topic = ''
+
+    def new_session(self, wanted):
+        return CloudDecoder(self.robot, wanted, self._clock)
+
+    def find_offers(self, published):
+        offers = [Offer('cloud', topic) for topic in self._clouds
+                  if published.get(topic) == CLOUD_TYPE]
+        self.cloud_topic = offers[0].topic if offers else ''
+        depths = [topic for topic in self._depths if published.get(info_topic(topic)) == _INFO_TYPE]
+        return offers + find_offers(DEPTH, depths, published)
+
+    def line_of(self, session, offer):
+        if offer.transport == 'cloud':
+            return super().line_of(session, offer)
+        depth = next(topic for topic in self._depths if offer.topic.startswith(topic))
+        return (_WithLens, offer.topic, session.hear, info_topic(depth), session.hear_lens)
+
+
+class CloudFeed:
+    """A robot's point clouds, for a widget that asks for them on a timer; newest only.
+
+    Subscribes the first that is published of ``/<robot>/<cloud>`` (``sensor_msgs/PointCloud2``) and
+    ``/<robot>/<depth>`` (``sensor_msgs/CompressedImage`` or ``sensor_msgs/Image``, with the
+    ``camera_info`` beside it, ``sensor_msgs/CameraInfo``). No method blocks but :meth:`close` with
+    a wait; all may be called from any thread.
+
+    :param robot: namespace of the robot
+    :param clouds: topics of clouds relative to it, in order of preference
+    :param depths: topics of depth pictures relative to it, without transport
+    """
+
+    @classmethod
+    def of(cls, robot, kind, key):
+        """Return the feed of a robot, None for a type with neither clouds nor depth pictures."""
+        return cls(robot, kind.cloud, kind.depth) if kind.cloud or kind.depth else None
+
+    def __init__(self, robot, clouds, depths=(), clock=time.monotonic):
+        self._stream = _CloudStream(robot, list(clouds), list(depths), clock)
+        self._stream.set_view(max_hz=MOST_HZ)
+
+    def open(self):
+        """Begin to look for clouds and to read them; returns at once."""
+        self._stream.open()
+
+    def close(self, wait_s=0.0):
+        """Read nothing more and give the topic back; the latter on the feed's own thread.
+
+        :param wait_s: wait at most so long for it [s]
+        """
+        self._stream.close(wait_s)
+
+    def take(self):
+        """Return the newest :class:`Cloud`, None where there is no new one since the last call."""
+        return self._stream.take()
+
+    def status(self):
+        """Return the :class:`mhri.core.camera.images.StreamStatus` of this moment."""
+        return self._stream.status()
+
+    def refused(self):
+        """Return the number of clouds that could not be read, and were left out."""
+        return self.status().bad
+
+    def topic(self):
+        """Return the topic of clouds that is published now, '' for none."""
+        return self._stream.cloud_topic
+
+    def age_s(self):
+        """Return the age of the newest cloud [s], None before the first."""
+        return self._stream.age_s()

@@ -1,0 +1,154 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whose words count, with a master that is told what to answer, and messages made by hand."""
+import os
+import sys
+import threading
+
+import pytest
+import rospy
+from std_msgs.msg import String
+
+from mhri.ros.driving import in_force
+from mhri.ros.driving.in_force import InForce, MOST_WAITING, Strangers
+from mhri.ros.graph.master_api import MasterError
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.ros_system import wait_for  # noqa: E402
+
+SERVICE, TOPIC = '/mux/set_stop_all', '/mux/mode'
+
+
+class Master:
+    """Says who serves the service; ``asked`` counts lookups, ``graphs`` the whole graph."""
+
+    def __init__(self):
+        self.server, self.uri, self.fails = None, None, False
+        self.asked = self.graphs = 0
+
+    def serve(self, name, uri='rosrpc://a:1'):
+        self.server, self.uri = name, uri
+
+    def call_many(self, calls):
+        self.asked += 1
+        if self.fails:
+            raise MasterError('gone')
+        return [self.uri]
+
+    def call(self, method):
+        self.graphs += 1
+        return [[], [], [[SERVICE, [self.server]]] if self.server else []]
+
+
+@pytest.fixture
+def master(monkeypatch):
+    made, done = Master(), threading.Event()
+    monkeypatch.setattr(in_force, 'MasterApi', lambda *_, **__: made)
+    monkeypatch.setattr(in_force, 'ASK_S', 0.01)
+    monkeypatch.setattr(rospy, 'is_shutdown', done.is_set)
+    yield made
+    done.set()
+
+
+@pytest.fixture
+def ear(master, monkeypatch):
+    """(the one in force, what is heard, a function that says something, the strangers)."""
+    callbacks, heard, strangers = [], [], Strangers()
+    monkeypatch.setattr(rospy, 'Subscriber', lambda name, kind, hear, **_: callbacks.append(hear))
+    force = InForce(SERVICE, strangers.refuse)
+    force.subscribe(TOPIC, String, lambda message: heard.append(message.data))
+
+    def say(caller, text, link=None):
+        message = String(text)
+        message._connection_header = link or {'callerid': caller}
+        callbacks[0](message)
+    yield force, heard, say, strangers
+    force.stop()
+
+
+def test_a_word_that_came_before_it_was_known_who_is_in_force_is_not_lost(master, ear):
+    """Latched words come only once."""
+    force, heard, say, _ = ear
+    say('/mux', 'old')
+    say('/mux', 'pedal')
+    say('/stranger', 'voice')
+    master.serve('/mux')
+    force.start()
+    wait_for(lambda: heard == ['pedal'], 10.0, 'the word')
+
+
+def test_a_stranger_is_refused_and_counted(master, ear):
+    force, heard, say, strangers = ear
+    master.serve('/mux')
+    force.start()
+    wait_for(lambda: force.caller == '/mux', 10.0, 'the mux')
+    for _ in range(3):
+        say('/stranger', 'voice')
+    say('/mux', 'pedal')
+    assert heard == ['pedal']
+    assert strangers.words() == ['/stranger: /mux/mode, 3 times']
+
+
+def test_the_words_of_a_newer_one_wait_until_the_master_knows_it(master, ear):
+    force, heard, say, _ = ear
+    master.serve('/mux')
+    force.start()
+    wait_for(lambda: force.caller == '/mux', 10.0, 'the mux')
+    master.fails = True
+    say('/mux_2', 'joy')
+    master.serve('/mux_2', 'rosrpc://a:2')
+    master.fails = False
+    say('/stranger', 'voice')
+    wait_for(lambda: heard == ['joy'], 10.0, 'the word of the newer mux')
+    say('/mux', 'pedal')
+    assert heard == ['joy'] and force.caller == '/mux_2'
+
+
+def test_without_a_master_the_one_that_is_known_stays(master, ear):
+    force, heard, say, _ = ear
+    master.serve('/mux')
+    force.start()
+    wait_for(lambda: force.caller == '/mux', 10.0, 'the mux')
+    master.fails = True
+    say('/stranger', 'voice')
+    say('/mux', 'pedal')
+    assert heard == ['pedal'] and force.caller == '/mux'
+
+
+def test_a_stranger_costs_the_master_little_and_leaves_nothing(master, ear):
+    """However often it speaks: a lookup now and then, never the whole graph, and no memory."""
+    force, heard, say, _ = ear
+    master.serve('/mux')
+    force.start()
+    wait_for(lambda: force.caller == '/mux', 10.0, 'the mux')
+    for number in range(200):
+        say('/stranger{}'.format(number % 20), 'x' * 1000)
+    assert force.waiting() <= MOST_WAITING
+    wait_for(lambda: not force.waiting(), 10.0, 'it to be forgotten')
+    assert master.graphs == 1 and heard == []
+
+
+def test_another_process_of_the_same_name_is_news(master, ear):
+    news = []
+    force = InForce(SERVICE, on_new=news.append)
+    master.serve('/mux')
+    force.start()
+    wait_for(lambda: news == ['/mux'], 10.0, 'the mux')
+    links = [{'callerid': '/mux'}, {'callerid': '/mux'}]
+    for link in links:
+        message = String('x')
+        message._connection_header = link
+        assert force.believes(message, TOPIC)
+    assert news == ['/mux', '/mux']
+    force.stop()
+
+
+def test_names_of_strangers_are_bounded():
+    strangers = Strangers()
+    for number in range(1000):
+        strangers.refuse('/{}'.format(number) + 'x' * 1000, TOPIC)
+    words = strangers.words()
+    assert len(words) == in_force.MOST_STRANGERS and max(map(len, words)) < 300
+    strangers.clear()
+    assert strangers.words() == []
