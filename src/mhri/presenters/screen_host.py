@@ -75,6 +75,8 @@ class ScreenHost(QObject):
     def _connect(self):
         panel, operator = self.screen, self.operator
         panel.look_requested.connect(self._look)
+        panel.arrangement.theme_chosen.connect(
+            lambda *_: self.tiles.show_palette(panel.palette()))
         panel.add_requested.connect(self._add)
         panel.remove_requested.connect(self._remove)
         panel.record_requested.connect(self.requests.record)
@@ -110,6 +112,8 @@ class ScreenHost(QObject):
             self._add(name)
         if selected:
             self._select(list(selected))
+        if self.operator.selection.robots:
+            self.screen.arrangement.begin_with_robots()
         self.operator.start()
         # What has been loaded by now stays: looking through it takes the collector 60 ms, in which
         # no thread runs.

@@ -127,7 +127,8 @@ def name_ends(name):
     "inspection_crawler_12" is "…crawler_12": names that differ, differ at the end.
     """
     cuts = [place + 1 for place, sign in enumerate(name) if sign == '_' and place]
-    cuts += [len(name) - left for left in (12, 8, 6, 4, 2) if len(name) > left]
+    end = len(name) - max(cuts, default=0)
+    cuts += [len(name) - left for left in (12, 8, 6, 4, 2) if left < end]
     return tuple('…' + name[cut:] for cut in sorted(set(cuts)) if name[cut:])
 
 
