@@ -83,6 +83,13 @@ def heading_text(heading_rad):
     return '{:d} deg'.format(180 if degrees == -180 else degrees)
 
 
+def compass_text(heading_rad):
+    """Return a heading [rad] as three digits in 000 to 359, left turns add; a dash for None."""
+    if not _is_number(heading_rad):
+        return UNKNOWN
+    return '{:03d}'.format(round(math.degrees(heading_rad)) % 360)
+
+
 def metres_text(value_m):
     """Return a coordinate, e.g. "-1.25 m"; a dash for None and NaN."""
     # What rounds to zero has no sign.
