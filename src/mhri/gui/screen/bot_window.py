@@ -125,8 +125,6 @@ class BotWindow(QWidget):
             widget.hide()
             if hasattr(widget, 'show_tools'):
                 widget.show_tools(self.tools.isVisibleTo(self))
-            self.header.raise_()
-            self.hud.raise_()
         return self._views[row.widget]
 
     def offer(self, keys):
@@ -241,8 +239,6 @@ class BotWindow(QWidget):
         width = self.view(next(iter(self._shown() & PICTURES))).width() \
             if picture and self.header.large else inside.width()
         self.hud.setGeometry(inside.x(), inside.bottom() + 1 - high - foot, width, max(1, high))
-        self.header.raise_()
-        self.hud.raise_()
 
     def _tell_wanted(self):
         """Tell of another set of wanted views, and of nothing else."""
