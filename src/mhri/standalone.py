@@ -10,6 +10,7 @@ from python_qt_binding.QtWidgets import QApplication, QMainWindow
 import rospy
 
 from mhri.core.screen.saved_state import read_geometry
+from mhri.gui.screen import theme
 from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.presenters.screen_host import ScreenHost
 from mhri.presenters.settings_file import SettingsError, SettingsFile
@@ -64,6 +65,10 @@ class Standalone:
         self.host = ScreenHost(ScreenBackend(argv))
         self.window = MainWindow(self.host)
         self.window.closing.connect(self.close)
+        # The whole program is ours: its tool tips and questions look the same.
+        looks = self.host.screen.arrangement
+        looks.theme_chosen.connect(lambda name: theme.apply(QApplication.instance(), name))
+        theme.apply(QApplication.instance(), looks.theme)
         self._bell = SignalBell(self.window.close)
         self._robots_at_first = None
         self._closed = False

@@ -138,6 +138,11 @@ class TilesHost(QObject):
             self.make(name)
             self._stage.show_tiles({name: self.windows[name] for name in self.windows})
 
+    def show_palette(self, palette):
+        """Give the windows of tiles that were torn off the colours of the screen."""
+        for window in self._torn.values():
+            window.setPalette(palette)
+
     def toggle_torn(self, name):
         """Put a tile into a window of its own, or back on the stage."""
         if name in self._torn:

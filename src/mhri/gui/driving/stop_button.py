@@ -129,7 +129,9 @@ class StopButton(QAbstractButton):
             painter.drawRoundedRect(QRectF(self.rect()).adjusted(7, 7, -7, -7), 4, 4)
         painter.setPen(text)
         painter.drawText(self.rect(), int(Qt.AlignCenter), self.text())
-        if self._hint and not self._engaged:
-            painter.setFont(theme.larger(theme.base_font(self.window().font()), 1.0))
+        beside = (self.width() - painter.fontMetrics().horizontalAdvance(self.text())) / 2
+        painter.setFont(theme.base_font(self.window().font()))
+        if self._hint and not self._engaged and \
+                painter.fontMetrics().horizontalAdvance(self._hint) + 1.5 * unit < beside:
             painter.drawText(self.rect().adjusted(0, 0, -unit, 0),
                              int(Qt.AlignRight | Qt.AlignVCenter), self._hint)

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """One robot's tile: who it is, whether it is being driven, what it sees, how it moves."""
-from python_qt_binding.QtCore import QEvent, QSize, Qt, Signal
-from python_qt_binding.QtGui import QPainter, QPen
+from python_qt_binding.QtCore import QEvent, QPoint, QRect, QSize, Qt, Signal
+from python_qt_binding.QtGui import QPainter
 from python_qt_binding.QtWidgets import QLayout, QWidget
 
 from mhri.core.screen import views
@@ -18,7 +18,7 @@ from mhri.gui.screen.labels import TextLine
 from mhri.gui.screen.pending import Pace
 from mhri.gui.screen.state_line import StateLine
 from mhri.gui.screen.tile_header import (
-    drive_state, LOOKS, NOT_SELECTED, PUT_BACK, TEAR_OFF, TileHeader)
+    drive_state, LOOKS, PUT_BACK, TEAR_OFF, TileHeader, trouble_of)
 from mhri.gui.screen.view_switches import ViewSwitches
 
 NUMBERS_PERIOD_S = 0.25
@@ -56,6 +56,7 @@ class BotWindow(QWidget):
         self.name = name
         self.torn_off = False
         self._drive = None
+        self._trouble = None
         self._link = None
         self._looked_at = False
         self._wanted = set()
@@ -162,6 +163,15 @@ class BotWindow(QWidget):
         """Return (width, height) that the picture has room for, in pixels of the screen."""
         return self.view(RGB).camera_size()
 
+    def picture_area(self):
+        """Return where the picture is in the tile, a :class:`QRect`; without one, its inside."""
+        shown = self._shown() & PICTURES
+        if not shown:
+            foot = self.stop_button.height() if self.stop_button.isVisibleTo(self) else 0
+            return self.rect().adjusted(_EDGE_PX, _EDGE_PX, -_EDGE_PX, -_EDGE_PX - foot)
+        picture = self.view(next(iter(shown))).picture
+        return QRect(picture.mapTo(self, QPoint(0, 0)), picture.size())
+
     def picture_shape(self):
         """Return width by height of what the tile shows."""
         frame = self.view(RGB).picture.frame if self._shown() & PICTURES else None
@@ -234,11 +244,10 @@ class BotWindow(QWidget):
         picture = bool(self._shown() & PICTURES)
         self.hud.setVisible(self._has_room() and (picture or bool(self.hud.sentence)))
         units = 7.0 if self.header.large else 4.0
-        high = min(inside.height() - height, round(units * self.fontMetrics().height()))
-        foot = self.stop_button.height() if self.stop_button.isVisibleTo(self) else 0
-        width = self.view(next(iter(self._shown() & PICTURES))).width() \
-            if picture and self.header.large else inside.width()
-        self.hud.setGeometry(inside.x(), inside.bottom() + 1 - high - foot, width, max(1, high))
+        room = self.picture_area()
+        high = min(room.bottom() - inside.top() - height + 1,
+                   round(units * self.fontMetrics().height()))
+        self.hud.setGeometry(room.x(), room.bottom() + 1 - high, room.width(), max(1, high))
 
     def _tell_wanted(self):
         """Tell of another set of wanted views, and of nothing else."""
@@ -267,8 +276,8 @@ class BotWindow(QWidget):
         """
         numbers = self._numbers.due() or view.link != self._link
         self._link = view.link
-        self._show_drive_state(view, stop_all or view.proof is not None)
         self.header.show_view(view, numbers)
+        self._show_drive_state(view, stop_all or view.proof is not None)
         self._show_sentence(view)
         for row in VIEW_ROWS:
             widget = self._views.get(row.widget)
@@ -279,9 +288,11 @@ class BotWindow(QWidget):
 
     def _show_drive_state(self, view, stopped):
         """Show in edge and pill whether this robot is driven right now."""
-        drive = drive_state(view, stopped)
-        if drive == self._drive:
+        drive, trouble = drive_state(view, stopped), trouble_of(
+            view, self.battery_label.level)
+        if (drive, trouble) == (self._drive, self._trouble):
             return
+        self._trouble = trouble
         self._drive = drive
         self.header.show_drive(drive)
         self.stop_button.setText('STOP ALL in force - release on the main screen'
@@ -290,9 +301,12 @@ class BotWindow(QWidget):
         self.update()
 
     def _show_sentence(self, view):
-        """Show the proof of a stop, or what is worth saying about the link."""
+        """Show the proof of a stop, why the robot stands, or what is worth saying of its link."""
         if view.proof is not None:
-            sign, text = theme.PROOF_SIGNS[view.proof.state], view.proof.text
+            sign = theme.PROOF_SIGNS[view.proof.state]
+            text = '; '.join(filter(None, (view.proof.text, view.why)))
+        elif view.why:
+            sign, text = (theme.TRIANGLE, theme.ATTENTION), view.why
         elif view.note and (view.slow or view.link != views.LIVE):
             sign = (theme.TRIANGLE, theme.ATTENTION) if view.link == views.LIVE \
                 else theme.LINK_SIGNS[view.link]
@@ -368,13 +382,13 @@ class BotWindow(QWidget):
             self.drive_requested.emit(self.name)
 
     def paintEvent(self, event):  # noqa: N802
-        """Paint the edge that says whether this robot is driven."""
+        """Paint the edge: trouble, else whether it is driven; a line around it if looked at."""
         ink, _, width = LOOKS[self._drive]
-        if self._looked_at and self._drive == NOT_SELECTED:
-            ink, width = theme.TEXT, 2
-        painter = QPainter(self)
-        pen = QPen(theme.colour(ink, self.palette()), width)
-        pen.setJoinStyle(Qt.MiterJoin)
-        painter.setPen(pen)
-        inset = (width + 1) // 2
-        painter.drawRect(self.rect().adjusted(inset, inset, -inset, -inset))
+        if self._trouble:
+            ink, width = self._trouble, _EDGE_PX
+        painter, palette = QPainter(self), self.palette()
+        theme.paint_edge(painter, self.rect(), width, theme.colour(ink, palette), palette)
+        if self._looked_at:
+            keyboard = self.parentWidget() is not None and self.parentWidget().hasFocus()
+            theme.paint_edge(painter, self.rect(), 2, theme.colour(theme.TEXT, palette), palette,
+                             Qt.DashLine if keyboard else Qt.SolidLine)

@@ -116,6 +116,7 @@ class ScreenWidget(QWidget):
             theme.text_width(self.font(), text) for text in (RECORD, STOP_RECORDING.format(88))))
         self.cameras_label.setFont(theme.number_font(self.font()))
         self.cameras_label.fix_width('cameras 000.0 Mbit/s')
+        self.cameras_label.setMinimumWidth(1)
         self.cameras_label.setAlignment(Qt.AlignRight | Qt.AlignVCenter)
         self.name_edit.setTextMargins(touch // 6, 0, touch // 6, 0)
         self._result_timer = QTimer(self)
@@ -125,6 +126,7 @@ class ScreenWidget(QWidget):
     def _connect(self):
         """Wire widgets to signals."""
         self.look_button.clicked.connect(self._look)
+        self.stage.look_requested.connect(self._look)
         self._result_timer.timeout.connect(lambda: self.look_label.show_text('', theme.MUTED))
         self.doctor_button.clicked.connect(self.doctor_requested)
         self.add_button.clicked.connect(self._add)
@@ -192,7 +194,7 @@ class ScreenWidget(QWidget):
         self.arrangement.show_stick(view.mode == VIRTUAL_JOYSTICK)
         if numbers:
             cameras = words.bandwidth_text(view.camera_bits_per_s)
-            self.cameras_label.show_text(cameras, theme.MUTED)
+            self.cameras_label.show_text(cameras, theme.MUTED, (cameras.partition(' ')[2], ''))
             self.cameras_label.setVisible(bool(cameras))
 
     def show_name_problem(self, text):
@@ -207,6 +209,7 @@ class ScreenWidget(QWidget):
         """
         self.look_label.show_text(text, theme.MUTED, shorter)
         self.look_button.setEnabled(not busy)
+        self.stage.show_look_result(text, busy)
         if busy:
             self._result_timer.stop()
         else:
@@ -251,9 +254,9 @@ class ScreenWidget(QWidget):
         elif command == 'focus':
             self.arrangement.change_focus()
         elif command == 'numbers':
-            self.stage.show_numbers(not self.stage.numbers_shown)
+            self.arrangement.show_numbers(not self.stage.numbers_shown)
         elif command == 'full_screen':
-            self.window().setWindowState(self.window().windowState() ^ Qt.WindowFullScreen)
+            self.arrangement.change_full_screen()
         elif command == 'record':
             self._record()
         elif command == 'stills':

@@ -64,6 +64,8 @@ BATTERY_TONES = {battery.FINE: TEXT, battery.LOW: ATTENTION, battery.FLAT: STOP}
 # Where an application keeps the desktop's own palette.
 _DESKTOPS = 'mhri_palette_of_the_desktop'
 
+# What is beside a picture, and between pictures, in every theme.
+PICTURE_GROUND = QColor('#0c0e12')
 # What lies under words on a picture, in every theme.
 OVER_PICTURE = QColor(12, 14, 18, 205)
 
@@ -247,6 +249,17 @@ def paint_battery(painter, rect, fraction, ink):
     painter.setBrush(Qt.NoBrush)
     painter.setPen(QPen(ink, 1.4))
     painter.drawRoundedRect(body, 1.2, 1.2)
+
+
+def paint_edge(painter, rect, width, ink, palette, style=Qt.SolidLine):
+    """Paint a frame along the inside of a :class:`QRect`, of a width [px].
+
+    :param style: of the pen; what it leaves out has the colour of the window
+    """
+    half = width / 2.0
+    for colour_, line in ((palette.color(QPalette.Window), Qt.SolidLine), (ink, style)):
+        painter.setPen(QPen(colour_, width, line, Qt.FlatCap, Qt.MiterJoin))
+        painter.drawRect(QRectF(rect).adjusted(half, half, -half, -half))
 
 
 def paint_stopped_frame(painter, rect, palette):

@@ -6,6 +6,7 @@ from python_qt_binding.QtGui import QPainter
 from python_qt_binding.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QWidget
 
 from mhri.core.screen import views
+from mhri.core.screen.battery import FLAT, LOW
 from mhri.gui.recording.recording_row import clock_text
 from mhri.gui.screen import theme, words
 from mhri.gui.screen.labels import BatteryLine, Pill, Sign, TextLine
@@ -47,6 +48,19 @@ def drive_state(view, stopped):
     if stopped:
         return _STOPS.get(view.proof.state, STOPPING) if view.proof else STOPPING
     return DRIVING if view.driven else SELECTED if view.selected else NOT_SELECTED
+
+
+def trouble_of(view, charge):
+    """Return the colour that a robot's trouble gives its tile's edge, None where there is none.
+
+    Lost or a flat battery, else silent, a low battery or a bad link; its words are elsewhere.
+
+    :param view: :class:`mhri.core.screen.views.RobotView`
+    :param charge: level of the battery, of :mod:`mhri.core.screen.battery`
+    """
+    if view.link == views.GONE or charge == FLAT:
+        return theme.STOP
+    return theme.ATTENTION if view.link == views.SILENT or charge == LOW or view.slow else None
 
 
 class TileHeader(QWidget):
