@@ -82,7 +82,7 @@ class TileHost:
             window.view('rgb').show_note(*self._notes.pop())
 
     def _wanted(self):
-        """Return the views to be fed: a large tile tells the nearest thing without its view, too."""
+        """Return the views to be fed: a large tile tells the nearest thing, view or not."""
         wanted = self.window.wanted()
         return wanted | {SCAN} if self.window.header.large and self.window.is_watched() else wanted
 

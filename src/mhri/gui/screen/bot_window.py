@@ -126,8 +126,6 @@ class BotWindow(QWidget):
             widget.hide()
             if hasattr(widget, 'show_tools'):
                 widget.show_tools(self.tools.isVisibleTo(self))
-            self.header.raise_()
-            self.hud.raise_()
         return self._views[row.widget]
 
     def offer(self, keys):
@@ -250,8 +248,6 @@ class BotWindow(QWidget):
         high = min(room.bottom() - inside.top() - height + 1,
                    round(units * self.fontMetrics().height()))
         self.hud.setGeometry(room.x(), room.bottom() + 1 - high, room.width(), max(1, high))
-        self.header.raise_()
-        self.hud.raise_()
 
     def _tell_wanted(self):
         """Tell of another set of wanted views, and of nothing else."""
