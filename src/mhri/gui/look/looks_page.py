@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The page of the drawer that says how the screen looks: layout, colours, numbers, full screen."""
 from python_qt_binding.QtCore import Qt, Signal
-from python_qt_binding.QtWidgets import QButtonGroup, QLabel, QPushButton, QVBoxLayout, QWidget
+from python_qt_binding.QtWidgets import (
+    QButtonGroup, QFrame, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget)
 
 from mhri.core.screen.arrangement import ALIKE, AUTO, ONE
 from mhri.gui.driving.drive_keys import keep_arrows
+from mhri.gui.look.wide_scroll_bar import WideScrollBar
 from mhri.gui.screen import theme
 from mhri.gui.screen.switches import SwitchBox, SwitchRadio
 
@@ -14,8 +16,11 @@ LAYOUTS = {AUTO: 'Those that drive together large', ONE: 'One large, the others 
            ALIKE: 'All alike'}
 
 
-class LooksPage(QWidget):
-    """Radio buttons ``layout_<name>`` and ``theme_<name>``, a check box and a button."""
+class LooksPage(QScrollArea):
+    """Radio buttons ``layout_<name>`` and ``theme_<name>``, a check box and a button.
+
+    It scrolls where it is not high enough: the drawer is not to be higher because of it.
+    """
 
     #: a key of :data:`LAYOUTS`
     layout_chosen = Signal(str)
@@ -35,7 +40,12 @@ class LooksPage(QWidget):
         """Make and place the parts."""
         self.setObjectName('looks_page')
         self.setFont(theme.base_font(self.font()))
-        column = QVBoxLayout(self)
+        self.setFrameShape(QFrame.NoFrame)
+        self.setFocusPolicy(Qt.NoFocus)
+        self.setWidgetResizable(True)
+        self.setVerticalScrollBar(WideScrollBar(self))
+        self.setWidget(QWidget(self))
+        column = QVBoxLayout(self.widget())
         column.setContentsMargins(0, 0, 0, 0)
         self._layouts = self._choices(column, 'Pictures', 'layout_', LAYOUTS)
         self._themes = self._choices(column, 'Colours', 'theme_', theme.THEMES)

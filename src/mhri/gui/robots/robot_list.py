@@ -5,18 +5,13 @@ from python_qt_binding.QtCore import QSize, Qt, QTimer, Signal
 from python_qt_binding.QtGui import QPainter, QPalette, QPen
 from python_qt_binding.QtWidgets import QFrame, QLabel, QScrollArea, QWidget
 
+from mhri.gui.look.wide_scroll_bar import WideScrollBar
 from mhri.gui.screen import theme
 from mhri.gui.driving.drive_keys import keep_arrows
 from mhri.gui.screen.pending import Pending
 from mhri.gui.robots.robot_row import RobotRow
 
 _ANSWER_WITHIN_S = 1.0
-# A style sheet that says how wide a part is has to say all of its colours.
-_SCROLL_BAR = (
-    'QScrollBar:vertical { width: %dpx; background: palette(base); }'
-    'QScrollBar::handle:vertical { background: palette(button); border: 1px solid palette(mid);'
-    ' border-radius: 4px; min-height: 36px; }'
-    'QScrollBar::add-line:vertical, QScrollBar::sub-line:vertical { height: 0px; }')
 _EMPTY = ('No robots yet.\n\nPress "Look for Connected Bots",\n'
           'or type the name of one and press "Add Bot".')
 _STEPS = {int(Qt.Key_Up): -1, int(Qt.Key_Down): 1}
@@ -114,7 +109,7 @@ class RobotList(QScrollArea):
         self._inside = _Inside(self)
         self.setWidget(self._inside)
         self.setFrameShape(QFrame.StyledPanel)
-        self.verticalScrollBar().setStyleSheet(_SCROLL_BAR % round(0.6 * theme.touch_size(self)))
+        self.setVerticalScrollBar(WideScrollBar(self))
         self.verticalScrollBar().valueChanged.connect(lambda *_: self._on_scroll())
         self._answer = QTimer(self)
         self._answer.setSingleShot(True)

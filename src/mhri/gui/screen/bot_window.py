@@ -1,15 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """One robot's tile: who it is, whether it is being driven, what it sees, how it moves."""
-from python_qt_binding.QtCore import QEvent, QPoint, QRect, QSize, Qt, Signal
+from python_qt_binding.QtCore import QEvent, QSize, Qt, Signal
 from python_qt_binding.QtGui import QPainter
 from python_qt_binding.QtWidgets import QLayout, QWidget
 
 from mhri.core.screen import views
 from mhri.core.screen.arrangement import USUAL_SHAPE
-from mhri.core.screen.view_rows import KEYS, load, PICTURES, RECORD, RGB, VIEW_ROWS
+from mhri.core.screen.view_rows import KEYS, load, PICTURES, RECORD, RGB, SCAN, VIEW_ROWS
 from mhri.gui.driving.drive_keys import mark_drive_area
 from mhri.gui.driving.stop_button import StopButton
+from mhri.gui.look.tile_layers import EDGE_PX, TileLayers, wants_inset
 from mhri.gui.recording.recording_row import RecordingRow
 from mhri.gui.screen import theme, words
 from mhri.gui.screen.forms import load_form
@@ -24,7 +25,6 @@ from mhri.gui.screen.view_switches import ViewSwitches
 NUMBERS_PERIOD_S = 0.25
 _TORN_OFF_SIZE = (800, 640)
 
-_EDGE_PX = 4
 # A small tile that has less room below its header [heights of a line] shows the header alone.
 _LEAST_PICTURE_UNITS = 2.5
 
@@ -76,11 +76,12 @@ class BotWindow(QWidget):
         self.setAutoFillBackground(True)
         self.setFocusPolicy(Qt.ClickFocus)
         mark_drive_area(self)
-        self.layout().setContentsMargins(*[_EDGE_PX] * 4)
+        self.layout().setContentsMargins(*[EDGE_PX] * 4)
         # The stage says how large it is, whatever its parts would like.
         self.layout().setSizeConstraint(QLayout.SetNoConstraint)
         self.header = TileHeader(self.name, type_label, self)
         self.hud = Hud(self)
+        self._layers = TileLayers(self)
         for key in ('name_label', 'type_label', 'pill', 'link_sign', 'link_label',
                     'battery_label', 'views_button', 'tear_button'):
             setattr(self, key, getattr(self.header, key))
@@ -99,10 +100,13 @@ class BotWindow(QWidget):
         for caption in (self.turn_caption, self.place_caption, self.limits_caption):
             caption.set_tone(theme.MUTED)
             caption.fix_width(caption.text())
-        for value in (self.turn_value, self.x_value, self.y_value, self.max_linear_value,
-                      self.max_angular_value):
+        values = (self.turn_value, self.x_value, self.y_value, self.max_linear_value,
+                  self.max_angular_value)
+        for value in values:
             value.setFont(numbers)
             value.fix_width('right 0.00 rad/s')
+        self._figures = (self.turn_caption, self.place_caption, self.limits_caption, *values)
+        self.figures_column.setStretch(self.figures_column.count() - 1, 1)
 
     def _connect(self):
         """Wire the stop button, which acts when pressed, and the switches."""
@@ -120,13 +124,18 @@ class BotWindow(QWidget):
         row = next(row for row in VIEW_ROWS if row.key == key)
         if row.widget not in self._views:
             widget = self._views[row.widget] = load(row.widget)(self)
-            order = list(dict.fromkeys(row.widget for row in VIEW_ROWS))
-            before = [name for name in order[:order.index(row.widget)] if name in self._views]
-            self.views_splitter.insertWidget(len(before), widget)
+            self._place_in_row(row)
             widget.hide()
             if hasattr(widget, 'show_tools'):
                 widget.show_tools(self.tools.isVisibleTo(self))
         return self._views[row.widget]
+
+    def _place_in_row(self, row):
+        """Put the widget of a view beside the others, in the order of the registry."""
+        order = list(dict.fromkeys(row.widget for row in VIEW_ROWS))
+        before = [name for name in order[:order.index(row.widget)] if name in self._views
+                  and self._views[name].parentWidget() is self.views_splitter]
+        self.views_splitter.insertWidget(len(before), self._views[row.widget])
 
     def offer(self, keys):
         """Offer what this robot can have: keys of the registry, and 'record'.
@@ -145,16 +154,16 @@ class BotWindow(QWidget):
 
     def wanted(self):
         """Return the set of views to be fed now: empty while nobody can see the tile."""
-        return self._shown() if self.is_watched() else set()
+        return self.shown() if self.is_watched() else set()
 
-    def _shown(self):
-        """Return the views that the tile has room for: a small one shows its picture alone."""
+    def shown(self):
+        """Return the set of views that the tile has room for: a small one shows its picture alone."""
         chosen = self.switches.wanted()
         if self.header.large:
             return chosen
-        return chosen & PICTURES if self._has_room() else set()
+        return chosen & PICTURES if self.has_room() else set()
 
-    def _has_room(self):
+    def has_room(self):
         """Tell whether there is room for more than the header."""
         least = _LEAST_PICTURE_UNITS * self.fontMetrics().height()
         return self.header.large or self.height() - self.header.height() >= least
@@ -165,16 +174,11 @@ class BotWindow(QWidget):
 
     def picture_area(self):
         """Return where the picture is in the tile, a :class:`QRect`; without one, its inside."""
-        shown = self._shown() & PICTURES
-        if not shown:
-            foot = self.stop_button.height() if self.stop_button.isVisibleTo(self) else 0
-            return self.rect().adjusted(_EDGE_PX, _EDGE_PX, -_EDGE_PX, -_EDGE_PX - foot)
-        picture = self.view(next(iter(shown))).picture
-        return QRect(picture.mapTo(self, QPoint(0, 0)), picture.size())
+        return self._layers.picture_area()
 
     def picture_shape(self):
         """Return width by height of what the tile shows."""
-        frame = self.view(RGB).picture.frame if self._shown() & PICTURES else None
+        frame = self.view(RGB).picture.frame if self.shown() & PICTURES else None
         if frame is None or not all(frame.full_size):
             return USUAL_SHAPE
         width, height = frame.full_size
@@ -214,40 +218,24 @@ class BotWindow(QWidget):
 
     def _arrange(self):
         """Lay out the views that are chosen; without any there is the picture of the motion."""
-        shown = self._shown()
+        shown = self.shown()
         kind = next(iter(shown & PICTURES), None)
         visible = {id(self.view(key)) for key in shown}
         for widget in self._views.values():
             if hasattr(widget, 'show_kind') and id(widget) in visible and widget.kind != kind:
                 widget.show_kind(kind)
             widget.setVisible(id(widget) in visible)
+        if SCAN in shown and self._layers.take_inset(self.view(SCAN), wants_inset(shown)):
+            self._place_in_row(next(row for row in VIEW_ROWS if row.key == SCAN))
         self.views_splitter.setVisible(bool(shown))
-        self.motion_page.setVisible(not shown and self._has_room())
+        self.motion_page.setVisible(not shown and self.has_room())
+        for value in self._figures:
+            value.setVisible(self.header.large)
         self.switches.setVisible(bool(self._offered - {RECORD}))
         self.recording.setVisible(RECORD in self._offered)
         self.motion_place.setVisible(self.header.large and self.motion_place.layout().count() > 0)
-        self._lay_over()
+        self._layers.place()
         self._tell_wanted()
-
-    def _covers_picture(self):
-        """Tell whether the header lies on the picture: where that is all there is."""
-        shown = self._shown()
-        return bool(shown) and shown <= PICTURES and not (
-            self.tools.isVisibleTo(self) or self.motion_place.isVisibleTo(self))
-
-    def _lay_over(self):
-        """Place header and numbers over the rest."""
-        inside = self.rect().adjusted(_EDGE_PX, _EDGE_PX, -_EDGE_PX, -_EDGE_PX)
-        height = self.header.sizeHint().height()
-        self.header.setGeometry(inside.x(), inside.y(), inside.width(), height)
-        self.header_space.setFixedHeight(0 if self._covers_picture() else height)
-        picture = bool(self._shown() & PICTURES)
-        self.hud.setVisible(self._has_room() and (picture or bool(self.hud.sentence)))
-        units = 7.0 if self.header.large else 4.0
-        room = self.picture_area()
-        high = min(room.bottom() - inside.top() - height + 1,
-                   round(units * self.fontMetrics().height()))
-        self.hud.setGeometry(room.x(), room.bottom() + 1 - high, room.width(), max(1, high))
 
     def _tell_wanted(self):
         """Tell of another set of wanted views, and of nothing else."""
@@ -316,7 +304,7 @@ class BotWindow(QWidget):
         before = self.hud.sentence
         self.hud.show_sentence(text, sign)
         if bool(before) != bool(text):
-            self._lay_over()
+            self._layers.place()
 
     def _show_numbers(self, view):
         """Show what changes all the time."""
@@ -367,7 +355,7 @@ class BotWindow(QWidget):
         """Keep the numbers over the picture when the layout has moved it."""
         done = super().event(event)
         if event.type() == QEvent.LayoutRequest:
-            self._lay_over()
+            self._layers.place()
         return done
 
     def mousePressEvent(self, event):  # noqa: N802
@@ -385,10 +373,10 @@ class BotWindow(QWidget):
         """Paint the edge: trouble, else whether it is driven; a line around it if looked at."""
         ink, _, width = LOOKS[self._drive]
         if self._trouble:
-            ink, width = self._trouble, _EDGE_PX
-        painter, palette = QPainter(self), self.palette()
-        theme.paint_edge(painter, self.rect(), width, theme.colour(ink, palette), palette)
+            ink, width = self._trouble, EDGE_PX
+        painter, palette = QPainter(self), self.header.palette()
+        theme.paint_edge(painter, self.rect(), EDGE_PX, theme.PICTURE_GROUND)
+        theme.paint_edge(painter, self.rect(), width, theme.colour(ink, palette))
         if self._looked_at:
             keyboard = self.parentWidget() is not None and self.parentWidget().hasFocus()
-            theme.paint_edge(painter, self.rect(), 2, theme.colour(theme.TEXT, palette), palette,
-                             Qt.DashLine if keyboard else Qt.SolidLine)
+            theme.paint_edge(painter, self.rect(), 2, theme.colour(theme.TEXT, palette), keyboard)

@@ -41,6 +41,7 @@ class Hud(QWidget):
         self._old = False
         self._large = True
         self._shown = True
+        self._clear_px = 0
         self._picture = None
         self._build()
 
@@ -74,6 +75,10 @@ class Hud(QWidget):
     def show_numbers(self, shown):
         """Show the numbers, or the sentence alone."""
         self._show(shown=shown)
+
+    def keep_clear(self, width):
+        """Leave so much of the right end [px] to something else."""
+        self._show(clear_px=width)
 
     def set_extra(self, lines):
         """Have further lines below the numbers when these are shown next: nearest thing, task.
@@ -133,7 +138,7 @@ class Hud(QWidget):
         y = self.height() - 0.6 * unit
         font = theme.number_font(theme.larger(self.font(), 1.35 if self._large else 1.0, bold=True))
         ink = _DIM if self._old else QColor(Qt.white)
-        for line in reversed(self._fitting(font, self.width() - 1.4 * unit)):
+        for line in reversed(self._fitting(font, self.width() - self._clear_px - 1.4 * unit)):
             y -= self._paint_line(painter, line, font, ink, 0.7 * unit, y)
         if self._sentence:
             self._paint_sentence(painter, y - 0.2 * unit)
@@ -173,12 +178,13 @@ class Hud(QWidget):
         metrics, unit = painter.fontMetrics(), self.fontMetrics().height()
         side = metrics.height() if self._sign else 0
         left = 0.6 * unit + 1.3 * side
-        room = QRectF(left, 0, self.width() - left - unit, max(unit, foot))
+        room = QRectF(left, 0, max(unit, self.width() - self._clear_px - left - unit),
+                      max(unit, foot))
         flags = int(Qt.AlignLeft | Qt.AlignBottom | Qt.TextWordWrap)
         texts = [words.kept_together(text) for text in (
             self._sentence, *words.beginnings(self._sentence, most=4))]
         text = next((text for text in texts if metrics.boundingRect(
-            room.toRect(), flags, text).height() <= room.height()), texts[-1])
+            room.toRect(), flags, text).height() <= room.height()), '')
         needed = metrics.boundingRect(room.toRect(), flags, text)
         ground = QRectF(0.4 * unit, needed.top() - 0.15 * unit,
                         needed.right() - 0.4 * unit + 0.5 * unit, needed.height() + 0.3 * unit)

@@ -171,8 +171,11 @@ class ScreenLayout(QObject):
         in_drawer = self.drawer_open and (
             screen.pages.currentWidget() is (screen.robots_page if self._tall
                                              else screen.drive_page))
-        floating = wanted and not in_drawer
-        if floating == self._floating or self._screen.joystick.dragging:
+        floating = wanted and not in_drawer and bool(screen.stage.names)
+        if screen.joystick.dragging:
+            return
+        if floating == self._floating:
+            screen.stage.place_float()
             return
         self._floating = floating
         if floating:

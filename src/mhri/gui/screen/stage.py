@@ -184,7 +184,7 @@ class Stage(QWidget):
             tile.show_large(index < len(self._large))
             tile.setGeometry(QRect(box.x, box.y, box.width, box.height))
             tile.show()
-        self._place_float()
+        self.place_float()
 
     def show_float(self, widget):
         """Let a widget float over the pictures at the lower right, None for none.
@@ -195,19 +195,22 @@ class Stage(QWidget):
         if widget is not None and widget.parentWidget() is not self:
             widget.setParent(self)
             widget.show()
-        self._place_float()
+        self.place_float()
         return before
 
-    def _place_float(self):
+    def place_float(self):
+        """Place what floats at the lower right of the large picture, clear of its words."""
+        under, side, unit = None, 0, self.fontMetrics().height()
         if self._float is not None:
-            tile = self._tiles.get(next(iter(self._large), ''))
+            tile = under = self._tiles.get(next(iter(self._large), ''))
             room = self.rect() if tile is None else \
                 tile.picture_area().translated(tile.pos())
-            unit = self.fontMetrics().height()
             side = round(min(_FLOAT_UNITS * unit, _FLOAT_SHARE * min(room.width(), room.height())))
             self._float.setGeometry(room.right() - side - unit // 2,
                                     room.bottom() - side - unit // 2, side, side)
             self._float.raise_()
+        for tile in self._tiles.values():
+            tile.hud.keep_clear(side + unit // 2 if tile is under else 0)
 
     def resizeEvent(self, event):  # noqa: N802
         """Fill the room there is now."""

@@ -251,13 +251,15 @@ def paint_battery(painter, rect, fraction, ink):
     painter.drawRoundedRect(body, 1.2, 1.2)
 
 
-def paint_edge(painter, rect, width, ink, palette, style=Qt.SolidLine):
-    """Paint a frame along the inside of a :class:`QRect`, of a width [px].
+def paint_edge(painter, rect, width, ink, dashed=False):
+    """Paint a frame along the inside of a :class:`QRect`, of a width [px]; dashed for a keyboard.
 
-    :param style: of the pen; what it leaves out has the colour of the window
+    What the dashes leave is dark.
     """
     half = width / 2.0
-    for colour_, line in ((palette.color(QPalette.Window), Qt.SolidLine), (ink, style)):
+    strokes = [(PICTURE_GROUND, Qt.SolidLine), (ink, Qt.DashLine)] if dashed \
+        else [(ink, Qt.SolidLine)]
+    for colour_, line in strokes:
         painter.setPen(QPen(colour_, width, line, Qt.FlatCap, Qt.MiterJoin))
         painter.drawRect(QRectF(rect).adjusted(half, half, -half, -half))
 

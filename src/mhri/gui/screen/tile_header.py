@@ -85,7 +85,7 @@ class TileHeader(QWidget):
         self.type_label, self.link_label = TextLine(self), TextLine(self)
         self.rec_label, self.battery_label = TextLine(self), BatteryLine(self)
         self.pill, self.link_sign = Pill(self), Sign(self)
-        self.name_label.show_text(name, shorter=words.name_ends(name))
+        self.name_label.show_text(name, shorter=(*words.name_ends(name), ''))
         self.type_label.show_text(type_label, theme.MUTED)
         self.views_button = QPushButton(VIEWS, self)
         self.views_button.setCheckable(True)
