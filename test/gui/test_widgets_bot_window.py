@@ -62,7 +62,7 @@ def test_the_header_line(window):
     assert window.link_sign.sign == (theme.DISC, theme.LIVE)
     assert [label.text() for label in (window.link_label, window.battery_label)] == [
         'live 12 ms', '82 %']
-    assert window.hud.lines[:2] == ('0.31 m/s   left 0.20 rad/s', 'heading 47 deg')
+    assert window.hud.lines[:2] == ('0.31 m/s   left 0.20 rad/s', 'heading 047')
     assert [label.text() for label in (window.x_value, window.y_value, window.turn_value,
                                        window.max_linear_value, window.max_angular_value)] == [
         'x 1.25 m', 'y -0.40 m', 'left 0.20 rad/s', '0.65 m/s', '3.14 rad/s']

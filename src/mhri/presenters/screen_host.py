@@ -6,6 +6,7 @@ One of the few modules that know both. Everything here runs on the GUI thread; t
 by timers and never waited for.
 """
 import gc
+import time
 
 from python_qt_binding.QtCore import QObject, QTimer
 from python_qt_binding.QtWidgets import QApplication
@@ -13,6 +14,7 @@ from python_qt_binding.QtWidgets import QApplication
 from mhri.core.robots.names import tidy_name
 from mhri.core.screen.saved_state import usable_state
 from mhri.core.screen.views import GONE, SILENT
+from mhri.core.screen.why import WhyStill
 from mhri.presenters.doctor_host import DoctorHost
 from mhri.presenters.draw_guard import DrawGuard
 from mhri.presenters.event_host import EventHost
@@ -42,6 +44,7 @@ class ScreenHost(QObject):
         self.operator = operator
         self._to_add = []
         self._lost = set()
+        self._why = WhyStill()
         self._mode = None
         self._closed = False
         self._build()
@@ -130,7 +133,7 @@ class ScreenHost(QObject):
         for name, parameters in self._to_add[:ADD_AT_ONCE]:
             self.operator.add(name, parameters)
         del self._to_add[:ADD_AT_ONCE]
-        view = self.operator.view()
+        view = self._why.tell(self.operator.view(), self.screen.stick(), time.monotonic())
         self._mode = view.mode or self._mode
         self.screen.show_view(view)
         self._feel_losses(view)

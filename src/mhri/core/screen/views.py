@@ -73,7 +73,12 @@ class RobotView:
     its guard has confirmed the stop. ``hardware_stop`` is true while the robot's own emergency stop
     holds it, None where nothing tells. ``power`` says in words what was done to the power of its
     motors (:mod:`mhri.core.driving.motor_power`), '' where nothing was, ``offers_power`` whether
-    anything can be.
+    anything can be. ``sent_mps`` and ``sent_rad_s`` are the velocity last sent to it (None: not
+    known), ``reached`` is false while nothing on it takes commands.
+
+    What the screen makes of it: ``asked`` is the operator's command [m/s, rad/s] where the robot has
+    done something else for a moment, else None; ``why`` says in a sentence why it stands though the
+    stick is held, '' for nothing.
     """
 
     name: str
@@ -106,6 +111,11 @@ class RobotView:
     offers_power: bool = False
     hardware_stop: Optional[bool] = None
     number: int = 0
+    sent_mps: Optional[float] = None
+    sent_rad_s: Optional[float] = None
+    reached: bool = True
+    asked: Optional[Tuple[float, float]] = None
+    why: str = ''
 
 
 @dataclass(frozen=True)
@@ -177,7 +187,8 @@ class PanelView:
     voice node heard last, None before that. ``control`` is who drives, ``answers`` is false while
     the gates are not heard, ``stop_taken`` true once they have said that the stop is in force.
     ``advice`` says what keeps the source that drives from doing so, and the remedy; '' for nothing.
-    ``dead_man`` is false while the dead-man buttons of pads need not be held.
+    ``dead_man`` is false while the dead-man buttons of pads need not be held. ``asked`` is what the
+    mux commands now [m/s, rad/s], ``waits_for`` its word on what it waits for.
     """
 
     ros: str = ROS_STARTING
@@ -200,3 +211,5 @@ class PanelView:
     control: ControlView = ControlView()
     answers: bool = True
     stop_taken: bool = True
+    asked: Tuple[float, float] = (0.0, 0.0)
+    waits_for: str = ''

@@ -37,6 +37,8 @@ class TileLayers:
         """
         if wanted and self._inset is None:
             widget.setParent(self._tile)
+            widget.stackUnder(self._tile.header)
+            widget.show()
             self._inset = widget
         elif not wanted and self._inset is not None:
             self._inset = None
@@ -73,11 +75,8 @@ class TileLayers:
         tile.hud.setGeometry(room.x(), room.bottom() + 1 - high, room.width(), max(1, high))
         if self._inset is not None and wants_inset(tile.shown()):
             self._place_inset(room, max(room.top(), inside.top() + height), unit)
-        tile.header.raise_()
-        tile.hud.raise_()
 
     def _place_inset(self, room, top, unit):
         """Place the small view at the upper right: numbers and stick are at the lower end."""
         side = round(max(_INSET_SHARE * min(room.width(), room.height()), _INSET_UNITS * unit))
         self._inset.setGeometry(room.right() - side - unit // 2, top + unit // 2, side, side)
-        self._inset.raise_()

@@ -128,8 +128,6 @@ class BotWindow(QWidget):
             widget.hide()
             if hasattr(widget, 'show_tools'):
                 widget.show_tools(self.tools.isVisibleTo(self))
-            self.header.raise_()
-            self.hud.raise_()
         return self._views[row.widget]
 
     def _place_in_row(self, row):
@@ -291,9 +289,12 @@ class BotWindow(QWidget):
         self.update()
 
     def _show_sentence(self, view):
-        """Show the proof of a stop, or what is worth saying about the link."""
+        """Show the proof of a stop, why the robot stands, or what is worth saying of its link."""
         if view.proof is not None:
-            sign, text = theme.PROOF_SIGNS[view.proof.state], view.proof.text
+            sign = theme.PROOF_SIGNS[view.proof.state]
+            text = '; '.join(filter(None, (view.proof.text, view.why)))
+        elif view.why:
+            sign, text = (theme.TRIANGLE, theme.ATTENTION), view.why
         elif view.note and (view.slow or view.link != views.LIVE):
             sign = (theme.TRIANGLE, theme.ATTENTION) if view.link == views.LIVE \
                 else theme.LINK_SIGNS[view.link]

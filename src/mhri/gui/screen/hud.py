@@ -6,6 +6,7 @@ from python_qt_binding.QtGui import QColor, QFontMetrics, QPainter, QPainterPath
 from python_qt_binding.QtWidgets import QWidget
 
 from mhri.core.screen import views
+from mhri.core.screen.asked import asked_line
 from mhri.gui.screen import theme, words
 
 _EDGE = 0.22
@@ -19,9 +20,10 @@ def hud_lines(view):
     """
     if view.linear_mps is None and view.angular_rad_s is None:
         return []
-    return [words.BETWEEN_FIGURES.join((words.linear_text(view.linear_mps),
-                                        words.turn_text(view.angular_rad_s))),
-            'heading {}'.format(words.heading_text(view.heading_rad))]
+    figures = (words.linear_text(view.linear_mps), words.turn_text(view.angular_rad_s),
+               asked_line(view))
+    return [words.BETWEEN_FIGURES.join(filter(None, figures)),
+            'heading {}'.format(words.compass_text(view.heading_rad))]
 
 
 class Hud(QWidget):
@@ -33,6 +35,7 @@ class Hud(QWidget):
     def __init__(self, parent=None):
         super().__init__(parent)
         self._lines = ()
+        self._extra = ()
         self._sentence = ''
         self._sign = None
         self._old = False
@@ -77,9 +80,16 @@ class Hud(QWidget):
         """Leave so much of the right end [px] to something else."""
         self._show(clear_px=width)
 
-    def show_view(self, view, extra=()):
-        """Show the numbers of a :class:`RobotView`, and further lines below them."""
-        self._show(lines=(*hud_lines(view), *extra), old=view.link != views.LIVE)
+    def set_extra(self, lines):
+        """Have further lines below the numbers when these are shown next: nearest thing, task.
+
+        An empty one keeps its place, so that nothing jumps.
+        """
+        self._extra = tuple(lines)
+
+    def show_view(self, view):
+        """Show the numbers of a :class:`RobotView`, and the further lines."""
+        self._show(lines=(*hud_lines(view), *self._extra), old=view.link != views.LIVE)
 
     def show_sentence(self, text, sign=None):
         """Say why the robot stands, or what is wrong; '' for nothing."""

@@ -83,6 +83,13 @@ def heading_text(heading_rad):
     return '{:d} deg'.format(180 if degrees == -180 else degrees)
 
 
+def compass_text(heading_rad):
+    """Return a heading [rad] as three digits in 000 to 359, left turns add; a dash for None."""
+    if not _is_number(heading_rad):
+        return UNKNOWN
+    return '{:03d}'.format(round(math.degrees(heading_rad)) % 360)
+
+
 def metres_text(value_m):
     """Return a coordinate, e.g. "-1.25 m"; a dash for None and NaN."""
     # What rounds to zero has no sign.
@@ -103,6 +110,8 @@ def heard_text(heard):
     """
     if heard is None:
         return 'say the wake word, or hold the button and talk; "stop" is always heard'
+    if not heard.text:
+        return heard_outcome(heard)
     return 'heard "{}": {}'.format(heard.text, heard_outcome(heard))
 
 
@@ -110,7 +119,8 @@ def heard_shorter(heard):
     """Return :func:`heard_text` in fewer and fewer words: what was made of it is what matters."""
     if heard is None:
         return 'wake word or button; "stop" is always heard', '"stop" is always heard'
-    return (heard_outcome(heard),)
+    outcome = heard_outcome(heard)
+    return (outcome,) + beginnings(outcome)
 
 
 def heard_outcome(heard):
