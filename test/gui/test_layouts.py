@@ -35,7 +35,7 @@ LAYOUTS = [
     (LARGE, 6, 'contrast', 1.0, 'stopped', False), (LARGE, 12, 'dark', 1.0, 'plain', True),
     (LARGE, 6, 'dark', 2.0, 'long', True), ((3840, 2160), 3, 'dark', 2.0, 'plain', True),
     ((3840, 2160), 12, 'light', 2.0, 'long', True), ((794, 700), 3, 'dark', 1.0, 'long', False),
-    ((794, 700), 6, 'light', 1.0, 'plain', True)]
+    ((794, 700), 6, 'light', 1.0, 'plain', True), ((794, 700), 3, 'dark', 1.0, 'stopped', False)]
 
 
 def frame_of(colour, size=(640, 480)):

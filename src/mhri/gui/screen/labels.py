@@ -248,6 +248,8 @@ class Pill(QWidget):
         height = self.fontMetrics().height()
         return QSize(theme.text_width(self._bold(), *self._words) + height, height + 2)
 
+    minimumSizeHint = sizeHint
+
     def _bold(self):
         """Return the font of the word."""
         return theme.larger(self.font(), 0.92, bold=True)
