@@ -28,12 +28,24 @@ class MainWindow(QMainWindow):
     def __init__(self, host):
         super().__init__()
         self._host = host
+        self._sure = False
+        host.screen.leave_bar.close_requested.connect(self.close_now)
         self.setWindowTitle('mhri')
         self.setCentralWidget(host.screen)
         self.resize(1280, 720)
 
+    def close_now(self):
+        """Close, whatever drives or records."""
+        self._sure = True
+        self.close()
+
     def closeEvent(self, event):  # noqa: N802
-        """Stop the robots before the window goes."""
+        """Stop the robots before the window goes; ask first while anything drives or records."""
+        question = '' if self._sure else self._host.asks_before_closing()
+        if question:
+            self._host.screen.leave_bar.ask(question)
+            event.ignore()
+            return
         self.closing.emit()
         super().closeEvent(event)
 
@@ -69,7 +81,8 @@ class Standalone:
         looks = self.host.screen.arrangement
         looks.theme_chosen.connect(lambda name: theme.apply(QApplication.instance(), name))
         theme.apply(QApplication.instance(), looks.theme)
-        self._bell = SignalBell(self.window.close)
+        # Whoever sends a signal cannot be asked.
+        self._bell = SignalBell(self.window.close_now)
         self._robots_at_first = None
         self._closed = False
         self._saved = {}

@@ -311,7 +311,7 @@ class Demo(QObject):
         if self._result:
             with open(self._result, 'w', encoding='utf-8') as stream:
                 stream.write(result + '\n')
-        self._program.window.close()
+        self._program.window.close_now()
 
     @staticmethod
     def _say(text):

@@ -12,6 +12,7 @@ from python_qt_binding.QtCore import QObject, QTimer
 from python_qt_binding.QtWidgets import QApplication
 
 from mhri.core.robots.names import tidy_name
+from mhri.core.screen.busy import close_question
 from mhri.core.screen.saved_state import usable_state
 from mhri.core.screen.views import GONE, SILENT
 from mhri.core.screen.why import WhyStill
@@ -82,6 +83,7 @@ class ScreenHost(QObject):
             lambda *_: self.tiles.show_palette(panel.palette()))
         panel.add_requested.connect(self._add)
         panel.remove_requested.connect(self._remove)
+        panel.remove_steps.undo_requested.connect(self._put_back)
         panel.record_requested.connect(self.requests.record)
         panel.stop_record_requested.connect(self.requests.stop_recording)
         panel.selection_requested.connect(self._select)
@@ -195,10 +197,24 @@ class ScreenHost(QObject):
         self.draw()
 
     def _remove(self, name):
-        self.tiles.drop(name)
-        self.requests.end_recording(name)
+        """Take a robot off the list: it stops first, and a recording of it ends."""
         self.operator.remove(name)
+        recorded = self.requests.end_recording(name)
+        self.tiles.drop(name)
+        self.screen.remove_steps.offer_undo(name)
+        if not recorded:
+            self.screen.show_look_result('{} is off the list'.format(name))
         self.draw()
+
+    def _put_back(self, name):
+        """Undo that: the robot has its place, number and look again, and is not selected."""
+        if self.operator.add(name) is None:
+            self.screen.show_look_result('{} is back'.format(name))
+        self.draw()
+
+    def asks_before_closing(self):
+        """Return what to ask before the screen is closed, '' while nothing drives or records."""
+        return close_question(self.operator.view().robots)
 
     def _select(self, names):
         self.operator.select(names)

@@ -169,9 +169,11 @@ class TilesHost(QObject):
         self._stage.refresh()
 
     def drop(self, name):
-        """Let a robot's tile go, and keep how it looked."""
+        """Let a robot's tile go, and keep how it looked and whether it was torn off."""
         if name in self.windows:
             self._keep_look(name)
+            if name in self._torn:
+                self._to_tear.add(name)
             self._discard(name)
 
     def _discard(self, name):

@@ -13,8 +13,8 @@ MESSAGE_TYPES = {JOY: 'sensor_msgs/Joy', TWIST: 'geometry_msgs/Twist'}
 class Heard:
     """What is known of the active source's topic.
 
-    ``publishers`` are the connected ones; ``stranger`` is (node, message type) of one that publishes
-    another type; ``spoke`` is true once something was heard in this mode; ``refused`` says why the
+    ``publishers`` are connected; ``stranger`` is (node, message type) of one that publishes another
+    type; ``spoke`` is true once something was heard in this mode; ``refused`` says why the
     newest message could not be used; ``rival`` is (node, owner) if a second publisher was refused
     lately.
     """

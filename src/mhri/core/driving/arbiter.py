@@ -49,8 +49,8 @@ class Arbiter:
     """Decides which source drives and which velocity the robots are sent.
 
     :param config: :class:`mhri.core.driving.sources.MuxConfig`
-    :param now: the time of creation [s]; the first zeros start here, to stop whatever an earlier mux
-        left moving
+    :param now: the time of creation [s]; the first zeros start here, to stop whatever an earlier
+        mux left moving
     """
 
     def __init__(self, config: MuxConfig, now: float) -> None:
@@ -144,7 +144,7 @@ class Arbiter:
 
     def on_twist(self, name: str, linear: Sequence[float], angular: Sequence[float],
                  device: object, now: float) -> Optional[Velocity]:
-        """Take in one Twist of a source as two vectors [m/s], [rad/s]; otherwise as :meth:`on_joy`."""
+        """Take in one Twist of a source, as vectors [m/s], [rad/s]; else as :meth:`on_joy`."""
         return self._on_message(name, device, now, lambda: read_twist(linear, angular))
 
     def _on_message(self, name: str, device: object, now: float,

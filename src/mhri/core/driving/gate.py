@@ -196,7 +196,7 @@ class GateRule:
         return self._task_at + STALE_S if self._state == TASK else None
 
     def _driven(self) -> bool:
-        """Tell whether anything may be driving: the last command was not zero, or there was none."""
+        """Tell whether anything may drive: the last command was not zero, or there was none."""
         return self._command is None or not self._command.is_zero()
 
     def _belongs(self, now: float) -> str:

@@ -8,8 +8,8 @@ the guard obeys it while that token is young. Both use ``frame_id``,
 obeyed), and the token. While stop-all is in force the session of a command ends in ``!``; while the
 stop is latched on the robot the token of an echo does.
 
-A zero without ``!`` that answers an echo sent after the stop releases it; until then the guard drops
-everything else. So a gate sends zeros until :attr:`GuardLink.stop_confirmed` is false.
+A zero without ``!`` that answers an echo sent after the stop releases it; until then the guard
+drops everything else. So a gate sends zeros until :attr:`GuardLink.stop_confirmed` is false.
 """
 import re
 from typing import Optional, Tuple

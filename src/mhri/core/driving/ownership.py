@@ -10,7 +10,7 @@ OTHERS = 'others'
 
 
 class Ownership:
-    """The first publisher that speaks owns the topic, until it has gone or another takes control."""
+    """The first to speak owns the topic, until it has gone or another one takes control."""
 
     def __init__(self) -> None:
         self.owner: Optional[str] = None

@@ -39,7 +39,7 @@ class Source:
 
     @property
     def rests(self) -> bool:
-        """Whether it may be silent at rest; it then counts as heard while its publisher is connected.
+        """Whether it may be silent at rest; it counts as heard while its publisher is connected.
 
         Publishers of velocities often send one zero and nothing more.
         """

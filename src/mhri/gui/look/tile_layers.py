@@ -37,6 +37,7 @@ class TileLayers:
         """
         if wanted and self._inset is None:
             widget.setParent(self._tile)
+            # Over the picture, and under what says that it is old.
             widget.stackUnder(self._tile.header)
             widget.show()
             self._inset = widget
