@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The panel as an rqt plugin: a thin adapter over :mod:`mhri.presenters.screen_host`."""
+"""The screen as an rqt plugin: a thin adapter over :mod:`mhri.presenters.screen_host`."""
 import json
 
 import rospy

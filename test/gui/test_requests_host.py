@@ -132,6 +132,7 @@ def test_a_robot_that_is_removed_is_recorded_no_more_and_the_screen_says_so(sess
 def test_motion_capture_ages_and_bandwidth_show(session):
     window = session.open('bot2')
     session.switch(window, 'camera_rgb')
+    session.switch(window, 'view_imu')
     session.until(lambda: 'captured x' in str(window.state_line.texts()),
                   what='motion capture')
     assert 'odometry off 0.0' in str(window.state_line.texts())

@@ -12,7 +12,7 @@ import pytest
 REPO = Path(__file__).resolve().parents[2]
 # What the scripts read beside themselves.
 READ = ('launch', 'resource')
-BUILD_INPUTS = ('CMakeLists.txt', 'package.xml', 'setup.py', 'msg', 'srv', 'scripts')
+BUILD_INPUTS = ('CMakeLists.txt', 'package.xml', 'setup.py', 'action', 'msg', 'srv', 'scripts')
 
 # Each stand-in writes its name and arguments to the file of calls, and then what its text says.
 RECORD = '#!/bin/bash\nprintf "%s\\n" "${0##*/} $*" >>"$MHRI_CALLS"\n'

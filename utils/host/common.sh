@@ -23,8 +23,8 @@ DEBIAN_RUN=(
   catkin cmake g++ make python3-catkin-pkg ros-message-generation ros-message-runtime
   python3-roslaunch python3-rosgraph python3-rospkg python3-rospy
   python3-rosbag python3-rosnode python3-rosparam python3-rosservice python3-rostopic rosbash
-  ros-std-msgs ros-geometry-msgs
-  python3-std-msgs python3-geometry-msgs python3-sensor-msgs python3-nav-msgs python3-std-srvs
+  ros-std-msgs ros-geometry-msgs ros-actionlib-msgs libactionlib-msgs-dev python3-actionlib
+  python3-actionlib-msgs python3-std-msgs python3-geometry-msgs python3-sensor-msgs python3-nav-msgs python3-std-srvs
   python3-tf2-msgs python3-rosgraph-msgs python3-diagnostic-msgs python3-diagnostic-updater
   python3-cv-bridge python3-python-qt-binding python3-pyqt5 python3-pyqtgraph python3-pygame
   python3-evdev python3-pocketsphinx pocketsphinx-en-us python3-pyaudio
@@ -151,7 +151,7 @@ source_setup() {
 # nothing_changed STAMP: true where a build of the devel space would find nothing to do. Python,
 # launch and resource files are used from where they are, so they need no build.
 nothing_changed() {
-  local inputs=(CMakeLists.txt package.xml setup.py msg srv scripts)
+  local inputs=(CMakeLists.txt package.xml setup.py action msg srv scripts)
   if [ ! -f "$1" ] || [ "$(cat "$1")" != "$REPO" ]; then return 1; fi
   [ -z "$(cd "$REPO" && find "${inputs[@]}" -newer "$1" -print -quit)" ]
 }

@@ -26,7 +26,7 @@ Robots
                        system that is running is not disturbed, and neither reads nor writes the
                        settings of the panel.
   --screenshot FILE    where --demo writes the picture of the screen (PNG; default mhri-demo.png,
-                       here); beside it come four of windows, e.g. mhri-demo_panel.png, _bot_window,
+                       here); beside it come four of its parts, e.g. mhri-demo_panel.png, _bot_window,
                        _depth and _stopped. What is there is overwritten.
 
 Network

@@ -6,6 +6,7 @@ Looks for robots, selects two of three, drives both, changes the selection while
 stops all. It waits for what the robots' own odometry shows, never for a fixed time, and ends at the
 first step that fails.
 """
+from concurrent.futures import ThreadPoolExecutor
 import math
 import os
 import time
@@ -15,6 +16,7 @@ from python_qt_binding.QtGui import QKeyEvent, QMouseEvent
 from python_qt_binding.QtWidgets import QApplication, QWidget
 
 from mhri.core.screen.views import LIVE, PROOF_STOPPED
+from mhri.gui.screen.stale_cover import StaleCover
 
 POLL_MS = 50
 # Endings of the bottom line.
@@ -150,9 +152,9 @@ class Demo(QObject):
     """Plays the script on the GUI thread, one step whenever its condition is true.
 
     :param program: :class:`mhri.standalone.Standalone`
-    :param screenshot: where to write a picture of the screen while the robots move, and four more
-        beside it (``<screenshot>_panel.png``, ...); None for none
-    :param result: where to write ``ok`` or the reason for failure, or None
+    :param screenshot: where to write a picture of the screen while the robots move, and those of
+        parts of it (``<screenshot>_panel.png``, ...); None for none
+    :param result: where to write ``ok`` or the reason why not, or None
     """
 
     def __init__(self, program, screenshot=None, result=None):
@@ -165,12 +167,17 @@ class Demo(QObject):
         self._diary = Diary()
         self._script = self._steps()
         self._waiting = None
+        # Writing a picture takes longer than the stick may be silent.
+        self._writer = ThreadPoolExecutor(max_workers=1)
+        self._written = []
         self.exit_status = 1
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._poll)
 
     def start(self):
-        """Begin; the program ends by itself."""
+        """Begin, on all of the screen; the program ends by itself."""
+        window = self._program.window
+        window.setGeometry(window.screen().availableGeometry())
         self._timer.start(POLL_MS)
 
     def _robot(self, name):
@@ -251,8 +258,15 @@ class Demo(QObject):
         yield 'every robot to be proven stopped', lambda: all(
             robot.proof and robot.proof.state == PROOF_STOPPED for robot in operator.view().robots)
         hands.let_go()
-        self._program.host.draw()
+        yield 'every tile to say so', lambda: all(
+            tile.hud.sentence.startswith('stopped') for tile in host.windows.values()) \
+            and not any(cover.isVisible() for cover in host.screen.findChildren(StaleCover))
         self._take_pictures(stopped=host.screen)
+        yield 'the pictures to be written', lambda: all(one.done() for _, one in self._written)
+        for path, written in self._written:
+            if not written.result():
+                raise DemoFailed('cannot write the picture {}'.format(path))
+            self._say('wrote {}'.format(path))
 
     def _poll(self):
         """Go on if the present condition is true."""
@@ -285,9 +299,7 @@ class Demo(QObject):
             self._save(self._program.window.screen().grabWindow(0), self._screenshot)
 
     def _save(self, picture, path):
-        if not picture.save(path, 'PNG'):
-            raise DemoFailed('cannot write the picture {}'.format(path))
-        self._say('wrote {}'.format(path))
+        self._written.append((path, self._writer.submit(picture.toImage().save, path, 'PNG')))
 
     def _end(self, result):
         """Print what happened, write the result, and close the program."""
@@ -299,7 +311,7 @@ class Demo(QObject):
         if self._result:
             with open(self._result, 'w', encoding='utf-8') as stream:
                 stream.write(result + '\n')
-        self._program.window.close()
+        self._program.window.close_now()
 
     @staticmethod
     def _say(text):

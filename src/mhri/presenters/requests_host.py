@@ -74,11 +74,16 @@ class RequestsHost:
             self._operator.recordings.stop(name)
 
     def end_recording(self, name):
-        """End the recording of a robot that leaves the list, and report the result."""
-        if name in self._operator.recordings.running():
+        """End the recording of a robot that leaves the list, and say what has become of it.
+
+        :returns: whether there was one
+        """
+        running = name in self._operator.recordings.running()
+        if running:
             self._ends = []
             self._asked.add(name)
             self._operator.recordings.stop(name)
+        return running
 
     def tell_ends(self):
         """Report on the recordings that were started here and have ended."""

@@ -6,13 +6,16 @@ One of the few modules that know both. Everything here runs on the GUI thread; t
 ROS side, and nothing waits for it.
 """
 import gc
+import time
 
 from python_qt_binding.QtCore import QObject, QTimer
 from python_qt_binding.QtWidgets import QApplication
 
 from mhri.core.robots.names import tidy_name
+from mhri.core.screen.busy import close_question
 from mhri.core.screen.saved_state import usable_state
 from mhri.core.screen.views import GONE, SILENT
+from mhri.core.screen.why import WhyStill
 from mhri.presenters.doctor_host import DoctorHost
 from mhri.presenters.draw_guard import DrawGuard
 from mhri.presenters.event_host import EventHost
@@ -42,6 +45,7 @@ class ScreenHost(QObject):
         self.operator = operator
         self._to_add = []
         self._lost = set()
+        self._why = WhyStill()
         self._mode = None
         self._closed = False
         self._build()
@@ -75,8 +79,11 @@ class ScreenHost(QObject):
     def _connect(self):
         panel, operator = self.screen, self.operator
         panel.look_requested.connect(self._look)
+        panel.arrangement.theme_chosen.connect(
+            lambda *_: self.tiles.show_palette(panel.palette()))
         panel.add_requested.connect(self._add)
         panel.remove_requested.connect(self._remove)
+        panel.remove_steps.undo_requested.connect(self._put_back)
         panel.record_requested.connect(self.requests.record)
         panel.stop_record_requested.connect(self.requests.stop_recording)
         panel.selection_requested.connect(self._select)
@@ -110,6 +117,8 @@ class ScreenHost(QObject):
             self._add(name)
         if selected:
             self._select(list(selected))
+        if self.operator.selection.robots:
+            self.screen.arrangement.begin_with_robots()
         self.operator.start()
         # What is loaded by now stays: searching it takes the garbage collector 60 ms, during which
         # no thread runs.
@@ -126,7 +135,7 @@ class ScreenHost(QObject):
         for name, parameters in self._to_add[:ADD_AT_ONCE]:
             self.operator.add(name, parameters)
         del self._to_add[:ADD_AT_ONCE]
-        view = self.operator.view()
+        view = self._why.tell(self.operator.view(), self.screen.stick(), time.monotonic())
         self._mode = view.mode or self._mode
         self.screen.show_view(view)
         self._feel_losses(view)
@@ -188,10 +197,24 @@ class ScreenHost(QObject):
         self.draw()
 
     def _remove(self, name):
-        self.tiles.drop(name)
-        self.requests.end_recording(name)
+        """Take a robot off the list: it stops first, and a recording of it ends."""
         self.operator.remove(name)
+        recorded = self.requests.end_recording(name)
+        self.tiles.drop(name)
+        self.screen.remove_steps.offer_undo(name)
+        if not recorded:
+            self.screen.show_look_result('{} is off the list'.format(name))
         self.draw()
+
+    def _put_back(self, name):
+        """Undo that: the robot has its place, number and look again, and is not selected."""
+        if self.operator.add(name) is None:
+            self.screen.show_look_result('{} is back'.format(name))
+        self.draw()
+
+    def asks_before_closing(self):
+        """Return what to ask before the screen is closed, '' while nothing drives or records."""
+        return close_question(self.operator.view().robots)
 
     def _select(self, names):
         self.operator.select(names)

@@ -12,6 +12,7 @@ from mhri.core.recording.recording import RECORDING
 from mhri.core.robots.mocap import DriftMeter, Pose
 from mhri.core.screen.view_rows import CLOUD, IMU, PICTURES, RGB, SCAN, VIEW_ROWS
 from mhri.core.screen.views import StateView
+from mhri.core.sensors.nearest import nearest, OLD_S
 from mhri.gui.camera.camera_view import still_name
 from mhri.presenters.draw_guard import DrawGuard
 from mhri.presenters.rviz_cloud import RvizCloud
@@ -44,6 +45,7 @@ class TileHost:
         self._wired = False
         self._rviz = None
         self._held_back = ''
+        self._nearest = None
         window.recording.record_requested.connect(self._record)
         window.recording.stop_record_requested.connect(self._stop_recording)
         self._operator_folder()
@@ -65,21 +67,39 @@ class TileHost:
             self._wired = True
             window.view('rgb').transport_chosen.connect(self._choose_transport)
             window.view('rgb').still_requested.connect(self._save_still)
-        feeds.want(window.wanted() | {MOCAP} if window.is_watched() else ())
+        feeds.want(self._wanted() | {MOCAP} if window.is_watched() else ())
         status = self._operator.recordings.status(self._name)
         window.recording.offer_extras(self._operator.recordable(self._name))
         window.recording.show_recording(status)
         window.header.show_recording(status if status.state == RECORDING else None)
-        for key in window.wanted():
+        for key in self._wanted():
             feed = feeds.get(key)
             if feed is not None:
                 self._draw_view(key, feed)
         self._draw_state(view, feeds)
+        window.hud.set_extra(self._extra_lines(feeds))
         while self._notes and RGB in feeds.offers():
             window.view('rgb').show_note(*self._notes.pop())
 
+    def _wanted(self):
+        """Return the views to be fed: a large tile tells the nearest thing, view or not."""
+        wanted = self.window.wanted()
+        return wanted | {SCAN} if self.window.header.large and self.window.is_watched() else wanted
+
+    def _extra_lines(self, feeds):
+        """Return what the numbers over the picture say beside the motion; old scans say nothing."""
+        scan = feeds.get(SCAN) if self.window.header.large else None
+        if scan is None:
+            return ()
+        age_s = scan.age_s()
+        told = self._nearest is not None and age_s is not None and age_s <= OLD_S
+        return (self._nearest.words() if told else '',)
+
     def _draw_view(self, key, feed):
-        """Hand a view the newest value of its feed."""
+        """Hand a view what its feed has."""
+        if key == SCAN:
+            self._draw_scan(feed)
+            return
         widget = self.window.view(key)
         if hasattr(feed, 'set_view'):
             self._draw_camera(widget, feed)
@@ -93,6 +113,17 @@ class TileHost:
         if hasattr(feed, 'status'):
             widget.show_status(feed.status())
 
+    def _draw_scan(self, feed):
+        """Take note of the nearest thing, and show the scan where its view is on show."""
+        scan = feed.take()
+        if scan is not None:
+            self._nearest = nearest(*scan[:3])
+        if SCAN in self.window.wanted():
+            widget = self.window.view(SCAN)
+            if scan is not None:
+                widget.show_value(scan)
+            widget.show_age(feed.age_s())
+
     def _draw_state(self, view, feeds):
         """Show how old each stream is, and what motion capture says.
 
@@ -100,7 +131,7 @@ class TileHost:
         """
         ages = []
         for row in VIEW_ROWS:
-            feed = feeds.get(row.key)
+            feed = feeds.get(row.key) if row.key in self.window.wanted() else None
             if feed is not None:
                 ages.append((_SHORT.get(row.key, row.label), feed.age_s()))
         tracker = feeds.get(MOCAP)

@@ -137,6 +137,11 @@ class TilesHost(QObject):
             self.make(name)
             self._stage.show_tiles({name: self.windows[name] for name in self.windows})
 
+    def show_palette(self, palette):
+        """Give the windows of tiles that were torn off the colours of the screen."""
+        for window in self._torn.values():
+            window.setPalette(palette)
+
     def toggle_torn(self, name):
         """Put a tile into a window of its own, or back on the stage."""
         if name in self._torn:
@@ -163,9 +168,11 @@ class TilesHost(QObject):
         self._stage.refresh()
 
     def drop(self, name):
-        """Remove a robot's tile, and keep how it looked."""
+        """Let a robot's tile go, and keep how it looked and whether it was torn off."""
         if name in self.windows:
             self._keep_look(name)
+            if name in self._torn:
+                self._to_tear.add(name)
             self._discard(name)
 
     def _discard(self, name):

@@ -3,17 +3,19 @@
 """Where the tiles go: pictures as large as possible, and none over another.
 
 Tiles are large (what the operator drives by) or small (the rest, a strip beside or below). Every
-way to place them is tried; the one that shows the most picture wins.
+way of placing them is tried: the large ones as large as they can be, the small ones of use.
 """
 from dataclasses import dataclass
-from math import ceil
+from math import ceil, sqrt
 from typing import Iterator, Sequence, Tuple
 
 # Fractions of the stage that the strip of small tiles may have.
 _STRIP_SHARES = tuple(share / 100.0 for share in range(10, 52, 2))
-# A large picture counts in full, a small one at the edge of sight counts less.
-_SMALL_COUNTS = 0.3
-# How much more picture another arrangement must show before the tiles move.
+# A small picture is of use up to this part of the width of a large one; till there, a pixel of its
+# width counts so much.
+_SMALL_ENOUGH = 0.26
+_SMALL_COUNTS = 1.3
+# So much more has to be seen in another arrangement before the tiles move.
 WORTH_MOVING = 1.06
 # Shape (width / height) of a picture that has not arrived yet.
 USUAL_SHAPE = 4.0 / 3.0
@@ -81,21 +83,39 @@ def _seen(boxes: Sequence[Box], shapes: Sequence[float]) -> float:
     return sum(box.picture(shape) for box, shape in zip(boxes, shapes))
 
 
+def _worth(large_px: float, larges: int, small_px: float, smalls: int) -> float:
+    """Return how good pictures of these areas [px²] are to drive by, in pixels of width."""
+    large = sqrt(large_px / larges)
+    return large + _SMALL_COUNTS * min(sqrt(small_px / smalls), _SMALL_ENOUGH * large)
+
+
 def _best_grid(box: Box, shapes: Sequence[float], gap: int) -> Tuple[Box, ...]:
     """Return the grid that shows the most picture."""
     return max((_grid(box, shapes, columns, gap) for columns in range(1, len(shapes) + 1)),
                key=lambda boxes: _seen(boxes, shapes), default=())
 
 
-def _snug(boxes: Tuple[Box, ...], shapes: Sequence[float], gap: int,
-          room: Box) -> Tuple[Box, ...]:
-    """Return the boxes of a strip no higher than their pictures need, from the top."""
+def _snug(boxes: Tuple[Box, ...], shapes: Sequence[float], gap: int, room: Box,
+          least_px: int) -> Tuple[Box, ...]:
+    """Return the boxes of a strip no larger than their pictures need, from its upper left.
+
+    :param least_px: least width of one
+    """
     rows = sorted({box.y for box in boxes})
     heights = [max(min(box.height, ceil(box.width / shape))
                    for box, shape in zip(boxes, shapes) if box.y == y) for y in rows]
     tops = [room.y + sum(heights[:row]) + gap * row for row in range(len(rows))]
-    return tuple(Box(box.x, tops[rows.index(box.y)], box.width, heights[rows.index(box.y)])
-                 for box in boxes)
+    lefts = sorted({box.x for box in boxes})
+    width = min(boxes[0].width, max(least_px, *(
+        ceil(heights[rows.index(box.y)] * shape) for box, shape in zip(boxes, shapes))))
+    return tuple(Box(room.x + lefts.index(box.x) * (width + gap), tops[rows.index(box.y)],
+                     width, heights[rows.index(box.y)]) for box in boxes)
+
+
+def _fitness(boxes: Sequence[Box], least: Tuple[int, int]) -> int:
+    """Return how near to their least size boxes are: 6 if all have it, 0 for next to nothing."""
+    return int(6.0 * min(1.0, *(min(box.width / least[0], box.height / least[1])
+                                for box in boxes)))
 
 
 def _splits(width: int, height: int, gap: int) -> Iterator[Tuple[Box, Box]]:
@@ -135,9 +155,9 @@ def arrange(width: int, height: int, large: Sequence[float], small: Sequence[flo
             if min(min(box.width, box.height) for box in smalls) < 1:
                 continue
             small_px = _seen(smalls, small)
-            fits = all(box.width >= least[0] and box.height >= least[1] for box in smalls)
-            score = (int(fits), large_px + _SMALL_COUNTS * small_px)
+            score = (_fitness(smalls, least), _worth(large_px, len(large), small_px, len(small)))
             if score > best_score:
                 best_score = score
-                best = Arrangement(larges, _snug(smalls, small, gap, strip), large_px + small_px)
+                best = Arrangement(larges, _snug(smalls, small, gap, strip, least[0]),
+                                   large_px + small_px)
     return best

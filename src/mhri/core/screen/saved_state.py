@@ -5,8 +5,8 @@
 A state is a dict of JSON values: ``robots`` (names), ``numbers`` ({robot: its own number}),
 ``mode`` (a source), ``limits`` [m/s, rad/s], ``together``, ``windows`` ({robot: geometry}: where
 its tile was when it was torn off), ``torn_off`` (robots), ``looks`` ({robot: what its tile shows})
-``panel`` (``splitter``, ``drawer``, ``geometry``) and ``events`` (``sounds``). A geometry is [x, y,
-width, height, maximised] in pixels: readable text, not a blob that Qt would have to
+``panel`` (``splitter``, ``drawer``, ``geometry``, ``layout``, ``theme``, ``numbers``) and ``events`` (``sounds``). A geometry is [x, y,
+width, height, maximised] in pixels: a text that can be read, and no blob that Qt would have to
 trust.
 """
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
@@ -148,6 +148,12 @@ def _read_words(value: Any) -> List[str]:
     return list(value)
 
 
+def _read_word(value: Any) -> str:
+    if not is_word(value):
+        _refuse('a word')
+    return str(value)
+
+
 def _read_views(value: Any) -> State:
     """Return {view: {what was chosen in it: word, number or flag}}."""
     if not isinstance(value, dict) or not all(isinstance(kept, dict) for kept in value.values()):
@@ -206,7 +212,8 @@ _LOOK = {'views': _read_words, 'of_views': _read_views, 'recording': _read_recor
          'splitter': read_sizes}
 _PANEL: Dict[str, _PartReader] = {
     'splitter': _plain(read_sizes), 'drawer': _plain(_read_flag),
-    'geometry': _plain(read_geometry)}
+    'geometry': _plain(read_geometry), 'layout': _plain(_read_word), 'theme': _plain(_read_word),
+    'numbers': _plain(_read_flag)}
 _STATE: Dict[str, _PartReader] = {
     'robots': _plain(_read_robots), 'numbers': _plain(_read_numbers), 'mode': _plain(_read_mode),
     'limits': _plain(read_limits), 'together': _plain(_read_flag),

@@ -3,6 +3,7 @@
 """The line at the bottom of the screen: the one thing that matters now."""
 from typing import Optional, Tuple
 
+from mhri.core.screen.asked import asked_and_done
 from mhri.core.screen.battery import battery_level, FINE, FLAT
 from mhri.core.screen.stop_words import stop_words
 from mhri.core.screen.views import (
@@ -110,7 +111,8 @@ def _driving(view: PanelView, waits_for: Optional[str]) -> _Line:
         return '{}  \u2013  {}  \u2013  {}: centre the stick to drive'.format(
             who, label, ', '.join(waiting)), ATTENTION
     driven = any(robot.driven for robot in view.robots)
-    return '{}  \u2013  {}  \u2013  {}'.format(who, label, 'driving' if driven else 'ready'), CALM
+    state = asked_and_done(view.robots) or ('driving' if driven else 'ready')
+    return '{}  \u2013  {}  \u2013  {}'.format(who, label, state), CALM
 
 
 def _with_batteries(view: PanelView, line: _Line) -> _Line:

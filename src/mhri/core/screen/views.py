@@ -71,8 +71,14 @@ class RobotView:
     'operator', 'task'), ``stands`` why it is kept still ('', 'stopped', 'not_heard', 'joining'),
     ``waits`` is true while it waits for a centred stick, ``stop_latched`` once
     its guard has confirmed the stop. ``hardware_stop`` is true while the robot's own emergency stop
-    holds it, None if nothing tells. ``power`` says in words what was done to its motor power
-    (:mod:`mhri.core.driving.motor_power`), '' for nothing, ``offers_power`` whether it can be cut.
+    holds it, None where nothing tells. ``power`` says in words what was done to the power of its
+    motors (:mod:`mhri.core.driving.motor_power`), '' where nothing was, ``offers_power`` whether
+    anything can be. ``sent_mps`` and ``sent_rad_s`` are the velocity last sent to it (None: not
+    known), ``reached`` is false while nothing on it takes commands.
+
+    What the screen makes of it: ``asked`` is the operator's command [m/s, rad/s] where the robot has
+    done something else for a moment, else None; ``why`` says in a sentence why it stands though the
+    stick is held, '' for nothing.
     """
 
     name: str
@@ -105,6 +111,11 @@ class RobotView:
     offers_power: bool = False
     hardware_stop: Optional[bool] = None
     number: int = 0
+    sent_mps: Optional[float] = None
+    sent_rad_s: Optional[float] = None
+    reached: bool = True
+    asked: Optional[Tuple[float, float]] = None
+    why: str = ''
 
 
 @dataclass(frozen=True)
@@ -166,17 +177,18 @@ class PanelView:
     """Everything the panel shows at one instant.
 
     ``mode`` is the source in force as the mux last said (None: the mux has not been heard);
-    ``sources`` are (name, label) of the drop-down in order, each labelled with its device if known;
-    ``devices`` are what is known about these. ``stop_all`` is true while everything is stopped.
-    ``limits`` are the operator's speed limits in force [m/s, rad/s]. ``status`` is the one line at
-    the bottom, never empty; ``status_level`` one of 'calm', 'attention', 'stopped'. ``together`` is
-    true while all selected robots keep to the pace of the slowest, ``pace`` says in words what that
-    is, ``slowed`` is true while a slow link holds them back. ``camera_bits_per_s`` is what all
-    pictures on show take of the network [bit/s]. ``heard`` is what the voice node heard last, None
-    before that. ``control`` is who drives, ``answers`` is false while the gates are not heard,
-    ``stop_taken`` true once they have confirmed the stop. ``advice`` says what keeps the source in
-    force from driving, and the remedy; '' for nothing. ``dead_man`` is false while the dead-man
-    buttons of pads need not be held.
+    ``sources`` are (name, label) of the drop-down in order, each called by its device where that is
+    known; ``devices`` are what is known of these. ``stop_all`` is true while everything
+    is stopped. ``limits`` are the operator's speed limits in force [m/s, rad/s]. ``status`` is the
+    one line at the bottom, never empty; ``status_level`` one of 'calm', 'attention', 'stopped'.
+    ``together`` is true while all selected robots are held to the pace of the slowest, ``pace``
+    says in words what that is, ``slowed`` is true while a slow link holds them back.
+    ``camera_bits_per_s`` is what all pictures on show take of the network. ``heard`` is what the
+    voice node heard last, None before that. ``control`` is who drives, ``answers`` is false while
+    the gates are not heard, ``stop_taken`` true once they have said that the stop is in force.
+    ``advice`` says what keeps the source that drives from doing so, and the remedy; '' for nothing.
+    ``dead_man`` is false while the dead-man buttons of pads need not be held. ``asked`` is what the
+    mux commands now [m/s, rad/s], ``waits_for`` its word on what it waits for.
     """
 
     ros: str = ROS_STARTING
@@ -199,3 +211,5 @@ class PanelView:
     control: ControlView = ControlView()
     answers: bool = True
     stop_taken: bool = True
+    asked: Tuple[float, float] = (0.0, 0.0)
+    waits_for: str = ''

@@ -44,6 +44,11 @@ def _after(words: _Words, phrases: Iterable[str]) -> Iterator[_Words]:
             yield words[len(start):]
 
 
+def _seldom(text: str) -> str:
+    """Write in JSGF what may be left out, and mostly is: it must not stand for another word."""
+    return '(/0.9/ <NULL> | /0.1/ {})'.format(text)
+
+
 def _any_of(phrases: Iterable[str]) -> str:
     """Write alternatives in JSGF."""
     return '(' + ' | '.join(sorted(set(phrases))) + ')'
@@ -112,10 +117,12 @@ class Grammar:
                 phrase for phrases in language.sources.values() for phrase in phrases)))
         if self._robots:
             actions = [phrase for action in ROBOT_ACTIONS for phrase in language.robots[action]]
-            more = ' [{} <robot>]'.format(_any_of(language.joiners)) if language.joiners else ''
-            others.append('{} <robot>{}'.format(_any_of(actions), more))
-        please, before, after = ('[{}]'.format(_any_of(phrases)) if phrases else '' for phrases in (
-            language.please, language.stop_before, language.stop_after))
+            more = (_seldom('({} <robot>)'.format(_any_of(language.joiners)))
+                    if language.joiners else '')
+            others.append('{} <robot> {}'.format(_any_of(actions), more))
+        please = _seldom(_any_of(language.please)) if language.please else ''
+        before, after = ('[{}]'.format(_any_of(phrases)) if phrases else ''
+                         for phrases in (language.stop_before, language.stop_after))
         rules = ['#JSGF V1.0;', 'grammar mhri;']
         if self._robots:
             rules.append('<robot> = {};'.format(_any_of(self._robots)))

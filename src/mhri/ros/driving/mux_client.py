@@ -6,10 +6,11 @@ Publishes ``/mux_in/mode_select`` (``mhri/ControlMode``) and ``/mux_in/speed_lim
 (``geometry_msgs/Twist``, latched); while this screen drives also ``/mux_in/joy``
 (``sensor_msgs/Joy``) and ``/robot_controller/robot_select`` (``mhri/RobotSelect``, latched).
 Subscribes ``/mux/mode``, ``/mux/speed_limit``, ``/mux/waits_for``, ``/mux/advice``,
-``/mux/dead_man``, ``/robot_controller/stop_all``, and believes only the mux in force
-(:mod:`mhri.ros.driving.in_force`). Calls ``/mux/set_stop_all`` on a thread of its own.
+``/mux/dead_man``, ``/robot_controller/stop_all``, ``/robot_controller/twist``, and believes only
+the mux in force (:mod:`mhri.ros.driving.in_force`). Calls ``/mux/set_stop_all`` on a thread of its own.
 """
 import threading
+import time
 
 from geometry_msgs.msg import Twist
 import rospy
@@ -26,6 +27,8 @@ from mhri.ros.graph.rospy_inside import PromptPublisher, publishers
 from mhri.ros.worker import Worker
 
 RETRY_S = 0.5
+# The mux repeats a command at 20 Hz: an older one is over.
+ASKED_S = 0.3
 
 
 class MuxClient:
@@ -44,6 +47,7 @@ class MuxClient:
         self._mode = None
         self._limits = None
         self._waits_for = None
+        self._asked, self._asked_at = (0.0, 0.0), 0.0
         #: what keeps the active source from driving, as a sentence; '' for nothing
         self.advice = ''
         #: whether the dead-man buttons of pads must be held
@@ -66,7 +70,8 @@ class MuxClient:
                 ('/mux/waits_for', String, self._on_waits),
                 ('/mux/advice', String, self._on_advice),
                 ('/mux/dead_man', Bool, self._on_dead_man),
-                ('/robot_controller/stop_all', Bool, self._hear_stop))]
+                ('/robot_controller/stop_all', Bool, self._hear_stop),
+                ('/robot_controller/twist', Twist, self._on_twist))]
         self._topics = [self._heard, self._select_mode, self._speed] + heard
         self._force.start()
         self._stopper = Worker('stop_all', self._keep_stopping, RETRY_S).start()
@@ -106,6 +111,13 @@ class MuxClient:
     def _on_waits(self, message):
         with self._lock:
             self._waits_for = tidy_text(message.data)
+
+    def _on_twist(self, message):
+        self._asked, self._asked_at = (message.linear.x, message.angular.z), time.monotonic()
+
+    def asked(self):
+        """Return what the mux commands now (m/s, rad/s); it repeats whatever is not zero."""
+        return self._asked if time.monotonic() - self._asked_at < ASKED_S else (0.0, 0.0)
 
     def _on_advice(self, message):
         self.advice = tidy_text(message.data)

@@ -255,6 +255,7 @@ def seen_by_gates(view, gate, answers):
         view, driven=is_driven(gate) and bool(gate.topic), guarded=gate.guarded,
         obeys=gate.obeys, stands=gate.stands, power=gate.power,
         waits=gate.stands == RobotGate.JOINING, stop_latched=gate.stop_confirmed,
+        sent_mps=gate.sent.linear.x, sent_rad_s=gate.sent.angular.z, reached=bool(gate.topic),
         note=stands if stands and view.link == LIVE else view.note,
         slow=view.slow or bool(stands)))
 

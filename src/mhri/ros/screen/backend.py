@@ -18,6 +18,7 @@ from mhri.core.driving.control import Claim
 from mhri.core.driving.group_speed import pace_words
 from mhri.core.recording.recording import CHOICES, RECORDING
 from mhri.core.driving.selection import Selection
+from mhri.core.screen.asked import AskedAndDone
 from mhri.core.screen.status import status_line
 from mhri.core.screen.views import (
     ControlView, PanelView, ROS_CONNECTED, ROS_CUT_OFF, ROS_NO_MASTER, ROS_STARTING, RobotView)
@@ -61,13 +62,9 @@ class ScreenBackend:
         self._fleet = Fleet(self._types, self._gates, self._feeder)
         self._jobs = PanelJobs(self._types, self._events)
         self._together = False
-        self._mux = None
-        self._watch = None
-        self._requests = None
-        self._diagnostics = None
-        self._devices = None
-        self._first_limits = None
-        self._first_mode = None
+        self._asked = AskedAndDone()
+        self._mux = self._watch = self._requests = self._diagnostics = self._devices = None
+        self._first_limits = self._first_mode = None
         self._pressed = False
         self._stopped_by_gates = False
         self._stop_note = ''
@@ -340,8 +337,9 @@ class ScreenBackend:
         """Return the :class:`PanelView` of this moment."""
         mode, limits, waits_for = self._mux.state() if self._mux else (None, None, None)
         selected = frozenset(self.selection.selected)
-        robots = tuple(self._robot_view(name, name in selected)
-                       for name in self.selection.robots)
+        asked = self._mux.asked() if self._mux else (0.0, 0.0)
+        robots = self._asked.compare((self._robot_view(name, name in selected)
+                                      for name in self.selection.robots), asked, time.monotonic())
         answers = self._mux is None or self._gates.answers()
         gates = self._gates.state() if answers else None
         together = self._together if gates is None else gates.together
@@ -356,7 +354,7 @@ class ScreenBackend:
             camera_bits_per_s=self._fleet.camera_bits_per_s(),
             **(self._devices.view() if self._devices else {}),
             control=self._control(), answers=answers,
-            stop_taken=answers and self._stopped_by_gates,
+            stop_taken=answers and self._stopped_by_gates, asked=asked, waits_for=waits_for or '',
             **({'advice': self._mux.advice, 'dead_man': self._mux.dead_man} if self._mux else {}))
         status, level = status_line(view, waits_for, self.master_uri)
         return replace(view, status=status, status_level=level)

@@ -1,0 +1,245 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What every task is given and what it answers: poses and points in, a velocity and a sentence out.
+
+A task is a plain object: it is asked twenty times a second by :mod:`mhri.core.tasks.run`, which
+keeps it from obstacles, ends it when it has to, and brings its robot to rest.
+"""
+from dataclasses import dataclass, field
+import math
+from typing import Callable, Dict, Mapping, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from mhri.core.config import parse_yaml, Section
+from mhri.core.driving.limits import Velocity, ZERO
+from mhri.core.robots.mocap import Pose
+from mhri.core.robots.robot_types import Limits
+
+# How a task is getting on.
+RUNNING, WAITING = 'running', 'waiting'
+# How it ended.
+DONE, TIMEOUT, BLOCKED, LOST = 'done', 'timeout', 'blocked', 'lost'
+TAKEN_OVER, STOPPED, FAILED = 'taken_over', 'stopped', 'failed'
+ENDS = (DONE, TIMEOUT, BLOCKED, LOST, TAKEN_OVER, STOPPED, FAILED)
+
+NOWHERE = np.zeros((0, 2))
+MOST_CORNERS = 1000
+
+
+@dataclass(frozen=True)
+class Body:
+    """What a robot can do: radius of the disc around all of it [m], limits of its speed."""
+
+    radius_m: float
+    limits: Limits
+
+
+@dataclass(frozen=True)
+class Other:
+    """Another robot that is seen in the same frame.
+
+    ``goes_first`` is true where this robot has to let it pass: it is on a task, too, and has the
+    lower number.
+    """
+
+    pose: Pose
+    goes_first: bool = False
+
+
+@dataclass(frozen=True)
+class Senses:
+    """What a robot senses at one instant.
+
+    ``pose`` is its place by motion capture where that sees it, else by its own odometry;
+    ``odometry`` is the latter in any case, ``captured`` the former or None. ``points`` is an array
+    (n, 2) of what its laser has met, in its own frame [m]: x ahead, y to the left. ``others`` are
+    robots in the frame of ``pose``, by their names.
+    """
+
+    now_s: float
+    pose: Pose
+    odometry: Pose
+    captured: Optional[Pose] = None
+    points: np.ndarray = field(default_factory=lambda: NOWHERE)
+    others: Mapping[str, Other] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Step:
+    """What a task answers: the velocity it wants, how it is getting on, and that in a sentence.
+
+    ``left_m`` is the way that is left [m], None where that means nothing; ``said`` what is worth a
+    line of its own, once.
+    """
+
+    velocity: Velocity = ZERO
+    state: str = RUNNING
+    text: str = ''
+    left_m: Optional[float] = None
+    said: Tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Start:
+    """Who is started: the robot, its place in the team, its body, and its trail (odometry)."""
+
+    robot: str
+    team: Tuple[str, ...]
+    body: Body
+    trail: Tuple[Pose, ...] = ()
+
+    @property
+    def place(self) -> int:
+        """Its place in the team, from 0."""
+        return self.team.index(self.robot)
+
+
+class Task:
+    """One robot's task: a subclass in a file of its own, and a row in :mod:`mhri.core.tasks.rows`.
+
+    ``pass_by`` names robots that need no room kept to: whoever is followed is close by intent.
+    """
+
+    pass_by: Tuple[str, ...] = ()
+
+    def step(self, senses: Senses) -> Step:
+        """Return what the robot shall do now; called 20 times a second."""
+        raise NotImplementedError
+
+
+Corners = Tuple[Tuple[float, float], ...]
+Value = Union[float, str, None, Corners]
+NUMBER, TEXT, ROUTE = 'number', 'text', 'route'
+
+
+@dataclass(frozen=True)
+class Field:
+    """A parameter of a task.
+
+    :param default: None: may be left out; REQUIRED: has to be given
+    :param kind: NUMBER in [least, greatest], TEXT, or ROUTE: a list of [x, y] [m]
+    """
+
+    name: str
+    unit: str
+    text: str
+    default: Value
+    least: float = math.nan
+    greatest: float = math.nan
+    kind: str = NUMBER
+
+
+REQUIRED = '\0required'
+
+
+class Values:
+    """The parameters of one task, read and checked."""
+
+    def __init__(self, values: Mapping[str, Value]) -> None:
+        self._values = dict(values)
+
+    def number(self, name: str) -> float:
+        """Return a number that is there."""
+        value = self._values[name]
+        assert isinstance(value, float)
+        return value
+
+    def maybe(self, name: str) -> Optional[float]:
+        """Return a number, None where it was left out."""
+        return None if self._values[name] is None else self.number(name)
+
+    def text(self, name: str) -> str:
+        """Return a text."""
+        value = self._values[name]
+        assert isinstance(value, str)
+        return value
+
+    def route(self, name: str) -> Corners:
+        """Return a list of places (x, y) [m]."""
+        value = self._values[name]
+        assert isinstance(value, tuple)
+        return value
+
+
+@dataclass(frozen=True)
+class TaskKind:
+    """A row: what the task is called, what it does, its parameters, and how one is begun.
+
+    :param make: function (values, start) -> :class:`Task`; it raises ValueError with a sentence
+        where the robot cannot be started
+    :param needs_others: it has to know where other robots are: poses have to share a frame
+    """
+
+    key: str
+    label: str
+    text: str
+    fields: Tuple[Field, ...]
+    make: Callable[[Values, Start], Task]
+    needs_others: bool = False
+
+    def read(self, parameters: str) -> Values:
+        """Return the parameters of a YAML text.
+
+        :raises ConfigError: names the parameter that is wrong, and what would be right
+        """
+        origin = 'task ' + self.key
+        section = parse_yaml(parameters if parameters.strip() else '{}', origin)
+        values = Values({row.name: _value(section, row) for row in self.fields})
+        section.close()
+        return values
+
+
+def _value(section: Section, row: Field) -> Value:
+    if row.default == REQUIRED and row.name not in section:
+        raise section.error(row.name, 'is missing: {}{}'.format(
+            row.text, ' [{}]'.format(row.unit) if row.unit else ''))
+    if row.kind == NUMBER:
+        return section.number(row.name, row.least, row.greatest,
+                              row.default if isinstance(row.default, float) else None)
+    if row.kind == TEXT:
+        return section.text(row.name, row.default if isinstance(row.default, str) else '')
+    return _route(section, row.name)
+
+
+def _route(section: Section, name: str) -> Corners:
+    rows = section.take(name)
+    good = isinstance(rows, list) and 1 <= len(rows) <= MOST_CORNERS and all(
+        isinstance(row, list) and len(row) == 2 and all(
+            type(value) in (int, float) and abs(value) <= 1000.0 for value in row)
+        for row in rows)
+    if not good or not isinstance(rows, list):
+        raise section.error(name, 'expected a list of [x, y] [m], e.g. [[1.0, 0.0], [1.0, 2.0]]')
+    return tuple((float(row[0]), float(row[1])) for row in rows)
+
+
+def turn_to(pose: Pose, x_m: float, y_m: float) -> float:
+    """Return by how much a robot has to turn to look at a place [rad, (-pi, pi]]."""
+    return wrapped(math.atan2(y_m - pose.y_m, x_m - pose.x_m) - pose.heading_rad)
+
+
+def way(pose: Pose, x_m: float, y_m: float) -> float:
+    """Return the way from a pose to a place [m]."""
+    return math.hypot(x_m - pose.x_m, y_m - pose.y_m)
+
+
+def wrapped(angle_rad: float) -> float:
+    """Return an angle in [-pi, pi]."""
+    return math.remainder(angle_rad, 2.0 * math.pi)
+
+
+def beside(pose: Pose, ahead_m: float, left_m: float) -> Tuple[float, float]:
+    """Return the place (x, y) [m] that lies ahead and to the left of a pose."""
+    cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
+    return (pose.x_m + ahead_m * cos - left_m * sin, pose.y_m + ahead_m * sin + left_m * cos)
+
+
+def by_key(kinds: Sequence[TaskKind]) -> Dict[str, TaskKind]:
+    """Return {key: kind}."""
+    return {kind.key: kind for kind in kinds}
+
+
+def shown(pose: Pose) -> str:
+    """Return a pose for a person."""
+    return 'x {:.2f} m, y {:.2f} m, heading {:.0f} degrees'.format(
+        pose.x_m, pose.y_m, math.degrees(pose.heading_rad))

@@ -1,0 +1,148 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The obstacle brake: how fast a robot may go, with what its laser measures in the way.
+
+The robot is a disc, driven along the arc of its command. Its speed is kept to what it can lose
+within the way that is free, after the time that scan and command take: zero before contact.
+"""
+from dataclasses import dataclass
+import math
+from typing import Optional
+
+import numpy as np
+
+from mhri.core.driving.limits import Velocity
+from mhri.core.robots.mocap import Pose
+from mhri.core.tasks.base import Body, NOWHERE
+
+# A scan that is older is trusted by nobody [s].
+SCAN_OLD_S = 0.3
+# What is left between the robot and what is in its way [m].
+MARGIN_M = 0.08
+# What a TurtleBot loses with its smoother on is 0.8 to 1 m/s^2; and the time from a scan to the
+# moment at which the command that it led to acts.
+BRAKES_MPS2, REACTION_S = 0.5, 0.2
+# Backing away without an eye for it [m/s].
+CRAWL_MPS = 0.1
+# What was met is remembered this far around the robot while no scan looks there [m].
+KEEP_M = 1.2
+_GRID_M = 0.03
+_EDGE_M = 0.05
+
+
+@dataclass(frozen=True)
+class Scan:
+    """A laser scan: ranges [m] with NaN where nothing was measured, angles [rad], 0 is ahead."""
+
+    ranges: np.ndarray
+    angle_min: float
+    step: float
+    range_min_m: float
+    range_max_m: float
+
+    def points(self) -> np.ndarray:
+        """Return what was met as an array (n, 2) in the robot's frame [m]."""
+        met = np.isfinite(self.ranges)
+        angles = self.angle_min + self.step * np.flatnonzero(met)
+        return self.ranges[met][:, None] * np.column_stack((np.cos(angles), np.sin(angles)))
+
+    def looks_at(self, points: np.ndarray) -> np.ndarray:
+        """Return for each point whether this scan would have met it."""
+        far = np.hypot(points[:, 0], points[:, 1])
+        turn = np.mod(np.arctan2(points[:, 1], points[:, 0]) - self.angle_min, 2.0 * math.pi)
+        seen: np.ndarray = ((turn <= abs(self.step) * len(self.ranges))
+                            & (far > self.range_min_m + _EDGE_M) & (far < self.range_max_m))
+        return seen
+
+
+class Surroundings:
+    """What a robot's laser has met: the newest scan, and what it no longer looks at.
+
+    Many lasers do not see what is nearer than 0.45 m, or only what is ahead: what came that close
+    is remembered, in the frame of odometry, until a scan has looked there again.
+    """
+
+    def __init__(self) -> None:
+        self._met = NOWHERE
+
+    def see(self, scan: Scan, odometry: Pose) -> None:
+        """Take in a scan that was made here."""
+        kept = self.around(odometry)
+        kept = kept[~scan.looks_at(kept) & (np.hypot(kept[:, 0], kept[:, 1]) < KEEP_M)]
+        if len(kept):
+            kept = np.unique(np.round(kept / _GRID_M), axis=0) * _GRID_M
+        turn = _turned(odometry.heading_rad)
+        self._met = np.vstack((scan.points(), kept)) @ turn.T + (odometry.x_m, odometry.y_m)
+
+    def around(self, odometry: Pose) -> np.ndarray:
+        """Return what is around the robot, were it here: an array (n, 2) in its frame [m]."""
+        found: np.ndarray = (self._met - (odometry.x_m, odometry.y_m)) @ _turned(
+            odometry.heading_rad)
+        return found
+
+
+def _turned(angle_rad: float) -> np.ndarray:
+    cos, sin = math.cos(angle_rad), math.sin(angle_rad)
+    return np.array(((cos, -sin), (sin, cos)))
+
+
+def free_way(points: np.ndarray, radius_m: float, velocity: Velocity) -> float:
+    """Return how far a disc gets along the arc of a velocity before it touches a point [m].
+
+    :param points: array (n, 2) in the robot's frame [m]
+    :returns: inf where nothing is in the way; 0 where it touches already and would go on; half a
+        turn at most is looked at
+    """
+    if not len(points) or velocity.linear_mps == 0.0:
+        return math.inf
+    x, y = points[:, 0], points[:, 1]
+    if velocity.linear_mps < 0.0:
+        x = -x
+    curvature = velocity.angular_rad_s / abs(velocity.linear_mps)
+    if velocity.linear_mps < 0.0:
+        curvature = -curvature
+    if abs(curvature) < 1e-3:
+        near = (np.abs(y) < radius_m) & (x > 0.0)
+        ways = x[near] - np.sqrt(radius_m ** 2 - y[near] ** 2)
+    else:
+        ways = _along_arc(x, y if curvature > 0.0 else -y, 1.0 / abs(curvature), radius_m)
+    return max(0.0, float(ways.min())) if len(ways) else math.inf
+
+
+def _along_arc(x: np.ndarray, y: np.ndarray, turn_m: float, radius_m: float) -> np.ndarray:
+    """Return the ways [m] along a left turn of that radius to the points which are touched."""
+    far = np.hypot(x, y - turn_m)
+    near = np.abs(far - turn_m) < radius_m
+    far, angle = far[near], np.mod(np.arctan2(x[near], turn_m - y[near]), 2.0 * math.pi)
+    cosine = (turn_m ** 2 + far ** 2 - radius_m ** 2) / np.maximum(2.0 * turn_m * far, 1e-9)
+    travelled = angle - np.arccos(np.clip(cosine, -1.0, 1.0))
+    ways: np.ndarray = turn_m * travelled[angle < math.pi]
+    return ways
+
+
+def stopping_speed(way_m: float, delay_s: float) -> float:
+    """Return the speed [m/s] that is lost within a way, after a delay in which it is kept."""
+    if not math.isfinite(way_m):
+        return math.inf
+    lag = BRAKES_MPS2 * delay_s
+    return math.sqrt(lag * lag + 2.0 * BRAKES_MPS2 * max(0.0, way_m)) - lag
+
+
+def braked(velocity: Velocity, points: np.ndarray, body: Body,
+           age_s: Optional[float]) -> Velocity:
+    """Return the velocity that a robot may have; turning on the spot is always allowed.
+
+    :param velocity: what is wanted
+    :param points: what its laser has met, in its frame [m]
+    :param age_s: of the newest scan [s], None before the first: no way forward then, and a crawl
+        backward
+    """
+    wanted, turn = velocity.linear_mps, velocity.angular_rad_s
+    if age_s is None or age_s > SCAN_OLD_S:
+        return Velocity(min(0.0, max(wanted, -CRAWL_MPS)), turn)
+    # Slower with the same turn is another arc: looked at once more.
+    for _ in range(2):
+        way_m = free_way(points, body.radius_m + MARGIN_M, Velocity(wanted, turn))
+        most = stopping_speed(way_m, REACTION_S + age_s)
+        wanted = max(-most, min(most, wanted))
+    return Velocity(0.0 if abs(wanted) < 1e-3 else wanted, turn)

@@ -1,0 +1,85 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The task goto: drive to a place, and turn to a heading there."""
+import math
+from typing import Optional
+
+from mhri.core.robots.mocap import Pose
+from mhri.core.tasks.base import (
+    BLOCKED, DONE, Field, REQUIRED, Senses, Start, Step, Task, TaskKind, Values, WAITING, way)
+from mhri.core.tasks.pilot import Pilot
+
+SPEED = Field('speed', 'm/s', 'the most it drives', 0.2, 0.02, 2.0)
+TIMEOUT_S = Field('timeout', 's', 'give up after so long, 0 for never', 120.0, 0.0, 86400.0)
+# As near as this the place counts as reached [m]; it has to be left by more to count as left.
+WITHIN_M = 0.05
+# No nearer to the place by this [m] for so long [s]: there is no way.
+PROGRESS_M, PATIENCE_S = 0.1, 25.0
+# In a team each keeps this far from the next [m].
+SPREAD_M = 0.7
+
+
+class Goto(Task):
+    """Drives to one place.
+
+    :param heading_rad: to look at there, None: as it comes
+    :param rest: come to rest there
+    """
+
+    def __init__(self, start: Start, x_m: float, y_m: float, heading_rad: Optional[float],
+                 speed_mps: float, rest: bool = True, within_m: float = WITHIN_M) -> None:
+        self._pilot = Pilot(start.body, speed_mps)
+        self._place = (x_m, y_m)
+        self._heading_rad = heading_rad
+        self._rest = rest
+        self._within_m = within_m
+        self._there = False
+        self._nearest_m = math.inf
+        self._nearer_at = -math.inf
+
+    def step(self, senses: Senses) -> Step:
+        """Return what leads there from the pose."""
+        return self.from_pose(senses, senses.pose)
+
+    def from_pose(self, senses: Senses, pose: Pose) -> Step:
+        """Return what leads there from a pose that is in the frame of the place."""
+        left_m = way(pose, *self._place)
+        self._there = self._there or left_m <= self._within_m
+        if self._there:
+            return self._turn(pose, left_m)
+        if left_m < self._nearest_m - PROGRESS_M or self._nearer_at == -math.inf:
+            self._nearest_m, self._nearer_at = left_m, senses.now_s
+        if senses.now_s - self._nearer_at > PATIENCE_S:
+            return Step(state=BLOCKED, left_m=left_m, text='it came no nearer to its goal for '
+                        '{:.0f} s: {:.1f} m are left'.format(PATIENCE_S, left_m))
+        velocity = self._pilot.towards(senses, pose, *self._place, rest=self._rest)
+        if velocity is None:
+            return Step(state=WAITING, left_m=left_m, text='no way around what is in front of it')
+        return Step(velocity, left_m=left_m, text='{:.1f} m to go'.format(left_m))
+
+    def _turn(self, pose: Pose, left_m: float) -> Step:
+        velocity = None if self._heading_rad is None \
+            else self._pilot.turned(pose, self._heading_rad)
+        if velocity is None:
+            return Step(state=DONE, left_m=left_m,
+                        text='it is there, {:.2f} m beside the goal'.format(left_m))
+        return Step(velocity, left_m=left_m, text='turns to its heading')
+
+
+def make(values: Values, start: Start) -> Goto:
+    """Begin; a team stands side by side across its heading, the first one on the place."""
+    heading = values.maybe('heading')
+    x, y = values.number('x'), values.number('y')
+    # 0, 1, -1, 2, -2 ... to the left and right of the place.
+    aside = SPREAD_M * ((start.place + 1) // 2) * (1.0 if start.place % 2 else -1.0)
+    across = (heading or 0.0) + 0.5 * math.pi
+    return Goto(start, x + aside * math.cos(across), y + aside * math.sin(across), heading,
+                values.number('speed'))
+
+
+ROW = TaskKind(
+    'goto', 'Go to', 'to a place, around a single thing in the way; several robots side by side',
+    (Field('x', 'm', 'ahead of where its frame begins', REQUIRED, -1000.0, 1000.0),
+     Field('y', 'm', 'to the left of where its frame begins', REQUIRED, -1000.0, 1000.0),
+     Field('heading', 'rad', 'where it looks at the end', None, -7.0, 7.0), SPEED, TIMEOUT_S),
+    make)

@@ -1,0 +1,99 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The task return: back along the robot's own trail, by odometry."""
+import math
+from typing import List, Optional, Tuple
+
+from mhri.core.robots.mocap import Pose
+from mhri.core.tasks.base import (
+    Corners, DONE, Field, Senses, Start, Step, Task, TaskKind, Values, WAITING, way, wrapped)
+from mhri.core.tasks.goto import SPEED, TIMEOUT_S
+from mhri.core.tasks.pilot import Pilot
+
+# Places of a trail are this far apart [m], and so many at most: the oldest go.
+STEP_M, MOST_PLACES = 0.1, 5000
+# A place counts as passed when the robot is this near [m]; the last one as reached.
+PASSED_M, THERE_M = 0.2, 0.06
+
+
+class Trail:
+    """Where a robot has been, in the frame of its odometry."""
+
+    def __init__(self) -> None:
+        self._places: List[Pose] = []
+
+    def add(self, pose: Pose) -> None:
+        """Take in a pose; one that leaps (its odometry began anew) begins the trail anew."""
+        if self._places:
+            moved_m = way(self._places[-1], pose.x_m, pose.y_m)
+            if moved_m < STEP_M:
+                return
+            if moved_m > 1.0:
+                self._places.clear()
+        self._places.append(pose)
+        del self._places[:-MOST_PLACES]
+
+    def places(self) -> Tuple[Pose, ...]:
+        """Return them, the oldest first."""
+        return tuple(self._places)
+
+
+class Path(Task):
+    """Drives along places one after the other.
+
+    :param places: (x, y) [m], the first one first
+    :param heading_rad: to look at in the end, None: as it comes
+    :param by_odometry: they are in the frame of odometry, not in that of the pose
+    """
+
+    def __init__(self, start: Start, places: Corners, speed_mps: float,
+                 heading_rad: Optional[float] = None, by_odometry: bool = False,
+                 passed_m: float = PASSED_M) -> None:
+        self._pilot = Pilot(start.body, speed_mps)
+        self._places = list(places)
+        self._heading_rad = heading_rad
+        self._by_odometry = by_odometry
+        self._passed_m = passed_m
+
+    def step(self, senses: Senses) -> Step:
+        """Return what leads to the next place."""
+        pose = senses.odometry if self._by_odometry else senses.pose
+        while len(self._places) > 1 and way(pose, *self._places[0]) < self._passed_m:
+            self._places.pop(0)
+        last = len(self._places) == 1
+        near_m = way(pose, *self._places[0])
+        if last and near_m < THERE_M:
+            velocity = None if self._heading_rad is None \
+                else self._pilot.turned(pose, self._heading_rad)
+            if velocity is None:
+                return Step(state=DONE, left_m=0.0, text='it is there')
+            return Step(velocity, left_m=0.0, text='turns to its heading')
+        left_m = near_m + sum(math.dist(*pair) for pair in zip(self._places, self._places[1:]))
+        velocity = self._pilot.towards(senses, pose, *self._places[0], rest=last)
+        if velocity is None:
+            return Step(state=WAITING, left_m=left_m, text='something is on its way')
+        return Step(velocity, left_m=left_m, text='{:.1f} m to go'.format(left_m))
+
+
+def make(values: Values, start: Start) -> Path:
+    """Begin with the newest place of the trail.
+
+    :raises ValueError: the robot has no trail
+    """
+    most_m, places, gone_m = values.number('distance'), list(reversed(start.trail)), 0.0
+    if not places:
+        raise ValueError('it has no trail yet: nobody has seen it move')
+    kept = [places[0]]
+    for pose in places[1:]:
+        gone_m += way(kept[-1], pose.x_m, pose.y_m)
+        if most_m and gone_m > most_m:
+            break
+        kept.append(pose)
+    return Path(start, tuple((pose.x_m, pose.y_m) for pose in kept), values.number('speed'),
+                wrapped(kept[-1].heading_rad), by_odometry=True)
+
+
+ROW = TaskKind(
+    'return', 'Return', 'back along its own trail to where it was first seen, by odometry',
+    (Field('distance', 'm', 'go back by no more than this, 0 for all of it', 0.0, 0.0, 10000.0),
+     SPEED, TIMEOUT_S), make)

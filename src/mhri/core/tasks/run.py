@@ -1,0 +1,223 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""One robot on its task: when it may drive, what holds it, and everything that ends it.
+
+States and what leads out of them::
+
+    readying  the robot is not heard yet, zeros   all is heard -> joining
+    joining   zeros, until the gates say that     it obeys -> under way
+              the robot obeys its task
+    under way what the task wants, behind the     the task is done, or anything of _END -> ended
+              brake
+    ended     zeros                               (nothing): nothing resumes by itself
+"""
+from dataclasses import dataclass
+import math
+from typing import List, Optional, Tuple
+
+from mhri.core.driving.gate import HELD, OPERATOR, TASK
+from mhri.core.driving.limits import Velocity, ZERO
+from mhri.core.screen.battery import FLAT_AT
+from mhri.core.tasks.base import (
+    BLOCKED, Body, ENDS, FAILED, LOST, RUNNING, Senses, Step, STOPPED, TAKEN_OVER, Task, TIMEOUT,
+    turn_to, WAITING, way)
+from mhri.core.tasks.brake import braked, SCAN_OLD_S
+
+READYING, JOINING, UNDER_WAY, ENDED = 'readying', 'joining', 'under_way', 'ended'
+# Odometry or place that is older is lost [s]; what is new has so long to be heard.
+OLD_S, READY_S, JOIN_S = 0.5, 5.0, 3.0
+BLOCKED_AFTER_S = 5.0
+# Who goes second stands while the other is within this [m] and this far off its heading [rad].
+PASS_M, PASS_RAD = 1.0, 1.2
+_STANDS_MPS = 0.02
+_HELD_ANEW_S = 1.0
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What is known of a robot at one instant, beside what it senses.
+
+    ``answers`` is whether the gates are heard, ``known`` whether they know the robot, ``obeys`` and
+    ``stands`` what they say of it. Ages [s] are None before anything was heard; ``place_age_s`` is
+    that of motion capture, 0 where that does not see the robot; ``has_laser`` is false for a type
+    without one, which has no brake. ``battery`` is in [0, 1], None where it is not known.
+    """
+
+    now_s: float
+    stop_all: bool = False
+    answers: bool = True
+    known: bool = True
+    obeys: str = ''
+    stands: str = ''
+    odometry_age_s: Optional[float] = None
+    place_age_s: Optional[float] = 0.0
+    scan_age_s: Optional[float] = None
+    has_laser: bool = True
+    battery: Optional[float] = None
+    senses: Optional[Senses] = None
+
+
+class RobotRun:
+    """The run of one task by one robot.
+
+    :param timeout_s: 0 for none
+    :param now_s: when it was asked for
+    """
+
+    def __init__(self, robot: str, task: Optional[Task], body: Body, timeout_s: float,
+                 now_s: float) -> None:
+        self.robot = robot
+        self._task = task
+        self._body = body
+        self._timeout_s = timeout_s
+        self._begun_s = self._phase_s = now_s
+        self.phase = READYING
+        self.state = WAITING
+        self.text = 'waits for its sensors'
+        self.left_m: Optional[float] = None
+        self.said: List[str] = []
+        self.ended_s = math.inf
+        self._held_since: Optional[float] = None
+        self._held_last = 0.0
+
+    def end(self, state: str, text: str, now_s: float) -> None:
+        """End it, unless it has ended."""
+        if self.phase != ENDED:
+            self.phase, self.state, self.text, self.ended_s = ENDED, state, text, now_s
+
+    def tick(self, facts: Facts) -> Velocity:
+        """Let time pass; return what the robot shall do now."""
+        if self.phase != ENDED:
+            end = self._reason(facts)
+            if end is not None:
+                self.end(*end, now_s=facts.now_s)
+        if self.phase == READYING:
+            self._get_ready(facts)
+        elif self.phase == JOINING:
+            self._join(facts)
+        elif self.phase == UNDER_WAY:
+            return self._drive(facts)
+        return ZERO
+
+    def _reason(self, facts: Facts) -> Optional[Tuple[str, str]]:
+        """Return (state, sentence) of what ends the task now, whatever it does; None for nothing."""
+        if facts.stop_all:
+            return STOPPED, 'stop-all is in force: release it, then start the task again'
+        if not facts.answers:
+            return LOST, 'the drive service does not answer'
+        if facts.obeys == OPERATOR:
+            return TAKEN_OVER, 'it is checked: the operator drives it'
+        if facts.battery is not None and facts.battery <= FLAT_AT:
+            return FAILED, 'its battery is at {:.0f} %'.format(100.0 * facts.battery)
+        if self._timeout_s and facts.now_s - self._begun_s > self._timeout_s:
+            return TIMEOUT, 'not done within {:g} s; it was: {}'.format(self._timeout_s, self.text)
+        if self.phase == READYING:
+            return self._not_ready(facts)
+        return self._lost(facts)
+
+    def _not_ready(self, facts: Facts) -> Optional[Tuple[str, str]]:
+        if facts.now_s - self._phase_s <= READY_S:
+            return None
+        if not facts.known:
+            return LOST, 'the drive service does not know it: add it to the list of robots'
+        return LOST, self.text
+
+    def _lost(self, facts: Facts) -> Optional[Tuple[str, str]]:
+        """Return what is lost of a robot that was there."""
+        if not facts.known or facts.stands == HELD or facts.stands == 'not_heard':
+            return LOST, 'the drive service does not hear it any more'
+        for age_s, what in ((facts.odometry_age_s, 'its odometry'),
+                            (facts.place_age_s, 'motion capture')):
+            if age_s is None or age_s > OLD_S:
+                return LOST, 'nothing from {} for {:.1f} s'.format(what, age_s or 0.0)
+        if self.phase == JOINING and facts.now_s - self._phase_s > JOIN_S:
+            return FAILED, 'its task does not reach it: is the enabling pedal pressed?'
+        if self.phase == UNDER_WAY and facts.obeys != TASK:
+            return LOST, 'its task did not reach it any more: start it again'
+        return None
+
+    def _get_ready(self, facts: Facts) -> None:
+        missing = _unheard(facts)
+        if missing:
+            self.text = 'waits for ' + missing
+            return
+        self.phase, self._phase_s = JOINING, facts.now_s
+        self.text = 'waits for the drive service to let it drive'
+
+    def _join(self, facts: Facts) -> None:
+        if facts.obeys == TASK:
+            self.phase, self._phase_s = UNDER_WAY, facts.now_s
+
+    def _drive(self, facts: Facts) -> Velocity:
+        """Return what the task wants, as far as the way is free."""
+        assert self._task is not None and facts.senses is not None
+        step = self._task.step(facts.senses)
+        self.left_m = step.left_m
+        self.said += step.said
+        if step.state in ENDS:
+            self.end(step.state, step.text, facts.now_s)
+            return ZERO
+        velocity = braked(step.velocity, facts.senses.points, self._body, facts.scan_age_s) \
+            if facts.has_laser else step.velocity
+        held = self._held(step, velocity, facts)
+        self._mark(held, facts.now_s)
+        self.state, self.text = (WAITING, held) if held else (RUNNING, step.text)
+        if self._held_since is not None and held \
+                and facts.now_s - self._held_since > BLOCKED_AFTER_S:
+            self.end(BLOCKED, 'for {:g} s: {}'.format(BLOCKED_AFTER_S, held), facts.now_s)
+        if self.phase == ENDED or held.startswith(_LETS_PASS):
+            return ZERO
+        return velocity
+
+    def _held(self, step: Step, velocity: Velocity, facts: Facts) -> str:
+        """Return what holds the robot, in words; '' for nothing."""
+        assert self._task is not None and facts.senses is not None
+        if step.state == WAITING:
+            return step.text
+        wants = abs(step.velocity.linear_mps) > _STANDS_MPS
+        if not wants:
+            return ''
+        first = _to_let_pass(facts.senses, self._task.pass_by) \
+            if step.velocity.linear_mps > 0.0 else ''
+        if first:
+            return _LETS_PASS + first
+        if abs(velocity.linear_mps) > _STANDS_MPS:
+            return ''
+        if facts.scan_age_s is None or facts.scan_age_s > SCAN_OLD_S:
+            return 'its laser has said nothing for {:.1f} s'.format(facts.scan_age_s or 0.0)
+        return 'something is in its way'
+
+    def _mark(self, held: str, now_s: float) -> None:
+        """Note since when it is held; moved for a moment it is not."""
+        if held:
+            self._held_since = now_s if self._held_since is None else self._held_since
+            self._held_last = now_s
+        elif now_s - self._held_last > _HELD_ANEW_S:
+            self._held_since = None
+
+
+_LETS_PASS = 'it lets pass '
+
+
+def _unheard(facts: Facts) -> str:
+    """Return what has not been heard yet, in words; '' where all is there."""
+    for missing, words in (
+            (not facts.known, 'the drive service to know it'),
+            (facts.odometry_age_s is None or facts.odometry_age_s > OLD_S, 'its odometry'),
+            (facts.place_age_s is None or facts.place_age_s > OLD_S, 'motion capture to see it'),
+            (facts.has_laser and (facts.scan_age_s is None or facts.scan_age_s > SCAN_OLD_S),
+             'its laser'),
+            (facts.senses is None, 'its sensors')):
+        if missing:
+            return words
+    return ''
+
+
+def _to_let_pass(senses: Senses, pass_by: Tuple[str, ...]) -> str:
+    """Return the robot that is in front and goes first, '' where there is none."""
+    for name, other in senses.others.items():
+        place = other.pose.x_m, other.pose.y_m
+        if other.goes_first and name not in pass_by and way(senses.pose, *place) < PASS_M \
+                and abs(turn_to(senses.pose, *place)) < PASS_RAD:
+            return name
+    return ''

@@ -1,0 +1,260 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each task in a small kinematic world: where the robot ends, what is said, what it never does."""
+import math
+from pathlib import Path
+import random
+import sys
+
+import pytest
+
+from mhri.core.config import ConfigError
+from mhri.core.robots.mocap import Pose
+from mhri.core.tasks.base import (
+    BLOCKED, DONE, FAILED, LOST, STOPPED, TAKEN_OVER, TIMEOUT, WAITING)
+from mhri.core.tasks.retrace import Trail
+from mhri.core.tasks.rows import BY_KEY, TASKS
+from mhri.core.tasks.run import BLOCKED_AFTER_S
+
+
+def alone(task, parameters, walls=room(), discs=(), **start):
+    """Let one robot do one task to its end; return it."""
+    world = World(walls, discs)
+    robot = world.add('bot1', **start)
+    robot.begin(BY_KEY[task], parameters, 0.0)
+    world.until_ended()
+    return robot
+
+
+@pytest.mark.parametrize('x, y, heading', [
+    (2.0, 1.5, None), (-2.0, 0.0, 1.0), (0.0, -2.0, 3.1), (0.4, 0.0, -1.5), (0.0, 0.0, 2.0)])
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from support.task_world import DT_S, room, World  # noqa: E402
+def test_goto_ends_where_it_was_sent(x, y, heading):
+    robot = alone('goto', '{{x: {}, y: {}{}}}'.format(
+        x, y, '' if heading is None else ', heading: {}'.format(heading)))
+    assert robot.run.state == DONE
+    assert math.hypot(robot.body.x - x, robot.body.y - y) < 0.1
+    if heading is not None:
+        assert abs(math.remainder(robot.body.yaw - heading, 2 * math.pi)) < 0.12
+    assert robot.contacts == 0
+
+
+@pytest.mark.parametrize('discs', [
+    [(1.0, 0.0, 0.15)], [(1.0, 0.1, 0.3)], [(1.2, -0.2, 0.4)], [(0.8, 0.0, 0.05)]])
+def test_goto_goes_around_a_single_thing(discs):
+    robot = alone('goto', '{x: 2.2, y: 0.0}', discs=discs)
+    assert (robot.run.state, robot.contacts) == (DONE, 0)
+    assert math.hypot(robot.body.x - 2.2, robot.body.y) < 0.1
+
+
+def test_goto_into_a_wall_says_that_it_is_blocked():
+    robot = alone('goto', '{x: 4.0, y: 0.0}')
+    assert robot.run.state == BLOCKED
+    assert robot.contacts == 0
+    assert robot.body.x < 3.0 - 0.177
+
+
+def test_goto_gives_up_in_time():
+    robot = alone('goto', '{x: 2.0, y: 0.0, timeout: 3.0}')
+    assert robot.run.state == TIMEOUT
+    assert 'not done within 3 s' in robot.run.text
+
+
+def test_a_team_stands_side_by_side():
+    world = World(room(8.0, 8.0))
+    team = ('bot1', 'bot2', 'bot3')
+    for number, name in enumerate(team):
+        world.add(name, -2.0, number - 1.0, seed=number).begin(
+            BY_KEY['goto'], '{x: 1.0, y: 0.0, heading: 0.0}', 0.0, team)
+    world.until_ended()
+    assert [robot.run.state for robot in world.robots] == [DONE] * 3
+    places = sorted(robot.body.y for robot in world.robots)
+    assert all(abs(place - want) < 0.15 for place, want in zip(places, (-0.7, 0.0, 0.7)))
+    assert sum(robot.contacts for robot in world.robots) == 0
+
+
+@pytest.mark.parametrize('side, number', [(1.0, 1), (0.6, 2)])
+def test_square_closes_and_says_its_corners(side, number):
+    robot = alone('square', '{{side: {}, number: {}}}'.format(side, number))
+    assert robot.run.state == DONE, robot.run.text
+    assert math.hypot(robot.body.odom_x, robot.body.odom_y) < 0.06
+    corners = [line for line in robot.run.said if line.startswith('corner')]
+    assert len(corners) == 4 * number
+    assert 'by odometry' in robot.run.text and 'by motion capture' in robot.run.text
+
+
+def test_hold_stands_and_says_if_pushed():
+    world = World()
+    robot = world.add('bot1')
+    robot.begin(BY_KEY['hold'], '{seconds: 2.0}', 0.0)
+    for _ in range(10):
+        world.step()
+    robot.body.x += 0.2
+    world.step()
+    assert robot.run.said == ['it was pushed by 0.20 m and 0 degrees']
+    world.until_ended()
+    assert robot.run.state == DONE
+
+
+def test_return_goes_back_along_its_trail():
+    world = World()
+    robot = world.add('bot1')
+    trail = Trail()
+    robot.begin(BY_KEY['patrol'], '{route: [[1.5, 0], [1.5, 1.5]], rounds: 1}', 0.0)
+    while robot.run.state != DONE:
+        world.step()
+        trail.add(robot.odometry())
+    robot.begin(BY_KEY['return'], '', world.now_s, trail=trail.places())
+    furthest = 0.0
+    while robot.run.state not in (DONE, BLOCKED):
+        world.step()
+        furthest = max(furthest, min(math.hypot(pose.x_m - robot.body.odom_x,
+                                                pose.y_m - robot.body.odom_y)
+                                     for pose in trail.places()))
+    assert robot.run.state == DONE
+    assert math.hypot(robot.body.odom_x, robot.body.odom_y) < 0.1
+    assert furthest < 0.25
+
+
+def test_a_trail_that_leaps_begins_anew():
+    trail = Trail()
+    for x in (0.0, 0.05, 0.2, 5.0, 5.2):
+        trail.add(Pose(x, 0.0, 0.0))
+    assert [pose.x_m for pose in trail.places()] == [5.0, 5.2]
+
+
+def test_followers_keep_their_distance_in_a_bend():
+    world = World()
+    team = ('bot2', 'bot3')
+    leader = world.add('bot1', 0.0, 0.0)
+    followers = [world.add(name, -0.9 * number, 0.0, seed=number)
+                 for number, name in enumerate(team, 1)]
+    leader.begin(BY_KEY['patrol'], '{route: [[2, 0], [2, 2], [0, 2]], rounds: 1}', 0.0)
+    for robot in followers:
+        robot.begin(BY_KEY['follow'], '{leader: bot1, distance: 0.8}', 0.0, team)
+    while leader.run.state != DONE:
+        world.step()
+        for one, two in zip(world.robots, followers):
+            assert math.hypot(one.body.x - two.body.x, one.body.y - two.body.y) < 1.3
+    for _ in range(100):
+        world.step()
+    gap = math.hypot(leader.body.x - followers[0].body.x, leader.body.y - followers[0].body.y)
+    assert 0.6 < gap < 1.0
+    assert sum(robot.contacts for robot in world.robots) == 0
+
+
+def test_following_nobody_is_said():
+    robot = alone('follow', '{leader: bot9}')
+    assert (robot.run.state, robot.run.text) == (LOST, 'nobody knows where bot9 is')
+
+
+ENDINGS = [
+    (dict(stop_all=True), STOPPED, 'stop-all'),
+    (dict(answers=False), LOST, 'drive service does not answer'),
+    (dict(obeys='operator'), TAKEN_OVER, 'it is checked'),
+    (dict(obeys=''), LOST, 'did not reach it any more'),
+    (dict(stands='not_heard'), LOST, 'does not hear it'),
+    (dict(known=False), LOST, 'does not hear it'),
+    (dict(odometry_age_s=0.6), LOST, 'nothing from its odometry for 0.6 s'),
+    (dict(place_age_s=0.7), LOST, 'nothing from motion capture for 0.7 s'),
+    (dict(battery=0.1), FAILED, 'its battery is at 10 %')]
+
+
+@pytest.mark.parametrize('facts, state, words', ENDINGS)
+def test_what_ends_a_task_ends_it_with_a_zero_for_good(facts, state, words):
+    world = World()
+    robot = world.add('bot1')
+    robot.begin(BY_KEY['goto'], '{x: 3, y: 0}', 0.0)
+    for _ in range(40):
+        world.step()
+    assert robot.last.linear_mps > 0.1
+    world.step(**facts)
+    assert (robot.run.state, robot.last.is_zero()) == (state, True)
+    assert words in robot.run.text
+    for _ in range(20):
+        world.step()
+        assert robot.last.is_zero() and robot.run.state == state
+
+
+def test_no_scan_no_way_and_it_is_said():
+    world = World()
+    robot = world.add('bot1')
+    robot.begin(BY_KEY['goto'], '{x: 3, y: 0}', 0.0)
+    for _ in range(40):
+        world.step()
+    robot.blind = True
+    for _ in range(10):
+        world.step()
+    assert robot.last.linear_mps == 0.0
+    assert (robot.run.state, 'laser has said nothing' in robot.run.text) == (WAITING, True)
+    for _ in range(int(BLOCKED_AFTER_S / DT_S) + 2):
+        world.step()
+    assert robot.run.state == BLOCKED
+
+
+def test_nothing_moves_before_its_gate_obeys_the_task():
+    world = World()
+    robot = world.add('bot1')
+    robot.begin(BY_KEY['goto'], '{x: 3, y: 0}', 0.0)
+    for _ in range(50):
+        world.step(obeys='')
+        assert robot.last.is_zero()
+    while robot.run.state != FAILED:
+        world.step(obeys='')
+        assert world.now_s < 10.0
+    assert 'does not reach it' in robot.run.text
+
+
+def test_who_has_the_higher_number_lets_the_other_pass():
+    world = World(room(8.0, 8.0))
+    for name, x, y in (('bot1', 0.0, -2.0), ('bot2', -2.0, 0.0)):
+        world.add(name, x, y, 1.57 if x == 0.0 else 0.0)
+    world.robots[0].begin(BY_KEY['goto'], '{x: 0, y: 2}', 0.0)
+    world.robots[1].begin(BY_KEY['goto'], '{x: 2, y: 0}', 0.0)
+    waited = False
+    while any(robot.run.state != DONE for robot in world.robots):
+        world.step()
+        waited = waited or world.robots[1].run.text == 'it lets pass bot1'
+        assert 'lets pass' not in world.robots[0].run.text
+        assert world.now_s < 60.0
+    assert waited and not sum(robot.contacts for robot in world.robots)
+
+
+@pytest.mark.parametrize('seed', range(25))
+def test_random_goals_end_without_contact(seed):
+    chance = random.Random(seed)
+    discs = [(chance.uniform(-2.4, 2.4), chance.uniform(-2.4, 2.4), chance.uniform(0.05, 0.3))
+             for _ in range(4)]
+    discs = [disc for disc in discs if math.hypot(*disc[:2]) > 0.6 + disc[2]]
+    robot = alone('goto', '{{x: {:.2f}, y: {:.2f}, speed: 0.4}}'.format(
+        chance.uniform(-2.5, 2.5), chance.uniform(-2.5, 2.5)), discs=discs, seed=seed)
+    assert robot.run.state in (DONE, BLOCKED), robot.run.text
+    assert robot.contacts == 0
+
+
+PARAMETERS = [
+    ('goto', '', 'x: is missing'),
+    ('goto', '{x: 1, y: two}', 'y: expected a number'),
+    ('goto', '{x: 1, y: 2, z: 3}', 'z: unknown key'),
+    ('goto', '{x: 1e9, y: 2}', 'x: expected a number from -1000 to 1000'),
+    ('goto', '[1, 2]', 'expected a mapping'),
+    ('square', '{side: 0.0}', 'side: expected a number from 0.2'),
+    ('patrol', '{route: 3}', 'route: expected a list of [x, y]'),
+    ('patrol', '{route: [[1, .nan]]}', 'route: expected a list of [x, y]'),
+    ('follow', '{}', 'leader: is missing')]
+
+
+@pytest.mark.parametrize('task, parameters, words', PARAMETERS)
+def test_parameters_that_cannot_be_used_are_refused_by_name(task, parameters, words):
+    with pytest.raises(ConfigError) as refused:
+        BY_KEY[task].read(parameters)
+    assert words in str(refused.value)
+
+
+def test_every_task_has_a_timeout_and_words():
+    for kind in TASKS:
+        assert 'timeout' in [row.name for row in kind.fields]
+        assert kind.label and kind.text
