@@ -71,14 +71,13 @@ class RobotView:
     'operator', 'task'), ``stands`` why it is kept still ('', 'stopped', 'not_heard', 'joining'),
     ``waits`` is true while it waits for a centred stick, ``stop_latched`` once
     its guard has confirmed the stop. ``hardware_stop`` is true while the robot's own emergency stop
-    holds it, None where nothing tells. ``power`` says in words what was done to the power of its
-    motors (:mod:`mhri.core.driving.motor_power`), '' where nothing was, ``offers_power`` whether
-    anything can be. ``sent_mps`` and ``sent_rad_s`` are the velocity last sent to it (None: not
+    holds it, None if nothing reports it. ``power`` says in words what was done to its motor power
+    (:mod:`mhri.core.driving.motor_power`), '' for nothing, ``offers_power`` whether it can be cut. ``sent_mps`` and ``sent_rad_s`` are the velocity last sent to it (None: not
     known), ``reached`` is false while nothing on it takes commands.
 
-    What the screen makes of it: ``asked`` is the operator's command [m/s, rad/s] where the robot has
-    done something else for a moment, else None; ``why`` says in a sentence why it stands though the
-    stick is held, '' for nothing.
+    What the screen makes of it: ``asked`` is the operator's command [m/s, rad/s] where the robot
+    has done something else for a moment, else None; ``why`` says in a sentence why it stands though
+    the stick is held, '' for nothing.
     """
 
     name: str
