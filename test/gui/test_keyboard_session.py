@@ -74,14 +74,14 @@ class Session:
             self.xdotool('keyup', key)
         self.until(lambda: self.screen.stick() == (0.0, 0.0), 'the key to be up')
 
-    def tab_to(self, name):
-        """Go to a control by Tab."""
+    def tab_to(self, name, key='Tab'):
+        """Go to a control by Tab, or by Shift+Tab."""
         wanted = self.screen.findChild(QWidget, name)
         for _ in range(MOST_TABS):
             if self.app.focusWidget() is wanted:
                 return
             before = self.app.focusWidget()
-            self.key('Tab')
+            self.key(key)
             self.until(lambda: self.app.focusWidget() is not before, 'the focus to go on')
         raise AssertionError('no way by Tab to ' + name)
 
@@ -91,20 +91,21 @@ class Session:
         self.key('F6')
         self.until(self.screen.robot_list.hasFocus, 'the list to have the keyboard')
 
+    def to_the_foot(self):
+        """Take the keyboard to the foot."""
+        self.to_the_panel()
+        self.key('F6')
+        self.until(lambda: self.screen.foot.isAncestorOf(self.app.focusWidget()), 'the foot')
+
     def to_the_pictures(self):
         """Take the keyboard to the pictures."""
-        if self.screen.stage.hasFocus():
-            return
-        for _ in range(2):
-            self.key('F6')
-            self.settle()
+        for _ in range(3):
             if self.screen.stage.hasFocus():
                 return
-        raise AssertionError('no way by F6 to the pictures')
-
-    def settle(self):
-        since = time.monotonic()
-        self.until(lambda: time.monotonic() - since > 0.2, 'events')
+            before = self.app.focusWidget()
+            self.key('F6')
+            self.until(lambda: self.app.focusWidget() is not before, 'the keyboard to go on')
+        assert self.screen.stage.hasFocus()
 
     @property
     def selected(self):
@@ -129,7 +130,7 @@ def session():
 
 def test_1_look(session):
     session.to_the_panel()
-    session.tab_to('look_button')
+    session.tab_to('look_button', 'shift+Tab')
     session.key('Return')
     session.until(lambda: session.operator.selection.robots == ROBOTS, 'what was found')
     session.until(lambda: all(session.operator.robot_view(name).link == 'live'
@@ -139,7 +140,7 @@ def test_1_look(session):
 
 def test_2_add_remove_and_undo(session):
     session.to_the_panel()
-    session.tab_to('name_edit')
+    session.tab_to('name_edit', 'shift+Tab')
     session.xdotool('type', 'bot9')
     session.until(lambda: session.screen.name_edit.text() == 'bot9', 'the typing')
     session.key('Return')
@@ -265,13 +266,12 @@ def test_8_stop_all_and_release(session):
                  'bot1 to say why it stands')
     session.rests()
 
-    def release():
-        session.to_the_panel()
-        session.tab_to('release_button')
-        session.key('Return')
-        session.until(session.screen.stop_bar.confirm_button.isVisible, 'the second step')
-        session.tab_to('confirm_button')
-        session.key('Return')
-        session.settle()
-        return not session.operator.view().stop_all
-    session.until(release, 'the release')
+    bar = session.screen.stop_bar
+    session.to_the_foot()
+    assert bar.release_button.hasFocus()
+    session.key('Return')
+    session.until(bar.confirm_button.isVisible, 'the second step')
+    assert bar.cancel_button.hasFocus(), 'a second Return releases nothing'
+    session.tab_to('confirm_button', 'shift+Tab')
+    session.key('Return')
+    session.until(lambda: not session.operator.view().stop_all, 'the release')
