@@ -12,6 +12,7 @@ from python_qt_binding.QtWidgets import QApplication, QWidget
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
+from mhri.gui.robots.remove_steps import SETTLED_S  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
 ROBOTS = ('bot1', 'bot2')
@@ -155,12 +156,11 @@ def test_2_add_remove_and_undo(session):
     undo = session.screen.remove_steps.undo_button
     session.until(undo.hasFocus, 'Undo to have the keyboard')
 
-    def is_back():
-        session.key('Return')
-        session.app.processEvents()
-        return 'bot9' in session.operator.selection.robots
-    session.until(is_back, 'bot9 to be back')
-    assert session.operator.selection.robots == (*ROBOTS, 'bot9'), 'in its place'
+    shown_at = time.monotonic()
+    session.until(lambda: time.monotonic() - shown_at > SETTLED_S, 'the buttons to be seen')
+    session.key('Return', 'Return')
+    session.until(lambda: session.operator.selection.robots == (*ROBOTS, 'bot9'), 'bot9 back')
+    session.until(session.screen.robot_list.hasFocus, 'the list to have the keyboard')
     session.to_the_panel()
     session.until(lambda: session.screen.robot_list.current is None, 'no highlight')
     for _ in range(3):
@@ -169,6 +169,7 @@ def test_2_add_remove_and_undo(session):
     session.tab_to('remove_button')
     session.key('Return')
     session.until(lambda: session.operator.selection.robots == ROBOTS, 'bot9 to go')
+    assert session.selected == ()
 
 
 def test_3_select_and_drive(session):
