@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A session without a mouse: keys of the X server's own keyboard, a real system, simulated robots."""
+"""A session without a mouse: keys of the X server's own keyboard, with simulated robots."""
 import glob
 import os
 import subprocess
@@ -59,7 +59,7 @@ class Session:
             self.xdotool('key', key)
 
     def hold(self, key, condition, what):
-        """Hold a key until a condition comes true; centre and try again where the mux asks for it."""
+        """Hold a key until a condition comes true; let go and hold it again now and then."""
         pressed_at = [0.0]
 
         def turn():

@@ -121,8 +121,8 @@ def test_a_robot_that_is_removed_is_recorded_no_more_and_the_screen_says_so(sess
     session.host.screen.robot_list.activate('bot3')
     asked = session.hands.widget('remove_label')
     session.hands.click('remove_button')
-    session.until(lambda: 'bot3 is being recorded: remove it?' in asked.text() and asked.isVisible(),
-                  what='the question')
+    session.until(lambda: asked.isVisible() and asked.text()
+                  == 'bot3 is being recorded: remove it?', what='the question')
     assert 'bot3' in recordings.running()
     session.hands.click('remove_confirm_button')
     session.until(lambda: recordings.status('bot3').state == 'ended', what='the end')
