@@ -4,6 +4,7 @@
 import pytest
 from python_qt_binding.QtCore import QEvent, Qt
 from python_qt_binding.QtGui import QKeyEvent
+from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication, QLineEdit, QSpinBox, QTextEdit, QWidget
 
 from mhri.gui.driving.drive_keys import DriveKeys, mark_drive_area
@@ -211,6 +212,21 @@ def test_typing_is_typing_but_for_stop_all(panel, operator, heard, four_robots, 
     assert moved == [] and selected == [] and stopped == []
     operator.hit(field, Qt.Key_Space, SPACE, Qt.ShiftModifier)
     assert stopped == [()]
+
+
+def test_return_in_the_name_field_drives_nobody(panel, operator, heard, four_robots):
+    """The field leaves Return to what is around it, and has lost the focus to it by then."""
+    panel.show_view(four_robots)
+    panel.stage.look_at('bot2')
+    added, driven = heard(panel.add_requested), heard(panel.drive_requested)
+    panel.add_requested.connect(lambda _: panel.clear_name())
+    panel.name_edit.setFocus()
+    operator.wait_until(panel.name_edit.hasFocus)
+    panel.name_edit.setText('bot9')
+    QTest.keyClick(panel.name_edit, Qt.Key_Return)
+    assert added == ['bot9'] and driven == [] and not panel.name_edit.hasFocus()
+    QTest.keyClick(panel, Qt.Key_Return)
+    assert driven == ['bot2'], 'the next press is meant'
 
 
 def test_a_click_beside_the_field_ends_the_typing(panel, operator):

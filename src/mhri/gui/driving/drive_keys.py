@@ -137,6 +137,9 @@ class DriveKeys(QObject):
         self._dead = set()
         self._deflection = (0.0, 0.0)
         self._talk = None
+        # The key that was pressed in a text field last, while it is down. One that is of no use there
+        # (Return) goes on to what is around it, which may have the focus by then.
+        self._typed = None
         # Of the keys that are down those that the X server knows of: not what a program made up.
         self._real = set()
         self._stop_key = 0
@@ -160,6 +163,7 @@ class DriveKeys(QObject):
     def release(self):
         """Count every key as released; one that is still down has to be pressed again."""
         self._stop_timer.stop()
+        self._typed = None
         self._held.clear()
         self._dead.clear()
         self._down = set(self._keys.down() or ())
@@ -219,7 +223,9 @@ class DriveKeys(QObject):
         if stops:
             return self._on_stop(event, kind)
         focus = QApplication.focusWidget() or watched
-        if not self._listens(watched, focus) or event.modifiers() & (
+        if kind == QEvent.KeyPress and _is_text_field(watched):
+            self._typed = _identity(event)
+        if self._typed == _identity(event) or not self._listens(watched, focus) or event.modifiers() & (
                 Qt.AltModifier | Qt.MetaModifier):
             return False
         action = self._action_with_ctrl(event) if event.modifiers() & Qt.ControlModifier \
@@ -273,6 +279,8 @@ class DriveKeys(QObject):
         if event.key() in (_SPACE, int(Qt.Key_Shift)):
             self._stop_timer.stop()
         self._down.discard(identity)
+        if identity == self._typed:
+            self._typed = None
         if ours:
             self._let_go(identity)
         return ours

@@ -20,7 +20,7 @@ CONFIRM_WITHIN_S = 5.0
 ANSWER_WITHIN_S = 2.0
 # Held for so long, the stop button cuts the power of the motors as well.
 CUT_AFTER_S = 2.0
-# What is pressed sooner after the page of the stop has appeared was meant for what was there before.
+# What is pressed sooner after the page of the stop appeared was meant for what was there before.
 SETTLED_S = 0.5
 # From this width on [heights of a line] the buttons never make the words shorter.
 _ROOMY_UNITS = 38.0
