@@ -29,7 +29,8 @@ def test_differs(asked, done, least, expected):
     ({'sent_mps': None}, (0.5, 0.0), 'asked 0.50 m/s', 'asked 0.50, crawler1 0.20 m/s'),
     ({'sent_mps': -0.22, 'linear_mps': -0.2}, (-0.5, 0.0),
      'asked back 0.50, sent back 0.22 m/s', 'asked back 0.50, crawler1 back 0.20 m/s'),
-    ({'sent_rad_s': 0.8}, (0.2, 0.8), 'asked left 0.80 rad/s', 'asked left 0.80, crawler1 0.00 rad/s'),
+    ({'sent_rad_s': 0.8}, (0.2, 0.8), 'asked left 0.80 rad/s',
+     'asked left 0.80, crawler1 0.00 rad/s'),
     ({'sent_rad_s': -0.5, 'angular_rad_s': -0.5}, (0.2, -0.8),
      'asked right 0.80, sent right 0.50 rad/s', 'asked right 0.80, crawler1 right 0.50 rad/s'),
 ])

@@ -53,7 +53,7 @@ SAID = {
     'no velocity topic': ({}, {'reached': False}, AHEAD, 'nothing on it takes commands'),
     'hardware stop': ({}, {'hardware_stop': True}, AHEAD, 'its own emergency stop is pressed'),
     'power off': ({}, {'power': 'cut'}, AHEAD, 'motor power cut'),
-    'power failed': ({}, {'power': 'failed: no such service'}, AHEAD, 'motor power failed: no such'),
+    'power failed': ({}, {'power': 'failed: no service'}, AHEAD, 'motor power failed: no service'),
     'joins': ({}, {'waits': True, 'stands': 'joining'}, AHEAD, CENTRE),
     'limits zero': ({'limits': (0.0, 0.0)}, {}, AHEAD, 'the speed limit is 0: raise it'),
     'one limit zero': ({'limits': (0.0, 1.0)}, {}, AHEAD, 'the speed limit is 0: raise it'),

@@ -137,8 +137,8 @@ class DriveKeys(QObject):
         self._dead = set()
         self._deflection = (0.0, 0.0)
         self._talk = None
-        # The key that was pressed in a text field last, while it is down. One that is of no use there
-        # (Return) goes on to what is around it, which may have the focus by then.
+        # The key that was pressed in a text field last, while it is down. One that is of no use
+        # there (Return) goes on to what is around it, which may have the focus by then.
         self._typed = None
         # Of the keys that are down those that the X server knows of: not what a program made up.
         self._real = set()
@@ -225,8 +225,8 @@ class DriveKeys(QObject):
         focus = QApplication.focusWidget() or watched
         if kind == QEvent.KeyPress and _is_text_field(watched):
             self._typed = _identity(event)
-        if self._typed == _identity(event) or not self._listens(watched, focus) or event.modifiers() & (
-                Qt.AltModifier | Qt.MetaModifier):
+        if self._typed == _identity(event) or not self._listens(watched, focus) \
+                or event.modifiers() & (Qt.AltModifier | Qt.MetaModifier):
             return False
         action = self._action_with_ctrl(event) if event.modifiers() & Qt.ControlModifier \
             else self._action(event, focus)
