@@ -27,7 +27,7 @@ _SENT_FOR_ONE = 1.1
 # Thinning has to save half at least.
 _SAVES = 2.0
 # That rates do not flap: figures are rounded up to so many steps in each octave, those that fall by
-# less than a part of them are taken for what they were, and a better rate has to fit for so long.
+# less than a part of them are taken for what they were, and a better rate has to fit for this long.
 _IN_OCTAVE = 8
 _FALLS = 0.2
 _CALM_S = 5.0
@@ -45,7 +45,7 @@ class Grant:
     ``rate_hz``: pictures a second at most [Hz], None: as they come, 0: none, and no connection.
     ``sampled``: the network is thinned, too: one picture at a time over a connection of its own;
     else all come and only so many are decoded. ``lighter``: the best transport there is, whatever
-    was chosen. ``words``: what the operator is told, '' where nothing is held back.
+    was chosen. ``words``: what the operator is told, '' if nothing is held back.
     """
 
     rate_hz: Optional[float] = None
@@ -265,7 +265,7 @@ def _share(pictures: Sequence[Picture], bits_per_s: float,
 
 
 def _note(seen: Sequence[Picture], limit: float) -> str:
-    """Say that the driven robots' pictures alone pass the limit; '' where they do not."""
+    """Say that the driven robots' pictures alone pass the limit; '' if they do not."""
     driven = sum(picture.cost(math.inf) for picture in seen if picture.importance == DRIVEN)
     if limit <= 0.0 or driven <= limit:
         return ''

@@ -34,7 +34,7 @@ class Frame:
 
     ``kind`` is 'rgb' or 'depth'; ``rgb`` a C-contiguous uint8 array (h, w, 3) in RGB order, ready
     to show (depth: coloured already). ``depth_m``: float32 (h, w), distance along the optical axis
-    [m], NaN where invalid; None for 'rgb'. ``full_size`` is (width, height) of the picture as sent
+    [m], NaN if invalid; None for 'rgb'. ``full_size`` is (width, height) of the picture as sent
     [pixels]; ``depth_range_m`` the (near, far) of the colours [m] or None (rgb, or no valid pixel
     yet). ``received_s``: time of receipt [s, monotonic].
     """
@@ -57,7 +57,7 @@ class StreamStatus:
     that were taken, ``bad`` those that could not be decoded. ``problem`` names the last bad one, or
     why nothing is there; '' while there is nothing to say. ``stale``: the newest good picture is
     older than the newest bad one, or than ``old_after_s`` [s], which is longer for a picture that
-    is held back. ``thinned`` says that it is, and by what; '' where it is not.
+    is held back. ``thinned`` says that it is, and by what; '' if it is not.
     """
 
     transport: str = ''

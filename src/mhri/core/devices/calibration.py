@@ -61,7 +61,7 @@ class Calibration:
 
     :param name: of the profile
     :param device: name of the pad
-    :param guid: of the pad, '' where it has none: then it is known by its name
+    :param guid: of the pad, '' if it has none: then it is known by its name
     """
 
     def __init__(self, name: str, device: str, guid: str = '') -> None:
@@ -114,7 +114,7 @@ class Calibration:
         self._next()
 
     def feed(self, axes: Sequence[Optional[float]], buttons: Sequence[int]) -> None:
-        """Take in a state of the pad: axes in [-1, 1] or None where unknown, buttons 0 or 1."""
+        """Take in a state of the pad: axes in [-1, 1] or None if unknown, buttons 0 or 1."""
         self._now = tuple(axes)
         self._down = frozenset(index for index, value in enumerate(buttons) if value)
         if self.step in (FORWARD, LEFT):

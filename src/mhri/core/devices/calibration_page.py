@@ -36,10 +36,10 @@ _MEANINGS = {FORWARD: 'forward', LEFT: 'turn', 'dead_man': 'dead-man', 'turbo': 
 class CalibrationView:
     """What the page shows.
 
-    ``pad`` is its name, '' where there is none. ``axes`` are in [-1, 1], None where nothing has
+    ``pad`` is its name, '' if there is none. ``axes`` are in [-1, 1], None if nothing has
     been heard of one yet; ``buttons`` are 0 or 1. ``axis_words`` and ``button_words`` are (index,
     meaning) of those that have one by now. ``prompt`` says what to do, ``problem`` what went wrong
-    ('': nothing). ``action`` is what the one large button says, '' where there is nothing to press;
+    ('': nothing). ``action`` is what the one large button says, '' if there is nothing to press;
     ``step`` and ``steps`` count the questions, 0 before the first. ``can_restart`` tells whether
     there is anything to begin anew.
     """

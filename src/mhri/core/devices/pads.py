@@ -15,7 +15,7 @@ _NO_PADS = ('motion sensors', 'touchpad', 'accelerometer', 'pedal', 'rudder', 'f
 
 @dataclass(frozen=True)
 class PadInfo:
-    """A pad that is connected: its place in SDL's list, its name, its GUID ('' where not known)."""
+    """A pad that is connected: its place in SDL's list, its name, its GUID ('' if not known)."""
 
     index: int
     name: str

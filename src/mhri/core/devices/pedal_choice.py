@@ -21,7 +21,7 @@ class NoPedal(LookupError):
 class Candidate:
     """A device that is there.
 
-    ``usb`` is ``vendor:product`` in lower case hexadecimal, '' where it has none; ``places`` are
+    ``usb`` is ``vendor:product`` in lower case hexadecimal, '' if it has none; ``places`` are
     paths or other words by which it can be asked for; ``kind`` is that of its profile.
     """
 
@@ -55,7 +55,7 @@ class Wish:
 
 
 def usb_of_guid(guid: str) -> str:
-    """Return ``vendor:product`` of a GUID of SDL, '' where it holds none.
+    """Return ``vendor:product`` of a GUID of SDL, '' if it holds none.
 
     Its 16 bytes are bus, check sum, vendor, 0, product, 0, ...: two bytes each, the lower first.
     """
@@ -96,7 +96,7 @@ def choose(candidates: Iterable[Candidate], wish: Wish,
 
 
 def _wished_profile(wish: Wish, profiles: Mapping[str, PedalProfile]) -> Optional[PedalProfile]:
-    """Return the profile that was asked for by name, None where none was."""
+    """Return the profile that was asked for by name, None if none was."""
     if not wish.profile:
         return None
     if wish.profile not in profiles:

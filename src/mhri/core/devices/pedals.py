@@ -49,7 +49,7 @@ class Pedal:
     def travel(self, raw: Optional[float]) -> Optional[float]:
         """Return the share of its travel that an axis shows; overshoot is cut off.
 
-        :returns: None where the axis has shown nothing yet, or nothing that is a number
+        :returns: None if the axis has shown nothing yet, or nothing that is a number
         """
         if raw is None or not math.isfinite(raw):
             return None
@@ -154,7 +154,7 @@ class PedalState:
             not pedal.direction for pedal in profile.pedals)
 
     def note(self) -> str:
-        """Return what the operator has to do before every pedal counts, '' where nothing."""
+        """Return what the operator has to do before every pedal counts, '' if nothing."""
         if any(self._unknown):
             return 'move once: {} (nothing is known yet of it)'.format(self._names(self._unknown))
         held = [not armed for armed in self._armed]
@@ -168,7 +168,7 @@ class PedalState:
              ) -> Optional[Tuple[Tuple[float, float], Tuple[int, ...]]]:
         """Return (axes, buttons) for the values of all pedals, in the order of the profile.
 
-        :param values: in [-1, 1]; None where a pedal's value is not known
+        :param values: in [-1, 1]; None if a pedal's value is not known
         :returns: None until every value has been known once; a value that is unknown later is not
             to be trusted: everything is zero, and has to be seen released again
         """
@@ -211,7 +211,7 @@ def _within_one(value: float) -> float:
 def parse_pedal_profile(text: str, origin: str) -> PedalProfile:
     """Return the :class:`PedalProfile` that a YAML text describes.
 
-    :raises ConfigError: names the file and the key that is wrong
+    :raises ConfigError: names the file and the wrong key
     """
     section = parse_yaml(text, origin)
     name = section.text('name')

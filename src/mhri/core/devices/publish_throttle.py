@@ -46,7 +46,7 @@ class Pacer(Generic[State]):
         return max(0.0, self._sent_at + period_s - now)
 
     def take(self, now: float) -> Optional[State]:
-        """Return the state to publish now, or None where it is not time for one."""
+        """Return the state to publish now, or None if it is not time for one."""
         if self._newest is None or self.due_in(now) > 0.0:
             return None
         self._sent_at = now

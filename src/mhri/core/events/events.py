@@ -63,7 +63,7 @@ class Event:
 
     ``number`` counts up from 1 and is never used twice. ``time_s`` is the wall time [s since 1970]
     of the newest of ``count`` equal ones, the first of which was at ``since_s``; ``replaces`` is
-    the number of the line that stood for those before, 0 where there is none. ``robot`` is '' where
+    the number of the line that stood for those before, 0 if there is none. ``robot`` is '' where
     it is about everything. ``kind`` is a key of :data:`KINDS`, ``sound`` the tone to play now ('').
     """
 

@@ -14,7 +14,7 @@ TONES: Dict[str, Tuple[float, Tuple[Tuple[float, float], ...]]] = {
     ATTENTION_TONE: (0.5, ((660.0, 0.12), (0.0, 0.08), (660.0, 0.12))),
     CALM_TONE: (0.25, ((523.0, 0.2),)),
 }
-# Each pitch swells and fades for so long: cut off, it would click.
+# Each pitch swells and fades for this long: cut off, it would click.
 _FADE_S = 0.015
 _FULL = 32767
 

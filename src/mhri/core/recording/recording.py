@@ -42,7 +42,7 @@ class RecordingStatus:
     ``path`` is that of the file as it is or will be called when it ends ('' before the start),
     ``duration_s`` counts from the opening of the file, ``messages`` and ``bytes`` are received
     (written or about to be), ``rate_hz`` is that of the last second or so. ``note`` is for a
-    person, '' where there is nothing to say; ``attention`` is true where it is a warning.
+    person, '' if there is nothing to say; ``attention`` is true where it is a warning.
     """
 
     state: str = OFF
@@ -152,13 +152,13 @@ def expand(text: str, env: Mapping[str, str]) -> str:
 
 def split_path(text: str, env: Mapping[str, str],
                is_folder: Callable[[str], bool]) -> Tuple[str, str]:
-    """Return (folder, name) of what the operator typed; the name is '' where only a folder is.
+    """Return (folder, name) of what the operator typed; the name is '' if only a folder is.
 
     A path that is a folder, or ends in a slash, is a folder; anything else is a file, and gets
     ``.bag`` where it has it not. Relative paths are seen from the folder of ROS. Nothing typed is
     the folder of ROS.
 
-    :param is_folder: function from a path to True where a folder of this name exists
+    :param is_folder: function from a path to True if a folder of this name exists
     :raises PathRefused: there cannot be such a file
     """
     text = text.strip()
@@ -185,7 +185,7 @@ def split_path(text: str, env: Mapping[str, str],
 
 
 def system_folder(real_folder: str) -> Optional[str]:
-    """Return the folder of the system that a (real) folder is in, or None where files may be."""
+    """Return the folder of the system that a (real) folder is in, or None if files may be."""
     for top in _NO_FILES_IN:
         if real_folder == top or real_folder.startswith(top + '/'):
             return top
@@ -230,7 +230,7 @@ def warning_of(limits: RecordingLimits, free_bytes: Optional[int],
                queue_bytes: int) -> Tuple[str, bool]:
     """Return (words about the disk, whether to stop); ('', False) while all is well.
 
-    :param free_bytes: space left on the disk, None where unknown
+    :param free_bytes: space left on the disk, None if unknown
     :param queue_bytes: received and not yet written
     """
     if queue_bytes >= limits.stop_queue_bytes:

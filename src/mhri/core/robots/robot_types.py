@@ -57,8 +57,8 @@ class Seen:
     :param kind: the type recognised by its topics, None if it was not recognised
     :param command: its velocity topic, as in a template; None if there is none, or if several are
         equally likely
-    :param instance: where the topics of this robot begin, e.g. ``/turtle2``, if one node has several
-        robots; else None
+    :param instance: where the topics of this robot begin, e.g. ``/turtle2``, if one node has
+        several robots; else None
     """
 
     at_root: bool = False
@@ -157,7 +157,7 @@ def _limits(section: Section) -> Limits:
 def parse_robot_type(text: str, origin: str) -> RobotType:
     """Return the :class:`RobotType` that a YAML text describes.
 
-    :raises ConfigError: names the file and the key that is wrong
+    :raises ConfigError: names the file and the wrong key
     """
     section = parse_yaml(text, origin)
     name = section.text('name')

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the tiles of the screen go: the pictures as large as they can be, no two over each other.
+"""Where the tiles go: pictures as large as possible, and none over another.
 
 Tiles are large (what the operator drives by) or small (the rest, a strip beside or below). Every
 way of placing them is tried: the large ones as large as they can be, the small ones of use.
@@ -14,7 +14,7 @@ from typing import Dict, Iterator, Sequence, Tuple
 # How many pictures there are of each shape (width by height).
 Kinds = Dict[float, int]
 
-# What the strip of small tiles may get of the stage.
+# Fractions of the stage that the strip of small tiles may have.
 _STRIP_SHARES = tuple(share / 100.0 for share in range(10, 52, 2))
 # A small picture is of use up to this part of the width of a large one; till there, a pixel of its
 # width counts so much.
@@ -22,7 +22,7 @@ _SMALL_ENOUGH = 0.26
 _SMALL_COUNTS = 1.3
 # So much more has to be seen in another arrangement before the tiles move.
 WORTH_MOVING = 1.06
-# Shape (width by height) of a picture that is not there yet.
+# Shape (width / height) of a picture that has not arrived yet.
 USUAL_SHAPE = 4.0 / 3.0
 _GROUP_AT_MOST = 4
 
@@ -46,7 +46,7 @@ class Box:
 
 @dataclass(frozen=True)
 class Arrangement:
-    """A box for each large and each small tile, in order, and the area that is picture [px²]."""
+    """A box for each large and each small tile, in order, and the area of all pictures [px²]."""
 
     large: Tuple[Box, ...] = ()
     small: Tuple[Box, ...] = ()
@@ -57,8 +57,8 @@ def choose_large(robots: Sequence[str], driven: Sequence[str], looked_at: str,
                  style: str = AUTO) -> Tuple[str, ...]:
     """Return the robots whose tiles are large, in the order of ``robots``.
 
-    By itself (AUTO): a group of up to four that is driven together, else the one looked at, else
-    the one that is driven, else the first. ONE shows one alone, ALIKE all.
+    AUTO: a group of two to four that is driven together, else the robot looked at, else the one
+    that is driven, else the first. ONE shows one alone, ALIKE all.
 
     :param driven: the robots that are checked
     :param looked_at: the robot that was chosen last, '' for none
@@ -75,7 +75,7 @@ def choose_large(robots: Sequence[str], driven: Sequence[str], looked_at: str,
 
 
 def _grid(box: Box, shapes: Sequence[float], columns: int, gap: int) -> Tuple[Box, ...]:
-    """Return a box for each shape, row by row, so many beside each other."""
+    """Return a box for each shape, row by row, in this many columns."""
     rows = ceil(len(shapes) / columns)
     width = (box.width - gap * (columns - 1)) // columns
     height = (box.height - gap * (rows - 1)) // rows
@@ -144,10 +144,10 @@ def arrange(width: int, height: int, large: Sequence[float], small: Sequence[flo
             least: Tuple[int, int], gap: int) -> Arrangement:
     """Return where the tiles go.
 
-    :param width: of the stage [px]; ``height`` the same
+    :param width: of the stage [px], like ``height``
     :param large: shape (width by height) of the picture of each large tile
     :param small: the same of each small one
-    :param least: least width and height of a small tile [px]; kept wherever that is possible
+    :param least: least width and height of a small tile [px]; kept if possible
     :param gap: between two tiles [px]
     """
     whole = Box(0, 0, max(1, width), max(1, height))
