@@ -100,7 +100,7 @@ ROBOT_CASES = {
 HIS = ControlView(False, 'panel on lab-pc2 since 14:02')
 PANEL_CASES = {
     'no_master': ([{'ros': ROS_NO_MASTER}], 'master.lost', 'no ROS master'),
-    'master_back': ([{'ros': ROS_NO_MASTER}, {'ros': ROS_CONNECTED}], 'master.back', 'is there'),
+    'master_back': ([{'ros': ROS_NO_MASTER}, {'ros': ROS_CONNECTED}], 'master.back', 'is back'),
     'cut_off': ([{'ros': ROS_CUT_OFF}], 'screen.cut_off', 'restart it'),
     'no_mux': ([{'mode': None}], 'mux.silent', 'is not running'),
     'mux_back': ([{'mode': None}, {'mode': 'joy'}], 'mux.back', 'is running again'),
