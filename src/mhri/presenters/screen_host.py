@@ -214,7 +214,8 @@ class ScreenHost(QObject):
 
     def asks_before_closing(self):
         """Return what to ask before the screen is closed, '' while nothing drives or records."""
-        return close_question(self.operator.view().robots)
+        # One that is closed must not look: it would have the seat of the one that drives now.
+        return '' if self._closed else close_question(self.operator.view().robots)
 
     def _select(self, names):
         self.operator.select(names)

@@ -22,6 +22,8 @@ ANSWER_WITHIN_S = 2.0
 CUT_AFTER_S = 2.0
 # What is pressed sooner after the page of the stop has appeared was meant for what was there before.
 SETTLED_S = 0.5
+# From this width on [heights of a line] the buttons never make the words shorter.
+_ROOMY_UNITS = 38.0
 CUT_OFF = 'This screen is cut off: STOP ALL here reaches nothing'
 CUT_OFF_NOTE = ('another program has taken its name, or it was ended from elsewhere: stop the '
                 'robots by hand or from another screen; restart this one')
@@ -101,9 +103,6 @@ class StopBar(QWidget):
         words.addWidget(self._headline)
         words.addWidget(self._note_line)
         words.addStretch()
-        keep = self.confirm_button.sizePolicy()
-        keep.setRetainSizeWhenHidden(True)
-        self.confirm_button.setSizePolicy(keep)
         second = QWidget(self._stopped_page)
         second.setSizePolicy(QSizePolicy.Fixed, QSizePolicy.Fixed)
         self._second = QStackedLayout(second)
@@ -128,6 +127,13 @@ class StopBar(QWidget):
         """Have the buttons of the second page below its words, where there is little width."""
         self._row.setDirection(QBoxLayout.TopToBottom if narrow else QBoxLayout.LeftToRight)
         self.stop_button.set_look('' if narrow else 'Shift+Space', 3.4 if narrow else 2.4)
+
+    def resizeEvent(self, event):  # noqa: N802
+        """Keep the room of the second step where there is enough of it, so that nothing jumps."""
+        super().resizeEvent(event)
+        keep = self.confirm_button.sizePolicy()
+        keep.setRetainSizeWhenHidden(self.width() > _ROOMY_UNITS * self.fontMetrics().height())
+        self.confirm_button.setSizePolicy(keep)
 
     def _button(self, name, text):
         """Make one of the buttons of the second page, wide enough for any of its words."""

@@ -130,7 +130,7 @@ class StopButton(QAbstractButton):
         painter.setPen(text)
         painter.drawText(self.rect(), int(Qt.AlignCenter), self.text())
         beside = (self.width() - painter.fontMetrics().horizontalAdvance(self.text())) / 2
-        painter.setFont(theme.base_font(self.window().font()))
+        painter.setFont(theme.larger(theme.base_font(self.window().font()), 1.0))
         if self._hint and not self._engaged and \
                 painter.fontMetrics().horizontalAdvance(self._hint) + 1.5 * unit < beside:
             painter.drawText(self.rect().adjusted(0, 0, -unit, 0),

@@ -39,6 +39,7 @@ class TileLayers:
             widget.setParent(self._tile)
             # Over the picture, and under what says that it is old.
             widget.stackUnder(self._tile.header)
+            widget.show()
             self._inset = widget
         elif not wanted and self._inset is not None:
             self._inset = None

@@ -132,7 +132,7 @@ class ScreenWidget(QWidget):
         """Wire widgets to signals."""
         self.look_button.clicked.connect(self._look)
         self.stage.look_requested.connect(self._look)
-        self._result_timer.timeout.connect(lambda: self.look_label.show_text('', theme.MUTED))
+        self._result_timer.timeout.connect(self.look_label.clear)
         self.doctor_button.clicked.connect(self.doctor_requested)
         self.add_button.clicked.connect(self._add)
         self.name_edit.returnPressed.connect(self._add)

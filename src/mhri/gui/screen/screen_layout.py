@@ -64,6 +64,7 @@ class ScreenLayout(QObject):
         screen.drawer_button.setChecked(True)
         screen.drawer_button.setFocusPolicy(Qt.TabFocus)
         screen.drawer_button.setMinimumHeight(theme.touch_size(screen))
+        self._move_foot(False)
         self.looks = LooksPage(screen)
         self.add_page(TITLE, self.looks)
         self._show_choices()
@@ -227,8 +228,8 @@ class ScreenLayout(QObject):
         screen = self._screen
         self._in_side = in_side
         screen.foot_row.setDirection(QBoxLayout.BottomToTop if in_side else QBoxLayout.LeftToRight)
-        screen.foot_row.setStretch(0, 0 if in_side else 3)
-        screen.foot_row.setStretch(1, 0 if in_side else 2)
+        screen.foot_row.setStretch(0, 0 if in_side else 2)
+        screen.foot_row.setStretch(1, 0 if in_side else 1)
         screen.stop_bar.show_narrow(in_side)
         screen.status_line.show_wrapped(in_side)
         (screen.side_column if in_side else screen.screen_layout).addWidget(screen.foot)

@@ -150,7 +150,7 @@ class TileHeader(QWidget):
         natural = theme.text_width(name.font(), name.text())
         name.setSizePolicy(QSizePolicy.Preferred, QSizePolicy.Fixed)
         name.setMaximumWidth(natural)
-        name.setMinimumWidth(min(natural, 4 * name.fontMetrics().averageCharWidth()))
+        name.setMinimumWidth(1)
         self.number_label.fix_width(self.number_label.text() or '0')
         for count in range(0 if self.large else _OF_SMALL, len(_LEFT_OUT) + 1):
             self._leave_out(_LEFT_OUT[:count])

@@ -135,7 +135,7 @@ def name_ends(name):
     """
     cuts = [place + 1 for place, sign in enumerate(name) if sign == '_' and place]
     end = len(name) - max(cuts, default=0)
-    cuts += [len(name) - left for left in (12, 8, 6, 4, 2) if left < end]
+    cuts += [len(name) - left for left in (12, 8, 4) if left + 2 < end]
     return tuple('…' + name[cut:] for cut in sorted(set(cuts)) if name[cut:])
 
 
