@@ -67,6 +67,32 @@ def test_the_keys_work_while_it_shows(panel, operator, heard, shown):
     assert shown.isVisible()
 
 
+def test_the_other_keys_of_the_screen(panel, operator, heard, four_robots):
+    panel.show_view(four_robots)
+    panel.stage.setFocus()
+    stills, recorded = heard(panel.stills_requested), heard(panel.record_requested)
+    shown = (panel.stage.numbers_shown, panel.drawer_button.isChecked(), panel.isFullScreen())
+    for key in (Qt.Key_H, Qt.Key_F2, Qt.Key_F11, Qt.Key_P, Qt.Key_R):
+        operator.hit(panel.stage, key)
+    assert (panel.stage.numbers_shown, panel.drawer_button.isChecked(), panel.isFullScreen()) \
+        == tuple(not state for state in shown)
+    assert stills == [()] and recorded == [['bot1']]
+    operator.hit(panel.stage, Qt.Key_F11)
+    assert not panel.isFullScreen()
+
+
+def test_f6_goes_round(panel, operator, four_robots):
+    panel.show_view(four_robots)
+    panel.stage.setFocus()
+    parts = []
+    for _ in range(3):
+        operator.hit(QApplication.focusWidget(), Qt.Key_F6)
+        focus = QApplication.focusWidget()
+        parts.append(next(part.objectName() for part in (panel.foot, panel.drawer, panel.stage)
+                          if part is focus or part.isAncestorOf(focus)))
+    assert parts == ['drawer', 'foot', 'stage']
+
+
 @pytest.mark.parametrize('size', [(1024, 600), (1280, 720), (1920, 1080), (794, 700)])
 @pytest.mark.parametrize('larger', [1.0, 2.0])
 @pytest.mark.parametrize('drawer', [True, False])
