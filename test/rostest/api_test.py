@@ -47,9 +47,9 @@ def running(node):
 
 
 def always(node):
-    """Return what a node has, without the camera that a tile subscribes while it is on show."""
-    return {row for row in running('/' + node)
-            if row[0] != 'subscribes' or '/camera/' not in row[1]}
+    """Return what a node has, without what a tile subscribes while it is on show: camera and scan."""
+    return {row for row in running('/' + node) if row[0] != 'subscribes'
+            or '/camera/' not in row[1] and not row[1].endswith('/scan')}
 
 
 def camera_topics(template):
