@@ -47,7 +47,7 @@ def running(node):
 
 
 def always(node):
-    """Return what a node has, without what a tile subscribes while it is on show: camera and scan."""
+    """Return what a node has, without the camera and scan that a tile on show subscribes."""
     return {row for row in running('/' + node) if row[0] != 'subscribes'
             or '/camera/' not in row[1] and not row[1].endswith('/scan')}
 
