@@ -69,11 +69,12 @@ class RobotView:
     What the gates say: ``driven`` is true while the velocity last sent to it is not zero,
     ``guarded`` while its commands go through a guard on the robot, ``obeys`` is whom it obeys ('',
     'operator', 'task'), ``stands`` why it is kept still ('', 'stopped', 'not_heard', 'joining'),
-    ``waits`` is true while it waits for a centred stick, ``stop_latched`` once
-    its guard has confirmed the stop. ``hardware_stop`` is true while the robot's own emergency stop
-    holds it, None if nothing reports it. ``power`` says in words what was done to its motor power
-    (:mod:`mhri.core.driving.motor_power`), '' for nothing, ``offers_power`` whether it can be cut. ``sent_mps`` and ``sent_rad_s`` are the velocity last sent to it (None: not
-    known), ``reached`` is false while nothing on it takes commands.
+    ``waits`` is true while it waits for a centred stick, ``stop_latched`` once its guard has
+    confirmed the stop. ``hardware_stop`` is true while the robot's own emergency stop holds it,
+    None if nothing reports it. ``power`` says in words what was done to its motor power
+    (:mod:`mhri.core.driving.motor_power`), '' for nothing, ``offers_power`` whether it can be cut.
+    ``sent_mps`` and ``sent_rad_s`` are the velocity last sent to it (None: not known), ``reached``
+    is false while nothing on it takes commands.
 
     What the screen makes of it: ``asked`` is the operator's command [m/s, rad/s] where the robot
     has done something else for a moment, else None; ``why`` says in a sentence why it stands though
