@@ -24,7 +24,7 @@ GUIDE = REPO / 'doc' / 'new_robot.md'
 EXAMPLE = REPO / 'test' / 'example_robot_package'
 PATIENCE_S = 60.0
 POLL_S = 0.1
-# Where "Look for Connected Bots" is in the window [px]: on the first page of the drawer, at the left.
+# Where "Look for Connected Bots" is in the window [px]: in the drawer, at the left.
 LOOK = (100, 62)
 
 
@@ -217,7 +217,7 @@ def drive(newcomer, panel_terminal, launch_robot):
     rospy.init_node('newcomer', disable_signals=True)
     heard, log, obeyed = [], [], []
     rospy.Subscriber('/gates/state', GatesState, lambda message: obeyed.append(
-        [(robot.name, robot.obeys) for robot in message.robots]))
+        [(robot.name, robot.obeys, robot.stands) for robot in message.robots]))
     rospy.Subscriber('/crawler1/odom', Odometry, lambda message: heard.append((
         message.pose.pose.position.x, message.pose.pose.position.y, message.twist.twist.linear.x)))
     rospy.Subscriber('/rosout_agg', Log, lambda message: log.append(message.msg))
@@ -230,8 +230,8 @@ def drive(newcomer, panel_terminal, launch_robot):
         return rospy.get_param('/mhri/robots', []) == ['crawler1']
     wait_for(found, PATIENCE_S, 'the robot to be found', poll_s=2.0)
     newcomer.xdotool('key', '1')
-    wait_for(lambda: obeyed and obeyed[-1] == [('crawler1', 'operator')], PATIENCE_S,
-             'the robot to be checked')
+    wait_for(lambda: obeyed and obeyed[-1] == [('crawler1', 'operator', '')], PATIENCE_S,
+             'the robot to be ready')
     start = heard[-1]
     newcomer.xdotool('keydown', 'Up')
     wait_for(lambda: math.dist(start[:2], heard[-1][:2]) > 0.1, PATIENCE_S, 'the robot to move')
