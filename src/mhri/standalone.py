@@ -164,6 +164,8 @@ class Standalone:
         self._numbers_timer.stop()
         with self._writing:
             self._closed = True
+        # Their zero leaves first: on a busy computer the rest takes a while.
+        self.host.operator.select(())
         kept = {'state': self.host.save_state(), 'geometry': geometry_of(self.window)}
         remember = self._remember or self._has_changed_robots()
         self.host.close()

@@ -15,8 +15,6 @@ import sys
 import time
 import xmlrpc.client
 
-from python_qt_binding.QtWidgets import QAbstractButton
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from support.played_cameras import play_cameras  # noqa: E402
@@ -65,7 +63,7 @@ def register(system, robots, topics, uri):
 
 
 class Measurement:
-    """A panel in this process with four robots in their windows."""
+    """A screen in this process with the tiles of four robots, alike."""
 
     def __init__(self, system, seconds):
         import psutil
@@ -111,25 +109,30 @@ class Measurement:
         return (time.monotonic(), own.user + own.system,
                 sum(machine) - machine.idle - machine.iowait - machine.guest - machine.guest_nice)
 
+    def choose(self, *views):
+        """Have just these views in every tile."""
+        for tile in self.host.windows.values():
+            tile.switches.choose(views)
+
     def drive(self):
         """Print the gaps at rest and while driving."""
+        self.host.screen.stage.set_style('alike')
+        self.choose('imu')
         self.watch_for(0.5)
-        print(row('4 windows with graphs, at rest', self.watch_for(self._seconds)), flush=True)
+        print(row('4 tiles with graphs, at rest', self.watch_for(self._seconds)), flush=True)
         self._hands.hold_stick(0.2, 0.6)
-        print(row('4 windows with graphs, driving all', self.watch_for(self._seconds)), flush=True)
-        for window in self.host.windows.values():
-            window.findChild(QAbstractButton, 'camera_rgb').click()
+        print(row('4 tiles with graphs, driving all', self.watch_for(self._seconds)), flush=True)
+        self.choose('imu', 'rgb')
         self.until(lambda: all(self.picture_hz(name) > 20.0 for name in NAMES), 'pictures')
         self.watch_for(2.0)
         begun = self.used()
         gaps = self.watch_for(self._seconds)
         took_s, panel_s, machine_s = (now - then for now, then in zip(self.used(), begun))
-        print(row('4 windows with graphs and RGB, driving all', gaps))
+        print(row('4 tiles with graphs and RGB, driving all', gaps))
         print('pictures: {} Hz; CPU: panel {:.0f}, machine {:.0f} of {} %'.format(
             ', '.join('{:.1f}'.format(self.picture_hz(name)) for name in NAMES),
             100.0 * panel_s / took_s, 100.0 * machine_s / took_s, 100 * os.cpu_count()), flush=True)
-        for window in self.host.windows.values():
-            window.findChild(QAbstractButton, 'camera_off').click()
+        self.choose()
         self._hands.let_go()
 
     def find(self, uri):

@@ -9,6 +9,7 @@ from a warm start to a screen that can be used <= 2.5 s, beside a bare window of
 """
 import argparse
 import os
+import resource
 import statistics
 import subprocess
 import sys
@@ -26,11 +27,13 @@ START_UP = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'suppo
 
 
 def start_up(system, *words):
-    """Return how long it takes from the start of a process until it can be used [s]."""
-    begun = time.monotonic()
+    """Return the time from the start of a process until it can be used, and its CPU [s]."""
+    begun, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run([sys.executable, START_UP, *words], env=system.env, timeout=120,
                           check=True, stdout=subprocess.PIPE, universal_newlines=True)
-    return float(done.stdout.split()[-1]) - begun
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return (float(done.stdout.split()[-1]) - begun,
+            after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
 
 
 def print_start_up(system, times):
@@ -38,12 +41,12 @@ def print_start_up(system, times):
     took = {'bare': [], 'screen': []}
     for number in range(times + 1):
         for name, words in (('bare', ()), ('screen', NAMES)):
-            seconds = start_up(system, name, *words)
+            measured = start_up(system, name, *words)
             if number:
-                took[name].append(seconds)
-    print('start to a window that can be used [s]: bare {:.2f}, screen with {} robots {:.2f}'
-          ' (medians of {})'.format(statistics.median(took['bare']), len(NAMES),
-                                    statistics.median(took['screen']), times), flush=True)
+                took[name].append(measured)
+    for name, measured in took.items():
+        print('start until it can be used, {:<6} [s]: {:.2f}, CPU of it all {:.2f} (medians of {})'
+              .format(name, *map(statistics.median, zip(*measured)), times), flush=True)
 
 
 class Screen:

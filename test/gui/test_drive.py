@@ -7,7 +7,7 @@ import sys
 import time
 
 import pytest
-from python_qt_binding.QtCore import Qt
+from python_qt_binding.QtCore import QEvent, Qt
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication, QWidget
 
@@ -118,6 +118,9 @@ class Session:
 
     def close(self):
         self.host.close()
+        # Before the application, which goes with this object.
+        self.host.screen.deleteLater()
+        self.app.sendPostedEvents(None, QEvent.DeferredDelete)
         self._rospy.signal_shutdown('done')
         self.system.close()
 

@@ -223,3 +223,20 @@ def test_the_rqt_plugin_leaves_out_a_perspective_it_cannot_read(plugin_class):
     plugin.restore_settings(Settings(), Settings(state='{"robots": 5}'))
     assert plugin._host.operator.selection.robots == ()
     plugin.shutdown_plugin()
+
+
+def test_a_name_of_the_screen_is_no_name_of_a_tile():
+    """Hands and tests find a widget by its name: it must be the one that is meant."""
+    host = ScreenHost(ScreenBackend())
+    host._add('bot1')
+    host.tiles.make('bot1')
+    tile = host.windows['bot1']
+    tile.view('rgb')
+    host.screen.stage.show_tiles(host.windows)
+    parts = [part for part in host.screen.findChildren(QWidget) if part.objectName()
+             and not part.objectName().startswith('qt_')]
+    inside = {part.objectName() for part in parts if tile.isAncestorOf(part)}
+    outside = {part.objectName() for part in parts if not tile.isAncestorOf(part)}
+    assert {'stream_label', 'tile_stop_button'} <= inside and 'status_label' in outside
+    assert inside & outside <= {'stale_cover'}
+    host.close()

@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import numpy as np
+from python_qt_binding.QtCore import QEvent
 from python_qt_binding.QtGui import QImage
 from python_qt_binding.QtWidgets import QApplication
 
@@ -111,6 +112,9 @@ class PanelSession:
         import rospy
         if self.host is not None:
             self.host.close()
+            # Before the application, which goes with this object.
+            self.host.screen.deleteLater()
+            self.app.sendPostedEvents(None, QEvent.DeferredDelete)
         rospy.signal_shutdown('done')
         self.system.__exit__(*(failure or (None, None, None)))
 
