@@ -10,6 +10,7 @@ from python_qt_binding.QtWidgets import QApplication, QMainWindow
 import rospy
 
 from mhri.core.screen.saved_state import read_geometry
+from mhri.gui.screen import theme
 from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.presenters.screen_host import ScreenHost
 from mhri.presenters.settings_file import SettingsError, SettingsFile
@@ -27,12 +28,24 @@ class MainWindow(QMainWindow):
     def __init__(self, host):
         super().__init__()
         self._host = host
+        self._sure = False
+        host.screen.leave_bar.close_requested.connect(self.close_now)
         self.setWindowTitle('mhri')
         self.setCentralWidget(host.screen)
         self.resize(1280, 720)
 
+    def close_now(self):
+        """Close, whatever drives or records."""
+        self._sure = True
+        self.close()
+
     def closeEvent(self, event):  # noqa: N802
-        """Stop the robots before the window goes."""
+        """Stop the robots before the window goes; ask first while anything drives or records."""
+        question = '' if self._sure else self._host.asks_before_closing()
+        if question:
+            self._host.screen.leave_bar.ask(question)
+            event.ignore()
+            return
         self.closing.emit()
         super().closeEvent(event)
 
@@ -64,7 +77,12 @@ class Standalone:
         self.host = ScreenHost(ScreenBackend(argv))
         self.window = MainWindow(self.host)
         self.window.closing.connect(self.close)
-        self._bell = SignalBell(self.window.close)
+        # The whole program is ours: its tool tips and questions look the same.
+        looks = self.host.screen.arrangement
+        looks.theme_chosen.connect(lambda name: theme.apply(QApplication.instance(), name))
+        theme.apply(QApplication.instance(), looks.theme)
+        # Whoever sends a signal cannot be asked.
+        self._bell = SignalBell(self.window.close_now)
         self._robots_at_first = None
         self._closed = False
         self._saved = {}

@@ -85,12 +85,10 @@ def steps(count):
     row('depth picture', lambda: from_depth(depth, lens), orbit_of, HEIGHT, count)
 
 
-def on_screen(seconds, turned):
+def on_screen(application, seconds, turned):
     """Print how long the GUI thread was away while clouds came, and perhaps were turned."""
     from python_qt_binding.QtCore import Qt, QTimer
     from python_qt_binding.QtTest import QTest
-    from python_qt_binding.QtWidgets import QApplication
-    application = QApplication.instance() or QApplication(['bench', '-style', 'Fusion'])
     from mhri.gui.sensors.cloud_view import CloudView
     data = cloud_message(*laid_out(columns(), LAYOUTS[1][1], width=640))
     cloud = parse_cloud(read_cloud(data))
@@ -138,8 +136,11 @@ def main():
     if not os.environ.get('DISPLAY'):
         server, os.environ['DISPLAY'] = start_xvfb('1600x1200x24')
     try:
+        from python_qt_binding.QtWidgets import QApplication
+        # One for both: a screen that its last client leaves may end.
+        application = QApplication(['bench', '-style', 'Fusion'])
         for turned in (False, True):
-            on_screen(3.0 if options.short else 15.0, turned)
+            on_screen(application, 3.0 if options.short else 15.0, turned)
     finally:
         if server is not None:
             server.terminate()

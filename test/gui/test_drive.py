@@ -96,7 +96,7 @@ class Session:
         assert set(self.operator.selection.selected) == set(names)
         until(lambda: set(self.host.windows) >= set(names), what='the windows')
         until(lambda: self.operator.view().status.endswith('ready') or not names,
-              what='the panel to be ready')
+              what=lambda: 'the panel to be ready: ' + self.operator.view().status)
 
     def release(self):
         """Give up stop-all as a person does: where the mux has not seen the stick let go, again."""

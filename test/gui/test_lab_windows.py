@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Windows of a lab's own packages: shown where they work, and never in the way of driving."""
-from dataclasses import replace
 import json
 import sys
 
@@ -199,4 +198,4 @@ def test_a_slip_in_mhris_own_window_is_not_hidden(host, monkeypatch):
         raise KeyError('ours')
     monkeypatch.setattr(host.tiles.hosts['bot1'], 'draw', fail)
     with pytest.raises(KeyError):
-        host.tiles._guarded('bot1', host.tiles.hosts['bot1'].draw, replace(RobotView('bot1')), False)
+        host.tiles._guarded('bot1', host.tiles.hosts['bot1'].draw, RobotView('bot1'), False)

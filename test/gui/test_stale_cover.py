@@ -102,6 +102,8 @@ def test_it_lies_over_everything_and_lets_clicks_through(window, operator, heard
     window.resize(700, 400)
     operator.settle()
     assert cover.geometry() == window.rect()
+    cover.drawn()
+    assert not cover.isVisible(), 'at once: it would say what is not so'
 
 
 class Failing(QWidget):
@@ -170,5 +172,9 @@ def test_a_window_whose_drawing_fails_says_so_alone(host, operator, monkeypatch)
     monkeypatch.setattr(host.windows['bot1'], 'show_view', lambda *_: 1 / 0)
     operator.wait_until(guard.cover.isVisible, within_s=2.0)
     assert not host._guard.cover.isVisible()
+    tile = host.windows['bot1']
+    tile.show_large(not tile.header.large)
+    tile._arrange()
+    assert [part for part in tile.children() if part.isWidgetType()][-1] is guard.cover, 'on top'
     monkeypatch.undo()
     operator.wait_until(lambda: not guard.cover.isVisible(), within_s=2.0)

@@ -167,7 +167,7 @@ def test_numbers_change_four_times_a_second_at_most(view):
     view._status_pace._next = None
     view.show_status(LIVE)
     view.show_status(replace(LIVE, rate_hz=12.0))
-    assert view.status_label.text().startswith('29.9 Hz')
+    assert view.stream_label.text().startswith('29.9 Hz')
 
 
 def test_another_kind_takes_the_picture_away_and_late_frames_stay_out(view):
@@ -193,11 +193,11 @@ def test_a_still_is_asked_for_by_click_and_only_where_there_is_a_picture(view, o
     assert asked == [frame]
     view.show_note('saved bot1_rgb.png')
     view.show_status(replace(LIVE, age_s=3.0))
-    assert view.status_label.text() == 'saved bot1_rgb.png'
+    assert view.stream_label.text() == 'saved bot1_rgb.png'
     view._note_timer.stop()
     view._status_pace._next = None
     view.show_status(LIVE)
-    assert view.status_label.text() == '29.9 Hz  41 ms old  0.8 MB/s  jpeg'
+    assert view.stream_label.text() == '29.9 Hz  41 ms old  0.8 MB/s  jpeg'
 
 
 def test_the_name_of_a_still():
@@ -242,10 +242,10 @@ def test_a_picture_that_is_shown_less_often_says_why(view, operator, slowed, tex
     view.show_frame(colour_frame())
     view._status_pace._next = None
     view.show_status(LIVE, slowed)
-    assert view.status_label.text() == text + '  41 ms old  0.8 MB/s  jpeg'
-    view.status_label.resize(170, 20)
+    assert view.stream_label.text() == text + '  41 ms old  0.8 MB/s  jpeg'
+    view.stream_label.resize(170, 20)
     if slowed:
-        assert view.status_label.shown_text() == text
+        assert view.stream_label.shown_text() == text
 
 
 def test_a_picture_that_the_budget_holds_back_says_so_and_is_not_old_before_its_time(view):
@@ -254,7 +254,7 @@ def test_a_picture_that_the_budget_holds_back_says_so_and_is_not_old_before_its_
     view.show_frame(colour_frame())
     view._status_pace._next = None
     view.show_status(held, (5.0, 'bot2'))
-    assert view.status_label.text().startswith('thinned to 0.5 Hz: camera budget')
+    assert view.stream_label.text().startswith('thinned to 0.5 Hz: camera budget')
     assert stream_warning(held) == ''
     assert stream_warning(replace(held, age_s=5.1)) == \
         'OLD PICTURE, 5.1 s\nthinned to 0.5 Hz: camera budget'

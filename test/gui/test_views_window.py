@@ -122,7 +122,8 @@ def test_settings_come_back(window, operator, ui_dir):
 
 
 @pytest.mark.parametrize('settings', [
-    {}, {'views': []}, {'views': ['gone', 'rgb', 'depth'], 'splitter': [1, 2], 'of_views': {'arm': {}}}])
+    {}, {'views': []},
+    {'views': ['gone', 'rgb', 'depth'], 'splitter': [1, 2], 'of_views': {'arm': {}}}])
 def test_settings_of_another_version_do_no_harm(window, settings):
     window.restore_settings(settings)
     assert window.wanted() <= {'imu', 'rgb'}

@@ -62,7 +62,7 @@ def test_the_header_line(window):
     assert window.link_sign.sign == (theme.DISC, theme.LIVE)
     assert [label.text() for label in (window.link_label, window.battery_label)] == [
         'live 12 ms', '82 %']
-    assert window.hud.lines[:2] == ('0.31 m/s   left 0.20 rad/s', 'heading 47 deg')
+    assert window.hud.lines[:2] == ('0.31 m/s   left 0.20 rad/s', 'heading 047')
     assert [label.text() for label in (window.x_value, window.y_value, window.turn_value,
                                        window.max_linear_value, window.max_angular_value)] == [
         'x 1.25 m', 'y -0.40 m', 'left 0.20 rad/s', '0.65 m/s', '3.14 rad/s']
@@ -86,7 +86,8 @@ def test_the_sentence(window, changes, shape, text):
 
 def test_stop_of_a_torn_off_tile_acts_on_press_and_again_while_stopped(window, operator, heard):
     frame = operator.show(TornOff(window))
-    assert window.window() is frame and window.stop_button.isVisible() and window.stop_button.height() >= 44
+    assert window.window() is frame
+    assert window.stop_button.isVisible() and window.stop_button.height() >= 44
     asked = heard(window.stop_requested)
     QTest.mousePress(window.stop_button, Qt.LeftButton)
     window.show_view(VIEW, stop_all=True)

@@ -218,7 +218,7 @@ def test_tab_order_is_the_reading_order(panel, operator, application, four_robot
 
 
 def test_settings_survive_json_and_those_of_another_version_do_no_harm(panel, operator, ui_dir):
-    panel.splitter.setSizes([400, 600])
+    panel.splitter.setSizes([450, 550])
     settings = json.loads(json.dumps(panel.save_settings()))
     other = ScreenWidget(ui_dir)
     other.resize(1024, 600)

@@ -69,7 +69,7 @@ def test_a_warning_never_replaces_the_speed_and_what_is_old_is_dimmed(robots, op
 
 
 def test_a_narrow_row_says_the_turn_without_its_unit(robots, operator):
-    for width, shown in ((560, 'right 0.20 rad/s'), (440, 'right 0.20')):
+    for width, shown in ((560, 'right 0.20 rad/s'), (390, 'right 0.20')):
         robots.resize(width, 300)
         robots.show_robots([replace(LIVE, driven=True)])
         operator.settle()
@@ -198,7 +198,8 @@ def test_a_low_battery_has_a_colour_and_a_name(operator):
         image = line.grab().toImage()
         inks.append({image.pixelColor(x, y).name() for x in range(line.width())
                      for y in range(image.height())})
-    orange, vermillion = ('#e69f00', '#d55e00')
+    orange, vermillion = (theme.colour(name, line.palette()).name()
+                          for name in (theme.ATTENTION, theme.STOP))
     assert [(orange in ink, vermillion in ink) for ink in inks] == [
         (False, False), (True, False), (False, True)]
 

@@ -156,10 +156,34 @@ def test_the_second_step_cuts_the_power_where_there_is_such_a_thing(stopped, ope
     cut = heard(stopped.power_cut_requested)
     assert not stopped.power_button.isVisible()
     stopped.show_power(True)
+    operator.wait_until(lambda: stopped._appeared.isValid()
+                        and stopped._appeared.elapsed() >= 1000 * stop_bar.SETTLED_S)
     operator.click(stopped.power_button)
     assert cut == [()]
     operator.click(stopped.release_button)
     assert not stopped.power_button.isVisible(), 'the release has the room'
+
+
+def test_clicks_that_follow_the_stop_never_cut_the_power(bar, operator, heard, monkeypatch):
+    """Angry ones, and those that waited in a queue while the screen hung."""
+    monkeypatch.setattr(stop_bar, 'SETTLED_S', 2.0)
+    cut = heard(bar.power_cut_requested)
+    bar.show_power(True)
+    for _ in range(2):
+        bar.show_stop(True, '')
+        for _ in range(5):
+            operator.click(bar.power_button)
+        operator.wait_until(bar._appeared.isValid)
+        QTest.mousePress(bar.power_button, Qt.LeftButton)
+        operator.wait_until(lambda: bar._appeared.elapsed() >= 1000 * stop_bar.SETTLED_S)
+        QTest.mouseRelease(bar.power_button, Qt.LeftButton)
+        assert cut == [], 'it was pressed too soon'
+        bar.show_stop(False, '')
+    bar.show_stop(True, '')
+    operator.wait_until(lambda: bar._appeared.isValid()
+                        and bar._appeared.elapsed() >= 1000 * stop_bar.SETTLED_S)
+    operator.click(bar.power_button)
+    assert cut == [()]
 
 
 @pytest.mark.parametrize('was_stopped', [False, True])

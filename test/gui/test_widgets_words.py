@@ -133,3 +133,11 @@ def test_pace_lets_four_through_in_a_second():
         passed += pace.due()
         clock.now += 0.05
     assert passed == 4
+
+
+def test_a_voice_that_is_not_understood_reads_what_to_do():
+    """Where there is room for it; else that it is not understood."""
+    advice = 'not understood 3 times: speak slower and close to the microphone'
+    heard = views.HeardView('', '', False, advice)
+    assert words.heard_text(heard) == advice
+    assert words.heard_shorter(heard) == (advice, 'not understood 3 times')

@@ -47,7 +47,7 @@ def running(node):
 
 
 def always(node):
-    """Return what a node has, without the camera that a window subscribes while it is on show."""
+    """Return what a node has, without the camera that a tile subscribes while it is on show."""
     return {row for row in running('/' + node)
             if row[0] != 'subscribes' or '/camera/' not in row[1]}
 
@@ -112,8 +112,6 @@ class ApiTest(unittest.TestCase):
             elif '<motor_power>' in name:
                 power = turtlebot2.motor_power
                 wanted.add((direction, '/bot1/' + power.name, power.kind))
-            elif '<imu>' in name:
-                wanted.add((direction, '/bot1/' + turtlebot2.imu[0], kind))
             else:
                 wanted.add((direction, name.replace('<robot>', 'bot1'), kind))
         try:

@@ -97,8 +97,8 @@ def test_bad_tests_are_all_counted(package):
     assert status == 1
     failed = [line for line in output.splitlines() if line.startswith('FAILED')
               and '.xml: ' in line]
-    for name in ('test_bad', 'MISSING-pytest-gui-test_crash', 'faults_calm-test_import',
-                 'pytest-faults_calm-test_none.xml: no test ran', 'rosunit-bad',
+    for name in ('test_bad', 'MISSING-pytest-gui-test_crash', 'faults_timed-test_import',
+                 'pytest-faults_timed-test_none.xml: no test ran', 'rosunit-bad',
                  'rosunit-crash.xml: is not a whole result file'):
         assert [line for line in failed if name in line], (name, output)
     assert output.splitlines()[-1] == '7 passed, 6 failed, 1 skipped', output

@@ -20,6 +20,7 @@ from support.xvfb import start_xvfb
 def wait_for(condition, timeout_s=10.0, what='the condition', poll_s=0.002):
     """Return the first true value of a condition.
 
+    :param what: what is waited for, or a function that says so at the end
     :raises AssertionError: it did not come true in time
     """
     deadline = time.monotonic() + timeout_s
@@ -28,7 +29,8 @@ def wait_for(condition, timeout_s=10.0, what='the condition', poll_s=0.002):
         if value:
             return value
         if time.monotonic() > deadline:
-            raise AssertionError('waited {:g} s for {}'.format(timeout_s, what))
+            raise AssertionError('waited {:g} s for {}'.format(
+                timeout_s, what() if callable(what) else what))
         time.sleep(poll_s)
 
 

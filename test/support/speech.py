@@ -1,10 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Synthetic speakers: sentences of ``utterances/`` spoken by espeak-ng, with noise around them."""
+"""Synthetic speakers: sentences of ``utterances/`` spoken by programs, with noise around them.
+
+A voice is one of espeak-ng ("en-us+f2"), of another program ("flite:rms", "festival:ked_diphone"),
+or a folder of recordings ("wav:/path"), one for each sentence: "robot_drive_forward.wav".
+"""
 import collections
 import hashlib
 from pathlib import Path
+import shutil
 import subprocess
+import sys
 import tempfile
 import wave
 
@@ -20,6 +26,8 @@ HISS_RMS = 8.0
 
 Utterance = collections.namedtuple('Utterance', 'expected text')
 Voice = collections.namedtuple('Voice', 'name words_per_minute pitch')
+# What flite and festival speak without being told a speed.
+_USUAL_WPM = 150.0
 _CACHE = Path(tempfile.gettempdir()) / 'mhri_utterances'
 
 
@@ -41,6 +49,56 @@ def talk(which):
     return [Utterance('', text) for chosen, text in _rows('talk.txt') if chosen == which]
 
 
+def _run(command, text=''):
+    """Run a program to its end with a text as its input."""
+    try:
+        subprocess.run(command, input=text.encode(), check=True, stdout=subprocess.DEVNULL,
+                       stderr=subprocess.DEVNULL)
+    except FileNotFoundError:
+        sys.exit('{} is not installed: apt-get install espeak-ng sox flite festival '
+                 'festvox-kdlpc16k festvox-us-slt-hts'.format(command[0]))
+
+
+def _espeak(text, voice, path):
+    """Speak by espeak-ng into a file; return the effects of sox that are needed still."""
+    _run(['espeak-ng', '-v', voice.name, '-s', str(voice.words_per_minute),
+          '-p', str(voice.pitch), '-w', str(path), text])
+    return []
+
+
+def _flite(text, voice, path):
+    """As :func:`_espeak`; it has no pitch to set."""
+    stretch = 'duration_stretch={:.3f}'.format(_USUAL_WPM / voice.words_per_minute)
+    _run(['flite', '-voice', voice.name, '--setf', stretch, '-t', text, '-o', str(path)])
+    return []
+
+
+def _festival(text, voice, path):
+    """As :func:`_espeak`; its voices do not all obey a speed."""
+    _run(['text2wave', '-eval', '(voice_{})'.format(voice.name), '-o', str(path)], text)
+    return ['tempo', '-s', str(voice.words_per_minute / _USUAL_WPM)]
+
+
+def _recorded(text, folder):
+    """Return the path of a recording."""
+    return Path(folder) / (text.replace(' ', '_') + '.wav')
+
+
+def can_say(text, voice):
+    """Tell whether a voice can say a sentence: recordings need not be of all of them."""
+    program, _, name = voice.name.rpartition(':')
+    return program != 'wav' or _recorded(text, name).exists()
+
+
+def _recording(text, voice, path):
+    """As :func:`_espeak`, from a folder of recordings."""
+    shutil.copy(str(_recorded(text, voice.name)), str(path))
+    return ['tempo', '-s', str(voice.words_per_minute / _USUAL_WPM)]
+
+
+_PROGRAMS = {'': _espeak, 'flite': _flite, 'festival': _festival, 'wav': _recording}
+
+
 def speak(text, voice=Voice('en-us', 150, 50)):
     """Return a sentence as samples at 16 kHz, float, with an RMS of SPEECH_RMS."""
     key = hashlib.sha1('|'.join([text] + [str(item) for item in voice]).encode()).hexdigest()
@@ -49,12 +107,11 @@ def speak(text, voice=Voice('en-us', 150, 50)):
         _CACHE.mkdir(exist_ok=True)
         with tempfile.TemporaryDirectory(dir=str(_CACHE)) as folder:
             raw, ready = Path(folder) / 'raw.wav', Path(folder) / 'ready.wav'
-            subprocess.run(['espeak-ng', '-v', voice.name, '-s', str(voice.words_per_minute),
-                            '-p', str(voice.pitch), '-w', str(raw), text], check=True,
-                           stdin=subprocess.DEVNULL)
+            program, _, name = voice.name.rpartition(':')
+            effects = _PROGRAMS[program](text, voice._replace(name=name), raw)
             # -R: the same sound every time.
-            subprocess.run(['sox', '-R', str(raw), '-r', str(RATE_HZ), '-c', '1', '-b', '16',
-                            str(ready), 'gain', '-3'], check=True, stdin=subprocess.DEVNULL)
+            _run(['sox', '-R', str(raw), '-r', str(RATE_HZ), '-c', '1', '-b', '16', str(ready),
+                  'gain', '-3'] + effects)
             ready.rename(path)
     with wave.open(str(path), 'rb') as stream:
         sound = np.frombuffer(stream.readframes(stream.getnframes()), dtype='<i2').astype(float)

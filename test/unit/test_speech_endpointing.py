@@ -206,17 +206,28 @@ def test_its_second_worst_word_and_its_gaps(name):
 
 
 TUNING = Tuning(worst_word=-30.0, first_word=-20.0, unspotted_wake=-12.0, all_words=-25.0,
-                latest_start=40.0)
-GOOD = Fit(worst=-10.0, second=-8.0, first=-10.0, mean=-10.0, start=30, gaps=0)
+                latest_start=40.0, stop_word=-18.0)
+GOOD = Fit(worst=-10.0, second=-8.0, first=-10.0, mean=-10.0, start=30, gaps=0,
+           words=(('robot', -10.0), ('stop', -8.0)))
 MARGINS = [(GOOD, 10.0), (replace(GOOD, worst=-35.0), -5.0), (replace(GOOD, first=-21.0), -1.0),
            (replace(GOOD, mean=-29.0), -4.0), (replace(GOOD, start=46), -6.0)]
 
 
 @pytest.mark.parametrize('fit, margin', MARGINS)
 def test_every_limit_counts(fit, margin):
-    """But for a stop: that may come late in a sentence, and be lost in noise in part."""
     assert fit.margin(TUNING) == margin
-    assert fit.margin(TUNING, stop=True) == fit.worst + 30.0
+
+
+STOP_MARGINS = [(GOOD, 10.0), (replace(GOOD, worst=-35.0), -5.0), (replace(GOOD, mean=-29.0), -4.0),
+                (replace(GOOD, start=90, first=-90.0), 10.0),
+                (replace(GOOD, words=(('stop', -30.0), ('it', -1.0))), -12.0),
+                (replace(GOOD, words=(('stop', -30.0), ('stop', -3.0))), 15.0)]
+
+
+@pytest.mark.parametrize('fit, margin', STOP_MARGINS)
+def test_a_stop_may_come_late_but_has_to_be_one(fit, margin):
+    """Talk that fits "no stop everything" but for the stop itself is no stop."""
+    assert fit.margin(TUNING, ('stop',)) == margin
 
 
 def test_the_limit_of_the_first_word_is_that_of_the_wake_word():

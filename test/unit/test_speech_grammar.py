@@ -97,6 +97,8 @@ def said_by(jsgf):
             found = alternatives(tokens)
             assert tokens.pop(0) in ')]'
             return found + [''] if token == '[' else found
+        if token == '<NULL>':
+            return ['']
         # "+": as often as one likes; once is enough here.
         token = token.rstrip('+')
         return rule(token[1:-1]) if token[0] == '<' else [token]

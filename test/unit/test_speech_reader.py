@@ -199,3 +199,20 @@ def test_a_language_that_cannot_be_used_is_said(tmp_path):
     with pytest.raises(DeviceAbsent, match='none.yaml'):
         listening.begin({'source': path, 'language': str(tmp_path / 'none.yaml')}, None)
     os.close(writer)
+
+
+def test_a_voice_that_is_not_understood_is_told_what_to_do(desk):
+    for _ in range(3):
+        desk.ended('robot drive forward', 0.2)
+    assert desk.heard[-1].reason.startswith('not understood 3 times: speak slower')
+    assert desk.heard[-1].reason.endswith('hold push-to-talk')
+    desk.ended('robot drive forward')
+    desk.ended('robot drive forward', 0.2)
+    assert desk.heard[-1].reason == 'not sure enough', 'one that was understood begins anew'
+
+
+def test_who_holds_push_to_talk_is_told_something_else(desk):
+    for _ in range(3):
+        desk.reader.push_to_talk(True)
+        desk.ended('drive forward', 0.1)
+    assert desk.heard[-1].reason.endswith('or drive another way')

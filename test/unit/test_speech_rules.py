@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from mhri.core.voice.speech import REST, STOP_RECORDING_S, SURE, SURE_OF_STOP, VoiceRules
+from mhri.core.voice.speech import (
+    REST, STOP_RECORDING_S, SURE, SURE_OF_STOP, SURE_WHEN_HELD, VoiceRules)
 from mhri.core.voice.grammar import Grammar, STOP
 from mhri.core.voice.language import parse_language
 
@@ -135,6 +136,16 @@ def test_push_to_talk_replaces_the_wake_word(talk):
     talk.rules.push_to_talk(False, talk.now)
     talk.now += 0.1
     assert not talk.say('turn left').accepted
+
+
+def test_with_push_to_talk_less_certain_words_are_believed(talk):
+    """Who holds it does not talk to somebody else."""
+    unsure = (SURE + SURE_WHEN_HELD) / 2.0
+    assert not talk.say('robot drive forward', unsure).accepted
+    talk.rules.push_to_talk(True, talk.now)
+    assert not talk.say('drive forward', SURE_WHEN_HELD - 0.01).accepted
+    assert not talk.say('drive forward', math.nan).accepted
+    assert talk.say('drive forward', unsure).accepted
 
 
 def test_push_to_talk_let_go_during_the_command_still_counts(talk):

@@ -8,6 +8,7 @@ import subprocess
 import threading
 import time
 
+from mhri.core.voice.attempts import Attempts
 from mhri.core.voice.speech import Heard, VoiceRules
 from mhri.core.voice.grammar import Command, Grammar, STOP
 from mhri.inputs import child
@@ -40,6 +41,7 @@ class VoiceReader(Reader):
         self._lock = threading.Lock()
         self._language = language
         self._rules = VoiceRules(language)
+        self._attempts = Attempts()
         self._robots = ()
         self._grammar = None
         self._told = None
@@ -90,6 +92,7 @@ class VoiceReader(Reader):
         with self._lock:
             self._rules.reset()
             self._told = self._robots
+        self._attempts.clear()
         self._held, self._last, self._woken = b'', None, False
         self._order({'source': source, 'language': self._path, 'robots': self._told})
         return self._wait_open()
@@ -166,6 +169,7 @@ class VoiceReader(Reader):
         with self._lock:
             possible = self._drives and (self._woken or self._rules.talking(self._began))
             at_once = self._rules.spotted_stop(now, possible)
+        self._attempts.clear()
         if at_once:
             self._on_act(Command(STOP))
             self._on_heard(Heard(word, STOP, True, '', 1.0, None))
@@ -177,9 +181,10 @@ class VoiceReader(Reader):
         with self._lock:
             heard = self._rules.hear(text, self._grammar.parse(text), event['confidence'], began,
                                      now)
+            held = self._rules.talking(began)
         if heard.act is not None:
             self._on_act(heard.act)
-        self._on_heard(heard)
+        self._on_heard(self._attempts.judge(heard, event['age_s'], now, held))
 
     def close(self):
         """End the process; see :meth:`Reader.close`."""

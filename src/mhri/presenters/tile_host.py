@@ -12,13 +12,14 @@ from mhri.core.recording.recording import RECORDING
 from mhri.core.robots.mocap import DriftMeter, Pose
 from mhri.core.screen.view_rows import CLOUD, IMU, PICTURES, RGB, SCAN, VIEW_ROWS
 from mhri.core.screen.views import StateView
+from mhri.core.sensors.nearest import nearest, OLD_S
 from mhri.gui.camera.camera_view import still_name
 from mhri.presenters.draw_guard import DrawGuard
 from mhri.presenters.rviz_cloud import RvizCloud
 from mhri.ros.camera.camera_budget import Wish
 from mhri.ros.robots.bot_feeds import MOCAP
 
-# How a stream is called where there is little room.
+# Short names of streams.
 _SHORT = {IMU: 'IMU', SCAN: 'scan', CLOUD: 'cloud'}
 
 
@@ -44,20 +45,23 @@ class TileHost:
         self._wired = False
         self._rviz = None
         self._held_back = ''
+        self._nearest = None
         window.recording.record_requested.connect(self._record)
         window.recording.stop_record_requested.connect(self._stop_recording)
         self._operator_folder()
 
     def draw(self, view, stop_all):
-        """Hand the window what there is.
+        """Hand the tile the newest values.
 
         :param view: :class:`mhri.core.screen.views.RobotView`
         """
-        window = self.window
-        # Whatever else there is to say matters more than why the picture is slow.
+        window, feeds = self.window, self._operator.feeds(self._name)
+        if not window.is_watched():
+            self._rest(feeds)
+            return
+        # Anything else matters more than why the picture is slow.
         window.show_view(replace(view, note=view.note or self._held_back), stop_all)
         self._held_back = ''
-        feeds = self._operator.feeds(self._name)
         if feeds is None:
             return
         window.offer(feeds.offers())
@@ -65,21 +69,39 @@ class TileHost:
             self._wired = True
             window.view('rgb').transport_chosen.connect(self._choose_transport)
             window.view('rgb').still_requested.connect(self._save_still)
-        feeds.want(window.wanted() | {MOCAP} if window.is_watched() else ())
+        feeds.want(self._wanted() | {MOCAP})
         status = self._operator.recordings.status(self._name)
         window.recording.offer_extras(self._operator.recordable(self._name))
         window.recording.show_recording(status)
         window.header.show_recording(status if status.state == RECORDING else None)
-        for key in window.wanted():
+        for key in self._wanted():
             feed = feeds.get(key)
             if feed is not None:
                 self._draw_view(key, feed)
         self._draw_state(view, feeds)
+        window.hud.set_extra(self._extra_lines(feeds))
         while self._notes and RGB in feeds.offers():
             window.view('rgb').show_note(*self._notes.pop())
 
+    def _wanted(self):
+        """Return the views to be fed: a large tile tells the nearest thing, view or not."""
+        wanted = self.window.wanted()
+        return wanted | {SCAN} if self.window.header.large else wanted
+
+    def _extra_lines(self, feeds):
+        """Return what the numbers over the picture say beside the motion; old scans say nothing."""
+        scan = feeds.get(SCAN) if self.window.header.large else None
+        if scan is None:
+            return ()
+        age_s = scan.age_s()
+        told = self._nearest is not None and age_s is not None and age_s <= OLD_S
+        return (self._nearest.words() if told else '',)
+
     def _draw_view(self, key, feed):
         """Hand a view what its feed has."""
+        if key == SCAN:
+            self._draw_scan(feed)
+            return
         widget = self.window.view(key)
         if hasattr(feed, 'set_view'):
             self._draw_camera(widget, feed)
@@ -93,14 +115,25 @@ class TileHost:
         if hasattr(feed, 'status'):
             widget.show_status(feed.status())
 
+    def _draw_scan(self, feed):
+        """Take note of the nearest thing, and show the scan where its view is on show."""
+        scan = feed.take()
+        if scan is not None:
+            self._nearest = nearest(*scan[:3])
+        if SCAN in self.window.wanted():
+            widget = self.window.view(SCAN)
+            if scan is not None:
+                widget.show_value(scan)
+            widget.show_age(feed.age_s())
+
     def _draw_state(self, view, feeds):
         """Show how old each stream is, and what motion capture says.
 
-        The age of the odometry is that of the link, in the header.
+        The header shows the age of the odometry as that of the link.
         """
         ages = []
         for row in VIEW_ROWS:
-            feed = feeds.get(row.key)
+            feed = feeds.get(row.key) if row.key in self.window.wanted() else None
             if feed is not None:
                 ages.append((_SHORT.get(row.key, row.label), feed.age_s()))
         tracker = feeds.get(MOCAP)
@@ -112,7 +145,7 @@ class TileHost:
             StateView(tuple(ages), view.figures, captured, self._drift.drift(odometry, captured)))
 
     def _operator_folder(self):
-        """Let the file dialog begin where recordings go unless told otherwise."""
+        """Start the file dialog in the default folder of recordings."""
         self.window.recording.set_default_path(
             os.path.join(recordings_folder(), '{}_<date-time>.bag'.format(self._name)))
 
@@ -123,7 +156,7 @@ class TileHost:
         self._operator.recordings.stop(self._name)
 
     def _draw_camera(self, camera, feed):
-        """Ask for pictures as large and as often as this tile is worth, and show the newest."""
+        """Ask for pictures of the size and rate this tile needs, and show the newest."""
         width, height = self.window.camera_size()
         large = self.window.header.large
         thumbnail_hz = self._operator.settings.thumbnail_hz
@@ -135,7 +168,7 @@ class TileHost:
         if frame is not None:
             camera.show_frame(frame)
         status = feed.status()
-        # Where there was no picture yet, its place says it.
+        # Without a picture, the placeholder says it.
         self._held_back = status.thinned if status.age_s is not None else ''
         camera.show_status(status, None if large else (thumbnail_hz, 'another'))
         if status.age_s is None and status.problem:
@@ -165,7 +198,7 @@ class TileHost:
         return next(iter(self.window.wanted() & PICTURES), None)
 
     def save_still(self):
-        """Keep the picture on show as a file, where there is one."""
+        """Save the picture on show as a file, if there is one."""
         frame = self.window.view('rgb').picture.frame if self._picture() else None
         if frame is not None:
             self._save_still(frame)
@@ -176,7 +209,7 @@ class TileHost:
         self._operator.do(self._write_still, path, frame.rgb)
 
     def _write_still(self, path, rgb):
-        """Write a PNG (on the operator's worker); what came of it is shown at the next drawing."""
+        """Write a PNG (on the operator's worker); the next drawing shows the result."""
         try:
             os.makedirs(os.path.dirname(path), exist_ok=True)
             written = cv2.imwrite(path, cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR))
@@ -185,9 +218,13 @@ class TileHost:
         self._notes.append(('saved {}'.format(path), True) if written else (
             'cannot write {}: is there room, and permission?'.format(path), False))
 
-    def close(self):
-        """Let the feeds rest: a closed window costs nothing."""
-        self.guard.end()
-        feeds = self._operator.feeds(self._name)
+    @staticmethod
+    def _rest(feeds):
+        """Let the feeds rest: a tile that nobody can see costs nothing."""
         if feeds is not None:
             feeds.want(())
+
+    def close(self):
+        """Draw no more."""
+        self.guard.end()
+        self._rest(self._operator.feeds(self._name))

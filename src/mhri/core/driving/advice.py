@@ -14,8 +14,8 @@ class Heard:
     """What is known of the active source's topic.
 
     ``publishers`` are connected; ``stranger`` is (node, message type) of one that publishes another
-    type; ``spoke``: something was heard since the mode was entered; ``refused`` why the newest
-    message could not be used; ``rival`` is (node, owner) where a second publisher was refused
+    type; ``spoke`` is true once something was heard in this mode; ``refused`` says why the
+    newest message could not be used; ``rival`` is (node, owner) if a second publisher was refused
     lately.
     """
 
@@ -27,10 +27,10 @@ class Heard:
 
 
 def advice(source: Source, waits_for: str, heard: Heard) -> str:
-    """Return the sentence, '' where nothing is to be said.
+    """Return the sentence, '' if there is nothing to say.
 
     :param source: the active :class:`mhri.core.driving.sources.Source`
-    :param waits_for: as ``/mux/waits_for`` says it
+    :param waits_for: the text of ``/mux/waits_for``
     :param heard: :class:`Heard`
     """
     if heard.refused:

@@ -4,8 +4,8 @@
 
 One :class:`Arbiter` owns the control mode. Time is passed in as seconds of a clock that never goes
 back. Every method that may change what the robots should do returns the :class:`Velocity` to send
-at once, or None where nothing is to be said; :meth:`Arbiter.tick` does the same for the passing of
-time, and :meth:`Arbiter.next_tick` says when it wants to be called.
+at once, or None to send nothing; :meth:`Arbiter.tick` does the same as time passes, and
+:meth:`Arbiter.next_tick` says when to call it.
 
 States and what leads out of them::
 
@@ -15,11 +15,11 @@ States and what leads out of them::
     READY          fresh source at neutral              deflected -> DRIVING
     DRIVING        a command other than zero            neutral or dead-man released -> READY
 
-A silent, suspended, lost or exchanged source, a change of mode, a robot that joins the selection,
-an enabling pedal that is released, a dead-man button that is pressed while the stick is out, and
-the loss of the master or of the gates lead from READY and DRIVING to WAIT_NEUTRAL; stop-all leads
-from anywhere to STOPPED. Each of them starts the zeros (but for
-silence at rest, where they have been sent): one at once, more at :data:`REPEAT_HZ` for
+These lead from READY and DRIVING to WAIT_NEUTRAL: a silent, suspended, lost or exchanged source, a
+change of mode, a robot that joins the selection, the release of the enabling pedal, a dead-man
+button pressed while the stick is deflected, and the loss of the master or of the gates. Stop-all
+leads from anywhere to STOPPED. Each of these starts the zeros (except silence at rest, after which
+they have already been sent): one at once, more at :data:`REPEAT_HZ` for
 :data:`ZEROS_S`, then silence, since endless zeros would block a robot's own navigation behind its
 ``cmd_vel_mux`` (rqt_common_plugins#180).
 """
@@ -38,19 +38,19 @@ DRIVING = 'driving'
 
 REPEAT_HZ = 20.0
 ZEROS_S = 0.5
-# An enabling pedal that has not been heard for so long counts as released.
+# An enabling pedal not heard for this long counts as released.
 ENABLING_TIMEOUT_S = 0.25
 _PERIOD_S = 1.0 / REPEAT_HZ
-# Of a source that has said nothing yet: it asks for nothing, but is not known to be at rest.
+# For a source that has said nothing yet: it asks for nothing, but may not be at rest.
 _UNHEARD = Stick(0.0, 0.0, neutral=False, held=False)
 
 
 class Arbiter:
-    """Decides which source drives and what velocity the robots are sent.
+    """Decides which source drives and which velocity the robots are sent.
 
     :param config: :class:`mhri.core.driving.sources.MuxConfig`
-    :param now: the time of creation [s]; the first zeros start here, so that whatever an earlier
-        mux left moving stops
+    :param now: the time of creation [s]; the first zeros start here, to stop whatever an earlier
+        mux left moving
     """
 
     def __init__(self, config: MuxConfig, now: float) -> None:
@@ -85,7 +85,7 @@ class Arbiter:
 
     @property
     def limits(self) -> Tuple[float, float]:
-        """Speed limits of the operator in force (m/s, rad/s)."""
+        """The operator's speed limits in force [m/s, rad/s]."""
         return self._limits
 
     @property
@@ -99,7 +99,7 @@ class Arbiter:
         return self._state == STOPPED
 
     def waits_for(self, now: float) -> str:
-        """Say what stands between the operator and moving robots.
+        """Return what keeps the operator from moving robots.
 
         :returns: '' (nothing: ready or driving), 'release' (stop-all), 'source' (nothing fresh is
             heard from the active source), 'neutral' (the stick is not centred), 'enabling' (the
@@ -117,19 +117,19 @@ class Arbiter:
 
     @property
     def cause(self) -> str:
-        """Event that last led to WAIT_NEUTRAL or STOPPED, e.g. 'stale', 'mode', 'start'."""
+        """The event that last led to WAIT_NEUTRAL or STOPPED, e.g. 'stale', 'mode', 'start'."""
         return self._cause
 
     def on_joy(self, name: str, axes: Sequence[float], buttons: Sequence[int], device: object,
                now: float, profile: Optional[Profile] = None) -> Optional[Velocity]:
         """Take in one Joy message of a source.
 
-        :param name: the source it came from
-        :param device: whatever tells one publisher from another (its ROS name); another publisher
-            is a newly connected device
-        :param profile: :class:`Profile` of the device, default that of the source
+        :param name: the source that sent it
+        :param device: identifies the publisher (its ROS name); another publisher counts as a newly
+            connected device
+        :param profile: :class:`Profile` of the device; default: that of the source
         :returns: the velocity to send now, or None
-        :raises JoyRefused: the message cannot be used; it changes nothing but the counters
+        :raises JoyRefused: the message cannot be used; only the counters change
         :raises KeyError: no such source
         """
         chosen = profile or self._sources[name].profile
@@ -144,7 +144,7 @@ class Arbiter:
 
     def on_twist(self, name: str, linear: Sequence[float], angular: Sequence[float],
                  device: object, now: float) -> Optional[Velocity]:
-        """Take in one Twist of a source: its two vectors [m/s], [rad/s]; else as :meth:`on_joy`."""
+        """Take in one Twist of a source, as vectors [m/s], [rad/s]; else as :meth:`on_joy`."""
         return self._on_message(name, device, now, lambda: read_twist(linear, angular))
 
     def _on_message(self, name: str, device: object, now: float,
@@ -179,7 +179,7 @@ class Arbiter:
             zero = self._interlock('device' if exchanged else 'stale', now)
             return self._follow(stick, now) or zero
         if self._state == READY and stick.held and not before.held and not stick.neutral:
-            # A thumb that finds the button must not set robots in motion.
+            # Pressing the button must not set robots in motion.
             self._enter(WAIT_NEUTRAL, 'dead_man')
             return self._later_zero(now)
         return self._follow(stick, now)
@@ -203,8 +203,8 @@ class Arbiter:
     def _on_enabling(self, pressed: bool, now: float) -> Optional[Velocity]:
         """Take in the enabling pedal.
 
-        Released, everything stops; pressed while the stick is deflected, nothing moves before that
-        has been centred: a foot that comes back must not set robots in motion.
+        Releasing it stops everything. If it is pressed while the stick is deflected, nothing moves
+        until the stick has been centred: a returning foot must not set robots in motion.
         """
         was, self._enabled_at = self.enabled(now), now if pressed else -math.inf
         if not pressed and self._state == DRIVING:
@@ -218,10 +218,10 @@ class Arbiter:
         return self._enabling is None or now - self._enabled_at < ENABLING_TIMEOUT_S
 
     def _on_other(self, name: str, stick: Wanted, device: object, now: float) -> Optional[Velocity]:
-        """Change over to a source that is touched while everything stands still.
+        """Switch to a source that somebody touches while everything stands still.
 
-        It has to be seen at neutral first, and once more before it moves anything. One that is
-        deflected while another drives has to be let go before it counts.
+        It must be seen at neutral first, and once more before it moves anything. A source deflected
+        while another one drives must be let go before it counts.
         """
         still = self._state in (READY, WAIT_NEUTRAL) and now >= self._zeros_until
         if stick.neutral:
@@ -232,9 +232,10 @@ class Arbiter:
         return None
 
     def on_selection(self, names: Iterable[str], now: float) -> Optional[Velocity]:
-        """Take note of the robots that are selected.
+        """Take note of the selected robots.
 
-        One that joins while others are driven must not leap: all wait until the stick was centred.
+        A robot that joins while others are driving must not leap: all wait until the stick is
+        centred.
 
         :returns: the velocity to send now, or None
         """
@@ -244,10 +245,10 @@ class Arbiter:
         return None
 
     def on_mode(self, name: str, now: float) -> Optional[Velocity]:
-        """Change the active source; the one already active is no change.
+        """Change the active source; choosing the active one again changes nothing.
 
         :returns: the velocity to send now, or None
-        :raises KeyError: no such source; the mode stays as it was
+        :raises KeyError: no such source; the mode does not change
         """
         if name not in self._sources:
             self.refused['unknown_mode'] += 1
@@ -261,9 +262,9 @@ class Arbiter:
         return self._interlock('mode', now)
 
     def on_lost(self, name: str, cause: str, now: float) -> Optional[Velocity]:
-        """Take note that a source was suspended or its device was lost ('suspended', 'lost').
+        """Take note that a source was suspended or its device lost (cause 'suspended' or 'lost').
 
-        :returns: the velocity to send now, or None where the source is not the active one
+        :returns: the velocity to send now, or None if the source is not the active one
         """
         self._resting.pop(name, None)
         self._rested.pop(name, None)
@@ -273,7 +274,7 @@ class Arbiter:
         return self._interlock(cause, now)
 
     def on_hung(self, now: float) -> Optional[Velocity]:
-        """Forget what every source has said: this mux has slept, and all of it is old.
+        """Forget what every source has said: this mux was asleep, so all of it is old.
 
         :returns: the zero to send now
         """
@@ -290,7 +291,7 @@ class Arbiter:
         return self._interlock(cause, now)
 
     def engage_stop_all(self, now: float) -> Velocity:
-        """Stop everything until :meth:`release_stop_all`; may be repeated.
+        """Stop everything until :meth:`release_stop_all`; repeating it is safe.
 
         :returns: the zero to send now
         """
@@ -298,9 +299,9 @@ class Arbiter:
         return self._zeros(now)
 
     def release_stop_all(self, now: float) -> Optional[str]:
-        """Give up stop-all; nothing moves before the stick has been seen at neutral once more.
+        """Release stop-all; nothing moves until the stick has been seen at neutral once more.
 
-        :returns: None on success, else the reason why not, as a sentence
+        :returns: None on success, else a sentence that says why not
         """
         if self._state != STOPPED:
             return None
@@ -313,10 +314,10 @@ class Arbiter:
         return None
 
     def set_limits(self, linear_mps: float, angular_rad_s: float, now: float) -> Optional[Velocity]:
-        """Change the operator's speed limits; a robot that moves follows at once.
+        """Change the operator's speed limits; moving robots follow at once.
 
         :returns: the velocity to send now, or None
-        :raises ValueError: not finite, negative or absurdly large; the old limits stay
+        :raises ValueError: not finite, negative or absurdly large; the old limits stay in force
         """
         problem = speed_limit_problem(linear_mps, angular_rad_s)
         if problem:
@@ -339,7 +340,7 @@ class Arbiter:
         if self._state == WAIT_NEUTRAL and self._rests():
             return self._follow(self._stick, now)
         if self._state == READY and not self._fresh(now):
-            # At rest already, and said so: a device that speaks now and then must not cause
+            # Already at rest, with the zeros sent: a device that speaks now and then must not cause
             # zeros without end.
             self._enter(WAIT_NEUTRAL, 'idle')
         if now < self._next_repeat:
@@ -352,7 +353,7 @@ class Arbiter:
         return None
 
     def next_tick(self, now: float) -> float:
-        """Return the time [s] at which :meth:`tick` has to be called next."""
+        """Return the time [s] at which to call :meth:`tick` next."""
         times = [now + 1.0]
         if self._state in (READY, DRIVING) and not self._rests():
             times.append(self._stick_at + self.source.timeout_s)
@@ -363,7 +364,7 @@ class Arbiter:
         return min(times)
 
     def _fresh(self, now: float) -> bool:
-        """Tell whether the active source has been heard recently enough to drive."""
+        """Tell whether the active source was heard recently enough to drive."""
         return now - self._stick_at < self.source.timeout_s or self._rests()
 
     def _rests(self) -> bool:

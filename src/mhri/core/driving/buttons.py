@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Buttons that act once when they go down, however often the device repeats them."""
+"""Buttons that act once for each press, however often the device repeats them."""
 from typing import Dict, FrozenSet, Iterable, Tuple
 
 from mhri.core.driving.profile import STOP_ALL
@@ -15,11 +15,11 @@ class ButtonEdges:
     def newly(self, name: str, device: object, pressed: Iterable[str]) -> FrozenSet[str]:
         """Return the actions whose buttons have gone down since the last message, as a set.
 
-        What is held in a device's first message was not pressed for us and does nothing; but a
-        stop counts whenever it is seen.
+        A button already held in a device's first message does nothing, since nobody pressed it
+        for us; but a stop always counts.
 
         :param name: the source
-        :param device: whatever tells one device from another
+        :param device: identifies the device
         :param pressed: set of actions (:meth:`mhri.core.driving.profile.Profile.pressed`)
         """
         known, held = self._held.get(name, (None, frozenset()))

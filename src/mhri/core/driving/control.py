@@ -3,8 +3,8 @@
 """Who is in control, as one screen sees it: one operator at a time."""
 from typing import Optional
 
-# A screen that is not in control claims it only when nobody has had it for so long: the one that
-# had it repeats its selection every 0.5 s, and is to have it back when the gates were restarted.
+# A screen claims control only after nobody has had it for this long: the screen that had it repeats
+# its selection every 0.5 s, and should get it back after a restart of the gates.
 VACANT_S = 2.0
 
 
@@ -16,7 +16,7 @@ class Claim:
         DRIVES  -> WATCHES  the gates name somebody else
         WATCHES -> DRIVES   the gates name this one, or nobody for VACANT_S
 
-    A screen begins by claiming; the gates decide. While they are not heard nothing changes.
+    A screen begins by claiming; the gates decide. Nothing changes while they are not heard.
 
     :param name: the node of this screen, as the gates call it
     """
@@ -40,7 +40,7 @@ class Claim:
 
 
 def operator_name(node: str) -> str:
-    """Return what a person calls a node that is in control: "panel", "panel in rqt", its name."""
+    """Return the everyday name of a node in control: "panel", "panel in rqt", or its own name."""
     name = node.strip('/')
     if name.startswith('rqt'):
         return 'panel in rqt'
@@ -48,11 +48,11 @@ def operator_name(node: str) -> str:
 
 
 def who_drives(node: str, computer: str = '', since: str = '') -> str:
-    """Return who is in control, for a person, e.g. "panel on lab-pc2 since 14:02".
+    """Return who is in control in words, e.g. "panel on lab-pc2 since 14:02".
 
     :param node: its name
-    :param computer: that it runs on, '' where it is not known
-    :param since: local time as text, '' where it is not known
+    :param computer: the one it runs on, '' if unknown
+    :param since: local time as text, '' if unknown
     """
     return operator_name(node) + (' on ' + computer if computer else '') + (
         ' since ' + since if since else '')

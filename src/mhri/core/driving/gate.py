@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The rule of one robot's gate: whom the robot obeys, and when it stands. No ROS, no clock.
 
-A robot obeys one thing: the operator while it is checked; else its task; else nothing. States and
+A robot obeys one thing: the operator while it is checked, else its task, else nothing. States and
 what leads out of them::
 
     IDLE      obeys nobody                       checked -> JOINING or OPERATOR, task -> TASK
@@ -15,9 +15,9 @@ what leads out of them::
     STOPPED   stop-all is in force               released -> where it belongs, centred first
     CLOSED    the robot was removed              (nothing)
 
-Every way out of OPERATOR and TASK sends a zero, and so does every change of whom it obeys; so does
-STOPPED, to every robot, checked or not. Who joins while anything is driven waits for neutral: a
-command other than zero that was the last one heard means that something is.
+Every way out of OPERATOR and TASK sends a zero, and so does every change of whom it obeys. STOPPED
+sends one to every robot, checked or not. A robot that joins while anything is driving waits for
+neutral; something is driving if the last command heard was not zero.
 """
 import math
 from typing import Optional, Sequence
@@ -29,12 +29,12 @@ IDLE, JOINING, OPERATOR, TASK = 'idle', 'joining', 'operator', 'task'
 HELD, STOPPED, CLOSED = 'held', 'stopped', 'closed'
 STATES = (IDLE, JOINING, OPERATOR, TASK, HELD, STOPPED, CLOSED)
 
-# A command or a task that is older than this is no longer obeyed [s].
+# A command or a task older than this is no longer obeyed [s].
 STALE_S = 0.5
 
 
 def common_limits(limits: Sequence[Limits]) -> Limits:
-    """Return what every robot of a group can do: the least of each of their limits.
+    """Return what every robot of a group can do: the lowest of each of their limits.
 
     :param limits: several :class:`mhri.core.robots.robot_types.Limits`
     """
@@ -45,12 +45,12 @@ class GateRule:
     """Decides, for one robot, what to forward and when to send a zero.
 
     Every method that may change what the robot should do returns the :class:`Velocity` to send
-    now, or None; time is seconds of a clock that never goes back. Closed (:meth:`close`), it never
+    now, or None; time is seconds of a clock that never goes back. After :meth:`close` it never
     says anything again.
 
     :param limits: :class:`mhri.core.robots.robot_types.Limits` of the robot
-    :param command: the operator's command that was heard last, None before any: then something may
-        be driven, and the robot waits for neutral
+    :param command: the operator's last command, None before the first; then something may be
+        driving, and the robot waits for neutral
     """
 
     def __init__(self, limits: Limits, command: Optional[Velocity] = None) -> None:
@@ -76,7 +76,7 @@ class GateRule:
 
     @property
     def checked(self) -> bool:
-        """Whether the operator has checked the robot, and is in control."""
+        """Whether the operator in control has checked the robot."""
         return self._checked
 
     @property
@@ -93,19 +93,19 @@ class GateRule:
 
     @property
     def stands(self) -> str:
-        """Why the robot is kept standing: STOPPED, HELD, JOINING, or '' for no reason."""
+        """Why the robot is kept still: STOPPED, HELD, JOINING, or '' for no reason."""
         return self._state if self._state in (STOPPED, HELD, JOINING) else ''
 
     def hold_to(self, group: Limits, share: float) -> None:
-        """Let the robot keep to its group from the next command on.
+        """Hold the robot to its group's pace from the next command on.
 
         :param group: :class:`mhri.core.robots.robot_types.Limits` of the group, or its own
-        :param share: how much of a command is passed on, in (0, 1]
+        :param share: fraction of a command that is passed on, in (0, 1]
         """
         self._group, self._share = group, share
 
     def on_command(self, velocity: Velocity, now: float) -> Optional[Velocity]:
-        """Take in the operator's command; return what this robot gets of it, or None."""
+        """Take in the operator's command; return what to send this robot, or None."""
         self._command, self._command_at = velocity, now
         if velocity.is_zero() and self._state != STOPPED:
             self._centre = False
@@ -118,10 +118,10 @@ class GateRule:
             clamp_keeping_curvature(wanted, self._group), self.limits))
 
     def on_task(self, velocity: Velocity, now: float) -> Optional[Velocity]:
-        """Take in the command of the robot's task; return what the robot gets of it, or None.
+        """Take in the command of the robot's task; return what to send the robot, or None.
 
-        After a stop, a hold or a take-over a task is obeyed again once it has said zero or nothing
-        for a while: nothing resumes by itself.
+        After a stop, a hold or a change of control the robot obeys its task again only once the
+        task has sent a zero, or nothing for a while: nothing resumes by itself.
         """
         if velocity.is_zero() or now - self._task_at >= STALE_S:
             self._task_rests = True
@@ -133,7 +133,7 @@ class GateRule:
         return self._say(clamp_keeping_curvature(velocity, self.limits))
 
     def check(self, checked: bool, now: float) -> Optional[Velocity]:
-        """Let the robot obey the operator, or not any more; the zero of a change goes out now."""
+        """Start or stop obeying the operator; return the zero of the change, if any."""
         if checked == self._checked:
             return None
         self._checked = checked
@@ -143,7 +143,7 @@ class GateRule:
         return self._settle(now, changed=True)
 
     def stop(self, stopped: bool, now: float) -> Optional[Velocity]:
-        """Engage or release stop-all; engaged, every robot gets a zero, checked or not."""
+        """Engage or release stop-all; engaging sends every robot a zero, checked or not."""
         if stopped == self._stopped:
             return None
         self._stopped, self._task_rests = stopped, False
@@ -151,10 +151,10 @@ class GateRule:
         return self._settle(now)
 
     def hold(self, held: bool, now: float) -> Optional[Velocity]:
-        """Send nothing to a robot that is not heard, after one zero where it was driven.
+        """Stop sending to a robot that is not heard, after one zero if it was driven.
 
-        What is sent into a link that stalls would come out, all of it, when it is back. Heard again
-        in the middle of a drive, the robot waits for neutral.
+        A stalled link would deliver everything sent into it once it recovers. A robot heard again
+        while anything is driving waits for neutral.
         """
         if held == self._held:
             return None
@@ -164,23 +164,23 @@ class GateRule:
         return self._settle(now)
 
     def join(self, now: float) -> Optional[Velocity]:
-        """Wait for neutral where anything is driven.
+        """Wait for neutral if anything is driving.
 
-        For a robot that is newly connected, has lost its guard, or has another mux or operator.
+        For a robot that is newly connected, has lost its guard, or has a new mux or operator.
         """
         self._task_rests = False
         self._centre = self._centre or self._driven()
         return self._settle(now)
 
     def close(self, now: float) -> Optional[Velocity]:
-        """End: the robot is removed or the program closes; the last word is a zero."""
+        """End: the robot is removed or the program closes; the last command is a zero."""
         if self._state == CLOSED:
             return None
         self._state = CLOSED
         return self._say(ZERO)
 
     def tick(self, now: float) -> Optional[Velocity]:
-        """Let time pass: commands that went stale are ended by one zero."""
+        """Let time pass: one zero ends commands that went stale."""
         if self._state == OPERATOR and not self._last.is_zero() \
                 and now - self._command_at >= STALE_S:
             self._centre = True
@@ -190,13 +190,13 @@ class GateRule:
         return None
 
     def next_tick(self) -> Optional[float]:
-        """Return when :meth:`tick` has to be called next [s], or None: not before a command."""
+        """Return when to call :meth:`tick` next [s], or None for not before a command."""
         if self._state == OPERATOR and not self._last.is_zero():
             return self._command_at + STALE_S
         return self._task_at + STALE_S if self._state == TASK else None
 
     def _driven(self) -> bool:
-        """Tell whether anything may be driven: the last command was no zero, or there was none."""
+        """Tell whether anything may drive: the last command was not zero, or there was none."""
         return self._command is None or not self._command.is_zero()
 
     def _belongs(self, now: float) -> str:

@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""How the robots of a selection keep to each other, and to the slowest of their links."""
+"""How selected robots stay together, and slow down with the slowest of their links."""
 from typing import Iterable, Optional, Sequence
 
 from mhri.core.screen.views import RobotView
 
 
 def slowest_link(robots: Iterable[RobotView]) -> Optional[RobotView]:
-    """Return the selected robot whose link takes longest, or None where none is known.
+    """Return the selected robot with the slowest link, or None if no link is known.
 
     :param robots: :class:`mhri.core.screen.views.RobotView` of all
     """
@@ -17,11 +17,11 @@ def slowest_link(robots: Iterable[RobotView]) -> Optional[RobotView]:
 
 
 def pace_words(robots: Sequence[RobotView], together: bool, share: float) -> str:
-    """Return in words what the robots keep to.
+    """Return in words what limits the robots' pace.
 
     :param robots: :class:`mhri.core.screen.views.RobotView` of all
-    :param together: whether all are held to what the slowest can do
-    :param share: how much of each command is passed on, in (0, 1]; less than 1: a link is slow
+    :param together: whether all keep to the pace of the slowest
+    :param share: fraction of each command that is passed on, in (0, 1]; less than 1: a link is slow
     """
     if share < 1.0:
         worst, why = slowest_link(robots), 'a link is slow'
@@ -33,7 +33,7 @@ def pace_words(robots: Sequence[RobotView], together: bool, share: float) -> str
 
 
 def _together(robots: Iterable[RobotView]) -> str:
-    """Say what all of a selection are held to."""
+    """Say what all selected robots keep to."""
     known = [(robot.max_linear_mps, robot.max_angular_rad_s, robot.name) for robot in robots
              if robot.selected and robot.max_linear_mps is not None
              and robot.max_angular_rad_s is not None]

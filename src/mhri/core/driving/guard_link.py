@@ -3,13 +3,13 @@
 """The host's end of the link to the guard on a robot (``utils/remote/mhri_guard``).
 
 The guard sends echoes, each with a new token; a command carries the token of the newest echo, and
-the guard obeys it while that token is young. Both say so in ``frame_id``,
-``<session>:<number>:<token>``: who speaks, its how manieth word this is (in an echo: the last one
-that was obeyed), and the token. While stop-all is in force the session of a command ends in ``!``,
-and while the stop is latched on the robot the token of an echo does.
+the guard obeys it while that token is young. Both use ``frame_id``,
+``<session>:<number>:<token>``: who speaks, the number of the command (in an echo: of the last one
+obeyed), and the token. While stop-all is in force the session of a command ends in ``!``; while the
+stop is latched on the robot the token of an echo does.
 
-A stop is released by a zero without ``!`` that answers an echo sent after the stop; what is not a
-zero is dropped until then. So a gate says zero until :attr:`GuardLink.stop_confirmed` is false.
+A zero without ``!`` that answers an echo sent after the stop releases it; until then the guard
+drops everything else. So a gate sends zeros until :attr:`GuardLink.stop_confirmed` is false.
 """
 import re
 from typing import Optional, Tuple
@@ -18,17 +18,17 @@ from typing import Optional, Tuple
 ECHO_S = 0.35
 _ID = re.compile(r'([A-Za-z0-9_-]{1,32})(!?):([0-9]{1,15}):([A-Za-z0-9_-]{0,32})(!?)\Z')
 _SESSION = re.compile(r'[A-Za-z0-9_-]{1,32}\Z')
-# The session of an echo before anybody was obeyed.
+# The session of an echo before any command was obeyed.
 _NOBODY = '-'
 
 
 def format_id(session: str, number: int, token: str, stop: bool = False) -> str:
-    """Return the frame_id of a command; one with an empty token is good as a stop only."""
+    """Return the frame_id of a command; with an empty token it is valid only as a stop."""
     return '{}{}:{}:{}'.format(session, '!' if stop else '', number, token)
 
 
 def parse_id(text: str) -> Optional[Tuple[str, int, str, bool]]:
-    """Return (session, number, token, stop) of a frame_id, or None where it is none.
+    """Return (session, number, token, stop) of a frame_id, or None if it is not one.
 
     ``stop`` is true for a command that stops and for an echo of a robot that is stopped.
     """
@@ -42,7 +42,7 @@ def parse_id(text: str) -> Optional[Tuple[str, int, str, bool]]:
 class GuardLink:
     """The link to the guard of one robot; times are seconds of a clock that never goes back.
 
-    :param session: names this run of the sender: another one at each start, at most 32 of
+    :param session: names this run of the sender: a new one at each start, at most 32 characters of
         ``A-Za-z0-9_-``
     :raises ValueError: the session is something else
     """
@@ -60,7 +60,7 @@ class GuardLink:
         self.stop_confirmed = False
 
     def on_echo(self, frame_id: str, now: float) -> bool:
-        """Take in the frame_id of an echo; return False where it is none, and nothing changes."""
+        """Take in the frame_id of an echo; return False, and change nothing, if it is not one."""
         echo = parse_id(frame_id)
         if echo is None or not echo[2]:
             return False
@@ -77,9 +77,9 @@ class GuardLink:
         return self._echo_at is not None and now - self._echo_at <= ECHO_S
 
     def next_id(self, stop: bool) -> str:
-        """Return the frame_id for the next command, which has to be sent.
+        """Return the frame_id for the next command, which must then be sent.
 
-        Its token is empty before the first echo: the guard obeys it then if it is a stop.
+        Its token is empty before the first echo; the guard then obeys it only if it is a stop.
         """
         self._number += 1
         return format_id(self._session, self._number, self._token, stop)

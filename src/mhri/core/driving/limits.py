@@ -16,11 +16,11 @@ class Velocity:
     angular_rad_s: float = 0.0
 
     def is_zero(self) -> bool:
-        """Tell whether this asks for standstill, exactly."""
+        """Tell whether this is exactly zero."""
         return self.linear_mps == 0.0 and self.angular_rad_s == 0.0
 
     def is_finite(self) -> bool:
-        """Tell whether both components are numbers that a robot can be given."""
+        """Tell whether both components are finite numbers."""
         return math.isfinite(self.linear_mps) and math.isfinite(self.angular_rad_s)
 
 
@@ -28,10 +28,10 @@ ZERO = Velocity()
 
 
 def clamp_keeping_curvature(velocity: Velocity, limits: Limits) -> Velocity:
-    """Scale both components by one factor, so that neither is over a robot's limit.
+    """Scale both components by one factor so that neither exceeds a robot's limit.
 
-    The path (curvature = angular / linear) stays the one the operator steered; only the pace along
-    it falls. A velocity that is not finite becomes standstill.
+    The path (curvature = angular / linear) stays the one the operator steered; only the pace drops.
+    A velocity that is not finite becomes zero.
 
     :param velocity: :class:`Velocity`
     :param limits: :class:`mhri.core.robots.robot_types.Limits`
@@ -44,13 +44,13 @@ def clamp_keeping_curvature(velocity: Velocity, limits: Limits) -> Velocity:
 
 
 def within_limits(velocity: Velocity, linear_mps: float, angular_rad_s: float) -> Velocity:
-    """Scale both components by one factor, so that neither is over the operator's limit.
+    """Scale both components by one factor so that neither exceeds the operator's limit.
 
-    A limit of 0 leaves nothing of a velocity that needs that component.
+    A limit of 0 makes a velocity that needs that component zero.
 
     :param velocity: :class:`Velocity`, finite
-    :param linear_mps: the limit, >= 0
-    :param angular_rad_s: the limit, >= 0
+    :param linear_mps: the limit [m/s], >= 0
+    :param angular_rad_s: the limit [rad/s], >= 0
     """
     share = 1.0
     for wanted, most in ((abs(velocity.linear_mps), linear_mps),
@@ -62,10 +62,10 @@ def within_limits(velocity: Velocity, linear_mps: float, angular_rad_s: float) -
 
 def speed_limit_problem(linear_mps: float, angular_rad_s: float,
                         ceiling: Tuple[float, float] = (5.0, 10.0)) -> Optional[str]:
-    """Say why a pair cannot be the operator's speed limit; return None where it can.
+    """Return why a pair cannot be the operator's speed limit, or None if it can.
 
-    :param ceiling: the largest limits accepted, [m/s, rad/s]: far above every robot here, so that
-        only a slip of units or a garbled message is refused
+    :param ceiling: the largest limits accepted [m/s, rad/s]: far above any robot here, so that it
+        refuses only wrong units or garbled messages
     """
     for value, most, unit in ((linear_mps, ceiling[0], 'm/s'),
                               (angular_rad_s, ceiling[1], 'rad/s')):

@@ -1,24 +1,24 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which of a robot's velocity topics its commands go to: the first that the robot listens to.
+"""Which of a robot's velocity topics to send commands to: the first that the robot listens to.
 
-Somebody who merely listens, a ``rostopic echo`` or a ``rosbag record -a``, must change nothing.
+A mere listener, such as ``rostopic echo`` or ``rosbag record -a``, must change nothing.
 """
 import re
 from typing import Collection, FrozenSet, List, Optional, Sequence
 
-# Tools that listen to whatever they are told to; their names are made up as rospy and roscpp do it.
+# Tools that listen to anything; the patterns match the names that rospy and roscpp generate.
 _TOOLS = re.compile(r'/(rostopic|record|play|rosbag|rqt|rviz|rosout|mhri)(_|$)')
 
 
 def obeying(robot: str, listeners: Sequence[Collection[str]]) -> List[FrozenSet[str]]:
-    """Return for each topic the listeners that count as the robot.
+    """Return the listeners of each topic that count as the robot.
 
-    The nodes below the robot's namespace; where none of them listens to anything (a robot whose
-    driver runs elsewhere), everybody who is not known as a tool.
+    These are the nodes below the robot's namespace. If none of them listens to anything (the
+    robot's driver runs elsewhere), they are all nodes that are not known tools.
 
     :param robot: its name
-    :param listeners: for each topic the set of caller ids that listen to it
+    :param listeners: for each topic the caller ids of its subscribers, a set
     """
     own = '/{}/'.format(robot)
     inside = [frozenset(name for name in names if name.startswith(own)) for names in listeners]
@@ -31,6 +31,6 @@ def first_obeying(robot: str, listeners: Sequence[Collection[str]]) -> Optional[
     """Return the index of the first topic that the robot listens to, or None.
 
     :param robot: its name
-    :param listeners: for each topic, in order of preference, the caller ids that listen to it
+    :param listeners: for each topic, in order of preference, the caller ids of its subscribers
     """
     return next((index for index, names in enumerate(obeying(robot, listeners)) if names), None)

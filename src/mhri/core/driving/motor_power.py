@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The power of a robot's motors: what is to be told to the robot next, and what is known of it."""
+"""A robot's motor power: what to tell the robot next, and what is known about it."""
 from typing import Optional
 
-# Words of the state. Without any, nobody has asked for anything, or the power was given back.
+# Words for the state. Empty: nobody has asked for anything, or the power was restored.
 UNTOUCHED = ''
 CUT_ASKED = 'cut asked'
 CUT_SENT = 'cut sent'        # handed to the robot, which has no way to confirm it
@@ -12,15 +12,15 @@ RESTORE_ASKED = 'restore asked'
 FAILED = 'failed: {}'
 
 RETRY_S = 1.0
-# A robot that cannot be told to power up is left alone after so long: nobody waits for it any more.
+# After this long a robot that cannot be told to power up is left alone: nobody still waits for it.
 RESTORE_FOR_S = 10.0
 
 
 class MotorPowerRule:
     """Decides what to tell one robot; time is seconds of a clock that never goes back.
 
-    Cut, it goes on trying until the robot has been told, and tells again whoever comes new. To give
-    the power back it tries for :data:`RESTORE_FOR_S`. It never gives power unasked.
+    To cut the power it keeps trying until the robot has been told, and tells every new listener
+    again. To restore it, it tries for :data:`RESTORE_FOR_S`. It never restores power unasked.
     """
 
     def __init__(self) -> None:
@@ -32,11 +32,11 @@ class MotorPowerRule:
 
     @property
     def is_cut(self) -> bool:
-        """Whether the power is to stay cut."""
+        """Whether the power should stay cut."""
         return bool(self._cut)
 
     def ask(self, cut: bool, now: float) -> None:
-        """Take in what is wanted: cut (True) or give back (False)."""
+        """Take in what is wanted: cut (True) or restore (False)."""
         if cut and self._cut and not self._pending:
             return
         self._cut, self._pending = cut, True
@@ -44,17 +44,17 @@ class MotorPowerRule:
         self.state = CUT_ASKED if cut else RESTORE_ASKED
 
     def due(self, now: float) -> Optional[bool]:
-        """Return what to tell the robot now, True (cut) or False (give back); None: nothing."""
+        """Return what to tell the robot now: True (cut), False (restore) or None (nothing)."""
         return self._cut if self._pending and now >= self._due_at else None
 
     def wait_s(self, now: float) -> Optional[float]:
-        """Return for how long :meth:`due` says nothing by itself [s]; None: until asked."""
+        """Return how long :meth:`due` will return None by itself [s]; None: until asked."""
         return max(0.0, self._due_at - now) if self._pending else None
 
     def on_told(self, cut: bool, confirmed: bool, now: float) -> None:
         """Take in that the robot was told.
 
-        :param confirmed: whether it has answered that it is so
+        :param confirmed: whether the robot has confirmed it
         """
         if self._is_overtaken(cut, now):
             return
@@ -62,14 +62,14 @@ class MotorPowerRule:
         self.state = (CUT if confirmed else CUT_SENT) if cut else UNTOUCHED
 
     def _is_overtaken(self, cut: bool, now: float) -> bool:
-        """Tell whether something else is wanted by now; that is told once more, to be the last."""
+        """Tell whether something else is wanted by now; that is then told once more, last."""
         if cut == self._cut:
             return False
         self._pending, self._due_at, self._asked_at = True, now, now
         return True
 
     def on_failed(self, cut: bool, problem: object, now: float) -> None:
-        """Take in why the robot could not be told; it is tried again, by and by."""
+        """Take in why the robot could not be told; it is tried again later."""
         if self._is_overtaken(cut, now):
             return
         self.state = FAILED.format(problem)
@@ -77,6 +77,6 @@ class MotorPowerRule:
         self._pending = cut or now - self._asked_at < RESTORE_FOR_S
 
     def tell_again(self, now: float) -> None:
-        """Take in that somebody new listens, who knows nothing of a cut."""
+        """Take in that a new listener has come, which does not know about a cut."""
         if self._cut:
             self._pending, self._due_at = True, now

@@ -1,16 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Who of several publishers of one topic is listened to."""
+"""Which of several publishers of one topic to listen to."""
 import collections
 from typing import Container, Counter, Optional
 
-# More names than this are counted under one word.
+# Further names than this are counted together.
 _MOST_NAMES = 20
 OTHERS = 'others'
 
 
 class Ownership:
-    """The first who speaks owns the topic, until it has gone or another one takes control."""
+    """The first to speak owns the topic, until it has gone or another one takes control."""
 
     def __init__(self) -> None:
         self.owner: Optional[str] = None
@@ -18,7 +18,7 @@ class Ownership:
         self.refused: Counter[str] = collections.Counter()
 
     def admits(self, caller: str, connected: Container[str]) -> bool:
-        """Tell whether a message counts; one that does not is counted under its sender's name.
+        """Tell whether a message counts; count it under its sender's name if it does not.
 
         :param caller: the node that sent it
         :param connected: all nodes that are connected as publishers
@@ -34,7 +34,7 @@ class Ownership:
         return False
 
     def take(self, caller: str) -> bool:
-        """Make a node the owner, as soon and as long as it is connected.
+        """Make a node the owner as soon as it is connected, and for as long.
 
         :returns: whether that is a change
         """

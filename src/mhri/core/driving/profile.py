@@ -8,19 +8,19 @@ from typing import FrozenSet, Optional, Sequence, Tuple, Union
 from mhri.core.config import Section, parse_yaml
 from mhri.core.driving.limits import Velocity, within_limits
 
-# As a dead-man button: whichever is pressed, where nobody knows the buttons of a pad.
+# As a dead-man button: any button, for a pad whose buttons nobody knows.
 ANY = 'any'
 # Slower than this [m/s, rad/s], a Twist asks for standstill.
 _CREEP = 1e-3
 
-# What a button may ask for besides driving; the keys of a profile are these and ``_button``.
+# What a button can do besides driving; the keys of a profile are these plus ``_button``.
 STOP_ALL = 'stop_all'
 NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL = 'next_robot', 'previous_robot', 'select_all'
 ACTIONS = (STOP_ALL, NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL)
 
 
 class JoyRefused(ValueError):
-    """A Joy message that cannot be used; ``kind`` is the word it is counted under."""
+    """A Joy message that cannot be used; ``kind`` is the word under which it is counted."""
 
     def __init__(self, kind: str, problem: str) -> None:
         self.kind = kind
@@ -31,8 +31,8 @@ class JoyRefused(ValueError):
 class Axis:
     """One axis of a device: its index and the sign that makes forward and left positive.
 
-    ``rest`` is what the driver reports while nobody touches it: 0 for a stick, -1 for the triggers
-    of most pads.
+    ``rest`` is what the driver reports while nobody touches the axis: 0 for a stick, -1 for the
+    triggers of most pads.
     """
 
     index: int
@@ -40,7 +40,7 @@ class Axis:
     rest: float = 0.0
 
     def read(self, axes: Sequence[float]) -> float:
-        """Return the value in [-1, 1], 0 at rest; a driver's overshoot is cut off."""
+        """Return the value in [-1, 1], 0 at rest; clip a driver's overshoot."""
         travel = (axes[self.index] - self.rest) / (1.0 + abs(self.rest))
         return max(-1.0, min(1.0, travel * self.scale))
 
@@ -50,8 +50,8 @@ class Stick:
     """What the operator asks for, as fractions of the speed limits.
 
     ``forward`` and ``turn`` (left +) are in [-1, 1] and already zero while the dead-man button is
-    released; ``neutral`` tells whether the stick itself rests; ``held`` whether the dead-man button
-    (if the profile names one) is pressed.
+    released; ``neutral`` tells whether the stick itself is at rest; ``held`` whether the dead-man
+    button (if the profile names one) is pressed.
     """
 
     forward: float
@@ -64,13 +64,13 @@ class Stick:
         return self.forward == 0.0 and self.turn == 0.0
 
     def velocity(self, limits: Tuple[float, float]) -> Velocity:
-        """Return the :class:`Velocity` that is asked for under the limits (m/s, rad/s)."""
+        """Return the :class:`Velocity` asked for, given the limits [m/s, rad/s]."""
         return Velocity(self.forward * limits[0], self.turn * limits[1])
 
 
 @dataclass(frozen=True)
 class Asked:
-    """What a source of velocities asks for; to the arbiter the same as a :class:`Stick`."""
+    """What a source of velocities asks for; the arbiter treats it like a :class:`Stick`."""
 
     wanted: Velocity
     held = True
@@ -85,18 +85,18 @@ class Asked:
         return max(abs(self.wanted.linear_mps), abs(self.wanted.angular_rad_s)) < _CREEP
 
     def velocity(self, limits: Tuple[float, float]) -> Velocity:
-        """Return the :class:`Velocity` under the limits (m/s, rad/s), its curvature kept."""
+        """Return the :class:`Velocity` within the limits [m/s, rad/s], with the same curvature."""
         return within_limits(self.wanted, *limits)
 
 
-#: What a source asks for, whichever kind it is of.
+#: What a source asks for, of either kind.
 Wanted = Union[Stick, Asked]
 
 
 def read_twist(linear: Sequence[float], angular: Sequence[float]) -> Asked:
     """Turn the two vectors of a ``geometry_msgs/Twist`` into an :class:`Asked`.
 
-    Robots are driven in the plane: x of the first and z of the second count [m/s, rad/s].
+    Robots drive in the plane: only x of the first and z of the second count [m/s, rad/s].
 
     :raises JoyRefused: NaN or infinity anywhere
     """
@@ -109,8 +109,8 @@ def read_twist(linear: Sequence[float], angular: Sequence[float]) -> Asked:
 class Match:
     """Which devices a profile is for.
 
-    ``guids`` are those of SDL (32 hexadecimal digits), ``names`` parts of a device's name in any
-    case.
+    ``guids`` are SDL's (32 hexadecimal digits), ``names`` are parts of a device's name, in upper
+    or lower case.
     """
 
     guids: Tuple[str, ...] = ()
@@ -124,8 +124,8 @@ class Profile:
     ``dead_zone`` is the fraction of travel around the centre that counts as zero (the rest is
     stretched, so that full travel stays full speed); ``neutral`` the fraction inside which the
     stick counts as released for the interlock; ``curve`` bends the response, 0 straight to 1
-    cubic, for fine control near the centre. ``dead_man`` is the button without which nothing moves,
-    ``ANY`` for whichever is pressed, None for no such button. ``turbo`` is a button; while it is
+    cubic, for fine control near the centre. ``dead_man`` is the button that must be held for
+    anything to move, ``ANY`` for any button, None for none. ``turbo`` is a button; while it is
     not held, everything is multiplied by ``without_turbo``. ``actions`` are
     (button, one of ``ACTIONS``).
     """
@@ -166,7 +166,7 @@ class Profile:
         return Stick(factor * self._respond(forward), factor * self._respond(turn), neutral)
 
     def _held(self, buttons: Sequence[int]) -> bool:
-        """Tell whether the dead-man button is held; always, where there is none.
+        """Tell whether the dead-man button is held; always true if there is none.
 
         :raises JoyRefused: the device does not have that button
         """
@@ -182,11 +182,11 @@ class Profile:
         return bool(buttons[self.dead_man])
 
     def without_dead_man(self) -> 'Profile':
-        """Return the same profile, but that no button has to be held."""
+        """Return the same profile without a dead-man button."""
         return replace(self, dead_man=None)
 
     def pressed(self, buttons: Sequence[int]) -> FrozenSet[str]:
-        """Return the actions whose buttons are down, as a set; missing buttons are up."""
+        """Return the actions whose buttons are down, as a set; missing buttons count as up."""
         return frozenset(action for button, action in self.actions if is_pressed(buttons, button))
 
     def _respond(self, value: float) -> float:
@@ -199,7 +199,7 @@ class Profile:
 
 
 def is_pressed(buttons: Sequence[int], index: int) -> bool:
-    """Tell whether a button is down; one that the device does not have is up."""
+    """Tell whether a button is down; one that the device does not have counts as up."""
     return index < len(buttons) and bool(buttons[index])
 
 
@@ -216,7 +216,7 @@ def _axis(section: Section) -> Axis:
 def parse_profile(text: str, origin: str) -> Profile:
     """Return the :class:`Profile` that a YAML text describes.
 
-    :raises ConfigError: names the file and the key that is wrong
+    :raises ConfigError: names the file and the wrong key
     """
     section = parse_yaml(text, origin)
     dead_zone = section.number('dead_zone', 0.0, 0.9, 0.0)

@@ -1,19 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether the mux itself was awake: what it finds in its sockets after a sleep is old."""
+"""Whether the mux itself was awake: after a sleep, what it finds in its sockets is old."""
 
-# A loop that comes round ten times a second and was away for so long has slept.
+# A loop that runs ten times a second has slept if it was away for this long.
 SLEPT_S = 0.5
-# After it, this long nothing counts: by then the sockets hold nothing from before.
+# After a sleep nothing counts for this long: by then the sockets hold nothing old.
 DEAF_S = 0.3
 # A message that waited no longer than this is new enough for a robot on a task.
 NEW_S = 0.25
 
 
 class Pulse:
-    """Knows from its own beat whether the program was stopped (SIGSTOP, a debugger, a suspend).
+    """Detects by its own beat that the program was stopped (SIGSTOP, a debugger, a suspend).
 
-    Stamps cannot tell: they may be missing, or come from the clock of another computer.
+    Stamps are no help: they may be missing, or come from another computer's clock.
 
     :param now: the time of creation [s], of a clock that goes on while the program is stopped
     """
@@ -23,11 +23,11 @@ class Pulse:
         self._deaf_until = now
 
     def beat(self, now: float) -> None:
-        """Note that the loop has come round; call it ten times a second."""
+        """Note that the loop has run; call it ten times a second."""
         self._beat_at = now
 
     def slept(self, now: float) -> bool:
-        """Tell, once for each sleep, that there was one; to be asked before anything is done."""
+        """Tell, once for each sleep, that there was one; ask before doing anything else."""
         if now - self._beat_at < SLEPT_S:
             return False
         self._beat_at = now
@@ -35,7 +35,7 @@ class Pulse:
         return True
 
     def deaf(self, now: float) -> bool:
-        """Tell whether what is heard now may have been said before a sleep."""
+        """Tell whether a message heard now may have been sent before a sleep."""
         return now < self._deaf_until
 
     def is_new(self, now: float) -> bool:

@@ -8,7 +8,7 @@ States and what leads out of them::
     LEASED   the selection is repeated       silent for LEASE_S -> LAPSED, publisher gone -> EMPTY
     LAPSED   its publisher is there, silent  repeated -> LEASED, publisher gone -> EMPTY
 
-Taking control is possible in every state. Nobody's robots but those of a leased seat may move.
+Taking control is possible in every state. Only the robots of a leased seat may move.
 """
 import collections
 import math
@@ -16,15 +16,15 @@ from typing import Counter, Iterable, Optional, Tuple
 
 EMPTY, LEASED, LAPSED = 'empty', 'leased', 'lapsed'
 
-# A selection that is not repeated for so long counts no more [s].
+# A selection not repeated for this long no longer counts [s].
 LEASE_S = 1.5
-# What is taken note of at most: a name costs memory, and so does a robot.
+# The most that is kept: every name costs memory, and so does every robot.
 MOST_ROBOTS = 64
 MOST_REFUSED = 32
 
 
 class ControlSeat:
-    """The operator in control and the robots that it has checked.
+    """The operator in control and the robots it has checked.
 
     Operators are caller ids; time is seconds of a clock that never goes back.
     """
@@ -55,9 +55,9 @@ class ControlSeat:
         return self._chosen if self.state == LEASED else ()
 
     def on_selection(self, caller: str, names: Iterable[str], now: float) -> bool:
-        """Take in a selection; tell whether it counts.
+        """Take in a selection; return whether it counts.
 
-        :param names: robots; more than :data:`MOST_ROBOTS` are cut off
+        :param names: of robots; those beyond :data:`MOST_ROBOTS` are cut off
         """
         if self._operator and caller != self._operator:
             self.refuse(caller)
@@ -69,12 +69,12 @@ class ControlSeat:
         return True
 
     def refuse(self, caller: str) -> None:
-        """Count somebody who is not believed, by name."""
+        """Count, by name, somebody who is not believed."""
         if caller in self.refused or len(self.refused) < MOST_REFUSED:
             self.refused[caller] += 1
 
     def take(self, caller: str, now: float) -> None:
-        """Put the caller in control; its selection is what it says from now on."""
+        """Put the caller in control; only what it selects from now on counts."""
         self._sit(caller, now)
 
     def on_gone(self, caller: str) -> None:
@@ -89,7 +89,7 @@ class ControlSeat:
             self._lapsed = True
 
     def next_tick(self) -> Optional[float]:
-        """Return when :meth:`tick` has to be called next [s], or None."""
+        """Return when to call :meth:`tick` next [s], or None for never."""
         return self._repeated_at + LEASE_S if self.state == LEASED else None
 
     def _sit(self, caller: str, now: float) -> None:

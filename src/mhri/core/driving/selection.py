@@ -28,7 +28,7 @@ class Selection:
         return {name: self.numbers.of(name) for name in self.robots}
 
     def add(self, name: str) -> bool:
-        """Put a robot in its place, unchecked; return False where it is there already."""
+        """Put a robot in its place, unchecked; return False if it is already there."""
         if name in self._checked:
             return False
         self.numbers.meet((name,))
@@ -37,7 +37,7 @@ class Selection:
         return True
 
     def remove(self, name: str) -> None:
-        """Take a robot out, its number stays its own; one that is not there is no error."""
+        """Remove a robot; it keeps its number. Removing one that is not there is no error."""
         self._checked.pop(name, None)
 
     def check(self, names: Iterable[str]) -> Tuple[Tuple[str, ...], Tuple[str, ...]]:

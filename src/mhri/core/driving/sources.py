@@ -13,18 +13,18 @@ from mhri.core.driving.profile import Profile, parse_profile
 ReadProfile = Callable[[str], Tuple[str, str]]
 
 JOY, TWIST = 'joy', 'twist'
-# The longest text that is shown to the operator.
+# The longest text the operator is shown.
 LONGEST_LABEL = 60
 
 
 @dataclass(frozen=True)
 class Source:
-    """One way to drive: where its messages come from and how they are read.
+    """One way to drive: where its messages come from and how to read them.
 
-    ``profile`` is None for a source of type ``twist``. ``timeout_s`` is the age at which the last
-    message no longer counts; ``suspend_service`` (type ``mhri/SetSuspended``) is called when the
-    mode enters (False) and leaves (True) the source, None where there is nothing to suspend.
-    ``holds``: it sends changes only. ``exclusive``: it listens to one publisher at a time.
+    ``profile`` is None for a source of type ``twist``. ``timeout_s`` is the age [s] at which the
+    last message no longer counts. ``suspend_service`` (type ``mhri/SetSuspended``) is called when
+    the mode enters (False) and leaves (True) the source; None if there is nothing to suspend.
+    ``holds``: the source sends changes only. ``exclusive``: only one publisher at a time counts.
     """
 
     name: str
@@ -39,9 +39,9 @@ class Source:
 
     @property
     def rests(self) -> bool:
-        """Whether it may be silent at rest: then it is as good as heard while its publisher lives.
+        """Whether it may be silent at rest; it counts as heard while its publisher is connected.
 
-        Whoever publishes velocities often says zero once and nothing more.
+        Publishers of velocities often send one zero and nothing more.
         """
         return self.holds or self.kind == TWIST
 
@@ -50,9 +50,9 @@ class Source:
 class MuxConfig:
     """The content of ``mux.yaml``: the sources in order, the first mode and the first limits.
 
-    ``enabling`` is the source whose first button is a dead-man for whatever drives, None where
-    there is none. With ``automatic_switching``, a source that is touched while everything stands
-    still becomes the active one. ``dead_man``: whether the dead-man buttons of profiles count.
+    ``enabling`` is the source whose first button is a dead-man for whatever drives, None for none.
+    With ``automatic_switching``, a source that is touched while everything stands still becomes the
+    active one. ``dead_man``: whether the dead-man buttons of profiles count.
     """
 
     sources: Tuple[Source, ...]
@@ -64,7 +64,7 @@ class MuxConfig:
     dead_man: bool = True
 
     def without_dead_man(self) -> 'MuxConfig':
-        """Return the same configuration, but that no source needs a dead-man button."""
+        """Return the same configuration with no dead-man buttons."""
         return replace(self, dead_man=False, sources=tuple(
             source if source.profile is None else
             replace(source, profile=source.profile.without_dead_man())
@@ -75,7 +75,7 @@ def parse_mux_config(text: str, origin: str, read_profile: ReadProfile) -> MuxCo
     """Return the :class:`MuxConfig` that a YAML text describes.
 
     :param read_profile: function from a profile's name to (origin, text); may raise OSError
-    :raises ConfigError: names the file and the key that is wrong
+    :raises ConfigError: names the file and the wrong key
     """
     section = parse_yaml(text, origin)
     sources: List[Source] = []
@@ -102,7 +102,7 @@ def parse_mux_config(text: str, origin: str, read_profile: ReadProfile) -> MuxCo
 
 
 def _enabling(section: Section, sources: Sequence[Source]) -> Optional[str]:
-    """Read the name of the enabling source, None where there is none."""
+    """Read the name of the enabling source, None for none."""
     name = section.text('enabling', None)
     problem = enabling_problem(sources, name)
     if problem:
@@ -111,7 +111,7 @@ def _enabling(section: Section, sources: Sequence[Source]) -> Optional[str]:
 
 
 def enabling_problem(sources: Sequence[Source], name: Optional[str]) -> Optional[str]:
-    """Say why a source cannot be the enabling one; None where it can, or where none is named."""
+    """Return why a source cannot be the enabling one; None if it can, or if none is named."""
     source = next((source for source in sources if source.name == name), None)
     if name and source is None:
         return 'no source {!r}'.format(name)
@@ -139,7 +139,7 @@ def _source(row: Section, read_profile: ReadProfile) -> Source:
         raise row.error('label', 'has {} characters; at most {} can be shown'.format(
             len(label), LONGEST_LABEL))
     holds = row.flag('holds', False)
-    # A value that is held is bounded as well: a pad that is pulled out of joy_node says nothing.
+    # A held value also expires: joy_node says nothing when its pad is pulled out.
     timeout_s = row.number('timeout_s', 0.05, 60.0 if holds else 2.0, 5.0 if holds else 0.5)
     source = Source(name, label, topic, profile, timeout_s, service, kind, holds,
                     row.flag('exclusive', False))

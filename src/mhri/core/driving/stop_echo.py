@@ -1,17 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A stop that outlives the mux: what the gates say of it brings it back."""
+"""A stop that outlives the mux: the gates remember it and bring it back."""
 from typing import Optional
 
-# The gates may contradict the mux for so long: its last word may still be on its way.
+# The gates may contradict the mux for this long: its last message may still be on its way.
 DOUBT_S = 1.0
 
 
 class StopEcho:
     """Follows ``stop_all`` of ``/gates/state`` and says when the mux has to stop as well.
 
-    The mux that was stopped may have been replaced by one that knows nothing of it, together with
-    the master that kept its parameters. The gates still hold the stop.
+    A new mux, started together with a new master, knows nothing about a stop that was in force
+    before. The gates still hold it.
     """
 
     def __init__(self) -> None:
@@ -24,10 +24,10 @@ class StopEcho:
         self._released_at = now
 
     def must_stop(self, gates_stopped: bool, stopped: bool, now: float) -> bool:
-        """Take in what the gates say; tell whether the mux has to engage its stop.
+        """Take in what the gates say; return whether the mux must engage its stop.
 
-        At once by their first word, since a mux that has just begun knows less than they do; later
-        when they have said so for more than :data:`DOUBT_S`.
+        Their first message counts at once, since a mux that has just started knows less than they
+        do; later they must have said so for more than :data:`DOUBT_S`.
 
         :param stopped: whether this mux is stopped
         """

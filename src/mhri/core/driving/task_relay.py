@@ -14,11 +14,11 @@ PASS, PASS_ZEROS, NOTHING = 'pass', 'pass_zeros', 'nothing'
 
 def team_problem(robots: Sequence[str],
                  twists: Sequence[Sequence[float]]) -> Optional[Tuple[str, str]]:
-    """Say why a ``mhri/TeamTwist`` cannot be used; return None where it can.
+    """Return why a ``mhri/TeamTwist`` cannot be used, or None if it can.
 
     :param robots: names
     :param twists: for each, the six numbers of its Twist [m/s, rad/s]
-    :returns: (word it is counted under, sentence)
+    :returns: (the word under which it is counted, a sentence)
     """
     if len(robots) != len(twists):
         return 'lengths', '{} robots and {} twists: give one to each'.format(
@@ -37,7 +37,7 @@ def team_problem(robots: Sequence[str],
 
 
 class TaskRelay:
-    """Decides what becomes of each message; counts what is refused and what is held back."""
+    """Decides what to do with each message; counts those refused and those held back."""
 
     def __init__(self) -> None:
         self.refused: Counter[str] = collections.Counter()
@@ -48,9 +48,9 @@ class TaskRelay:
               enabled: bool, is_new: bool) -> Tuple[str, str]:
         """Return (PASS, PASS_ZEROS or NOTHING, what is wrong with the message or '').
 
-        :param stopped: stop-all is in force: nothing is passed on, the gates send the zeros
-        :param enabled: the enabling pedal is pressed, or there is none; released, what moved is
-            stopped once
+        :param stopped: stop-all is in force; nothing is passed on, and the gates send the zeros
+        :param enabled: the enabling pedal is pressed, or there is none; releasing it stops once
+            what moved
         :param is_new: newer than 0.25 s
         """
         problem = team_problem(robots, twists)

@@ -10,7 +10,7 @@ from mhri.core.config import parse_yaml
 from mhri.core.robots.names import name_problem
 from mhri.core.robots.robot_types import RobotType, Seen
 
-# What the master's getSystemState answers: publishers, subscribers and services, each with nodes.
+# The master's getSystemState: publishers, subscribers and services, each with their nodes.
 SystemState = Sequence[Iterable[Tuple[str, Sequence[str]]]]
 # Of a nested dict of parameters.
 Parameters = Mapping[str, object]
@@ -18,16 +18,16 @@ Types = Mapping[str, RobotType]
 
 TWIST = 'geometry_msgs/Twist'
 ROOT = ''
-# Without a namespace there is at most one robot: it is called so unless /robot_name says otherwise.
+# At most one robot has no namespace; this is its name unless /robot_name sets another.
 ROOT_NAME = 'robot'
 NAME_PARAMETER = 'robot_name'
-# What a robot without a namespace may have among the parameters at the root.
+# Parameters at the root that belong to a robot without a namespace.
 ROOT_PARAMETERS = ('robot_type', 'robot_model')
 
 
 @dataclass(frozen=True)
 class IgnoreList:
-    """What is never a robot: shell patterns (``*``, ``?``) of node names and of namespaces."""
+    """What is never a robot: shell patterns (``*``, ``?``) for node names and namespaces."""
 
     nodes: Tuple[str, ...] = ()
     namespaces: Tuple[str, ...] = ()
@@ -42,10 +42,10 @@ class IgnoreList:
 class Candidate:
     """What looks like a robot.
 
-    ``robot_type`` is its parameter, None where it has none; ``nodes`` are the nodes registered
-    under it, none where only its parameters are left; ``problem`` says why it cannot be added.
-    ``seen`` is what the graph tells of it besides. ``part`` is true for a namespace that counts as
-    a part of the robot without a namespace, as long as that one lives.
+    ``robot_type`` is its parameter, None if it has none; ``nodes`` are the nodes registered under
+    it, empty if only its parameters are left; ``problem`` says why it cannot be added. ``seen`` is
+    what else the graph says about it. ``part`` is true for a namespace that counts as a part of the
+    robot without a namespace while that robot lives.
     """
 
     name: str
@@ -59,7 +59,7 @@ class Candidate:
 def parse_ignore_list(text: str, origin: str) -> IgnoreList:
     """Return the :class:`IgnoreList` of a YAML text.
 
-    :raises ConfigError: names the file and the key that is wrong
+    :raises ConfigError: names the file and the wrong key
     """
     section = parse_yaml(text, origin)
     ignore = IgnoreList(section.texts('nodes', ()), section.texts('namespaces', ()))
@@ -68,7 +68,7 @@ def parse_ignore_list(text: str, origin: str) -> IgnoreList:
 
 
 def nodes_of(system_state: SystemState) -> List[str]:
-    """Return the names of all nodes in the answer of the master's ``getSystemState``, sorted."""
+    """Return the sorted names of all nodes in a ``getSystemState`` answer of the master."""
     return sorted({node for group in system_state for _, nodes in group for node in nodes})
 
 
@@ -79,15 +79,15 @@ def split(name: str) -> Tuple[str, str]:
 
 
 def root_name(parameters: Parameters) -> str:
-    """Return how the robot without a namespace is called, given the parameters at the root."""
+    """Return the name of the robot without a namespace, given the parameters at the root."""
     return str(parameters.get(NAME_PARAMETER, ROOT_NAME))
 
 
 def parameters_of(name: str, parameters: Parameters, at_root: bool = False) -> Dict[str, object]:
     """Return the parameters of a robot as a nested dict.
 
-    A robot without a namespace has ``/robot_type`` and ``/robot_model``; what overrides its
-    template is below its name all the same, since ``/mhri`` is the panel's own.
+    A robot without a namespace has ``/robot_type`` and ``/robot_model``; but
+    overrides of its template are below its name, since ``/mhri`` belongs to the panel.
 
     :param parameters: all parameters as one nested dict
     """
@@ -106,17 +106,17 @@ def find_candidates(system_state: SystemState, parameters: Parameters, ignore: I
 
     A namespace is a robot if it has a ``robot_type``, or nodes under it that are neither ignored
     nor under a known robot, or velocity topics that a node outside of it reads (a simulator). The
-    root is a robot, of the name :func:`root_name`, if it has a ``robot_type`` or velocity topics;
-    namespaces without either are then taken for its parts. Of a node with several robots
-    (``instance`` of a type) each is one.
+    root is a robot, named :func:`root_name`, if it has a ``robot_type`` or velocity topics;
+    namespaces without either then count as its parts. Every robot of a node with several robots
+    (``instance`` of a type) is one robot.
 
     :param system_state: publishers, subscribers, services as the master lists them
     :param parameters: all parameters as one nested dict
     :param ignore: :class:`IgnoreList`
-    :param known: names of the robots that are in the list already; they are left out
+    :param known: names of the robots already in the list; they are left out
     :param topic_types: pairs (topic, ROS type) as the master lists them
-    :param types: {name: RobotType}, to recognise robots and their velocity topics by
-    :param with_parts: also those that are taken for parts of the robot without a namespace
+    :param types: {name: RobotType}, used to recognise robots and their velocity topics
+    :param with_parts: include those that count as parts of the robot without a namespace
     """
     survey = Survey(system_state, parameters, ignore, topic_types, types or {})
     return [item for item in survey.candidates() if not known_by_name(item, known, types or {})
@@ -124,7 +124,7 @@ def find_candidates(system_state: SystemState, parameters: Parameters, ignore: I
 
 
 def known_by_name(candidate: Candidate, known: Container[str], types: Types) -> bool:
-    """Tell whether a robot is in the list already: by its name, or by that of its instance."""
+    """Tell whether a robot is already in the list, by its name or its instance's name."""
     kind = None if candidate.seen.kind is None else types.get(candidate.seen.kind)
     return candidate.name in known or bool(
         kind and kind.instance and candidate.seen.at_root and kind.instance in known)
@@ -132,10 +132,10 @@ def known_by_name(candidate: Candidate, known: Container[str], types: Types) -> 
 
 def named_instances(system_state: SystemState, parameters: Parameters, ignore: IgnoreList,
                     topic_types: Iterable[Tuple[str, str]], types: Types) -> Dict[str, Seen]:
-    """Return {name: :class:`Seen`} of every robot at the root that has siblings in its node.
+    """Return {name: :class:`Seen`} of every robot at the root with siblings in its node.
 
-    Other than in :func:`find_candidates`, the first one goes by its own name, too: so it may be
-    called by hand. Parameters as there.
+    Unlike :func:`find_candidates`, this gives the first robot its own name, too, so that it can be
+    added by hand. Parameters as there.
     """
     survey = Survey(system_state, parameters, ignore, topic_types, types)
     return {place.lstrip('/'): Seen(False, kind.name, None, place)
@@ -172,8 +172,8 @@ class Survey:
     def _ignored(self, name: str) -> bool:
         """Tell whether a node or a topic is ignored, by its name or its namespace.
 
-        A robot that says of itself that it is one may be called what else is ignored: of its nodes
-        only those are which a pattern of two segments names.
+        A namespace with a ``robot_type`` may have an otherwise ignored name: then only the nodes
+        named by a pattern of two segments are ignored.
         """
         namespace, _ = split(name)
         if namespace in self._typed:
@@ -182,7 +182,7 @@ class Survey:
         return self._ignore.covers(name, namespace)
 
     def _typed_below(self) -> Iterator[str]:
-        """Yield ``lab/bot1`` where a robot was started two namespaces deep."""
+        """Yield ``lab/bot1`` if a robot was started two namespaces deep."""
         for name, value in self._parameters.items():
             if not isinstance(value, dict) or 'robot_type' in value \
                     or self._ignore.covers('/' + name, name):
@@ -218,7 +218,7 @@ class Survey:
                 yield place, kind, nodes
 
     def _share_out_commands(self) -> None:
-        """Find the robot of each velocity topic that somebody reads."""
+        """Find the robot of each velocity topic that has a subscriber."""
         of_siblings = tuple(place + '/' for place, *_ in self._siblings())
         for topic, nodes in self._subscribers.items():
             if self._topic_types.get(topic) != TWIST or self._ignored(topic) \
@@ -231,10 +231,10 @@ class Survey:
                 self._listeners.setdefault(owner, set()).update(nodes)
 
     def _owner(self, topic: str, nodes: Iterable[str]) -> Tuple[Optional[str], str]:
-        """Return (namespace of the robot, name of the topic in its template), (None, '') of none.
+        """Return (namespace of the robot, name of the topic in its template), or (None, '').
 
-        A topic at the root which the nodes of several robots read belongs to none of them: with it
-        they would all be driven at once.
+        A topic at the root that nodes of several robots read belongs to none of them: it would
+        drive them all at once.
         """
         namespace, rest = split(topic)
         if namespace and (namespace in self._members or namespace in self._typed):
@@ -270,7 +270,7 @@ class Survey:
 
     @staticmethod
     def _renamed(root: Candidate) -> Candidate:
-        """Return the robot at the root as one that cannot be told from another one."""
+        """Return the robot at the root, marked as indistinguishable from another one."""
         return Candidate(
             '/', root.robot_type, root.nodes, 'there is a robot /{0} as well; give the one without '
             'a namespace another name: rosparam set /{1} <name>'.format(root.name, NAME_PARAMETER),
@@ -282,7 +282,7 @@ class Survey:
                          self._seen(name, '/{}/'.format(name)))
 
     def _root(self) -> Optional[Candidate]:
-        """Return the robot without a namespace, None where there is none."""
+        """Return the robot without a namespace, None if there is none."""
         robot_type = self._parameters.get('robot_type')
         if not (isinstance(robot_type, str) or ROOT in self._commands):
             return None
@@ -309,11 +309,10 @@ class Survey:
         return topic in self._publishers and self._topic_types.get(topic) == kind
 
     def _likeliest(self, namespace: str, prefix: str) -> Optional[str]:
-        """Return the velocity topic of a robot; None where two are equally likely.
+        """Return the velocity topic of a robot; None if two are equally likely.
 
-        One that is written from inside the robot (behind its own multiplexer) is the last choice;
-        the names of the templates are the first, then those that end in ``cmd_vel``, then the
-        shortest.
+        First come the names in the templates, then those that end in ``cmd_vel``, then the
+        shortest. A topic written from inside the robot (behind its own multiplexer) comes last.
         """
         usual = [topic for kind in self._types.values() for topic in kind.command]
 

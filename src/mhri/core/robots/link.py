@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is known of a robot's link: how it moves, and whether it can still be heard."""
+"""What is known about a robot's link: how it moves, and whether it can still be heard."""
 import math
 from dataclasses import dataclass
 from typing import Optional
@@ -10,16 +10,16 @@ from mhri.core.screen.views import GONE, LIVE, SILENT, WAITING
 
 STANDSTILL_MPS = 0.01
 STANDSTILL_RAD_S = 0.03
-# Beyond these no robot drives, turns or is: m/s or rad/s, and m from where it was switched on.
+# No robot drives, turns or travels beyond these: m/s or rad/s, and m from where it started.
 POSSIBLE_SPEED = 100.0
 POSSIBLE_M = 1e6
 
 
 @dataclass(frozen=True)
 class Motion:
-    """A robot's own word on how it moves (odometry): m/s, rad/s, m, m, rad in its odom frame.
+    """A robot's motion by its own odometry: m/s, rad/s, m, m, rad in its ``odom`` frame.
 
-    ``lateral_mps`` is how fast it moves to its left [m/s]: a robot that slides, or can drive so.
+    ``lateral_mps`` is its speed to the left [m/s], for a robot that slides or can drive sideways.
     """
 
     linear_mps: float
@@ -31,11 +31,11 @@ class Motion:
 
     @property
     def speed_mps(self) -> float:
-        """How fast it moves, whichever way [m/s, >= 0]."""
+        """Its speed in any direction [m/s, >= 0]."""
         return math.hypot(self.linear_mps, self.lateral_mps)
 
     def is_possible(self) -> bool:
-        """Tell whether all of it are numbers that can be true of a robot."""
+        """Tell whether all values are possible for a robot."""
         speeds = (self.linear_mps, self.lateral_mps, self.angular_rad_s)
         # A comparison with NaN is false.
         return (all(abs(speed) <= POSSIBLE_SPEED for speed in speeds)
@@ -45,8 +45,8 @@ class Motion:
     def is_standstill(self) -> bool:
         """Tell whether the speeds are those of a robot at rest.
 
-        The thresholds are above the noise of wheel odometry at rest (which is none, encoders do
-        not tick) and far below the slowest speed an operator can see.
+        The thresholds are above the noise of wheel odometry at rest (which is zero, since encoders
+        do not tick) and far below the slowest speed an operator can see.
         """
         return (self.is_possible() and self.speed_mps <= STANDSTILL_MPS
                 and abs(self.angular_rad_s) <= STANDSTILL_RAD_S)
@@ -54,14 +54,14 @@ class Motion:
 
 def link_state(age_s: Optional[float], connections: int, silent_after_s: float = SILENT_AFTER_S,
                reached: bool = False) -> str:
-    """Say how a robot's link is.
+    """Return the state of a robot's link.
 
-    :param age_s: age of its newest message [s], None where there never was one
+    :param age_s: age of its newest message [s], None if there was none
     :param connections: number of open connections to its streams
-    :param silent_after_s: its messages may be this far apart [s]; 0: its silence means nothing,
-        as long as a connection is open
-    :param reached: whether a node of the robot takes commands; of one without odometry that is all
-        there is to know
+    :param silent_after_s: its messages may be this far apart [s]; 0: silence means nothing
+        while a connection is open
+    :param reached: whether a node of the robot takes commands; for a robot without odometry nothing
+        else is known
     :returns: WAITING, LIVE, SILENT or GONE
     """
     if age_s is not None and age_s <= (silent_after_s or SILENT_AFTER_S):
@@ -76,10 +76,10 @@ def link_state(age_s: Optional[float], connections: int, silent_after_s: float =
 
 
 def link_note(state: str, age_s: Optional[float], heard_at: str, waited_s: float) -> str:
-    """Say in words what an operator should know about a link; '' where all is well.
+    """Return what an operator should know about a link, in words; '' if all is well.
 
     :param heard_at: local time of the newest message as text, e.g. '14:02:11'
-    :param waited_s: for how long the robot has been in the list [s]
+    :param waited_s: how long the robot has been in the list [s]
     """
     if state == LIVE and age_s is None:
         return 'tells no odometry: mhri cannot know whether it moves'

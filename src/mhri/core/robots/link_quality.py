@@ -8,7 +8,7 @@ from typing import Deque, Optional, Tuple
 from mhri.core.screen.views import LinkFigures
 
 ROUND_TRIPS = 5
-# Over this long the least delay is looked for, and the losses are counted.
+# The window for the least delay and for the losses [s].
 OFFSET_WINDOW_S = 10.0
 LOSS_WINDOW_S = 5.0
 MOST_LOST = 500
@@ -17,24 +17,25 @@ MOST_LOST = 500
 WARN_ROUND_TRIP_S = 0.2
 WARN_LOSS = 0.05
 WARN_OFFSET_S = 0.1
-# A group slows down from here on; half the pace at twice the round trip.
+# A group slows down from here on: half the pace at twice the round trip [s].
 SLOW_ROUND_TRIP_S = 0.15
 LEAST_SHARE = 0.2
 SHARE_STEP = 0.1
 
 
 class LinkQuality:
-    """Collects what is measured of one robot's link; not thread-safe, times are passed in."""
+    """Collects the measurements of one robot's link; not thread-safe, times are passed in."""
 
     def __init__(self) -> None:
         self._round_trips: Deque[float] = collections.deque(maxlen=ROUND_TRIPS)
         self._unanswered = 0
         self._delays: Deque[Tuple[float, float]] = collections.deque()
         self._counts: Deque[Tuple[float, int]] = collections.deque()
+        self._lost = 0
         self._seq: Optional[int] = None
 
     def on_round_trip(self, round_trip_s: Optional[float]) -> None:
-        """Take in the time of a question and its answer [s]; None where none came."""
+        """Take in the time from a question to its answer [s]; None if no answer came."""
         if round_trip_s is None:
             self._unanswered += 1
             if self._unanswered >= 2:
@@ -46,46 +47,46 @@ class LinkQuality:
     def on_message(self, seq: int, delay_s: Optional[float], now: float) -> None:
         """Take in one message of a stream.
 
-        :param seq: its number; the publisher counts up by one
-        :param delay_s: local time of receipt less its stamp [s]; None without a stamp
+        :param seq: its sequence number, which the publisher increases by one
+        :param delay_s: local time of receipt minus its stamp [s]; None without a stamp
         :param now: [s], of a clock that never goes back
         """
         if delay_s is not None:
-            # Of the delays within the window only those count that no later one is below.
+            # Keep only the delays in the window that no later one is below.
             while self._delays and self._delays[-1][1] >= delay_s:
                 self._delays.pop()
             self._delays.append((now, delay_s))
         gap = seq - self._seq - 1 if self._seq is not None else 0
         self._seq = seq
-        # Neither a publisher that was restarted nor two of them are a loss.
+        # A restarted publisher is no loss, nor are two publishers.
         gap = gap if 0 <= gap <= MOST_LOST else 0
         self._counts.append((now, gap))
+        self._lost += gap
         self._forget(now)
 
     def _forget(self, now: float) -> None:
         while self._delays and self._delays[0][0] < now - OFFSET_WINDOW_S:
             self._delays.popleft()
         while self._counts and self._counts[0][0] < now - LOSS_WINDOW_S:
-            self._counts.popleft()
+            self._lost -= self._counts.popleft()[1]
 
     def read(self, now: float) -> LinkFigures:
         """Return the :class:`mhri.core.screen.views.LinkFigures` of this moment."""
         self._forget(now)
         trips = self._round_trips
-        lost = sum(gap for _, gap in self._counts)
         offset = None
         if self._delays and trips:
-            # The quickest message took about half of the quickest round trip.
+            # The quickest message took about half the quickest round trip.
             offset = min(trips) / 2.0 - self._delays[0][1]
         return LinkFigures(
             round_trip_s=statistics.median(trips) if trips else None, offset_s=offset,
-            loss=lost / (lost + len(self._counts)) if self._counts else None)
+            loss=self._lost / (self._lost + len(self._counts)) if self._counts else None)
 
 
 def link_warning(figures: LinkFigures, dropped: bool = False) -> str:
-    """Say what is wrong with a link that is live; '' where all is well.
+    """Return what is wrong with a live link; '' if all is well.
 
-    :param dropped: whether the robot's guard drops commands now
+    :param dropped: whether the robot's guard is dropping commands now
     """
     words = ['its guard drops late commands'] if dropped else []
     if figures.round_trip_s is not None and figures.round_trip_s > WARN_ROUND_TRIP_S:
@@ -99,9 +100,9 @@ def link_warning(figures: LinkFigures, dropped: bool = False) -> str:
 
 
 def link_share(round_trip_s: Optional[float]) -> float:
-    """Return how much of a command a group should get whose slowest link takes so long, in tenths.
+    """Return the fraction of a command, in tenths, for a group whose slowest link takes this long.
 
-    :param round_trip_s: None where it is not known
+    :param round_trip_s: [s]; None if unknown
     """
     if round_trip_s is None or round_trip_s <= SLOW_ROUND_TRIP_S:
         return 1.0

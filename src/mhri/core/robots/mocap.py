@@ -15,13 +15,13 @@ class Pose:
     heading_rad: float
 
     def is_finite(self) -> bool:
-        """Tell whether every number is one."""
+        """Tell whether every number is finite."""
         return all(map(math.isfinite, (self.x_m, self.y_m, self.heading_rad)))
 
 
 @dataclass(frozen=True)
 class Drift:
-    """The difference of odometry to motion capture: distance [m], heading in (-pi, pi] [rad]."""
+    """Odometry minus motion capture: distance [m], heading in (-pi, pi] [rad]."""
 
     distance_m: float
     heading_rad: float
@@ -30,19 +30,19 @@ class Drift:
 class DriftMeter:
     """Follows a robot in both frames at once.
 
-    ``odom`` begins where the robot was switched on, the frame of motion capture is the room's
-    (REP-105), so their numbers as such say nothing about each other. The first pair lays the one
-    frame over the other; from then on the difference is how far odometry is off.
+    ``odom`` begins where the robot was switched on, while motion capture uses the room's frame
+    (REP-105), so their numbers cannot be compared directly. The first pair aligns the frames; from
+    then on the difference is the error of the odometry.
     """
 
     def __init__(self) -> None:
         self._first: Optional[Tuple[Pose, Pose]] = None
 
     def drift(self, odometry: Optional[Pose], captured: Optional[Pose]) -> Optional[Drift]:
-        """Return the :class:`Drift` of now; zero at the first pair.
+        """Return the present :class:`Drift`; zero at the first pair.
 
-        :param odometry: :class:`Pose` in ``odom``, None where it is not known
-        :param captured: :class:`Pose` in the frame of motion capture, None where it is not known
+        :param odometry: :class:`Pose` in ``odom``, None if unknown
+        :param captured: :class:`Pose` in the frame of motion capture, None if unknown
         :returns: None while one is missing or not finite
         """
         if odometry is None or captured is None \

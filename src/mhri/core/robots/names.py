@@ -13,11 +13,11 @@ RESERVED = frozenset(('gates', 'gates_in', 'mhri', 'mhri_gates', 'mhri_tasks', '
 
 
 def name_problem(name: str) -> Optional[str]:
-    """Say why a text cannot be a robot's name; return None where it can.
+    """Return why a text cannot be a robot's name, or None if it can.
 
     A robot is a namespace of one segment: a letter, then letters, digits and ``_``
-    (http://wiki.ros.org/Names). A leading slash is the user's way of writing the same name and is
-    not forgiven here: strip it with :func:`tidy_name` first.
+    (http://wiki.ros.org/Names). A leading slash is
+    refused here: strip it with :func:`tidy_name` first.
     """
     if not name:
         return 'type the name of a robot first'
@@ -48,15 +48,14 @@ def is_base_name(name: str) -> bool:
 
 
 def tidy_name(text: str) -> str:
-    """Return what the user most likely meant: no space around it, no slash in front or behind."""
+    """Return what the user most likely meant: without surrounding spaces and slashes."""
     return text.strip().strip('/')
 
 
 def topic_of(robot: str, topic: str) -> str:
     """Return the absolute name of a topic of a robot's template.
 
-    A topic is relative to the robot's namespace, as names in ROS are; one that begins with a slash
-    is taken as it is (http://wiki.ros.org/Names). That is how robots without a namespace of their
-    own are addressed.
+    As in ROS (http://wiki.ros.org/Names), a topic is relative to the robot's namespace unless it
+    begins with a slash. Robots without a namespace of their own use the latter.
     """
     return topic if topic.startswith('/') else '/{}/{}'.format(robot, topic)

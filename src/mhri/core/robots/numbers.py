@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A robot's number: its own for good, so that a key never drives another robot than yesterday."""
+"""A robot's number: its own for good, so that a key drives the same robot tomorrow."""
 import re
 from typing import Dict, Iterable, List, Tuple
 
-# The robots that a key drives: the digits 1 to 9. Later ones have a number and no key.
+# The robots with a key: the digits 1 to 9. Later ones have a number but no key.
 LAST_KEY = 9
 # Higher ones are not kept between runs: a screen shows 200.
 MOST_NUMBERS = 1000
@@ -12,19 +12,19 @@ _DIGITS = re.compile('([0-9]+)')
 
 
 def natural_key(name: str) -> Tuple[List[Tuple[int, str]], str]:
-    """Return what to sort names by, so that bot2 comes before bot10 and Bot3 after bot2."""
+    """Return the key by which to sort names: bot2 before bot10, Bot3 after bot2."""
     parts = _DIGITS.split(name.lower())
     return [(int(part), '') if place % 2 else (0, part) for place, part in enumerate(parts)], name
 
 
 class RobotNumbers:
-    """Who has which number, from 1; given when a robot is first seen, and never to another."""
+    """Who has which number, from 1; a robot gets it when first seen, and no other ever does."""
 
     def __init__(self) -> None:
         self._numbers: Dict[str, int] = {}
 
     def restore(self, kept: Dict[str, int]) -> None:
-        """Take over what :meth:`kept` returned; what contradicts the numbers given is left out."""
+        """Take back what :meth:`kept` returned, except what contradicts given numbers."""
         for name, number in kept.items():
             if name not in self._numbers and number not in self._numbers.values():
                 self._numbers[name] = number
@@ -35,12 +35,12 @@ class RobotNumbers:
         return {name: number for name, number in by_number if number <= MOST_NUMBERS}
 
     def meet(self, names: Iterable[str]) -> None:
-        """Give each that has none the lowest free number; in natural order where several come."""
+        """Give each robot without a number the lowest free one, in natural order."""
         for name in sorted(set(names).difference(self._numbers), key=natural_key):
             taken = set(self._numbers.values())
             self._numbers[name] = next(
                 number for number in range(1, len(taken) + 2) if number not in taken)
 
     def of(self, name: str) -> int:
-        """Return the number of a robot, 0 where it has none."""
+        """Return the number of a robot, 0 if it has none."""
         return self._numbers.get(name, 0)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What takes the power from a robot's motors, and what tells of its own emergency stop, as data."""
+"""How to cut a robot's motor power, and where it reports its own emergency stop, as data."""
 import re
 from dataclasses import dataclass, replace
 from typing import Any, List, Optional, Pattern, Tuple, TypeVar, Union
@@ -19,23 +19,23 @@ Part = TypeVar('Part', bound='AtRoot')
 
 @dataclass(frozen=True)
 class AtRoot:
-    """A part that is reached by one ``name``, relative to its robot's namespace."""
+    """A part with one ``name``, relative to its robot's namespace."""
 
     name: str
 
     def at_root(self: Part) -> Part:
-        """Return it with an absolute name: for a robot without a namespace."""
+        """Return it with an absolute name, for a robot without a namespace."""
         return replace(self, name='/' + self.name.lstrip('/'))
 
 
 @dataclass(frozen=True)
 class MotorPowerSpec(AtRoot):
-    """How the power is taken from the motors of a robot of some type, and given back.
+    """How to cut and restore the motor power of robots of a type.
 
     :param name: the topic or service, relative to the robot's namespace
-    :param service: whether it is a service (``std_srvs/SetBool``, false takes the power)
+    :param service: whether it is a service (``std_srvs/SetBool``, false cuts the power)
     :param kind: ROS type of the topic or service
-    :param field: of the topic's message: what tells power or none
+    :param field: field of the topic's message that holds the value
     :param powered: its value with power
     :param cut: its value without
     """
@@ -49,11 +49,11 @@ class MotorPowerSpec(AtRoot):
 
 @dataclass(frozen=True)
 class HardwareStopSpec(AtRoot):
-    """What tells of a robot's own emergency stop.
+    """Where a robot reports its own emergency stop.
 
     :param name: the topic, relative to the robot's namespace
     :param kind: its ROS type
-    :param field: what of its message tells
+    :param field: the field of its message that tells
     :param stopped: the values that mean stopped; any other means free
     """
 
@@ -63,10 +63,10 @@ class HardwareStopSpec(AtRoot):
 
 
 def read_motor_power(section: Section) -> Optional[MotorPowerSpec]:
-    """Return the :class:`MotorPowerSpec` at ``motor_power``; None where there is none.
+    """Return the :class:`MotorPowerSpec` at ``motor_power``; None if there is none.
 
     :param section: :class:`mhri.core.config.Section` of a robot type
-    :raises ConfigError: names the key that is wrong
+    :raises ConfigError: names the wrong key
     """
     part = _part(section, 'motor_power')
     if part is None:
@@ -91,10 +91,10 @@ def read_motor_power(section: Section) -> Optional[MotorPowerSpec]:
 
 
 def read_hardware_stop(section: Section) -> Optional[HardwareStopSpec]:
-    """Return the :class:`HardwareStopSpec` at ``hardware_stop``; None where there is none.
+    """Return the :class:`HardwareStopSpec` at ``hardware_stop``; None if there is none.
 
     :param section: :class:`mhri.core.config.Section` of a robot type
-    :raises ConfigError: names the key that is wrong
+    :raises ConfigError: names the wrong key
     """
     part = _part(section, 'hardware_stop')
     if part is None:
@@ -112,14 +112,14 @@ def read_hardware_stop(section: Section) -> Optional[HardwareStopSpec]:
 
 
 def _part(section: Section, key: str) -> Optional[Section]:
-    """Return the sub-section of a key; None where it is missing or says ``none``."""
+    """Return the sub-section of a key; None if it is missing or says ``none``."""
     raw = section.take(key, NONE)
     return None if raw == NONE else section.sub_section(key, raw)
 
 
 def _matching(part: Section, key: str, pattern: Pattern[str],
               default: Optional[str] = None) -> str:
-    """Read a text of a certain form; without a default it has to be there."""
+    """Read a text of a certain form; without a default it must be there."""
     text = part.text(key) if default is None else part.text(key, default)
     if not pattern.match(text):
         example = {'type': 'std_msgs/Bool', 'field': 'data'}.get(key, 'motor_power')

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Robot types: the topics, limits and window of each kind of robot, as validated data."""
+"""Robot types: the topics, limits and tile of each kind of robot, as validated data."""
 import re
 from dataclasses import dataclass, field, replace
 from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Tuple
@@ -10,13 +10,13 @@ from mhri.core.robots.robot_hardware import (
     HardwareStopSpec, MotorPowerSpec, read_hardware_stop, read_motor_power)
 
 ODOMETRY_TYPES = ('nav_msgs/Odometry', 'turtlesim/Pose')
-# A robot whose type says nothing else is silent when its odometry has not come for so long [s].
+# Unless its type says otherwise, a robot is silent after this long without odometry [s].
 SILENT_AFTER_S = 1.0
 # And so large is one whose type does not say it: a robot on a task keeps that much room [m].
 RADIUS_M = 0.25
 _HARDWARE: Dict[str, Callable[[Section], Any]] = {
     'motor_power': read_motor_power, 'hardware_stop': read_hardware_stop}
-# http://wiki.ros.org/Names, without "~": a robot has no private topics of ours.
+# http://wiki.ros.org/Names, without "~": no topic of a robot is private to us.
 _TOPIC = re.compile(r'/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*\Z')
 _MOST_LETTERS = 250
 _TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'cloud', 'scan', 'battery')
@@ -24,7 +24,7 @@ _TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'cloud', 'scan', 'b
 
 @dataclass(frozen=True)
 class Limits:
-    """The most a robot may be asked for: linear [m/s] and angular [rad/s], both > 0."""
+    """The highest speeds a robot may be asked for: linear [m/s] and angular [rad/s], both > 0."""
 
     linear_mps: float
     angular_rad_s: float
@@ -36,8 +36,8 @@ class Export:
 
     :param package: its name
     :param origin: the file of the template
-    :param text: what is in it
-    :param window: the class of its window as ``package.module.Class``, '' where it names none
+    :param text: its content
+    :param window: the class of its tile as ``package.module.Class``, '' for none
     """
 
     package: str
@@ -53,14 +53,14 @@ class Export:
 
 @dataclass(frozen=True)
 class Seen:
-    """What the graph tells of a robot, beside its parameters.
+    """What the graph says about a robot, besides its parameters.
 
-    :param at_root: it has no namespace of its own: its topics begin at ``/``
-    :param kind: the type that it was recognised as by its topics, None where it was not
-    :param command: its velocity topic, as in a template; None where there is none, or where of
-        several none is the likeliest
-    :param instance: where the topics of this robot begin, e.g. ``/turtle2``, of several that one
-        node has; None for any other
+    :param at_root: it has no namespace; its topics begin at ``/``
+    :param kind: the type recognised by its topics, None if it was not recognised
+    :param command: its velocity topic, as in a template; None if there is none, or if several are
+        equally likely
+    :param instance: where the topics of this robot begin, e.g. ``/turtle2``, if one node has
+        several robots; else None
     """
 
     at_root: bool = False
@@ -69,7 +69,7 @@ class Seen:
     instance: Optional[str] = None
 
     def anything(self) -> bool:
-        """Tell whether there is more to it than a name."""
+        """Tell whether anything but its name is known."""
         return bool(self.at_root or self.kind or self.command or self.instance)
 
 
@@ -81,12 +81,12 @@ class RobotType:
     and ordered: the first that exists (for ``command``: the first that has a subscriber) is used.
     An empty list means the robot has none. ``window`` is a key of ``mhri.gui.screen.windows`` or,
     in a lab's own package, a class as ``package.module.Class``. ``known_by`` is {topic: ROS type}
-    of what only robots of this type publish: by it one is recognised that has no ``robot_type``.
-    ``silent_after_s``: a robot is silent when its odometry has not come for so long [s]; 0 means
-    that its silence says nothing (it tells its odometry in motion only). ``motor_power`` and
-    ``hardware_stop`` are None where there is no such thing. ``radius_m`` is that of the disc around
-    all of it [m]. ``instance`` is the first segment of
-    all its topics where one node may have several such robots, each with another first segment.
+    of topics that only robots of this type publish, to recognise robots without a ``robot_type``.
+    ``silent_after_s``: a robot is silent after this long without odometry [s]; 0 means that silence
+    says nothing (it sends odometry only in motion). ``motor_power`` and ``hardware_stop`` are None
+    if there is no such thing. ``radius_m`` is the radius of the disc around all of it [m].
+    ``instance`` is the first segment of all its topics if one node may
+    have several such robots, each with its own first segment.
     """
 
     name: str
@@ -112,7 +112,7 @@ class RobotType:
     instance: Optional[str] = None
 
     def at_root(self) -> 'RobotType':
-        """Return this type with absolute topics: for a robot without a namespace."""
+        """Return this type with absolute topics, for a robot without a namespace."""
         changes: Dict[str, Any] = {
             key: tuple('/' + topic.lstrip('/') for topic in getattr(self, key))
             for key in _TOPIC_KEYS}
@@ -124,7 +124,7 @@ class RobotType:
         """Return this type with the topics of one of several robots.
 
         :param place: where they begin, e.g. ``/turtle2``
-        :raises ValueError: of such a robot there is one in a node at most
+        :raises ValueError: a node can have only one robot of this type
         """
         if self.instance is None:
             raise ValueError('robot type {} has no instance'.format(self.name))
@@ -137,7 +137,7 @@ class RobotType:
         """Return this type with the limits of one of its models, e.g. ``waffle``.
 
         Without a model (None), the type keeps the limits of its file, which for a type with models
-        are those of the slowest: an unknown robot is never driven faster than it can.
+        are those of the slowest: never drive an unknown robot faster than it can go.
 
         :raises ConfigError: the type has no such model
         """
@@ -161,7 +161,7 @@ def _limits(section: Section) -> Limits:
 def parse_robot_type(text: str, origin: str) -> RobotType:
     """Return the :class:`RobotType` that a YAML text describes.
 
-    :raises ConfigError: names the file and the key that is wrong
+    :raises ConfigError: names the file and the wrong key
     """
     section = parse_yaml(text, origin)
     name = section.text('name')
@@ -202,7 +202,7 @@ def _odometry_type(section: Section) -> str:
 
 
 def _silent_after_s(section: Section) -> float:
-    """Read how long the odometry may stay away; 0: for ever.
+    """Read how long the odometry may be missing [s]; 0: for ever.
 
     Below 0.3 s, ordinary wireless networks would make a robot silent again and again.
     """
@@ -236,7 +236,7 @@ def _all_topics(section: Section) -> Dict[str, Any]:
 
 
 def _known_by(section: Section) -> Dict[str, str]:
-    """Read {topic: ROS type} of what only robots of this type publish."""
+    """Read {topic: ROS type} of topics that only robots of this type publish."""
     signs = section.take('known_by', {})
     if not isinstance(signs, dict) or not all(
             isinstance(word, str) for item in signs.items() for word in item):
@@ -250,8 +250,8 @@ def load_robot_types(
     """Parse many templates; one bad file never hides the good ones.
 
     :param files: pairs (origin, text)
-    :param exports: :class:`Export` of other packages; they replace none that exists already
-    :returns: ({name: RobotType}, [ConfigError]); of two files with one name the first stays
+    :param exports: :class:`Export` of other packages; they never replace an existing type
+    :returns: ({name: RobotType}, [ConfigError]); of two files with the same name the first counts
     """
     types: Dict[str, RobotType] = {}
     errors: List[ConfigError] = []
@@ -285,8 +285,8 @@ def resolve_robot_type(types: Mapping[str, RobotType], robot: str, params: Mappi
     :param robot: the robot's name
     :param params: the parameters below its namespace as a nested dict: ``robot_type``,
         ``robot_model`` and, under ``mhri``, any key of a template file to override
-    :param seen: :class:`Seen`; a robot driven as generic gets the velocity topic it really has
-    :returns: (RobotType, [ConfigError]); a parameter that cannot be used is reported and left out,
+    :param seen: :class:`Seen`; a robot driven as ``generic`` gets its real velocity topic
+    :returns: (RobotType, [ConfigError]); parameters that cannot be used are reported and left out;
         an unknown type becomes ``generic``
     """
     errors: List[ConfigError] = []

@@ -3,43 +3,43 @@
 """How late a stamped message is, from a robot whose clock may be off by any amount."""
 from typing import Optional
 
-# Stamps below this [s since 1970] are simulated time, or of a clock that was never set.
+# Stamps below this [s since 1970] are simulated time, or from a clock that was never set.
 SET_SINCE_S = 1e9
-# The least delay seen is forgotten this fast [s/s], since two clocks run apart: 0.05 % is more
-# than any quartz is off, and far less than a delay that creeps.
+# How fast to forget the least delay [s/s], since clocks drift apart: 0.05 % is more than any quartz
+# is off, and far less than a creeping delay.
 LEAK = 5e-4
-# After a clock was set back, what was known is worthless: nothing is known for so long [s].
+# After a clock was set back nothing is known for this long [s].
 SETTLE_S = 1.0
 
 
 def delay_of(received_s: float, stamp_s: float) -> Optional[float]:
     """Return the time from a stamp to the receipt of its message [s], by two clocks.
 
-    :param received_s: by the clock here [s since 1970]
-    :returns: None where the stamp is none of that time: see :data:`SET_SINCE_S`
+    :param received_s: by the local clock [s since 1970]
+    :returns: None if the stamp is not real time: see :data:`SET_SINCE_S`
     """
     return None if stamp_s < SET_SINCE_S <= received_s else received_s - stamp_s
 
 
 class StampAge:
-    """Compares the delay of each message with the least that there was.
+    """Compares the delay of each message with the least delay so far.
 
-    The least delay (time of receipt less stamp) is clock offset and quickest way together. What a
-    message took beyond that, it is late. Not thread-safe; the times of receipt are seconds of a
+    The least delay (time of receipt minus stamp) is the clock offset plus the quickest journey. A
+    message is late by whatever exceeds that. Not thread-safe; the times of receipt are seconds of a
     clock that never goes back.
     """
 
     def __init__(self) -> None:
-        # Of the message before; None before any, and then the others count for nothing.
+        # Of the previous message; None before the first, and then the others mean nothing.
         self._stamp_s: Optional[float] = None
         self._least_s = self._now = self._settled_at = 0.0
 
     def late_s(self, stamp_s: Optional[float], now: float) -> Optional[float]:
-        """Take in one message; return by how much it is late [s, >= 0].
+        """Take in one message; return how late it is [s, >= 0].
 
-        :param stamp_s: None, or below :data:`SET_SINCE_S`: nothing can be said; it counts as 0
-        :returns: None where that is not known: for :data:`SETTLE_S` after the first message, and
-            after one that was stamped before the one ahead of it
+        :param stamp_s: None, or below :data:`SET_SINCE_S`, tells nothing; the result is 0
+        :returns: None if unknown: for :data:`SETTLE_S` after the first message, and after one
+            stamped earlier than its predecessor
         """
         if stamp_s is None or stamp_s < SET_SINCE_S:
             return 0.0

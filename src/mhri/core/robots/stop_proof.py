@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The proof of a stop: a robot is called stopped only when its own odometry reads standstill."""
+"""The proof of a stop: a robot is called stopped only when its own odometry shows standstill."""
 import math
 from typing import Optional, Tuple
 
@@ -10,14 +10,14 @@ from mhri.core.screen.views import (
     PROOF_NOT_CONFIRMED, PROOF_STOPPED, PROOF_WAITING, ProofView)
 
 READINGS = 3
-# From the first reading of a row to the last one: in less, a creeping pose looks like one at rest.
+# Time from the first reading of a row to the last [s]: in less, a creeping pose looks at rest.
 ROW_S = 0.1
 PATIENCE_S = 2.0
-# A resting pose may jitter by so much, and is looked at over so long.
+# A resting pose may jitter this much over this long.
 JITTER_M = 0.001
 JITTER_RAD = 0.003
 POSE_WINDOW_S = 1.0
-# Where the round trip is not known, a stop may take so long to the robot and its answer back [s].
+# If the round trip is unknown, a stop and its answer may take this long together [s].
 UNKNOWN_ROUND_TRIP_S = 0.25
 
 
@@ -28,7 +28,7 @@ class PoseWatch:
         self._anchor: Optional[Tuple[float, Motion]] = None
 
     def speed(self, motion: Motion, now: float) -> Tuple[float, float]:
-        """Take in one reading; return how fast the pose moves [m/s, rad/s], zeros at rest."""
+        """Take in one reading; return the speed of the pose [m/s, rad/s], zeros at rest."""
         if self._anchor is None:
             self._anchor = (now, motion)
             return 0.0, 0.0
@@ -56,21 +56,21 @@ class StopProof:
         STOPPED        -> NOT_CONFIRMED  it moves again, or falls silent
         NOT_CONFIRMED  -> STOPPED        READINGS readings of standstill in a row, over ROW_S
 
-    A reading of standstill has all three planar velocities near zero, a pose that stays where it
-    was, and no number that cannot be. It counts from when it was measured, not from when it came,
-    and only if that was after the stop had reached the robot. The time given is that of the first
-    reading of the row. Where the robot was not heard for ``silent_after_s`` on the way to that
-    reading it may have stood still long before, and the words say so.
+    A reading of standstill has all three planar velocities near zero, a pose that does not change,
+    and no impossible number. It counts from when it was measured, not from when it arrived, and
+    only if the stop had reached the robot by then. The time given is that of the first reading of
+    the row. If the robot was not heard for ``silent_after_s`` before that reading, it may have
+    stood still long before, and the words say so.
 
     :param now: when the zero was sent
-    :param round_trip_s: of the link to the robot [s], None where it is not known
-    :param silent_after_s: after so long the robot is silent [s]; 0: as 1
+    :param round_trip_s: of the link to the robot [s], None if unknown
+    :param silent_after_s: after this long the robot is silent [s]; 0: as 1
     """
 
     def __init__(self, now: float, round_trip_s: Optional[float] = None,
                  silent_after_s: float = SILENT_AFTER_S) -> None:
         self._begun = now
-        # What was measured before this may be of a robot that knows nothing of the stop.
+        # Readings measured before this may be from before the stop arrived.
         self._counts_from = now + (UNKNOWN_ROUND_TRIP_S if round_trip_s is None else round_trip_s)
         self._silent_after_s = silent_after_s or SILENT_AFTER_S
         self._heard = now
@@ -79,17 +79,17 @@ class StopProof:
         self._run_began = now
         self._pose = PoseWatch()
         self._doubt = ''
-        # A pose that creeps looks like rest in every other reading: its words stay for a while.
+        # A creeping pose looks like rest in every other reading: keep its words for a while.
         self._crept, self._crept_at = '', -math.inf
         self.state = PROOF_WAITING
         self._stopped_ms: Optional[float] = None
-        # Whether nobody can tell when the robot came to rest: it was not heard all the while.
+        # Whether nobody can tell when the robot came to rest: it was not heard all along.
         self._unseen = False
 
     def on_motion(self, motion: Motion, now: float, late_s: Optional[float] = 0.0) -> None:
         """Take in one reading of the robot's odometry, received at ``now``.
 
-        :param late_s: by how much it came later than the quickest do [s]; None: nobody knows
+        :param late_s: how much later it came than the quickest [s]; None if unknown
         """
         self._heard = now
         measured = self._measured if late_s is None else max(now - late_s, self._measured)
@@ -111,7 +111,7 @@ class StopProof:
             self._rests(measured)
 
     def _moves(self, motion: Motion, measured: float) -> str:
-        """Say how a reading is none of standstill; '' where it is one."""
+        """Return why a reading does not show standstill; '' if it does."""
         if not motion.is_possible():
             return 'its odometry is not possible'
         pose_mps, pose_rad_s = self._pose.speed(motion, measured)

@@ -44,6 +44,11 @@ def _after(words: _Words, phrases: Iterable[str]) -> Iterator[_Words]:
             yield words[len(start):]
 
 
+def _seldom(text: str) -> str:
+    """Write in JSGF what may be left out, and mostly is: it must not stand for another word."""
+    return '(/0.9/ <NULL> | /0.1/ {})'.format(text)
+
+
 def _any_of(phrases: Iterable[str]) -> str:
     """Write alternatives in JSGF."""
     return '(' + ' | '.join(sorted(set(phrases))) + ')'
@@ -53,7 +58,7 @@ class Grammar:
     """The phrases of a language with the robots of the panel's list.
 
     :param language: :class:`mhri.core.voice.language.Language`
-    :param robots: names, each in the place of its number, from 1; '' where nobody has it
+    :param robots: names, each in the place of its number, from 1; '' if nobody has it
     :param knows: function that tells whether the model's dictionary has a word
     """
 
@@ -112,10 +117,12 @@ class Grammar:
                 phrase for phrases in language.sources.values() for phrase in phrases)))
         if self._robots:
             actions = [phrase for action in ROBOT_ACTIONS for phrase in language.robots[action]]
-            more = ' [{} <robot>]'.format(_any_of(language.joiners)) if language.joiners else ''
-            others.append('{} <robot>{}'.format(_any_of(actions), more))
-        please, before, after = ('[{}]'.format(_any_of(phrases)) if phrases else '' for phrases in (
-            language.please, language.stop_before, language.stop_after))
+            more = (_seldom('({} <robot>)'.format(_any_of(language.joiners)))
+                    if language.joiners else '')
+            others.append('{} <robot> {}'.format(_any_of(actions), more))
+        please = _seldom(_any_of(language.please)) if language.please else ''
+        before, after = ('[{}]'.format(_any_of(phrases)) if phrases else ''
+                         for phrases in (language.stop_before, language.stop_after))
         rules = ['#JSGF V1.0;', 'grammar mhri;']
         if self._robots:
             rules.append('<robot> = {};'.format(_any_of(self._robots)))
@@ -127,7 +134,7 @@ class Grammar:
         return '\n'.join(rules) + '\n'
 
     def parse(self, text: str) -> Optional[Command]:
-        """Return the :class:`Command` that words mean, or None where they mean none.
+        """Return the :class:`Command` that words mean, or None if they mean none.
 
         A word of ``stop`` anywhere stops, but for the phrases of the grammar that have it inside
         ("stop recording") and begin with the wake word or stand alone.

@@ -17,8 +17,12 @@ _LATE_PRESS_S = 0.3
 # time to recognise it. The robots stand still meanwhile.
 STOP_RECORDING_S = 1.3
 SURE = 0.5
+# Who holds push-to-talk means a command: talk need not be told from it, only one from another.
+SURE_WHEN_HELD = 0.25
 # A stop is believed much sooner: one too many does no harm.
 SURE_OF_STOP = 0.18
+# Why a voice that is not understood is refused.
+UNCLEAR = NO_COMMAND, NOT_SURE = 'no command', 'not sure enough'
 
 
 @dataclass(frozen=True)
@@ -136,9 +140,10 @@ class VoiceRules:
              now: float) -> Heard:
         """Judge an utterance; return :class:`Heard`.
 
-        :param text: the words, '' where they fit nothing
+        :param text: the words, '' if they fit nothing
         :param command: :class:`Command` or None
-        :param confidence: [0, 1] of the recogniser, 0.5 and more meaning a command
+        :param confidence: [0, 1] of the recogniser; 0.5 and more means a command, with push-to-talk
+            0.25 and more
         :param began: when the utterance began
         """
         waiting, self._stop_due = self._stop_due is not None, None
@@ -156,13 +161,14 @@ class VoiceRules:
 
     def _problem(self, command: Optional[Command], confidence: float, began: float,
                  window: float) -> str:
-        """Say why an utterance is not obeyed; '' where it is."""
+        """Say why an utterance is not obeyed; '' if it is."""
         if command is None:
-            return 'no command'
+            return NO_COMMAND
         if command.kind == STOP:
-            return '' if confidence >= SURE_OF_STOP else 'not sure enough'
-        if not confidence >= SURE:  # A confidence that is no number is none.
-            return 'not sure enough'
+            return '' if confidence >= SURE_OF_STOP else NOT_SURE
+        sure = SURE_WHEN_HELD if self.talking(began) else SURE
+        if not confidence >= sure:  # A confidence that is no number is none.
+            return NOT_SURE
         if not (command.woken or began <= window or self.talking(began)):
             return 'no wake word: say "{}" first, or hold push-to-talk'.format(
                 self._language.wake_words[0])

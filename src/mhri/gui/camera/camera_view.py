@@ -77,7 +77,7 @@ def stream_warning(status):
 class CameraView(QWidget):
     """Shows what it is given, marks what is old; decides nothing about topics.
 
-    Child widgets: ``picture``, ``status_label``, ``transport_combo``, ``still_button``.
+    Child widgets: ``picture``, ``stream_label``, ``transport_combo``, ``still_button``.
     """
 
     #: the picture on show shall be kept as a file: its Frame
@@ -100,9 +100,9 @@ class CameraView(QWidget):
         self.setObjectName('camera_view')
         self.picture = PictureView(self)
         self.status_sign = Sign(self)
-        self.status_label = TextLine(self)
-        self.status_label.setObjectName('status_label')
-        self.status_label.setFont(theme.number_font(self.font()))
+        self.stream_label = TextLine(self)
+        self.stream_label.setObjectName('stream_label')
+        self.stream_label.setFont(theme.number_font(self.font()))
         self.transport_combo = QComboBox(self)
         self.still_button = QPushButton('Save still', self)
         self.still_button.setAutoDefault(False)
@@ -124,7 +124,7 @@ class CameraView(QWidget):
         line = QHBoxLayout(self._tools)
         line.setContentsMargins(0, 4, 0, 0)
         line.setSpacing(6)
-        line.addWidget(self.status_label, 3)
+        line.addWidget(self.stream_label, 3)
         line.addWidget(self.status_sign)
         line.addWidget(self.transport_combo, 1)
         line.addWidget(self.still_button)
@@ -210,7 +210,7 @@ class CameraView(QWidget):
     def _say(self, sign, text, shorter=()):
         """Show a line with its sign."""
         self.status_sign.show_sign(sign)
-        self.status_label.show_text(text, shorter=shorter)
+        self.stream_label.show_text(text, shorter=shorter)
 
     def show_transports(self, names):
         """Offer what there is now; 'auto' comes first, and what was chosen stays, there or not."""

@@ -55,6 +55,8 @@ class PictureView(QWidget):
         """Set what never changes."""
         self.setObjectName('picture')
         self.setAttribute(Qt.WA_OpaquePaintEvent)
+        # Beside a picture it is dark in every theme.
+        self.setPalette(theme.over_picture(self.palette()))
         # From far, on top, to near; colour_at is the one place that knows the colours.
         self._scale = QImage(1, _SCALE_STEPS, QImage.Format_RGB32)
         for step in range(_SCALE_STEPS):

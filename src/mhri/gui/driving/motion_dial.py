@@ -18,6 +18,8 @@ _AHEAD_S = 2.0
 _MOST_BEND_RAD = 2.6
 # Without a maximum of its own, a robot's speed is drawn against this.
 _USUAL_MAX_MPS = 0.5
+# A dial of fewer lines of text has no words.
+_SMALL_UNITS = 9.0
 
 
 class MotionDial(QWidget):
@@ -49,12 +51,17 @@ class MotionDial(QWidget):
 
     def minimumSizeHint(self):  # noqa: N802
         """Return the least that can be read."""
-        side = self.fontMetrics().height() * 9
+        side = self.fontMetrics().height() * 3
         return QSize(side, side)
 
     def _radius(self):
         """Return the radius of the dial [px]."""
-        return min(self.width(), self.height()) / 2.0 - self.fontMetrics().height() * 1.3
+        units = 0.3 if self._is_small() else 1.3
+        return max(4.0, min(self.width(), self.height()) / 2.0 - self.fontMetrics().height() * units)
+
+    def _is_small(self):
+        """Tell whether there is no room for words."""
+        return min(self.width(), self.height()) < _SMALL_UNITS * self.fontMetrics().height()
 
     def paintEvent(self, event):  # noqa: N802
         """Paint everything."""
@@ -90,7 +97,7 @@ class MotionDial(QWidget):
             inner = radius - (0.06 if major else 0.035) * radius
             painter.drawLine(_polar(math.radians(degrees), inner),
                              _polar(math.radians(degrees), radius))
-            if major:
+            if major and not self._is_small():
                 place = _polar(math.radians(degrees), radius + unit * 0.72)
                 text = {0: 'x', 90: 'y'}.get(degrees, '')
                 painter.drawText(QRectF(place.x() - unit, place.y() - unit, 2 * unit, 2 * unit),
@@ -112,6 +119,8 @@ class MotionDial(QWidget):
         painter.setBrush(Qt.NoBrush)
         painter.drawPolyline(QPolygonF(points))
         painter.restore()
+        if self._is_small():
+            return
         painter.setPen(theme.colour(theme.MUTED, self.palette()))
         corner = QRectF(self.rect()).translated(-QRectF(self.rect()).center())
         painter.drawText(corner.adjusted(2, 2, -2, -2), int(Qt.AlignLeft | Qt.AlignBottom),

@@ -120,6 +120,7 @@ class SpeedLimits(QWidget):
 
     def _build(self):
         """Make and place the sliders."""
+        self.setFont(theme.base_font(self.font()))
         grid = QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setHorizontalSpacing(self.fontMetrics().height() // 2)

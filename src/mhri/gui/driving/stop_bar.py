@@ -5,7 +5,7 @@
 Held for 2 s (the button, or Shift+Space), or by a second step on the page that says what is
 stopped, it cuts the power of the motors of those robots that offer it.
 """
-from python_qt_binding.QtCore import Qt, QTimer, Signal
+from python_qt_binding.QtCore import QElapsedTimer, Qt, QTimer, Signal
 from python_qt_binding.QtGui import QPainter
 from python_qt_binding.QtWidgets import (
     QBoxLayout, QHBoxLayout, QPushButton, QSizePolicy, QStackedLayout, QVBoxLayout, QWidget)
@@ -20,6 +20,10 @@ CONFIRM_WITHIN_S = 5.0
 ANSWER_WITHIN_S = 2.0
 # Held for so long, the stop button cuts the power of the motors as well.
 CUT_AFTER_S = 2.0
+# What is pressed sooner after the page of the stop has appeared was meant for what was there before.
+SETTLED_S = 0.5
+# From this width on [heights of a line] the buttons never make the words shorter.
+_ROOMY_UNITS = 38.0
 CUT_OFF = 'This screen is cut off: STOP ALL here reaches nothing'
 CUT_OFF_NOTE = ('another program has taken its name, or it was ended from elsewhere: stop the '
                 'robots by hand or from another screen; restart this one')
@@ -46,6 +50,8 @@ class StopBar(QWidget):
         self._note = ''
         self._words = NOBODY_HEARD
         self._asked = Pending(ANSWER_WITHIN_S)
+        self._appeared = QElapsedTimer()
+        self._meant = False
         self._build()
         self._connect()
 
@@ -97,9 +103,6 @@ class StopBar(QWidget):
         words.addWidget(self._headline)
         words.addWidget(self._note_line)
         words.addStretch()
-        keep = self.confirm_button.sizePolicy()
-        keep.setRetainSizeWhenHidden(True)
-        self.confirm_button.setSizePolicy(keep)
         second = QWidget(self._stopped_page)
         second.setSizePolicy(QSizePolicy.Fixed, QSizePolicy.Fixed)
         self._second = QStackedLayout(second)
@@ -125,6 +128,13 @@ class StopBar(QWidget):
         self._row.setDirection(QBoxLayout.TopToBottom if narrow else QBoxLayout.LeftToRight)
         self.stop_button.set_look('' if narrow else 'Shift+Space', 3.4 if narrow else 2.4)
 
+    def resizeEvent(self, event):  # noqa: N802
+        """Keep the room of the second step where there is enough of it, so that nothing jumps."""
+        super().resizeEvent(event)
+        keep = self.confirm_button.sizePolicy()
+        keep.setRetainSizeWhenHidden(self.width() > _ROOMY_UNITS * self.fontMetrics().height())
+        self.confirm_button.setSizePolicy(keep)
+
     def _button(self, name, text):
         """Make one of the buttons of the second page, wide enough for any of its words."""
         button = QPushButton(text, self._stopped_page)
@@ -140,7 +150,8 @@ class StopBar(QWidget):
         self.stop_button.pressed.connect(self._held.start)
         self.stop_button.let_go.connect(self._held.stop)
         self._held.timeout.connect(self.power_cut_requested)
-        self.power_button.clicked.connect(self.power_cut_requested)
+        self.power_button.pressed.connect(self._note_press)
+        self.power_button.clicked.connect(self._cut_power)
         self.release_button.clicked.connect(self._ask)
         self.cancel_button.clicked.connect(self._cancel)
         self.confirm_button.clicked.connect(self._confirm)
@@ -183,6 +194,15 @@ class StopBar(QWidget):
         self._show()
         self.stop_requested.emit()
 
+    def _note_press(self):
+        """Take note whether the page was there for long enough to be what was pressed."""
+        self._meant = self._appeared.isValid() and self._appeared.elapsed() >= 1000 * SETTLED_S
+
+    def _cut_power(self):
+        """Cut the power, unless the click was one of those that followed the stop."""
+        if self._meant:
+            self.power_cut_requested.emit()
+
     def _ask(self):
         """First step of a release."""
         self._countdown.start()
@@ -206,7 +226,7 @@ class StopBar(QWidget):
     def _show(self):
         """Show the state as it is known."""
         asked = self._asked.settle(self._stopped)
-        self._pages.setCurrentIndex(1 if self._stopped or self._cut_off else 0)
+        self._show_page(1 if self._stopped or self._cut_off else 0)
         stopping = asked and not self._stopped
         self.stop_button.setText('STOPPING ...' if stopping else 'STOP ALL')
         releasing = self._stopped and not asked
@@ -223,10 +243,18 @@ class StopBar(QWidget):
         self.power_button.setVisible(self._offered and not confirming and not self._cut_off)
         self.update()
 
+    def _show_page(self, index):
+        """Show a page; one that has just come counts as seen once it is painted."""
+        if index != self._pages.currentIndex():
+            self._appeared.invalidate()
+            self._pages.setCurrentIndex(index)
+
     def paintEvent(self, event):  # noqa: N802
         """Paint the frame of the stopped state."""
         if not self._stopped and not self._cut_off:
             return
+        if not self._appeared.isValid():
+            self._appeared.start()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.Antialiasing)
         theme.paint_stopped_frame(painter, self.rect(), self.palette())

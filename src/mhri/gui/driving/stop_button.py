@@ -11,8 +11,8 @@ from mhri.gui.screen import theme
 
 _ENDS = frozenset((QEvent.MouseButtonRelease, QEvent.TouchEnd, QEvent.TouchCancel,
                    QEvent.ApplicationDeactivate))
-# How much darker than the colour of the palette the button is [%].
-_AT_REST, _UNDER_POINTER, _DOWN = 112, 120, 140
+# How much darker than its ground the button is [%].
+_AT_REST, _UNDER_POINTER, _DOWN = 100, 108, 125
 _BUTTONS = weakref.WeakSet()
 
 
@@ -112,15 +112,13 @@ class StopButton(QAbstractButton):
         """Paint the button; darker under the pointer, and more so while it is down."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.Antialiasing)
-        ink = theme.colour(theme.STOP, self.palette())
         unit = self.fontMetrics().height()
         text = Qt.white
         if self._engaged:
             text = theme.colour(theme.TEXT, self.palette())
             theme.paint_stopped_frame(painter, self.rect(), self.palette())
         else:
-            # Darker than the palette's: white small print on it has a contrast of 4.5 at least.
-            ground = ink.darker(
+            ground = theme.STOP_GROUND.darker(
                 _DOWN if self.isDown() else _UNDER_POINTER if self.underMouse() else _AT_REST)
             painter.setPen(QPen(ground.darker(125), 2))
             painter.setBrush(ground)
@@ -131,7 +129,9 @@ class StopButton(QAbstractButton):
             painter.drawRoundedRect(QRectF(self.rect()).adjusted(7, 7, -7, -7), 4, 4)
         painter.setPen(text)
         painter.drawText(self.rect(), int(Qt.AlignCenter), self.text())
-        if self._hint and not self._engaged:
-            painter.setFont(theme.larger(theme.base_font(self.window().font()), 1.0))
+        beside = (self.width() - painter.fontMetrics().horizontalAdvance(self.text())) / 2
+        painter.setFont(theme.larger(theme.base_font(self.window().font()), 1.0))
+        if self._hint and not self._engaged and \
+                painter.fontMetrics().horizontalAdvance(self._hint) + 1.5 * unit < beside:
             painter.drawText(self.rect().adjusted(0, 0, -unit, 0),
                              int(Qt.AlignRight | Qt.AlignVCenter), self._hint)

@@ -10,6 +10,7 @@ from python_qt_binding.QtWidgets import (
 
 from mhri.core.events.events import ALARM, ATTENTION, CALM, clock_text, MOST, SEVERITIES
 from mhri.gui.driving.drive_keys import keep_arrows
+from mhri.gui.look.wide_scroll_bar import WideScrollBar
 from mhri.gui.screen import theme
 from mhri.gui.screen.labels import plain_tip
 from mhri.gui.screen.switches import SwitchBox
@@ -239,8 +240,7 @@ class EventList(QWidget):
         lines.setVerticalScrollMode(QAbstractItemView.ScrollPerPixel)
         lines.setFocusPolicy(Qt.TabFocus)
         keep_arrows(lines)
-        lines.verticalScrollBar().setStyleSheet('QScrollBar:vertical {{ width: {}px; }}'.format(
-            round(0.6 * theme.touch_size(self))))
+        lines.setVerticalScrollBar(WideScrollBar(lines))
         # Of one height, which no row is asked for: a tree would ask all of them each time.
         lines.verticalHeader().setSectionResizeMode(QHeaderView.Fixed)
         lines.verticalHeader().hide()

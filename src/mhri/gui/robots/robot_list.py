@@ -5,6 +5,7 @@ from python_qt_binding.QtCore import QSize, Qt, QTimer, Signal
 from python_qt_binding.QtGui import QPainter, QPalette, QPen
 from python_qt_binding.QtWidgets import QFrame, QLabel, QScrollArea, QWidget
 
+from mhri.gui.look.wide_scroll_bar import WideScrollBar
 from mhri.gui.screen import theme
 from mhri.gui.driving.drive_keys import keep_arrows
 from mhri.gui.screen.pending import Pending
@@ -108,8 +109,7 @@ class RobotList(QScrollArea):
         self._inside = _Inside(self)
         self.setWidget(self._inside)
         self.setFrameShape(QFrame.StyledPanel)
-        self.verticalScrollBar().setStyleSheet('QScrollBar:vertical {{ width: {}px; }}'.format(
-            round(0.6 * theme.touch_size(self))))
+        self.setVerticalScrollBar(WideScrollBar(self))
         self.verticalScrollBar().valueChanged.connect(lambda *_: self._on_scroll())
         self._answer = QTimer(self)
         self._answer.setSingleShot(True)

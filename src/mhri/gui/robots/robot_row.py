@@ -14,7 +14,7 @@ DRIVING = 'DRIVING'
 MOVING = 'moving'
 RECORDING = 'rec'
 # What a name asks for before it gives way, in average characters; longer ones end in "...".
-_NAME_CHARACTERS = 12
+_NAME_CHARACTERS = 8
 _EDGE_PX = 6
 
 
@@ -94,13 +94,15 @@ class RobotRow(QWidget):
         self.box.setAccessibleName('drive {}'.format(self.name))
         self.title = TextLine(self)
         self.title.setFont(theme.larger(font, 1.25, bold=True))
-        self.title.show_text(self.name)
+        self.title.show_text(self.name, shorter=words.name_ends(self.name))
         # The name is the last to give way in a narrow dock: the type goes first, then the age.
         metrics = self.title.fontMetrics()
-        self.title.setMinimumWidth(min(
-            theme.text_width(self.title.font(), self.name),
-            _NAME_CHARACTERS * metrics.averageCharWidth()))
+        natural = theme.text_width(self.title.font(), self.name)
+        self.title.setSizePolicy(QSizePolicy.Preferred, QSizePolicy.Fixed)
+        self.title.setMaximumWidth(natural)
+        self.title.setMinimumWidth(min(natural, _NAME_CHARACTERS * metrics.averageCharWidth()))
         self.kind = TextLine(self)
+        self.kind.setMinimumWidth(1)
         self.sign = Sign(self)
         self.link = self._fixed_line(numbers, 'waiting')
         self.recording = Pill(self)
@@ -112,10 +114,13 @@ class RobotRow(QWidget):
         # room that it needs now.
         for line in (self.linear, self.turn):
             line.setSizePolicy(QSizePolicy.Preferred, QSizePolicy.Fixed)
-        self.turn.setMinimumWidth(0)
+        self.turn.setMinimumWidth(1)
+        self._least_linear = theme.text_width(numbers, '0.00 m/s')
+        self.linear.setMinimumWidth(self._least_linear)
         self.trouble_sign = Sign(self)
         self.trouble = TextLine(self)
         self.filler = TextLine(self)
+        self.filler.setMinimumWidth(1)
         self.pill = Pill(self)
         self.pill.set_words((DRIVING, MOVING))
         self.battery = self._fixed_line(numbers, '100 %', Qt.AlignRight, BatteryLine)
@@ -137,7 +142,7 @@ class RobotRow(QWidget):
         grid.setHorizontalSpacing(unit // 3)
         grid.setVerticalSpacing(0)
         first, second = QHBoxLayout(), QHBoxLayout()
-        for widget, stretch in ((self.title, 3), (self.kind, 8), (self.recording, 0),
+        for widget, stretch in ((self.title, 0), (self.kind, 1), (self.recording, 0),
                                 (self.sign, 0), (self.link, 0), (self.age, 0)):
             first.addWidget(widget, stretch)
         for widget, stretch in ((self.linear, 0), (self.trouble_sign, 0), (self.trouble, 1),
@@ -174,13 +179,14 @@ class RobotRow(QWidget):
         self._link = view.link
         self._show_number(view.number)
         self.box.setChecked(checked)
-        self.kind.show_text(words.type_text(view), theme.MUTED)
+        self.kind.show_text(words.type_text(view), theme.MUTED, (view.type_label, ''))
         self.sign.show_sign(theme.LINK_SIGNS[view.link])
         self.link.show_text(words.LINK_WORDS[view.link])
         if numbers:
             self._show_numbers(view)
         self._show_second_line(view)
         self.recording.say(RECORDING if view.recording else '', filled=False)
+        self.recording.setVisible(view.recording)
         if view.driven != self._driven:
             self._driven = view.driven
             self.update()
@@ -191,9 +197,10 @@ class RobotRow(QWidget):
         self.setToolTip(words.figures_text(view.figures))
         old = view.link != views.LIVE
         tone = theme.MUTED if old else theme.TEXT
-        self.linear.show_text(words.linear_text(view.linear_mps), tone)
+        linear = words.linear_text(view.linear_mps)
+        self.linear.show_text(linear, tone, (linear.rpartition(' ')[0] or linear,))
         turn = words.turn_text(view.angular_rad_s)
-        self.turn.show_text(turn, tone, shorter=(turn.rpartition(' ')[0] or turn,))
+        self.turn.show_text(turn, tone, shorter=(turn.rpartition(' ')[0] or turn, ''))
         self.battery.show_charge(view.battery, old)
 
     def _show_second_line(self, view):
@@ -230,13 +237,13 @@ class RobotRow(QWidget):
         if font.bold() != loud:
             font.setBold(loud)
             self.trouble.setFont(font)
-        self.trouble.show_text(text, shorter=words.beginnings(text))
+        self.trouble.show_text(text, shorter=words.beginnings(text, most=3))
         # A sentence takes the room of a state that there is none of.
         state = state and bool(self.pill.word or not speaking)
         if (speaking, state, sign is None) == self._trouble_shown:
             return
         self._trouble_shown = (speaking, state, sign is None)
-        self.linear.setMinimumWidth(0 if speaking else self.linear.maximumWidth())
+        self.linear.setMinimumWidth(0 if speaking else self._least_linear)
         for widget, visible in ((self.trouble_sign, sign is not None), (self.trouble, speaking),
                                 (self.turn, not speaking), (self.filler, not speaking),
                                 (self.pill, state)):

@@ -2,14 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """One robot's tile: who it is, whether it is being driven, what it sees, how it moves."""
 from python_qt_binding.QtCore import QEvent, QSize, Qt, Signal
-from python_qt_binding.QtGui import QPainter, QPen
+from python_qt_binding.QtGui import QPainter
 from python_qt_binding.QtWidgets import QLayout, QWidget
 
 from mhri.core.screen import views
 from mhri.core.screen.arrangement import USUAL_SHAPE
-from mhri.core.screen.view_rows import KEYS, load, PICTURES, RECORD, RGB, VIEW_ROWS
+from mhri.core.screen.view_rows import KEYS, load, PICTURES, RECORD, RGB, SCAN, VIEW_ROWS
 from mhri.gui.driving.drive_keys import mark_drive_area
 from mhri.gui.driving.stop_button import StopButton
+from mhri.gui.look.tile_layers import EDGE_PX, TileLayers, wants_inset
 from mhri.gui.recording.recording_row import RecordingRow
 from mhri.gui.screen import theme, words
 from mhri.gui.screen.forms import load_form
@@ -18,13 +19,12 @@ from mhri.gui.screen.labels import TextLine
 from mhri.gui.screen.pending import Pace
 from mhri.gui.screen.state_line import StateLine
 from mhri.gui.screen.tile_header import (
-    drive_state, LOOKS, NOT_SELECTED, PUT_BACK, TEAR_OFF, TileHeader)
+    drive_state, LOOKS, PUT_BACK, TEAR_OFF, TileHeader, trouble_of)
 from mhri.gui.screen.view_switches import ViewSwitches
 
 NUMBERS_PERIOD_S = 0.25
 _TORN_OFF_SIZE = (800, 640)
 
-_EDGE_PX = 4
 # A small tile that has less room below its header [heights of a line] shows the header alone.
 _LEAST_PICTURE_UNITS = 2.5
 
@@ -56,6 +56,7 @@ class BotWindow(QWidget):
         self.name = name
         self.torn_off = False
         self._drive = None
+        self._trouble = None
         self._link = None
         self._looked_at = False
         self._wanted = set()
@@ -75,11 +76,12 @@ class BotWindow(QWidget):
         self.setAutoFillBackground(True)
         self.setFocusPolicy(Qt.ClickFocus)
         mark_drive_area(self)
-        self.layout().setContentsMargins(*[_EDGE_PX] * 4)
+        self.layout().setContentsMargins(*[EDGE_PX] * 4)
         # The stage says how large it is, whatever its parts would like.
         self.layout().setSizeConstraint(QLayout.SetNoConstraint)
         self.header = TileHeader(self.name, type_label, self)
         self.hud = Hud(self)
+        self._layers = TileLayers(self)
         for key in ('name_label', 'type_label', 'pill', 'link_sign', 'link_label',
                     'battery_label', 'views_button', 'tear_button'):
             setattr(self, key, getattr(self.header, key))
@@ -98,10 +100,13 @@ class BotWindow(QWidget):
         for caption in (self.turn_caption, self.place_caption, self.limits_caption):
             caption.set_tone(theme.MUTED)
             caption.fix_width(caption.text())
-        for value in (self.turn_value, self.x_value, self.y_value, self.max_linear_value,
-                      self.max_angular_value):
+        values = (self.turn_value, self.x_value, self.y_value, self.max_linear_value,
+                  self.max_angular_value)
+        for value in values:
             value.setFont(numbers)
             value.fix_width('right 0.00 rad/s')
+        self._figures = (self.turn_caption, self.place_caption, self.limits_caption, *values)
+        self.figures_column.setStretch(self.figures_column.count() - 1, 1)
 
     def _connect(self):
         """Wire the stop button, which acts when pressed, and the switches."""
@@ -119,15 +124,18 @@ class BotWindow(QWidget):
         row = next(row for row in VIEW_ROWS if row.key == key)
         if row.widget not in self._views:
             widget = self._views[row.widget] = load(row.widget)(self)
-            order = list(dict.fromkeys(row.widget for row in VIEW_ROWS))
-            before = [name for name in order[:order.index(row.widget)] if name in self._views]
-            self.views_splitter.insertWidget(len(before), widget)
+            self._place_in_row(row)
             widget.hide()
             if hasattr(widget, 'show_tools'):
                 widget.show_tools(self.tools.isVisibleTo(self))
-            self.header.raise_()
-            self.hud.raise_()
         return self._views[row.widget]
+
+    def _place_in_row(self, row):
+        """Put the widget of a view beside the others, in the order of the registry."""
+        order = list(dict.fromkeys(row.widget for row in VIEW_ROWS))
+        before = [name for name in order[:order.index(row.widget)] if name in self._views
+                  and self._views[name].parentWidget() is self.views_splitter]
+        self.views_splitter.insertWidget(len(before), self._views[row.widget])
 
     def offer(self, keys):
         """Offer what this robot can have: keys of the registry, and 'record'.
@@ -146,16 +154,16 @@ class BotWindow(QWidget):
 
     def wanted(self):
         """Return the set of views to be fed now: empty while nobody can see the tile."""
-        return self._shown() if self.is_watched() else set()
+        return self.shown() if self.is_watched() else set()
 
-    def _shown(self):
-        """Return the views that the tile has room for: a small one shows its picture alone."""
+    def shown(self):
+        """Return the set of views that the tile has room for: a small one shows its picture alone."""
         chosen = self.switches.wanted()
         if self.header.large:
             return chosen
-        return chosen & PICTURES if self._has_room() else set()
+        return chosen & PICTURES if self.has_room() else set()
 
-    def _has_room(self):
+    def has_room(self):
         """Tell whether there is room for more than the header."""
         least = _LEAST_PICTURE_UNITS * self.fontMetrics().height()
         return self.header.large or self.height() - self.header.height() >= least
@@ -164,9 +172,13 @@ class BotWindow(QWidget):
         """Return (width, height) that the picture has room for, in pixels of the screen."""
         return self.view(RGB).camera_size()
 
+    def picture_area(self):
+        """Return where the picture is in the tile, a :class:`QRect`; without one, its inside."""
+        return self._layers.picture_area()
+
     def picture_shape(self):
         """Return width by height of what the tile shows."""
-        frame = self.view(RGB).picture.frame if self._shown() & PICTURES else None
+        frame = self.view(RGB).picture.frame if self.shown() & PICTURES else None
         if frame is None or not all(frame.full_size):
             return USUAL_SHAPE
         width, height = frame.full_size
@@ -206,43 +218,24 @@ class BotWindow(QWidget):
 
     def _arrange(self):
         """Lay out the views that are chosen; without any there is the picture of the motion."""
-        shown = self._shown()
+        shown = self.shown()
         kind = next(iter(shown & PICTURES), None)
         visible = {id(self.view(key)) for key in shown}
         for widget in self._views.values():
             if hasattr(widget, 'show_kind') and id(widget) in visible and widget.kind != kind:
                 widget.show_kind(kind)
             widget.setVisible(id(widget) in visible)
+        if SCAN in shown and self._layers.take_inset(self.view(SCAN), wants_inset(shown)):
+            self._place_in_row(next(row for row in VIEW_ROWS if row.key == SCAN))
         self.views_splitter.setVisible(bool(shown))
-        self.motion_page.setVisible(not shown and self._has_room())
+        self.motion_page.setVisible(not shown and self.has_room())
+        for value in self._figures:
+            value.setVisible(self.header.large)
         self.switches.setVisible(bool(self._offered - {RECORD}))
         self.recording.setVisible(RECORD in self._offered)
         self.motion_place.setVisible(self.header.large and self.motion_place.layout().count() > 0)
-        self._lay_over()
+        self._layers.place()
         self._tell_wanted()
-
-    def _covers_picture(self):
-        """Tell whether the header lies on the picture: where that is all there is."""
-        shown = self._shown()
-        return bool(shown) and shown <= PICTURES and not (
-            self.tools.isVisibleTo(self) or self.motion_place.isVisibleTo(self))
-
-    def _lay_over(self):
-        """Place header and numbers over the rest."""
-        inside = self.rect().adjusted(_EDGE_PX, _EDGE_PX, -_EDGE_PX, -_EDGE_PX)
-        height = self.header.sizeHint().height()
-        self.header.setGeometry(inside.x(), inside.y(), inside.width(), height)
-        self.header_space.setFixedHeight(0 if self._covers_picture() else height)
-        picture = bool(self._shown() & PICTURES)
-        self.hud.setVisible(self._has_room() and (picture or bool(self.hud.sentence)))
-        units = 7.0 if self.header.large else 4.0
-        high = min(inside.height() - height, round(units * self.fontMetrics().height()))
-        foot = self.stop_button.height() if self.stop_button.isVisibleTo(self) else 0
-        width = self.view(next(iter(self._shown() & PICTURES))).width() \
-            if picture and self.header.large else inside.width()
-        self.hud.setGeometry(inside.x(), inside.bottom() + 1 - high - foot, width, max(1, high))
-        self.header.raise_()
-        self.hud.raise_()
 
     def _tell_wanted(self):
         """Tell of another set of wanted views, and of nothing else."""
@@ -271,8 +264,8 @@ class BotWindow(QWidget):
         """
         numbers = self._numbers.due() or view.link != self._link
         self._link = view.link
-        self._show_drive_state(view, stop_all or view.proof is not None)
         self.header.show_view(view, numbers)
+        self._show_drive_state(view, stop_all or view.proof is not None)
         self._show_sentence(view)
         for row in VIEW_ROWS:
             widget = self._views.get(row.widget)
@@ -283,9 +276,11 @@ class BotWindow(QWidget):
 
     def _show_drive_state(self, view, stopped):
         """Show in edge and pill whether this robot is driven right now."""
-        drive = drive_state(view, stopped)
-        if drive == self._drive:
+        drive, trouble = drive_state(view, stopped), trouble_of(
+            view, self.battery_label.level)
+        if (drive, trouble) == (self._drive, self._trouble):
             return
+        self._trouble = trouble
         self._drive = drive
         self.header.show_drive(drive)
         self.stop_button.setText('STOP ALL in force - release on the main screen'
@@ -294,9 +289,12 @@ class BotWindow(QWidget):
         self.update()
 
     def _show_sentence(self, view):
-        """Show the proof of a stop, or what is worth saying about the link."""
+        """Show the proof of a stop, why the robot stands, or what is worth saying of its link."""
         if view.proof is not None:
-            sign, text = theme.PROOF_SIGNS[view.proof.state], view.proof.text
+            sign = theme.PROOF_SIGNS[view.proof.state]
+            text = '; '.join(filter(None, (view.proof.text, view.why)))
+        elif view.why:
+            sign, text = (theme.TRIANGLE, theme.ATTENTION), view.why
         elif view.note and (view.slow or view.link != views.LIVE):
             sign = (theme.TRIANGLE, theme.ATTENTION) if view.link == views.LIVE \
                 else theme.LINK_SIGNS[view.link]
@@ -306,7 +304,7 @@ class BotWindow(QWidget):
         before = self.hud.sentence
         self.hud.show_sentence(text, sign)
         if bool(before) != bool(text):
-            self._lay_over()
+            self._layers.place()
 
     def _show_numbers(self, view):
         """Show what changes all the time."""
@@ -357,7 +355,7 @@ class BotWindow(QWidget):
         """Keep the numbers over the picture when the layout has moved it."""
         done = super().event(event)
         if event.type() == QEvent.LayoutRequest:
-            self._lay_over()
+            self._layers.place()
         return done
 
     def mousePressEvent(self, event):  # noqa: N802
@@ -372,13 +370,13 @@ class BotWindow(QWidget):
             self.drive_requested.emit(self.name)
 
     def paintEvent(self, event):  # noqa: N802
-        """Paint the edge that says whether this robot is driven."""
+        """Paint the edge: trouble, else whether it is driven; a line around it if looked at."""
         ink, _, width = LOOKS[self._drive]
-        if self._looked_at and self._drive == NOT_SELECTED:
-            ink, width = theme.TEXT, 2
-        painter = QPainter(self)
-        pen = QPen(theme.colour(ink, self.palette()), width)
-        pen.setJoinStyle(Qt.MiterJoin)
-        painter.setPen(pen)
-        inset = (width + 1) // 2
-        painter.drawRect(self.rect().adjusted(inset, inset, -inset, -inset))
+        if self._trouble:
+            ink, width = self._trouble, EDGE_PX
+        painter, palette = QPainter(self), self.header.palette()
+        theme.paint_edge(painter, self.rect(), EDGE_PX, theme.PICTURE_GROUND)
+        theme.paint_edge(painter, self.rect(), width, theme.colour(ink, palette))
+        if self._looked_at:
+            keyboard = self.parentWidget() is not None and self.parentWidget().hasFocus()
+            theme.paint_edge(painter, self.rect(), 2, theme.colour(theme.TEXT, palette), keyboard)

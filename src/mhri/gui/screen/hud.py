@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Numbers over the picture: speed, turn, heading; and in one sentence why the robot stands."""
 from python_qt_binding.QtCore import QPointF, QRectF, Qt
-from python_qt_binding.QtGui import QColor, QPainter, QPainterPath, QPen, QPixmap
+from python_qt_binding.QtGui import QColor, QFontMetrics, QPainter, QPainterPath, QPen, QPixmap
 from python_qt_binding.QtWidgets import QWidget
 
 from mhri.core.screen import views
+from mhri.core.screen.asked import asked_line
 from mhri.gui.screen import theme, words
 
 _EDGE = 0.22
@@ -19,9 +20,10 @@ def hud_lines(view):
     """
     if view.linear_mps is None and view.angular_rad_s is None:
         return []
-    return ['{}   {}'.format(words.linear_text(view.linear_mps),
-                             words.turn_text(view.angular_rad_s)),
-            'heading {}'.format(words.heading_text(view.heading_rad))]
+    figures = (words.linear_text(view.linear_mps), words.turn_text(view.angular_rad_s),
+               asked_line(view))
+    return [words.BETWEEN_FIGURES.join(filter(None, figures)),
+            'heading {}'.format(words.compass_text(view.heading_rad))]
 
 
 class Hud(QWidget):
@@ -33,11 +35,13 @@ class Hud(QWidget):
     def __init__(self, parent=None):
         super().__init__(parent)
         self._lines = ()
+        self._extra = ()
         self._sentence = ''
         self._sign = None
         self._old = False
         self._large = True
         self._shown = True
+        self._clear_px = 0
         self._picture = None
         self._build()
 
@@ -72,9 +76,20 @@ class Hud(QWidget):
         """Show the numbers, or the sentence alone."""
         self._show(shown=shown)
 
-    def show_view(self, view, extra=()):
-        """Show the numbers of a :class:`RobotView`, and further lines below them."""
-        self._show(lines=(*hud_lines(view), *extra), old=view.link != views.LIVE)
+    def keep_clear(self, width):
+        """Leave so much of the right end [px] to something else."""
+        self._show(clear_px=width)
+
+    def set_extra(self, lines):
+        """Have further lines below the numbers when these are shown next: nearest thing, task.
+
+        An empty one keeps its place, so that nothing jumps.
+        """
+        self._extra = tuple(lines)
+
+    def show_view(self, view):
+        """Show the numbers of a :class:`RobotView`, and the further lines."""
+        self._show(lines=(*hud_lines(view), *self._extra), old=view.link != views.LIVE)
 
     def show_sentence(self, text, sign=None):
         """Say why the robot stands, or what is wrong; '' for nothing."""
@@ -123,13 +138,22 @@ class Hud(QWidget):
         y = self.height() - 0.6 * unit
         font = theme.number_font(theme.larger(self.font(), 1.35 if self._large else 1.0, bold=True))
         ink = _DIM if self._old else QColor(Qt.white)
-        lines = self._lines if self._large else self._lines[:1]
-        for line in reversed(lines if self._shown else ()):
+        for line in reversed(self._fitting(font, self.width() - self._clear_px - 1.4 * unit)):
             y -= self._paint_line(painter, line, font, ink, 0.7 * unit, y)
         if self._sentence:
             self._paint_sentence(painter, y - 0.2 * unit)
         painter.end()
         return picture
+
+    def _fitting(self, font, width):
+        """Return the lines that are written in a width [px]; a small tile has one alone."""
+        metrics, lines = QFontMetrics(font), []
+        for line in self._lines if self._shown else ():
+            if metrics.horizontalAdvance(line) <= width:
+                lines.append(line)
+            else:
+                lines += line.split(words.BETWEEN_FIGURES)
+        return lines if self._large else lines[:1]
 
     @staticmethod
     def _paint_line(painter, text, font, ink, x, y):
@@ -154,11 +178,13 @@ class Hud(QWidget):
         metrics, unit = painter.fontMetrics(), self.fontMetrics().height()
         side = metrics.height() if self._sign else 0
         left = 0.6 * unit + 1.3 * side
-        room = QRectF(left, 0, self.width() - left - unit, max(unit, foot))
+        room = QRectF(left, 0, max(unit, self.width() - self._clear_px - left - unit),
+                      max(unit, foot))
         flags = int(Qt.AlignLeft | Qt.AlignBottom | Qt.TextWordWrap)
-        text = next((text for text in (self._sentence, *words.beginnings(self._sentence))
-                     if metrics.boundingRect(room.toRect(), flags, text).height()
-                     <= room.height()), self._sentence)
+        texts = [words.kept_together(text) for text in (
+            self._sentence, *words.beginnings(self._sentence, most=4))]
+        text = next((text for text in texts if metrics.boundingRect(
+            room.toRect(), flags, text).height() <= room.height()), '')
         needed = metrics.boundingRect(room.toRect(), flags, text)
         ground = QRectF(0.4 * unit, needed.top() - 0.15 * unit,
                         needed.right() - 0.4 * unit + 0.5 * unit, needed.height() + 0.3 * unit)

@@ -69,6 +69,11 @@ class TextLine(QLabel):
         """Choose one of the colours of the theme."""
         self.show_text(self.text(), tone)
 
+    @property
+    def texts(self):
+        """The text, and what may be said in its place where there is no room, the longest first."""
+        return (self.text(), *self._shorter)
+
     def shown_text(self):
         """Return what can be read in the room there is."""
         if self._wrapped:
@@ -242,6 +247,8 @@ class Pill(QWidget):
         """Return the room of the widest word."""
         height = self.fontMetrics().height()
         return QSize(theme.text_width(self._bold(), *self._words) + height, height + 2)
+
+    minimumSizeHint = sizeHint
 
     def _bold(self):
         """Return the font of the word."""

@@ -11,12 +11,15 @@ from mhri.gui.driving.control_bar import ControlBar
 from mhri.gui.events.event_button import EventButton
 from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.gui.driving.drive_keys import DriveKeys, mark_drive_area
+from mhri.gui.driving.key_help import KeyHelp
+from mhri.gui.driving.leave_bar import LeaveBar
 from mhri.gui.screen.forms import load_form
 from mhri.gui.screen.labels import Sign, TextLine
 from mhri.gui.driving.mode_combo import ModeCombo
 from mhri.gui.screen.pending import Pace
 from mhri.gui.screen.screen_layout import ScreenLayout
 from mhri.gui.screen.stage import Stage
+from mhri.gui.robots.remove_steps import RemoveSteps
 from mhri.gui.robots.robot_list import RobotList
 from mhri.gui.driving.speed_limits import SpeedLimits
 from mhri.gui.screen.status_line import StatusLine
@@ -94,7 +97,9 @@ class ScreenWidget(QWidget):
         self.setFont(theme.base_font(self.font()))
         load_form(ui_dir, 'screen.ui', self, _WIDGETS)
         self.arrangement = ScreenLayout(self)
-        self.drive_keys = DriveKeys(self)
+        self.drive_keys, self.key_help = DriveKeys(self), KeyHelp(self)
+        self.remove_steps, self.leave_bar = RemoveSteps(self), LeaveBar(self.foot)
+        self.foot_column.insertWidget(0, self.leave_bar)
         mark_drive_area(self)
         # A click beside a text field ends the typing, so that the keys drive again.
         self.setFocusPolicy(Qt.ClickFocus)
@@ -105,15 +110,18 @@ class ScreenWidget(QWidget):
             button.setMinimumHeight(touch)
             if isinstance(button, QPushButton):
                 button.setFocusPolicy(Qt.TabFocus)
-                button.setMinimumWidth(button.sizeHint().width() + touch // 2)
+                button.setMinimumWidth(theme.text_width(button.font(), button.text()) + touch // 2)
         for label, side in ((self.linear_label, Qt.AlignRight), (self.turn_label, Qt.AlignLeft)):
             label.setFont(theme.number_font(theme.larger(self.font(), 1.1)))
             label.setAlignment(side | Qt.AlignVCenter)
         self.drive_note.setAlignment(Qt.AlignCenter)
+        self.drawer_button.setMinimumWidth(
+            theme.text_width(self.font(), self.drawer_button.text()) + touch)
         self.record_button.setMinimumWidth(touch // 2 + max(
             theme.text_width(self.font(), text) for text in (RECORD, STOP_RECORDING.format(88))))
         self.cameras_label.setFont(theme.number_font(self.font()))
         self.cameras_label.fix_width('cameras 000.0 Mbit/s')
+        self.cameras_label.setMinimumWidth(1)
         self.cameras_label.setAlignment(Qt.AlignRight | Qt.AlignVCenter)
         self.name_edit.setTextMargins(touch // 6, 0, touch // 6, 0)
         self._result_timer = QTimer(self)
@@ -123,12 +131,13 @@ class ScreenWidget(QWidget):
     def _connect(self):
         """Wire widgets to signals."""
         self.look_button.clicked.connect(self._look)
-        self._result_timer.timeout.connect(lambda: self.look_label.show_text('', theme.MUTED))
+        self.stage.look_requested.connect(self._look)
+        self._result_timer.timeout.connect(self.look_label.clear)
         self.doctor_button.clicked.connect(self.doctor_requested)
         self.add_button.clicked.connect(self._add)
         self.name_edit.returnPressed.connect(self._add)
         self.name_edit.textEdited.connect(self._on_name_edited)
-        self.remove_button.clicked.connect(self._remove)
+        self.remove_steps.remove_requested.connect(self.remove_requested)
         self.record_button.clicked.connect(self._record)
         self.all_button.clicked.connect(self.robot_list.select_all)
         self.none_button.clicked.connect(self.robot_list.select_none)
@@ -190,7 +199,7 @@ class ScreenWidget(QWidget):
         self.arrangement.show_stick(view.mode == VIRTUAL_JOYSTICK)
         if numbers:
             cameras = words.bandwidth_text(view.camera_bits_per_s)
-            self.cameras_label.show_text(cameras, theme.MUTED)
+            self.cameras_label.show_text(cameras, theme.MUTED, (cameras.partition(' ')[2], ''))
             self.cameras_label.setVisible(bool(cameras))
 
     def show_name_problem(self, text):
@@ -205,6 +214,7 @@ class ScreenWidget(QWidget):
         """
         self.look_label.show_text(text, theme.MUTED, shorter)
         self.look_button.setEnabled(not busy)
+        self.stage.show_look_result(text, busy)
         if busy:
             self._result_timer.stop()
         else:
@@ -244,14 +254,16 @@ class ScreenWidget(QWidget):
 
     def _on_command(self, command):
         """Do what a key of the screen says."""
-        if command == 'drawer':
+        if command == 'keys':
+            self.key_help.toggle()
+        elif command == 'drawer':
             self.drawer_button.toggle()
         elif command == 'focus':
             self.arrangement.change_focus()
         elif command == 'numbers':
-            self.stage.show_numbers(not self.stage.numbers_shown)
+            self.arrangement.show_numbers(not self.stage.numbers_shown)
         elif command == 'full_screen':
-            self.window().setWindowState(self.window().windowState() ^ Qt.WindowFullScreen)
+            self.arrangement.change_full_screen()
         elif command == 'record':
             self._record()
         elif command == 'stills':
@@ -308,11 +320,6 @@ class ScreenWidget(QWidget):
         """Ask for the robot in the name field."""
         self.add_requested.emit(self.name_edit.text())
 
-    def _remove(self):
-        """Ask to take the highlighted robot off the list."""
-        if self.robot_list.current is not None:
-            self.remove_requested.emit(self.robot_list.current)
-
     def _record(self):
         """Ask for recordings of all selected robots, or for the end of every recording."""
         running = [robot.name for robot in self._view.robots if robot.recording]
@@ -356,7 +363,7 @@ class ScreenWidget(QWidget):
 
     def _show_buttons(self):
         """Enable what has something to act on."""
-        self.remove_button.setEnabled(self.robot_list.current is not None)
+        self.remove_steps.show_robots(self._view.robots)
         running = sum(robot.recording for robot in self._view.robots)
         text = STOP_RECORDING.format(running) if running else RECORD
         if text != self.record_button.text():

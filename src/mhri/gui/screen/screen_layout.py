@@ -5,15 +5,20 @@
 The foot is below everything, or at the bottom of the drawer, whichever leaves more to the pictures:
 a 4:3 picture on a wide screen leaves room beside it, a wide one leaves room below.
 """
-from python_qt_binding.QtCore import QEvent, QObject, Qt
+from python_qt_binding.QtCore import QEvent, QObject, Qt, Signal
 from python_qt_binding.QtWidgets import QBoxLayout, QLayout
 
-from mhri.core.screen.arrangement import WORTH_MOVING
+from mhri.core.screen.arrangement import AUTO, WORTH_MOVING
+from mhri.gui.look.looks_page import LAYOUTS, LooksPage, TITLE
 from mhri.gui.screen import theme
 
 ROBOTS, DRIVE = 'Robots', 'Drive'
 # Width of the drawer at first, in heights of a line.
-_DRAWER_UNITS = 24.0
+_DRAWER_UNITS = 22.0
+# It begins closed where robots are known and it would take more than this of the width.
+_DRAWER_SHARE = 1 / 3
+# What the list has beyond its least height where robots and driving share a page.
+_LIST_UNITS = 6.0
 # Height of the foot at the bottom of the drawer.
 _SIDE_FOOT_UNITS = 13.0
 
@@ -24,6 +29,9 @@ class ScreenLayout(QObject):
     :param screen: :class:`mhri.gui.screen.screen.ScreenWidget`, its form loaded
     """
 
+    #: a theme was chosen: its name
+    theme_chosen = Signal(str)
+
     def __init__(self, screen):
         super().__init__(screen)
         self._screen = screen
@@ -31,6 +39,8 @@ class ScreenLayout(QObject):
         self._tall = True
         self._floating = False
         self._busy = False
+        self._begins_closed = self._drawer_chosen = False
+        self._layout, self._theme = AUTO, theme.DARK
         self._build()
         self._connect()
 
@@ -39,8 +49,11 @@ class ScreenLayout(QObject):
         screen = self._screen
         # It becomes as small as it is made: the parts give way before the screen does.
         screen.layout().setSizeConstraint(QLayout.SetNoConstraint)
+        theme.apply(screen, self._theme)
         screen.tabs.addTab(ROBOTS)
         screen.tabs.setExpanding(False)
+        # Hidden at first, it would think that it has no tabs.
+        screen.tabs.setMinimumHeight(theme.touch_size(screen))
         screen.tabs.setDrawBase(False)
         screen.tabs.setFocusPolicy(Qt.TabFocus)
         screen.tabs.setAccessibleName('Pages of the panel')
@@ -51,6 +64,10 @@ class ScreenLayout(QObject):
         screen.drawer_button.setChecked(True)
         screen.drawer_button.setFocusPolicy(Qt.TabFocus)
         screen.drawer_button.setMinimumHeight(theme.touch_size(screen))
+        self._move_foot(False)
+        self.looks = LooksPage(screen)
+        self.add_page(TITLE, self.looks)
+        self._show_choices()
 
     def _connect(self):
         """Follow what changes."""
@@ -60,11 +77,51 @@ class ScreenLayout(QObject):
         screen.tabs.currentChanged.connect(self._turn)
         screen.drawer_button.toggled.connect(self._show_drawer)
         screen.splitter.splitterMoved.connect(lambda *_: self.arrange())
+        self.looks.layout_chosen.connect(self.choose_layout)
+        self.looks.theme_chosen.connect(self.choose_theme)
+        self.looks.numbers_chosen.connect(self.show_numbers)
+        self.looks.full_screen_requested.connect(self.change_full_screen)
+
+    def choose_layout(self, name):
+        """Lay the pictures out in one of the ways of the arrangement."""
+        self._layout = name
+        self._screen.stage.set_style(name)
+        self._show_choices()
+
+    @property
+    def theme(self):
+        """Name of the theme in force."""
+        return self._theme
+
+    def choose_theme(self, name):
+        """Give the screen the look of a theme."""
+        self._theme = name
+        theme.apply(self._screen, name)
+        self._show_choices()
+        self.theme_chosen.emit(name)
+
+    def show_numbers(self, shown):
+        """Show the numbers over the pictures, or the pictures alone."""
+        self._screen.stage.show_numbers(shown)
+        self._show_choices()
+
+    def change_full_screen(self):
+        """Go into full screen, or out of it."""
+        window = self._screen.window()
+        window.setWindowState(window.windowState() ^ Qt.WindowFullScreen)
+
+    def _show_choices(self):
+        self.looks.show_choices(self._layout, self._theme, self._screen.stage.numbers_shown)
 
     @property
     def drawer_open(self):
         """Whether the drawer is open."""
         return self._screen.drawer_button.isChecked()
+
+    def begin_with_robots(self):
+        """Begin with the drawer closed where it would take too much of the width."""
+        self._begins_closed = not self._drawer_chosen
+        self.arrange()
 
     def add_page(self, title, page):
         """Give the drawer a further page."""
@@ -79,11 +136,15 @@ class ScreenLayout(QObject):
             self._screen.tabs.setCurrentIndex(pages.index(page))
 
     def change_focus(self):
-        """Take the keyboard from the pictures to the panel, or back."""
+        """Take the keyboard from the pictures to the panel, from there to the foot, and back."""
         screen = self._screen
         focus = screen.window().focusWidget()
-        if focus is not None and screen.drawer.isAncestorOf(focus):
+        if focus is not None and screen.foot.isAncestorOf(focus):
             screen.stage.setFocus(Qt.TabFocusReason)
+        elif focus is not None and screen.drawer.isAncestorOf(focus):
+            next(button for button in (
+                screen.stop_bar.release_button, screen.control_bar.take_button,
+                screen.events_button) if button.isVisible()).setFocus(Qt.TabFocusReason)
         else:
             screen.drawer_button.setChecked(True)
             screen.robot_list.setFocus(Qt.TabFocusReason)
@@ -103,6 +164,7 @@ class ScreenLayout(QObject):
     def _show_drawer(self, shown):
         """Open or close the drawer."""
         screen = self._screen
+        self._drawer_chosen, self._begins_closed = True, False
         screen.drawer.setVisible(shown)
         if not shown and screen.drawer.isAncestorOf(screen.focusWidget() or screen):
             screen.stage.setFocus()
@@ -110,8 +172,15 @@ class ScreenLayout(QObject):
 
     def show_stick(self, wanted):
         """Let the virtual joystick float over the pictures where the drawer does not show it."""
-        floating = wanted and not self._screen.drawer_button.isChecked()
-        if floating == self._floating or self._screen.joystick.dragging:
+        screen = self._screen
+        in_drawer = self.drawer_open and (
+            screen.pages.currentWidget() is (screen.robots_page if self._tall
+                                             else screen.drive_page))
+        floating = wanted and not in_drawer and bool(screen.stage.names)
+        if screen.joystick.dragging:
+            return
+        if floating == self._floating:
+            screen.stage.place_float()
             return
         self._floating = floating
         if floating:
@@ -139,6 +208,11 @@ class ScreenLayout(QObject):
 
     def _arrange(self):
         screen = self._screen
+        if self._begins_closed and screen.isVisible() and \
+                screen.splitter.sizes()[0] > _DRAWER_SHARE * screen.width():
+            screen.drawer_button.setChecked(False)
+            # Nobody has asked for it.
+            self._drawer_chosen = False
         is_open = self.drawer_open
         side = max(screen.drawer.minimumSizeHint().width(), screen.splitter.sizes()[0]) \
             if is_open else 0
@@ -160,8 +234,8 @@ class ScreenLayout(QObject):
         screen = self._screen
         self._in_side = in_side
         screen.foot_row.setDirection(QBoxLayout.BottomToTop if in_side else QBoxLayout.LeftToRight)
-        screen.foot_row.setStretch(0, 0 if in_side else 3)
-        screen.foot_row.setStretch(1, 0 if in_side else 2)
+        screen.foot_row.setStretch(0, 0 if in_side else 2)
+        screen.foot_row.setStretch(1, 0 if in_side else 1)
         screen.stop_bar.show_narrow(in_side)
         screen.status_line.show_wrapped(in_side)
         (screen.side_column if in_side else screen.screen_layout).addWidget(screen.foot)
@@ -170,8 +244,11 @@ class ScreenLayout(QObject):
     def _fit_drawer(self, height):
         """Have robots and driving on one page where both fit, else on two."""
         screen = self._screen
-        needed = screen.tabs.sizeHint().height() + 24 + sum(
+        needed = screen.tabs.sizeHint().height() + 24 + round(
+            _LIST_UNITS * screen.fontMetrics().height()) + sum(
             part.minimumSizeHint().height() for part in (screen.robots_side, screen.drive_side))
+        if self._floating:
+            needed += screen.joystick.minimumSizeHint().height()
         tall = height >= needed
         if tall == self._tall or screen.joystick.dragging:
             return
@@ -189,10 +266,19 @@ class ScreenLayout(QObject):
 
     def save_settings(self):
         """Return what is kept between runs."""
-        return {'splitter': self._screen.splitter.sizes(), 'drawer': self.drawer_open}
+        chosen = {'drawer': self.drawer_open} if self._drawer_chosen else {}
+        return {'splitter': self._screen.splitter.sizes(), 'layout': self._layout,
+                'theme': self._theme, 'numbers': self._screen.stage.numbers_shown, **chosen}
 
     def restore_settings(self, settings):
         """Take back what :meth:`save_settings` returned."""
         if len(settings.get('splitter', ())) == self._screen.splitter.count():
             self._screen.splitter.setSizes(settings['splitter'])
-        self._screen.drawer_button.setChecked(settings.get('drawer', True) is not False)
+        if 'drawer' in settings:
+            self._screen.drawer_button.setChecked(settings['drawer'] is not False)
+            self._drawer_chosen = True
+        if settings.get('layout') in LAYOUTS:
+            self.choose_layout(settings['layout'])
+        if settings.get('theme') in theme.THEMES:
+            self.choose_theme(settings['theme'])
+        self.show_numbers(settings.get('numbers', True) is not False)

@@ -7,14 +7,14 @@ from python_qt_binding.QtWidgets import QSizePolicy, QWidget
 
 from mhri.core.screen.arrangement import arrange, AUTO, choose_large, USUAL_SHAPE
 from mhri.gui.driving.drive_keys import mark_drive_area
+from mhri.gui.robots.invitation import Invitation
 from mhri.gui.screen import theme
 
 _GAP_PX = 4
 # Least size of a small tile, in heights of a line: its name and a picture that can be made out.
 _LEAST_UNITS = (9.0, 6.5)
-_FLOAT_UNITS = 9.0
-_EMPTY = ('No robots yet.\n\nPress "Look for Connected Bots",\n'
-          'or type the name of one and press "Add Bot".')
+# Size of what floats over a picture, in heights of a line, and the part of the picture it may take.
+_FLOAT_UNITS, _FLOAT_SHARE = 9.0, 0.34
 
 
 class Stage(QWidget):
@@ -25,6 +25,8 @@ class Stage(QWidget):
 
     #: the shapes of the pictures, or which are large, have changed
     rearranged = Signal()
+    #: "Look for Connected Bots", where there is no robot yet
+    look_requested = Signal()
 
     def __init__(self, parent=None):
         super().__init__(parent)
@@ -37,6 +39,7 @@ class Stage(QWidget):
         self._float = None
         self._numbers_shown = True
         self._build()
+        self._connect()
 
     def _build(self):
         """Set what never changes."""
@@ -45,6 +48,15 @@ class Stage(QWidget):
         self.setAccessibleName('Robots and their pictures')
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Expanding)
         mark_drive_area(self)
+        self._invitation = Invitation(self)
+
+    def _connect(self):
+        """Hand on what is asked for while it is empty."""
+        self._invitation.look_requested.connect(self.look_requested)
+
+    def show_look_result(self, text, busy=False):
+        """Say what came of looking for robots, where there is none yet."""
+        self._invitation.show_result(text, busy)
 
     @property
     def large(self):
@@ -113,10 +125,27 @@ class Stage(QWidget):
         self._large = choose_large(names, self._driven, self._looked_at, self._style)
         self._shapes = self._shapes_now()
         for name, tile in self._tiles.items():
-            tile.show_looked_at(name == self._looked_at)
             tile.show_hud(self._numbers_shown)
+        self._mark()
         self._place()
         self.rearranged.emit()
+
+    def _mark(self):
+        """Mark the tile that is looked at; with the keyboard here, the one that Enter drives."""
+        marked = self._looked_at or (next(iter(self._large), '') if self.hasFocus() else '')
+        for name, tile in self._tiles.items():
+            tile.show_looked_at(name == marked)
+            tile.update()
+
+    def focusInEvent(self, event):  # noqa: N802
+        """Show that the keys go to the pictures."""
+        super().focusInEvent(event)
+        self._mark()
+
+    def focusOutEvent(self, event):  # noqa: N802
+        """Show that the keys go elsewhere."""
+        super().focusOutEvent(event)
+        self._mark()
 
     def watch_shapes(self):
         """Place the tiles anew where a picture has another shape than before."""
@@ -145,7 +174,8 @@ class Stage(QWidget):
     def _place(self):
         """Give each tile its rectangle."""
         names = self._in_order()
-        self.update()
+        self._invitation.setVisible(not self._tiles)
+        self._invitation.setGeometry(self.rect())
         if not names:
             return
         found = self._arranged(self.width(), self.height())
@@ -154,7 +184,7 @@ class Stage(QWidget):
             tile.show_large(index < len(self._large))
             tile.setGeometry(QRect(box.x, box.y, box.width, box.height))
             tile.show()
-        self._place_float()
+        self.place_float()
 
     def show_float(self, widget):
         """Let a widget float over the pictures at the lower right, None for none.
@@ -165,16 +195,22 @@ class Stage(QWidget):
         if widget is not None and widget.parentWidget() is not self:
             widget.setParent(self)
             widget.show()
-        self._place_float()
+        self.place_float()
         return before
 
-    def _place_float(self):
+    def place_float(self):
+        """Place what floats at the lower right of the large picture, clear of its words."""
+        under, side, unit = None, 0, self.fontMetrics().height()
         if self._float is not None:
-            side = round(_FLOAT_UNITS * self.fontMetrics().height())
-            unit = self.fontMetrics().height()
-            self._float.setGeometry(self.width() - side - unit, self.height() - side - unit,
-                                    side, side)
+            tile = under = self._tiles.get(next(iter(self._large), ''))
+            room = self.rect() if tile is None else \
+                tile.picture_area().translated(tile.pos())
+            side = round(min(_FLOAT_UNITS * unit, _FLOAT_SHARE * min(room.width(), room.height())))
+            self._float.setGeometry(room.right() - side - unit // 2,
+                                    room.bottom() - side - unit // 2, side, side)
             self._float.raise_()
+        for tile in self._tiles.values():
+            tile.hud.keep_clear(side + unit // 2 if tile is under else 0)
 
     def resizeEvent(self, event):  # noqa: N802
         """Fill the room there is now."""
@@ -182,9 +218,6 @@ class Stage(QWidget):
         self._place()
 
     def paintEvent(self, event):  # noqa: N802
-        """Say what to do where there is no robot, and paint the frame of the keyboard focus."""
-        painter = QPainter(self)
-        if not self._tiles:
-            painter.setPen(theme.colour(theme.MUTED, self.palette()))
-            painter.setFont(theme.larger(self.font(), 1.2))
-            painter.drawText(self.rect(), int(Qt.AlignCenter), _EMPTY)
+        """Paint the ground between the tiles: dark in every theme, as it is beside a picture."""
+        if self._tiles:
+            QPainter(self).fillRect(self.rect(), theme.PICTURE_GROUND)

@@ -52,6 +52,8 @@ class StaleCover(QWidget):
         self._drawn_at = self._clock()
         if not self._timer.isActive():
             self._timer.start()
+        if self.isVisible():
+            self.look()
 
     def failed(self, reason):
         """Keep why the window could not be drawn."""

@@ -9,6 +9,7 @@ font, so that a 4K screen with a larger font is a larger panel and not a finer o
 from python_qt_binding.QtCore import QPointF, QRectF, Qt
 from python_qt_binding.QtGui import (
     QColor, QFont, QFontDatabase, QFontMetrics, QPainterPath, QPalette, QPen, QPolygonF)
+from python_qt_binding.QtWidgets import QApplication
 
 from mhri.core.events import events
 from mhri.core.screen import battery, views
@@ -20,8 +21,19 @@ DRIVE = 'drive'
 MUTED = 'muted'
 TEXT = 'text'
 
-_LIGHT = {LIVE: '#009E73', ATTENTION: '#E69F00', STOP: '#D55E00', DRIVE: '#0072B2'}
-_DARK = {LIVE: '#009E73', ATTENTION: '#E69F00', STOP: '#D55E00', DRIVE: '#56B4E9'}
+# Three of them are darker on a light ground: a sign has a contrast of 3 there, too.
+_LIGHT = {LIVE: '#00855F', ATTENTION: '#A86E00', STOP: '#C65300', DRIVE: '#0072B2'}
+_DARK = {LIVE: '#10B083', ATTENTION: '#E69F00', STOP: '#E8702A', DRIVE: '#56B4E9'}
+# The ground of the stop button, in every theme: white on it has a contrast of 4.5 at least.
+STOP_GROUND = QColor('#C35200')
+
+# The looks to choose from, and how they are called.
+DARK, LIGHT, CONTRAST, SYSTEM = 'dark', 'light', 'contrast', 'system'
+THEMES = {DARK: 'Dark', LIGHT: 'Light', CONTRAST: 'High contrast', SYSTEM: 'As the desktop'}
+# Window, field, button, words.
+_GROUNDS = {DARK: ('#22262b', '#16191d', '#353b43', '#eceef0'),
+            LIGHT: ('#f0f1f2', '#ffffff', '#e2e4e7', '#14171a'),
+            CONTRAST: ('#000000', '#000000', '#1c1c1c', '#ffffff')}
 
 DISC = 'disc'
 RING = 'ring'
@@ -49,11 +61,51 @@ SEVERITY_SIGNS = {
 }
 BATTERY_TONES = {battery.FINE: TEXT, battery.LOW: ATTENTION, battery.FLAT: STOP}
 
+# Where an application keeps the desktop's own palette.
+_DESKTOPS = 'mhri_palette_of_the_desktop'
+
+# What is beside a picture, and between pictures, in every theme.
+PICTURE_GROUND = QColor('#0c0e12')
 # What lies under words on a picture, in every theme.
 OVER_PICTURE = QColor(12, 14, 18, 205)
 
 SMALLEST_TEXT_PT = 11.0
 SMALLEST_TOUCH_PX = 36
+
+
+def palette_of(name):
+    """Return the :class:`QPalette` of a theme; of SYSTEM an empty one, which is the desktop's."""
+    if name not in _GROUNDS:
+        return QPalette()
+    window, field, button, words = map(QColor, _GROUNDS[name])
+    accent = QColor((_LIGHT if name == LIGHT else _DARK)[DRIVE])
+    result = QPalette(button, window)
+    for role, value in (
+            (QPalette.Base, field), (QPalette.AlternateBase, window), (QPalette.ToolTipBase, field),
+            (QPalette.WindowText, words), (QPalette.Text, words), (QPalette.ButtonText, words),
+            (QPalette.ToolTipText, words), (QPalette.BrightText, words),
+            (QPalette.PlaceholderText, blend(words, field, 0.34)),
+            (QPalette.Link, accent), (QPalette.Highlight, accent),
+            (QPalette.HighlightedText, readable_on(accent))):
+        result.setColor(role, value)
+    for role in (QPalette.WindowText, QPalette.Text, QPalette.ButtonText):
+        result.setColor(QPalette.Disabled, role, blend(words, window, 0.45))
+    return result
+
+
+def apply(target, name):
+    """Give an application, or a widget and all in it, the look of a theme.
+
+    :param target: :class:`QApplication` or :class:`QWidget`
+    :param name: DARK, LIGHT, CONTRAST or SYSTEM
+    """
+    palette = palette_of(name)
+    if isinstance(target, QApplication):
+        if target.property(_DESKTOPS) is None:
+            target.setProperty(_DESKTOPS, target.palette())
+        if name == SYSTEM:
+            palette = target.property(_DESKTOPS)
+    target.setPalette(palette)
 
 
 def is_dark(palette):
@@ -86,9 +138,22 @@ def blend(one, other, share):
         one.getRgbF()[:3], other.getRgbF()[:3])])
 
 
+def luminance(one):
+    """Return the relative luminance of a :class:`QColor` in [0, 1] (WCAG 2.1)."""
+    parts = [part / 12.92 if part <= 0.03928 else ((part + 0.055) / 1.055) ** 2.4
+             for part in one.getRgbF()[:3]]
+    return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2]
+
+
+def contrast(one, other):
+    """Return the contrast of two colours, from 1 to 21 (WCAG 2.1)."""
+    dark, light = sorted((luminance(one), luminance(other)))
+    return (light + 0.05) / (dark + 0.05)
+
+
 def readable_on(ground):
     """Return black or white, whichever is easier to read on a colour."""
-    return QColor(Qt.black if ground.lightnessF() > 0.55 else Qt.white)
+    return max(QColor(Qt.black), QColor(Qt.white), key=lambda ink: contrast(ink, ground))
 
 
 def line_colour(palette):
@@ -184,6 +249,19 @@ def paint_battery(painter, rect, fraction, ink):
     painter.setBrush(Qt.NoBrush)
     painter.setPen(QPen(ink, 1.4))
     painter.drawRoundedRect(body, 1.2, 1.2)
+
+
+def paint_edge(painter, rect, width, ink, dashed=False):
+    """Paint a frame along the inside of a :class:`QRect`, of a width [px]; dashed for a keyboard.
+
+    What the dashes leave is dark.
+    """
+    half = width / 2.0
+    strokes = [(PICTURE_GROUND, Qt.SolidLine), (ink, Qt.DashLine)] if dashed \
+        else [(ink, Qt.SolidLine)]
+    for colour_, line in strokes:
+        painter.setPen(QPen(colour_, width, line, Qt.FlatCap, Qt.MiterJoin))
+        painter.drawRect(QRectF(rect).adjusted(half, half, -half, -half))
 
 
 def paint_stopped_frame(painter, rect, palette):

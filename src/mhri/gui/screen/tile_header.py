@@ -3,15 +3,20 @@
 """The line across the top of a tile: which robot, whether it is driven, how its link is."""
 from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtGui import QPainter
-from python_qt_binding.QtWidgets import QHBoxLayout, QPushButton, QWidget
+from python_qt_binding.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QWidget
 
 from mhri.core.screen import views
+from mhri.core.screen.battery import FLAT, LOW
 from mhri.gui.recording.recording_row import clock_text
 from mhri.gui.screen import theme, words
 from mhri.gui.screen.labels import BatteryLine, Pill, Sign, TextLine
 
-VIEWS = 'Views'
+VIEWS, VIEWS_IN_SHORT = 'Views', '…'
 TEAR_OFF, PUT_BACK = 'Tear off', 'Put back'
+TYPE, AGE, LINK, PILL, BATTERY = 'type', 'age', 'link', 'pill', 'battery'
+# What is left out where there is no room, in this order; small tiles never have the first ones.
+_LEFT_OUT = (TYPE, AGE, TEAR_OFF, VIEWS, LINK, PILL, BATTERY)
+_OF_SMALL = 6
 
 DRIVING = 'DRIVING'
 SELECTED = 'selected'
@@ -45,6 +50,19 @@ def drive_state(view, stopped):
     return DRIVING if view.driven else SELECTED if view.selected else NOT_SELECTED
 
 
+def trouble_of(view, charge):
+    """Return the colour that a robot's trouble gives its tile's edge, None where there is none.
+
+    Lost or a flat battery, else silent, a low battery or a bad link; its words are elsewhere.
+
+    :param view: :class:`mhri.core.screen.views.RobotView`
+    :param charge: level of the battery, of :mod:`mhri.core.screen.battery`
+    """
+    if view.link == views.GONE or charge == FLAT:
+        return theme.STOP
+    return theme.ATTENTION if view.link == views.SILENT or charge == LOW or view.slow else None
+
+
 class TileHeader(QWidget):
     """Lies on the picture, light on dark in every theme; small tiles leave out what can be left.
 
@@ -55,6 +73,8 @@ class TileHeader(QWidget):
     def __init__(self, name, type_label, parent=None):
         super().__init__(parent)
         self.large = True
+        self._view = None
+        self._with_age = True
         self._build(name, type_label)
 
     def _build(self, name, type_label):
@@ -65,10 +85,11 @@ class TileHeader(QWidget):
         self.type_label, self.link_label = TextLine(self), TextLine(self)
         self.rec_label, self.battery_label = TextLine(self), BatteryLine(self)
         self.pill, self.link_sign = Pill(self), Sign(self)
-        self.name_label.show_text(name)
+        self.name_label.show_text(name, shorter=(*words.name_ends(name), ''))
         self.type_label.show_text(type_label, theme.MUTED)
         self.views_button = QPushButton(VIEWS, self)
         self.views_button.setCheckable(True)
+        self.views_button.setAccessibleName(VIEWS)
         self.views_button.setToolTip('what this tile shows, its recording and its streams')
         self.tear_button = QPushButton(TEAR_OFF, self)
         self.tear_button.setToolTip('into a window of its own, for another monitor')
@@ -82,12 +103,13 @@ class TileHeader(QWidget):
             button.setFocusPolicy(Qt.TabFocus)
             button.setAutoDefault(False)
         row = self._row = QHBoxLayout(self)
-        for part in (self.number_label, self.name_label, self.pill, self.link_sign,
-                     self.link_label, self.battery_label, self.rec_label):
-            row.addWidget(part)
-        row.addWidget(self.type_label, 1)
-        row.addWidget(self.views_button)
-        row.addWidget(self.tear_button)
+        for part in (self.number_label, self.name_label, self.pill, None, self.link_sign,
+                     self.link_label, self.battery_label, self.rec_label, self.type_label, None,
+                     self.views_button, self.tear_button):
+            if part is None:
+                row.addStretch()
+            else:
+                row.addWidget(part)
         self.rec_label.hide()
         self.number_label.hide()
         self.show_large(True)
@@ -95,46 +117,84 @@ class TileHeader(QWidget):
     def show_large(self, large):
         """Be the header of a large tile, or of a small one."""
         self.large = large
-        base = self.window().font() if self.window() else self.font()
+        base = theme.base_font(self.window().font() if self.window() else self.font())
         unit = self.fontMetrics().height()
         self._row.setContentsMargins(unit // 2, 2, 2 if large else unit // 3, 2)
         self._row.setSpacing(unit // 2 if large else unit // 4)
-        bold = theme.larger(theme.base_font(base), 1.4 if large else 1.05, bold=True)
-        self.name_label.setFont(bold)
-        self.number_label.setFont(bold)
-        numbers = theme.number_font(theme.base_font(base))
-        for label, sample in ((self.link_label, 'waiting 000 ms' if large else 'waiting'),
-                              (self.battery_label, '100 %'), (self.rec_label, 'REC 00:00')):
-            label.setFont(numbers)
-            label.fix_width(sample)
-        self.link_sign.setFont(numbers)
-        self.pill.setFont(theme.base_font(base))
-        self._fit_name()
-        for part in (self.views_button, self.tear_button, self.type_label):
-            part.setVisible(large)
+        bold = theme.larger(base, 1.4 if large else 1.05, bold=True)
+        numbers = theme.number_font(base)
+        for part, font in ((self.name_label, bold), (self.number_label, bold),
+                           (self.link_label, numbers), (self.battery_label, numbers),
+                           (self.rec_label, numbers), (self.link_sign, numbers),
+                           (self.pill, base)):
+            part.setFont(font)
+        self.battery_label.fix_width('100 %')
+        self.rec_label.fix_width('REC 00:00')
         for button in (self.views_button, self.tear_button):
             button.setMinimumHeight(theme.touch_size(self))
-        self.link_label.setVisible(large)
+        for place in range(self._row.count()):
+            if self._row.itemAt(place).spacerItem():
+                self._row.setStretch(place, int((place > 4) == large))
         self.show_drive(self.pill.word)
-        self._row.setStretch(1, 0 if large else 1)
 
     def show_drive(self, word):
         """Say in the pill how the robot is driven; small tiles leave out that it is not."""
         if word:
             self.pill.say(word, *LOOKS[word][:2])
-        self.pill.set_words(tuple(LOOKS) if self.large else (word,))
         self.pill.setVisible(bool(word) and (self.large or word != NOT_SELECTED))
+        self.fit()
 
-    def _fit_name(self):
-        """Give number and name the room that they need."""
-        self.name_label.fix_width(self.name_label.text())
-        if not self.large:
-            self.name_label.setMinimumWidth(4 * self.fontMetrics().averageCharWidth())
-            self.name_label.setMaximumWidth(16777215)
-            policy = self.name_label.sizePolicy()
-            policy.setHorizontalPolicy(policy.Preferred)
-            self.name_label.setSizePolicy(policy)
+    def fit(self):
+        """Leave out what there is no room for, always in the same order; the name goes last."""
+        name = self.name_label
+        natural = theme.text_width(name.font(), name.text())
+        name.setSizePolicy(QSizePolicy.Preferred, QSizePolicy.Fixed)
+        name.setMaximumWidth(natural)
+        name.setMinimumWidth(1)
         self.number_label.fix_width(self.number_label.text() or '0')
+        for count in range(0 if self.large else _OF_SMALL, len(_LEFT_OUT) + 1):
+            self._leave_out(_LEFT_OUT[:count])
+            if self._needed(natural) <= self.width():
+                break
+
+    def _leave_out(self, parts):
+        """Show everything but some parts of :data:`_LEFT_OUT`."""
+        self._with_age = AGE not in parts
+        self.link_label.fix_width('waiting 000 ms' if self._with_age else 'waiting')
+        self._show_link()
+        self.views_button.setText(VIEWS if VIEWS not in parts else VIEWS_IN_SHORT)
+        self.views_button.setFixedWidth(
+            theme.touch_size(self) + theme.text_width(self.views_button.font(),
+                                                      self.views_button.text()) // 2)
+        self.pill.set_words((self.pill.word,) if PILL in parts else tuple(LOOKS))
+        self.type_label.fix_width(self.type_label.text())
+        for part, key in ((self.type_label, TYPE), (self.link_label, LINK),
+                          (self.tear_button, TEAR_OFF), (self.battery_label, BATTERY)):
+            part.setVisible(key not in parts)
+        self.views_button.setVisible(self.large)
+
+    def _needed(self, name_width):
+        """Return the width that everything on show needs [px]."""
+        parts = [item.widget() for item in map(self._row.itemAt, range(self._row.count()))
+                 if item.widget() and not item.widget().isHidden()]
+        margins = self._row.contentsMargins()
+        # Each of the two stretches has the gap of a part.
+        return (margins.left() + margins.right() + self._row.spacing() * len(parts) + sum(
+            name_width if part is self.name_label else max(
+                part.minimumWidth(), min(part.sizeHint().width(), part.maximumWidth()))
+            for part in parts))
+
+    def resizeEvent(self, event):  # noqa: N802
+        """Fit the width there is."""
+        super().resizeEvent(event)
+        self.fit()
+
+    def _show_link(self):
+        """Say how the link is, with its age where there is room."""
+        if self._view is not None:
+            tone = theme.TEXT if self._view.link == views.LIVE else theme.MUTED
+            self.link_label.show_text(words.link_text(self._view) if self._with_age
+                                      else words.LINK_WORDS[self._view.link], tone)
 
     def show_view(self, view, numbers=True):
         """Show a :class:`RobotView`; the numbers of it only if ``numbers``."""
@@ -144,17 +204,22 @@ class TileHeader(QWidget):
         if number != self.number_label.text():
             self.number_label.show_text(number, theme.MUTED)
             self.number_label.setVisible(bool(number))
-            self._fit_name()
-        self.type_label.show_text(words.type_text(view), theme.MUTED)
+            self.fit()
+        kind = words.type_text(view)
+        if kind != self.type_label.text():
+            self.type_label.show_text(kind, theme.MUTED)
+            self.fit()
         if not numbers:
             return
-        tone = theme.TEXT if view.link == views.LIVE else theme.MUTED
-        self.link_label.show_text(words.link_text(view), tone)
+        self._view = view
+        self._show_link()
         self.battery_label.show_charge(view.battery, view.link != views.LIVE)
 
     def show_recording(self, status):
         """Show how long a recording has been running, None where none is."""
-        self.rec_label.setVisible(status is not None)
+        if self.rec_label.isHidden() != (status is None):
+            self.rec_label.setVisible(status is not None)
+            self.fit()
         if status is not None:
             self.rec_label.show_text('REC ' + clock_text(status.duration_s))
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Numbers and states in the words of a person: fixed number of digits, units, never "None"."""
 import math
+import re
 
 from mhri.core.screen import views
 
@@ -82,6 +83,13 @@ def heading_text(heading_rad):
     return '{:d} deg'.format(180 if degrees == -180 else degrees)
 
 
+def compass_text(heading_rad):
+    """Return a heading [rad] as three digits in 000 to 359, left turns add; a dash for None."""
+    if not _is_number(heading_rad):
+        return UNKNOWN
+    return '{:03d}'.format(round(math.degrees(heading_rad)) % 360)
+
+
 def metres_text(value_m):
     """Return a coordinate, e.g. "-1.25 m"; a dash for None and NaN."""
     # What rounds to zero has no sign.
@@ -102,6 +110,8 @@ def heard_text(heard):
     """
     if heard is None:
         return 'say the wake word, or hold the button and talk; "stop" is always heard'
+    if not heard.text:
+        return heard_outcome(heard)
     return 'heard "{}": {}'.format(heard.text, heard_outcome(heard))
 
 
@@ -109,7 +119,8 @@ def heard_shorter(heard):
     """Return :func:`heard_text` in fewer and fewer words: what was made of it is what matters."""
     if heard is None:
         return 'wake word or button; "stop" is always heard', '"stop" is always heard'
-    return (heard_outcome(heard),)
+    outcome = heard_outcome(heard)
+    return (outcome,) + beginnings(outcome)
 
 
 def heard_outcome(heard):
@@ -117,14 +128,35 @@ def heard_outcome(heard):
     return heard.command if heard.accepted else heard.reason or 'not a command'
 
 
-def beginnings(text, marks=('; ', ': ', ' after ')):
+def name_ends(name):
+    """Return the ends of a robot's name where there is no room for all of it, the longest first.
+
+    "inspection_crawler_12" is "…crawler_12": names that differ, differ at the end.
+    """
+    cuts = [place + 1 for place, sign in enumerate(name) if sign == '_' and place]
+    end = len(name) - max(cuts, default=0)
+    cuts += [len(name) - left for left in (12, 8, 4) if left + 2 < end]
+    return tuple('…' + name[cut:] for cut in sorted(set(cuts)) if name[cut:])
+
+
+def kept_together(text):
+    """Return a text that is never wrapped between a number and its unit."""
+    return re.sub(r'(?<=\d) (?=(%|m?s|h|min|m|m/s|rad/s|Hz|Mbit/s|deg)\b|%)', '\u00a0', text)
+
+
+def beginnings(text, marks=('; ', ': ', ' after '), most=0):
     """Return the beginnings of a sentence that say enough where there is no room for all of it.
 
     "centre the stick: it was out of reach" is "centre the stick" in short.
 
     :param marks: what ends a beginning, the longest first
+    :param most: further ones, of that many words at first and of one less each, with a "…"
     """
-    return tuple(dict.fromkeys(text.partition(mark)[0] for mark in marks if mark in text))
+    found = dict.fromkeys(text.partition(mark)[0] for mark in marks if mark in text)
+    parts = text.split()
+    found.update((' '.join(parts[:count]) + ' …', None)
+                 for count in range(min(most, len(parts) - 1), 0, -1))
+    return tuple(found)
 
 
 def type_text(view):

@@ -5,15 +5,15 @@
 Interfaces (global names; SI units):
 
 - subscribes ``/robot_controller/twist`` (``geometry_msgs/Twist``), ``/robot_controller/task_twist``
-  (``mhri/TeamTwist``) and ``/robot_controller/stop_all`` (``std_msgs/Bool``), all from the mux in
-  force alone; ``/robot_controller/robot_select`` (``mhri/RobotSelect``) and
-  ``/gates_in/group_speed`` (``mhri/GroupSpeed``) from the operator in control alone
-- publishes ``/gates/state`` (``mhri/GatesState``, latched, on change and at 2 Hz), and of each
-  robot what :class:`mhri.ros.driving.robot_gate.RobotGate` says
+  (``mhri/TeamTwist``) and ``/robot_controller/stop_all`` (``std_msgs/Bool``), all only from the
+  mux in force; ``/robot_controller/robot_select`` (``mhri/RobotSelect``) and
+  ``/gates_in/group_speed`` (``mhri/GroupSpeed``) only from the operator in control
+- publishes ``/gates/state`` (``mhri/GatesState``, latched, on change and at 2 Hz), and for each
+  robot the topics of :class:`mhri.ros.driving.robot_gate.RobotGate`
 - serves ``/gates/take_control`` (``std_srvs/Trigger``) and ``/gates/set_motor_power``
-  (``std_srvs/SetBool``: false takes the power from the motors of every robot that offers it)
+  (``std_srvs/SetBool``: false cuts the motor power of every robot that offers it)
 
-Everything runs on ROS threads and one of its own; one lock guards all of it.
+Everything runs on ROS threads and one thread of its own; a single lock guards all of it.
 """
 import threading
 import time
@@ -36,7 +36,7 @@ from mhri.ros.driving.roster import Roster
 from mhri.ros.graph.rospy_inside import caller_of, link_of, on_publisher_gone
 
 TICK_S = 0.05
-# Whoever was refused is named for so long [s].
+# How long somebody who was refused is named [s].
 REFUSED_S = 30.0
 
 
@@ -44,7 +44,7 @@ class Gates:
     """The gates of all robots, fed by the mux and the operator in control.
 
     :param types: {name: RobotType}
-    ``on_change`` is called when what ``/gates/state`` says may have changed; quick.
+    ``on_change`` is called when ``/gates/state`` may have changed; it must be quick.
 
     """
 
@@ -89,10 +89,10 @@ class Gates:
         threading.Thread(target=self._run, name='gates', daemon=True).start()
 
     def read(self):
-        """Return what is to be said on ``/gates/state``, as keyword arguments of the message.
+        """Return the content of ``/gates/state``, as keyword arguments of the message.
 
-        But for the operator's computer, which somebody else has to ask for; ``since`` is [s] of
-        this object's clock, None for nobody.
+        The operator's computer is missing, since only the master knows it; ``since`` is [s] of this
+        object's clock, None for nobody.
         """
         with self._lock:
             refused = ['{}: robot_select, {} times'.format(name, count)
@@ -104,16 +104,16 @@ class Gates:
                         refused=refused, robots=[gate.message() for gate in self._gates.values()])
 
     def mux_heard(self):
-        """Tell whether the mux in force has been heard within the last second."""
+        """Tell whether the mux in force was heard within the last second."""
         return bool(self._mux.caller) and not self._neighbour.silent
 
     def _refuse(self, caller, topic):
-        """Count who is not believed."""
+        """Count somebody who is not believed."""
         self._strangers.refuse(caller, topic)
         self.on_change()
 
     def _each(self, act):
-        """Do something with every gate: what goes wrong with one keeps no zero from the others."""
+        """Do something with every gate; a failure of one must not keep a zero from the others."""
         for gate in self._gates.values():
             try:
                 act(gate)
@@ -133,7 +133,7 @@ class Gates:
                 self.on_change()
 
     def _on_task(self, message):
-        """Pass on what the tasks want; the mux has checked the message."""
+        """Pass on the commands of tasks; the mux has checked the message."""
         if not self._mux.believes(message, 'task_twist'):
             return
         with self._lock:
@@ -144,10 +144,10 @@ class Gates:
                     gate.task(from_twist(twist), now)
 
     def _on_stop(self, message):
-        """Engage what the mux says; give up only what this very mux has held, and released.
+        """Engage a stop of the mux; release only a stop that this same mux held and then released.
 
-        A mux that knows nothing of a stop, because it was restarted together with the master, does
-        not release it: it hears of the stop on ``/gates/state`` and engages it as well.
+        A mux restarted together with the master knows nothing about a stop and does not release
+        it: it learns of the stop from ``/gates/state`` and engages it as well.
         """
         if not self._mux.believes(message, 'stop_all'):
             return
@@ -171,19 +171,19 @@ class Gates:
         self.on_change()
 
     def _on_foreign_stop(self, name):
-        """A robot was stopped by the gates before these, and nobody has released it since."""
+        """Keep a stop of earlier gates that nobody has released since."""
         if not self._stop:
             rospy.logwarn('%s says that stop-all is in force since before this start: it stays so '
                           'until it is released', name)
             self._set_stop(True)
 
     def _on_new_mux(self, caller):
-        """Let every robot wait for neutral: what the mux before knew of the stick is gone."""
+        """Let every robot wait for neutral: this mux knows nothing of the last one's stick."""
         rospy.loginfo('the mux in force is %s', caller)
         self._everybody_joins()
 
     def _on_mux_gone(self, caller):
-        """The mux in force has ended: a zero at once for whoever moves."""
+        """Send every moving robot a zero: the mux in force has ended."""
         if caller == self._mux.caller:
             self._everybody_joins()
 
@@ -194,7 +194,7 @@ class Gates:
             self.on_change()
 
     def _on_select(self, message):
-        """Take in the word of the operator in control; it is also its lease."""
+        """Take in the operator's selection, which also renews the lease."""
         names = [name for name in message.robots[:1000] if name_problem(name) is None]
         with self._lock:
             before = self._seat.checked
@@ -213,7 +213,7 @@ class Gates:
             self._check()
 
     def _on_take(self, request):
-        """Put the caller in control; every robot gets a zero, and neutral is asked for."""
+        """Put the caller in control; every robot gets a zero and waits for neutral."""
         caller = caller_of(request)
         with self._lock:
             now = self._clock()
@@ -225,17 +225,17 @@ class Gates:
         return TriggerResponse(True, caller + ' is in control now: centre the stick to drive')
 
     def _on_motor_power(self, request):
-        """Cut the power of all motors, at any time; give it back unless a stop is in force."""
+        """Cut the power of all motors at any time; restore it unless a stop is in force."""
         with self._lock:
             if request.data and self._stop:
-                return SetBoolResponse(False, 'release the stop first: the power comes with it')
+                return SetBoolResponse(False, 'release the stop first: that restores the power')
             without = [gate.name for gate in self._gates.values() if not gate.power.available]
             for gate in self._gates.values():
                 (gate.power.restore if request.data else gate.power.cut)()
             self.on_change()
-        words = 'the power of the motors is ' + ('given back' if request.data else 'being cut')
+        words = 'motor power is being ' + ('restored' if request.data else 'cut')
         return SetBoolResponse(True, words + (
-            '; not of {}: nothing there takes it'.format(', '.join(without)) if without else ''))
+            '; not for {}: it cannot be cut there'.format(', '.join(without)) if without else ''))
 
     def _check(self):
         """Let the gates know which robots are checked now."""
@@ -247,7 +247,7 @@ class Gates:
         self._wake.notify()
 
     def _on_group_speed(self, message):
-        """Take in how the group keeps together, from the operator in control."""
+        """Take in, from the operator in control, how the group stays together."""
         with self._lock:
             caller = caller_of(message)
             if self._seat.operator not in ('', caller):
@@ -258,7 +258,7 @@ class Gates:
             self.on_change()
 
     def _keep_together(self):
-        """Give every gate the limits and the share it has to keep to."""
+        """Give every gate the limits and the share it must keep to."""
         group = [gate for gate in self._gates.values() if gate.rule.checked]
         common = common_limits([gate.rule.limits for gate in group]) \
             if self._together and group else None
@@ -268,7 +268,7 @@ class Gates:
             gate.rule.hold_to(common or gate.rule.limits, self._share)
 
     def _open(self, name, robot_type):
-        """Open the gate of a robot, in place of the one it had (on the roster's thread)."""
+        """Open the gate of a robot, replacing the one it had (on the roster's thread)."""
         self._close_gate(name)
         gate = RobotGate(name, robot_type, self._session, self._command, self._lock,
                          self._on_foreign_stop,
@@ -285,7 +285,7 @@ class Gates:
             self.on_change()
 
     def _unheard(self):
-        """Return [(topic, type)] that robots which are heard do not listen to."""
+        """Return the (topic, type) to which robots that are heard do not listen, as a list."""
         with self._lock:
             return [topic for gate in self._gates.values() for topic in gate.unheard(self._clock())]
 
@@ -301,7 +301,7 @@ class Gates:
         gate.close()
 
     def _run(self):
-        """Let time pass: 20 times a second, and at the instant when something goes stale."""
+        """Let time pass: 20 times a second, and at the moment when something goes stale."""
         with self._lock:
             while not self._closed:
                 now = self._clock()
@@ -328,7 +328,7 @@ class Gates:
             self.on_change()
 
     def close(self):
-        """Close every gate with a zero; nothing is forwarded any more. May be called twice."""
+        """Close every gate with a zero and forward nothing more. May be called twice."""
         with self._lock:
             self._closed = True
             self._each(lambda gate: gate.send(gate.rule.close(self._clock())))

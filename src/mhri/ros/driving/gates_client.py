@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The panel's side of the gates: what they said last, and what is asked of them.
+"""The panel's side of the gates: what they said last, and requests to them.
 
-Subscribes ``/gates/state`` (``mhri/GatesState``, 2 Hz and on change; the gates in force alone are
-believed, :mod:`mhri.ros.driving.in_force`). Publishes
+Subscribes ``/gates/state`` (``mhri/GatesState``, 2 Hz and on change; it believes only the gates in
+force, :mod:`mhri.ros.driving.in_force`). Publishes
 ``/gates_in/group_speed`` (``mhri/GroupSpeed``, latched). Calls ``/gates/take_control``
 (``std_srvs/Trigger``) and ``/gates/set_motor_power`` (``std_srvs/SetBool``) on a thread of its own.
 """
@@ -19,17 +19,17 @@ from mhri.msg import GatesState, GroupSpeed, RobotGate
 from mhri.ros.driving.in_force import InForce, Strangers, TAKE_SERVICE
 from mhri.ros.worker import Worker
 
-# They speak at 2 Hz: a word late by this much is a word that does not come.
+# They speak at 2 Hz: a message this late is not coming.
 SILENT_S = 0.9
 POWER_SERVICE = '/gates/set_motor_power'
 
 
 class GatesClient:
-    """What the gates say, and whether they say anything; every method returns at once.
+    """What the gates say, and whether they answer; every method returns at once.
 
     :param on_state: called with (``mhri/GatesState``, received at [s]) on a ROS thread, in order
     :param clock: function that returns seconds, monotonic
-    ``strangers`` are those who speak as the gates and are not.
+    ``strangers`` are nodes that pose as the gates.
     """
 
     def __init__(self, on_state, clock=time.monotonic):
@@ -67,11 +67,11 @@ class GatesClient:
         self._first.set()
 
     def wait_first(self):
-        """Wait until they have said something, where they are there; not on the GUI thread."""
+        """Wait for their first message, if they are running; not on the GUI thread."""
         self._first.wait(SILENT_S)
 
     def answers(self):
-        """Tell whether the gates have been heard lately (a start counts as hearing them)."""
+        """Tell whether the gates were heard lately (a start counts as hearing them)."""
         return self._clock() - self._heard_at <= SILENT_S
 
     def state(self):
@@ -79,12 +79,12 @@ class GatesClient:
         return self._state
 
     def robot(self, name):
-        """Return the newest ``mhri/RobotGate`` of a robot; None where the gates do not know it."""
+        """Return the newest ``mhri/RobotGate`` of a robot; None if the gates do not know it."""
         with self._lock:
             return self._robots.get(name)
 
     def who(self):
-        """Return who is in control, for a person; '' where the gates have named nobody."""
+        """Return who is in control, in words; '' if the gates have named nobody."""
         state = self._state
         if state is None or not state.operator:
             return ''
@@ -93,31 +93,31 @@ class GatesClient:
                           time.strftime('%H:%M', time.localtime(since)) if since else '')
 
     def keep_together(self, together, slow_with_link):
-        """Say how the selected robots keep to each other, where that is news."""
+        """Tell the gates how the selected robots stay together, if that has changed."""
         if self._group is not None and (together, slow_with_link) != self._told:
             self._told = (together, slow_with_link)
             self._group.publish(together=together, slow_with_link=slow_with_link)
 
     def leave_group(self):
-        """Say how the robots keep to each other anew when this screen drives again."""
+        """Forget what the gates were told, to tell them again when this screen drives again."""
         self._told = None
 
     def take_control(self, on_answer):
         """Make this node the operator in control.
 
-        :param on_answer: called with (whether it was done, a sentence), on the worker
+        :param on_answer: called with (success, a sentence), on the worker
         """
         self._worker.do(self._call, TAKE_SERVICE, Trigger, 'not taken over', on_answer)
 
     def set_motor_power(self, on, on_answer):
-        """Cut the power of the motors of every robot that offers it (False), or give it back.
+        """Cut the motor power of every robot that offers it (False), or restore it (True).
 
-        :param on_answer: as of :meth:`take_control`
+        :param on_answer: as for :meth:`take_control`
         """
         self._worker.do(self._call, POWER_SERVICE, SetBool, 'motor power unchanged', on_answer, on)
 
     def _call(self, name, kind, failure, on_answer, *words):
-        """Call a service once, over a connection of its own; tell what came of it."""
+        """Call a service once, over its own connection, and report the result."""
         try:
             rospy.wait_for_service(name, timeout=SILENT_S)
             answer = rospy.ServiceProxy(name, kind)(*words)
@@ -134,13 +134,13 @@ class GatesClient:
         self._force.stop()
 
     def unregister(self):
-        """Give every topic back (blocking: it asks the master)."""
+        """Unregister every topic (blocking: it asks the master)."""
         for topic in self._topics:
             topic.unregister()
 
 
 def is_driven(robot):
-    """Tell whether the velocity that the gates last sent to a robot moves it.
+    """Tell whether the velocity the gates last sent to a robot is not zero.
 
     :param robot: ``mhri/RobotGate``
     """
@@ -149,7 +149,7 @@ def is_driven(robot):
 
 
 def round_trip_s(robot):
-    """Return the round trip to a robot [s] as the gates measured it; None where it is not known.
+    """Return the round trip to a robot [s] as measured by the gates; None if unknown.
 
     :param robot: ``mhri/RobotGate``
     """

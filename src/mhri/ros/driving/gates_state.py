@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the gates say of themselves: ``/gates/state`` and ``/diagnostics``."""
+"""What the gates say about themselves: ``/gates/state`` and ``/diagnostics``."""
 import threading
 import time
 from urllib.parse import urlsplit
@@ -13,7 +13,7 @@ from mhri.ros.diagnostics import publish_diagnostics
 from mhri.ros.graph.master_api import MasterApi, MasterError
 
 PERIOD_S = 0.5
-# Changes that follow each other closely are told together.
+# Changes in quick succession are told together.
 LEAST_S = 0.02
 
 
@@ -40,7 +40,7 @@ class GatesSpeaker:
         return self
 
     def on_change(self):
-        """Say it soon; returns at once."""
+        """Publish soon; returns at once."""
         self._changed.set()
 
     def _run(self):
@@ -66,7 +66,7 @@ class GatesSpeaker:
         return message
 
     def _computer(self, operator):
-        """Return the computer of a node as the master knows it, '' until that was asked."""
+        """Return the computer of a node as the master knows it, '' until it has answered."""
         if operator not in self._computers:
             self._computers = {operator: ''}
             threading.Thread(target=self._ask, args=(operator,), name='computer of ' + operator,

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The one mux and the one gates in force: whoever serves their service is believed, by caller id.
+"""Which mux and which gates to believe: the nodes that serve their services, by caller id.
 
-Anybody may publish what they publish. Their service has one server, which the master knows.
+Anybody can publish their topics. A service has only one server, which the master knows.
 """
 import threading
 import time
@@ -13,22 +13,22 @@ from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.rospy_inside import caller_of, link_of
 
 STOP_SERVICE, TAKE_SERVICE = '/mux/set_stop_all', '/gates/take_control'
-# Whoever speaks as one and is none makes the master be asked, but not more often than this [s].
+# A message from anybody else makes us ask the master, but not more often than this [s].
 ASK_S = 0.2
-# So many strangers are told apart, and the words of so many wait on a topic.
+# This many strangers are told apart, and this many may have a message waiting on a topic.
 MOST_STRANGERS, MOST_WAITING = 32, 8
 
 
 class InForce:
-    """Knows whose words count: those of the node that serves a service.
+    """Knows whose messages count: those of the node that serves a service.
 
-    The master is asked on a thread of its own, at the start and whenever somebody else speaks: a
-    newer server takes the service over, a stranger does not.
+    A thread asks the master at the start and whenever somebody else speaks: a newer server takes
+    the service over, a stranger does not.
 
     :param service: its absolute name
-    :param on_refused: called with the caller id and the topic that it said something on
-    :param on_new: called on the thread that found it out when the one in force is another, or
-        another process or connection of the same name
+    :param on_refused: called with the caller id and the topic of a refused message
+    :param on_new: called, on the thread that found out, when another node is in force, or another
+        process or connection of the same name
     """
 
     def __init__(self, service, on_refused=lambda caller, topic: None,
@@ -45,11 +45,11 @@ class InForce:
 
     @property
     def caller(self):
-        """Caller id of the one in force, '' while none is known."""
+        """Caller id of the node in force, '' while unknown."""
         return self._caller
 
     def start(self):
-        """Begin to look; returns at once."""
+        """Begin to watch; returns at once."""
         self._ask.set()
         threading.Thread(target=self._run, name='in_force ' + self._service, daemon=True).start()
         return self
@@ -60,9 +60,9 @@ class InForce:
         self._ask.set()
 
     def believes(self, message, topic):
-        """Tell whether a message comes from the one in force.
+        """Tell whether a message comes from the node in force.
 
-        :param topic: what it was said on, for the count of what is refused
+        :param topic: its topic, for the count of refused messages
         """
         caller = caller_of(message)
         if caller != self._caller:
@@ -79,16 +79,16 @@ class InForce:
         return True
 
     def subscribe(self, topic, kind, hear, **options):
-        """Return a ``rospy.Subscriber`` that hears the one in force alone.
+        """Return a ``rospy.Subscriber`` that hears only the node in force.
 
-        What somebody says before it is known who is in force waits: latched words come only once.
+        Messages wait while nobody is known to be in force: a latched message comes only once.
         """
         ear = _Ear(self, topic, hear)
         self._ears.append(ear)
         return rospy.Subscriber(topic, kind, ear.on_message, **options)
 
     def waiting(self):
-        """Return of how many who are not in force the newest word is kept."""
+        """Return how many nodes not in force have their newest message kept."""
         return sum(ear.waiting() for ear in self._ears)
 
     def _run(self):
@@ -99,7 +99,7 @@ class InForce:
             try:
                 self._look(api)
             except MasterError as error:
-                # Without a master the one that is known stays in force.
+                # Without a master the known node stays in force.
                 rospy.logdebug('who serves %s cannot be asked now: %s', self._service, error)
             except Exception as error:  # without this thread a newer server would not be believed
                 rospy.logerr_throttle(10.0, 'who serves {} could not be asked: {}'.format(
@@ -107,7 +107,7 @@ class InForce:
             self._done.wait(ASK_S)
 
     def _look(self, api):
-        """Ask who serves the service; the whole graph only where that has changed.
+        """Ask who serves the service, and for the whole graph only if that has changed.
 
         :raises MasterError: the master cannot be asked now
         """
@@ -130,7 +130,7 @@ class InForce:
 
 
 class _Ear:
-    """What is said on one topic: the believed words at once, the newest of others kept aside."""
+    """One topic: believed messages at once, the newest of others kept aside."""
 
     def __init__(self, force, topic, hear):
         self._force = force
@@ -140,7 +140,7 @@ class _Ear:
         self._waiting = {}
 
     def on_message(self, message):
-        """Pass a message on, or keep it for when its sender is in force."""
+        """Pass a message on, or keep it in case its sender comes into force."""
         with self._lock:
             if self._force.believes(message, self._topic):
                 self._waiting.clear()
@@ -153,18 +153,18 @@ class _Ear:
                 del self._waiting[next(iter(self._waiting))]
 
     def waiting(self):
-        """Return how many words are kept."""
+        """Return how many messages are kept."""
         with self._lock:
             return len(self._waiting)
 
     def forget(self, before):
-        """Let go what was said before the master was asked, by others than the one in force."""
+        """Drop messages from before the master was asked, except from the node in force."""
         with self._lock:
             self._waiting = {caller: said for caller, said in self._waiting.items()
                              if said[1] >= before}
 
     def catch_up(self, caller):
-        """Pass on what the one that has just come into force had said before."""
+        """Pass on what the node that has just come into force said before."""
         with self._lock:
             if caller in self._waiting:
                 message, _ = self._waiting.pop(caller)
@@ -173,7 +173,7 @@ class _Ear:
 
 
 class Strangers:
-    """Counts who was not believed, by (caller, topic); names and lengths are bounded.
+    """Counts who was not believed, by (caller, topic); bounded in number and length.
 
     :param clock: function that returns seconds, monotonic
     """
@@ -197,7 +197,7 @@ class Strangers:
             self._counts.clear()
 
     def words(self, within_s=float('inf')):
-        """Return ``CALLER: TOPIC, N times`` of each who was refused within some seconds."""
+        """Return ``CALLER: TOPIC, N times`` for everybody refused within the last seconds."""
         with self._lock:
             return ['{}: {}, {} times'.format(caller, topic, count)
                     for (caller, topic), (count, at) in self._counts.items()

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The power of one robot's motors: cut and given back by a topic or a service of the robot."""
+"""One robot's motor power: cut and restored by a topic or a service of the robot."""
 import io
 import threading
 import time
@@ -16,12 +16,12 @@ from mhri.ros.graph.rospy_inside import listeners, PromptPublisher
 from mhri.ros.messages import message_class, MessageMissing, with_field
 from mhri.ros.worker import Worker
 
-# A service that has not answered for so long [s] is called again, beside the call under way.
+# A service that has not answered for this long [s] is called again, beside the pending call.
 PATIENCE_S = 3.0
 MOST_CALLS = 3
-# While the power is cut it is looked this often whether somebody new listens [s].
+# How often to look for new listeners while the power is cut [s].
 LOOK_S = 0.2
-# Below the robot's name at the master while its power is cut: whoever takes over knows it by that.
+# Parameter below the robot's name while its power is cut, so that whoever takes over knows.
 PARAMETER = 'mhri_motor_power_cut'
 
 
@@ -30,7 +30,7 @@ class NotTold(Exception):
 
 
 class PowerTopic:
-    """Tells a robot by a message; what was sent is not confirmed."""
+    """Tells a robot by a message, which nothing confirms."""
 
     confirms = False
 
@@ -60,11 +60,11 @@ class PowerTopic:
         self._publisher.publish_urgent(self._messages[cut])
 
     def has_news(self):
-        """Tell whether others listen than were told last."""
+        """Tell whether there are listeners that have not been told."""
         return self._publisher.links() is not self._links
 
     def close(self):
-        """Give the topic back (blocking: it asks the master)."""
+        """Unregister the topic (blocking: it asks the master)."""
         self._publisher.unregister()
 
 
@@ -90,15 +90,15 @@ class PowerService:
 
     @staticmethod
     def has_news():
-        """Tell that whoever was told still knows: it has confirmed it."""
+        """Return False: a service that has confirmed still knows."""
         return False
 
     def close(self):
-        """Leave nothing behind: a call has a connection of its own."""
+        """Do nothing: every call has a connection of its own."""
 
 
 class MotorPower:
-    """Cuts the power of a robot's motors and gives it back; no method but :meth:`close` waits.
+    """Cuts and restores a robot's motor power; only :meth:`close` blocks.
 
     :param robot: the robot's name
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
@@ -111,20 +111,20 @@ class MotorPower:
         self._calls = 0
         self._closed = False
         self._rule = MotorPowerRule()
-        #: Why the power cannot be cut, as a sentence; '' where it can.
+        #: Why the power cannot be cut, as a sentence; '' if it can.
         self.problem = ''
         try:
             self._way = self._make_way(robot_type.motor_power)
         except MessageMissing as error:
-            self.problem = 'the power of its motors cannot be cut: {}'.format(error)
-        # The master may hang, and must not keep a cut waiting.
+            self.problem = 'its motor power cannot be cut: {}'.format(error)
+        # The master may hang, and must not delay a cut.
         self._notes = Worker('motor power notes ' + robot, idle_s=3600.0)
         if self._way is not None:
             self._notes.start().do(self._take_over)
             threading.Thread(target=self._run, name='motor power ' + robot, daemon=True).start()
 
     def _make_way(self, spec):
-        """Return the topic or service of a spec; None where the type names nothing."""
+        """Return the topic or service of a spec; None if the type names none."""
         if spec is None:
             self.problem = 'its type names nothing that takes the power from its motors'
             return None
@@ -133,26 +133,26 @@ class MotorPower:
 
     @property
     def available(self):
-        """Whether the power can be cut at all; else ``problem`` says why not."""
+        """Whether the power can be cut at all; if not, ``problem`` says why."""
         return self._way is not None
 
     @property
     def is_cut(self):
-        """Whether the power is to stay cut, as far as it could be told."""
+        """Whether the power should stay cut, as far as the robot could be told."""
         return self._rule.is_cut
 
     @property
     def state(self):
-        """The words of :mod:`mhri.core.driving.motor_power`; '' where nothing was asked for."""
+        """The words of :mod:`mhri.core.driving.motor_power`; '' if nobody has asked."""
         with self._changed:
             return self._rule.state
 
     def cut(self):
-        """Take the power from the motors; tried until it succeeds, or :meth:`restore`."""
+        """Cut the motor power; keep trying until it succeeds, or until :meth:`restore`."""
         self._ask(True)
 
     def restore(self):
-        """Give the power back. It moves nothing: the base has no command left to obey."""
+        """Restore the power. This moves nothing: the base has no command left to obey."""
         self._ask(False)
 
     def _ask(self, cut):
@@ -171,7 +171,7 @@ class MotorPower:
                     return
                 now = time.monotonic()
                 if self._rule.is_cut and self._way.has_news():
-                    # A base that has just come up does not know.
+                    # A base that has just started does not know.
                     self._rule.tell_again(now)
                 cut = self._rule.due(now)
                 if cut is None or self._calls >= MOST_CALLS:
@@ -181,7 +181,7 @@ class MotorPower:
             self._tell(cut)
 
     def _tell(self, cut):
-        """Tell the robot once; whoever does not answer is left behind on a thread of its own."""
+        """Tell the robot once; a call without answer is left behind on its own thread."""
         done = threading.Event()
         with self._changed:
             self._calls += 1
@@ -193,7 +193,7 @@ class MotorPower:
                                      time.monotonic())
 
     def _call(self, cut, done):
-        """Tell the robot and the rule; an answer that is overtaken is told of, too."""
+        """Tell the robot, then the rule, even if the answer comes too late."""
         problem = None
         try:
             self._way.tell(cut)
@@ -214,7 +214,7 @@ class MotorPower:
         return '/{}/{}'.format(self._robot, PARAMETER)
 
     def _take_over(self):
-        """Learn from the master whether the power was cut by one that has ended since."""
+        """Learn from the master whether an earlier process cut the power."""
         try:
             was_cut = rospy.get_param(self._parameter(), False) is True
         except (OSError, rospy.ROSException) as error:
@@ -226,7 +226,7 @@ class MotorPower:
                 self._changed.notify()
 
     def _note(self):
-        """Leave word at the master, for whoever takes over (blocking)."""
+        """Note it at the master for whoever takes over (blocking)."""
         try:
             if self.is_cut:
                 rospy.set_param(self._parameter(), True)
@@ -236,7 +236,7 @@ class MotorPower:
             rospy.logdebug('%s: the master cannot be told: %s', self._robot, error)
 
     def close(self):
-        """Leave the power as it is, and give the topic back (blocking: it asks the master)."""
+        """Leave the power as it is, and unregister the topic (blocking: it asks the master)."""
         with self._changed:
             self._closed = True
             self._changed.notify()

@@ -57,17 +57,17 @@ from mhri.ros.worker import Worker
 BEAT_S = 0.5
 MASTER_PERIOD_S = 0.25
 MASTER_PATIENCE_S = 1.1
-# The loop comes round at least so often: only then does it know that it was asleep.
+# The loop runs at least this often: only then can it know that it was asleep.
 LOOP_S = 0.1
 STOP_PARAMETER = '/mux/stop_all'
 SOURCES_PARAMETER = '/mux/sources'
-# What a button asks of the panel, in the words of its messages.
+# What a button asks of the panel, as in its messages.
 _REQUESTS = {NEXT_ROBOT: PanelRequest.NEXT, PREVIOUS_ROBOT: PanelRequest.PREVIOUS,
              SELECT_ALL: PanelRequest.SELECT_ALL}
 
 
 class Mux:
-    """The one publisher of ``/robot_controller/twist``.
+    """The only publisher of ``/robot_controller/twist``.
 
     :param config: :class:`mhri.core.driving.sources.MuxConfig`
     :param clock: function returning seconds that never go back
@@ -117,9 +117,9 @@ class Mux:
              'tasks': self._tasks.counts, 'strangers': self._gates.strangers.words})
 
     def start(self, stopped):
-        """Open for business.
+        """Start publishing, subscribing and serving.
 
-        :param stopped: begin with stop-all in force
+        :param stopped: start with stop-all in force
         """
         rospy.on_shutdown(self.close)
         if stopped:
@@ -144,9 +144,9 @@ class Mux:
             self._announce()
 
     def _listen(self, *args, **kwargs):
-        """Subscribe and return that, unless this mux has been told to end while it was starting.
+        """Subscribe and return True, unless this mux was told to end while it was starting.
 
-        A registration made after a newer mux has taken the name would end that one as well
+        Registering after a newer mux has taken the name would end that one as well
         (ros_comm#2018).
         """
         return None if self._closing else rospy.Subscriber(*args, **kwargs)
@@ -160,9 +160,9 @@ class Mux:
         self._limit.publish(to_twist(*limits))
 
     def _send(self, velocity):
-        """Publish what a rule returned, and say what is waited for now; call it with the lock held.
+        """Publish what a rule returned and what the mux waits for; call with the lock held.
 
-        Publishing inside the lock keeps a zero behind the command that it ends.
+        Publishing inside the lock keeps a zero behind the command it ends.
         """
         if self._closing:
             return
@@ -176,9 +176,9 @@ class Mux:
         self._changed.notify()
 
     def _awake(self, now):
-        """Tell whether what is heard now is new (with the lock held).
+        """Tell whether a message heard now is new (with the lock held).
 
-        After the mux was asleep, it is what waited in the sockets meanwhile.
+        After the mux was asleep, it may have waited in a socket meanwhile.
         """
         if self._pulse.slept(now):
             self._send(self._arbiter.on_hung(now))
@@ -203,7 +203,7 @@ class Mux:
                     self._tell_mode()
         except JoyRefused as error:
             refusal, switched = error, False
-            # Not while the lock is held: it must not hold up a zero.
+            # Not while the lock is held: a log call must not delay a zero.
             rospy.logwarn_throttle(1.0, 'refused from {}: {}'.format(name, refusal))
         topic.refuse(refusal)
         if switched:
@@ -225,10 +225,10 @@ class Mux:
             profile), profile.pressed(message.buttons)
 
     def _press(self, name, device, pressed, counts):
-        """Do what newly pressed buttons ask for (with the lock held).
+        """Act on newly pressed buttons (with the lock held).
 
-        A stop counts from every source, even from one that is not listened to; all else from the
-        one that drives.
+        A stop counts from every source, even one that is not listened to; all else only from the
+        source that drives.
         """
         newly = self._buttons.newly(name, device, pressed)
         if STOP_ALL in newly:
@@ -239,12 +239,12 @@ class Mux:
                 self._ask.publish(action=_REQUESTS[action])
 
     def _engage_stop(self):
-        """Stop everything and say so (with the lock held)."""
+        """Stop everything and publish it (with the lock held)."""
         self._send(self._arbiter.engage_stop_all(self._clock()))
         self._stop.publish(data=True)
 
     def _on_gates(self, must_stop, another, operator):
-        """Take in what the gates have said."""
+        """Take in the state of the gates."""
         with self._changed:
             if must_stop:
                 self._engage_stop()
@@ -258,26 +258,26 @@ class Mux:
             rospy.logwarn('the gates hold a stop that this mux did not know of: it is in force')
 
     def _task_allowed(self):
-        """Return whether robots on a task are (stopped, enabled), and the message is new."""
+        """Return (stopped, enabled, message is new) for the robots on a task."""
         now = self._clock()
         self._awake(now)
         return (self._closing or self._arbiter.stop_all, self._arbiter.enabled(now),
                 self._pulse.is_new(now))
 
     def _facts(self):
-        """Return (the active source's topic, what is waited for)."""
+        """Return (the active source's topic, what the mux waits for)."""
         with self._changed:
             return (self._topics[self._arbiter.mode], self._arbiter.waits_for(self._clock()))
 
     def _on_selection(self, message):
         if not self._gates.in_control(caller_of(message)):
-            # Two that take turns would look like robots that join, twice a second.
+            # Two operators taking turns would look like robots that join, twice a second.
             return
         with self._changed:
             self._send(self._arbiter.on_selection(message.robots, self._clock()))
 
     def _tell_mode(self):
-        """Publish another mode, and wake and suspend the input nodes (with the lock held)."""
+        """Publish a new mode, and wake and suspend the input nodes (with the lock held)."""
         self._mode.publish(source=self._arbiter.mode)
         self._suspender.activate(self._arbiter.source.suspend_service)
         self._profiles.forget()
@@ -331,7 +331,7 @@ class Mux:
         return answer
 
     def _remember_stop(self):
-        """Write stop-all down where the next mux finds it, before the answer is given."""
+        """Store stop-all where the next mux finds it, before answering."""
         with self._remembering:
             stopped = self._arbiter.stop_all
             try:
@@ -344,7 +344,7 @@ class Mux:
             self._send(self._arbiter.on_hold(cause, self._clock()))
 
     def _run(self):
-        """Send what time demands: repetitions, the zero of a silent source, the later zeros."""
+        """Send what is due: repetitions, the zero of a silent source, later zeros."""
         with self._changed:
             while not self._closing:
                 now = self._clock()
@@ -369,10 +369,10 @@ class Mux:
                 self._suspender.resume_again()
 
     def close(self):
-        """Stop the robots: a zero now, more for half a second, then nothing ever again.
+        """Stop the robots: a zero now, more for half a second, then nothing.
 
-        Where a newer mux has taken over, the first zero is the last: more of them would break into
-        its commands.
+        If a newer mux has taken over, only the first zero is sent: more would interrupt its
+        commands.
         """
         zero = to_twist(ZERO.linear_mps, ZERO.angular_rad_s)
         with self._changed:

@@ -14,7 +14,7 @@ PERIOD_S = 1.0
 class Advice:
     """Publishes ``/mux/advice`` (``std_msgs/String``, latched: a sentence, '' for none) on change.
 
-    The master is asked for the type of a topic only while nothing is heard from the source.
+    It asks the master for the type of a topic only while it hears nothing from the source.
 
     :param facts: returns (active :class:`mhri.ros.driving.source_topic.SourceTopic`, waits_for)
     """
@@ -35,7 +35,7 @@ class Advice:
         self._worker.stop()
 
     def _advise(self):
-        """Look once, and say what has changed."""
+        """Look once, and publish what has changed."""
         topic, waits_for = self._facts()
         connected = topic.connected()
         stranger = self._stranger(topic.source, connected) if waits_for == 'source' else None

@@ -1,15 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The panel's side of the mux: requests to it, and its last word on everything.
+"""The panel's side of the mux: requests to it, and what it said last.
 
 Publishes ``/mux_in/mode_select`` (``mhri/ControlMode``) and ``/mux_in/speed_limit``
 (``geometry_msgs/Twist``, latched); while this screen drives also ``/mux_in/joy``
 (``sensor_msgs/Joy``) and ``/robot_controller/robot_select`` (``mhri/RobotSelect``, latched).
 Subscribes ``/mux/mode``, ``/mux/speed_limit``, ``/mux/waits_for``, ``/mux/advice``,
-``/mux/dead_man``, ``/robot_controller/stop_all``, and believes the mux in force alone
-(:mod:`mhri.ros.driving.in_force`). Calls ``/mux/set_stop_all`` on a thread of its own.
+``/mux/dead_man``, ``/robot_controller/stop_all``, ``/robot_controller/twist``, and believes only
+the mux in force (:mod:`mhri.ros.driving.in_force`). Calls ``/mux/set_stop_all`` on a thread of its own.
 """
 import threading
+import time
 
 from geometry_msgs.msg import Twist
 import rospy
@@ -26,15 +27,17 @@ from mhri.ros.graph.rospy_inside import PromptPublisher, publishers
 from mhri.ros.worker import Worker
 
 RETRY_S = 0.5
+# The mux repeats a command at 20 Hz: an older one is over.
+ASKED_S = 0.3
 
 
 class MuxClient:
-    """What the panel says to the mux and knows of it; every method returns at once.
+    """What the panel tells the mux and knows about it; every method returns at once.
 
-    :param on_answer: called with a sentence when a stop or release was answered, on the worker
-    :param on_mode: called when the mux has said its mode, on a ROS thread
+    :param on_answer: called on the worker with a sentence when the mux has answered
+    :param on_mode: called on a ROS thread when the mux has published its mode
     :param pressed: whether stop-all was pressed before there was a mux to tell
-    ``strangers`` are those who speak as the mux and are not.
+    ``strangers`` are nodes that pose as the mux.
     """
 
     def __init__(self, on_answer, on_mode, pressed=False):
@@ -44,15 +47,16 @@ class MuxClient:
         self._mode = None
         self._limits = None
         self._waits_for = None
+        self._asked, self._asked_at = (0.0, 0.0), 0.0
         #: what keeps the active source from driving, as a sentence; '' for nothing
         self.advice = ''
-        #: whether the dead-man buttons of pads have to be held
+        #: whether the dead-man buttons of pads must be held
         self.dead_man = True
         self._pressed = pressed
         self._stopped = False
         self._proxy = None
         self._wheel = None
-        # Held while something is published: what is given back is not in use then.
+        # Held while publishing, so that nothing is unregistered while in use.
         self._wheel_lock = threading.Lock()
         self._select_mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
         self._speed = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=1, latch=True)
@@ -66,7 +70,8 @@ class MuxClient:
                 ('/mux/waits_for', String, self._on_waits),
                 ('/mux/advice', String, self._on_advice),
                 ('/mux/dead_man', Bool, self._on_dead_man),
-                ('/robot_controller/stop_all', Bool, self._hear_stop))]
+                ('/robot_controller/stop_all', Bool, self._hear_stop),
+                ('/robot_controller/twist', Twist, self._on_twist))]
         self._topics = [self._heard, self._select_mode, self._speed] + heard
         self._force.start()
         self._stopper = Worker('stop_all', self._keep_stopping, RETRY_S).start()
@@ -77,12 +82,12 @@ class MuxClient:
         with self._lock:
             self._stopped = message.data
             if message.data:
-                # From here on the mux keeps it: its word alone counts.
+                # From here on the mux keeps the stop: only its word counts.
                 self._pressed = False
 
     @property
     def stopped(self):
-        """Whether stop-all is in force: by the mux, or by a press that it has not confirmed yet."""
+        """Whether stop-all is in force, or was pressed and is not confirmed yet."""
         return self._pressed or self._stopped
 
     @property
@@ -107,6 +112,13 @@ class MuxClient:
         with self._lock:
             self._waits_for = tidy_text(message.data)
 
+    def _on_twist(self, message):
+        self._asked, self._asked_at = (message.linear.x, message.angular.z), time.monotonic()
+
+    def asked(self):
+        """Return what the mux commands now (m/s, rad/s); it repeats whatever is not zero."""
+        return self._asked if time.monotonic() - self._asked_at < ASKED_S else (0.0, 0.0)
+
     def _on_advice(self, message):
         self.advice = tidy_text(message.data)
 
@@ -114,7 +126,7 @@ class MuxClient:
         self.dead_man = message.data
 
     def state(self):
-        """Return (mode, limits, waits_for) as the mux last said; all None while it is not there."""
+        """Return (mode, limits, waits_for) as last published by the mux; None without it."""
         if self._force.caller not in publishers(self._heard):
             return None, None, None
         with self._lock:
@@ -127,7 +139,7 @@ class MuxClient:
                 self._wheel.send_stick(forward, turn)
 
     def request_mode(self, name):
-        """Ask for another source; whether it is in force says :meth:`state`."""
+        """Ask for another source; :meth:`state` says whether it is in force."""
         self._select_mode.publish(source=name)
 
     def request_limits(self, linear_mps, angular_rad_s):
@@ -135,38 +147,38 @@ class MuxClient:
         self._speed.publish(to_twist(linear_mps, angular_rad_s))
 
     def select(self, names):
-        """Publish the robots that are checked; the repetition of it is the operator's lease."""
+        """Publish the checked robots; repeating this renews the operator's lease."""
         with self._wheel_lock:
             if self._wheel is not None:
                 self._wheel.select(names)
 
     @property
     def at_wheel(self):
-        """Whether stick and selection are published from here."""
+        """Whether this screen publishes stick and selection."""
         return self._wheel is not None
 
     def take_wheel(self):
-        """Publish stick and selection from now on (blocking); tell whether that is news."""
+        """Publish stick and selection from now on (blocking); return whether that is a change."""
         if self._wheel is not None:
             return False
         self._wheel = Wheel()
         return True
 
     def leave_wheel(self):
-        """Give stick and selection back as they are (blocking: it asks the master)."""
+        """Unregister stick and selection as they are (blocking: it asks the master)."""
         with self._wheel_lock:
             wheel, self._wheel = self._wheel, None
         if wheel is not None:
             wheel.unregister()
 
     def stop_all(self):
-        """Stop every robot, through the mux; asked again until it confirms."""
+        """Stop every robot through the mux; ask again until it confirms."""
         with self._lock:
             self._pressed = True
         self._stopper.do(self._engage)
 
     def release(self):
-        """Ask the mux to give up stop-all; it refuses while the stick is not centred."""
+        """Ask the mux to release stop-all; it refuses while the stick is not centred."""
         self._stopper.do(self._release)
 
     def close(self):
@@ -175,13 +187,13 @@ class MuxClient:
         self._force.stop()
 
     def unregister(self):
-        """Give every topic back (blocking: it asks the master)."""
+        """Unregister every topic (blocking: it asks the master)."""
         for topic in self._topics:
             topic.unregister()
         self.leave_wheel()
 
     def _call(self, value):
-        """Call the mux over a connection that is kept open, so that it works without a master."""
+        """Call the mux over a connection kept open, so that it works without a master."""
         if self._proxy is None:
             self._proxy = rospy.ServiceProxy(STOP_SERVICE, SetBool, persistent=True)
         try:
@@ -192,7 +204,7 @@ class MuxClient:
             raise
 
     def _try(self, value):
-        """Call, and once more over a new connection where the old one was dead."""
+        """Call, and once more over a new connection if the old one is dead."""
         try:
             return self._call(value)
         except (rospy.ServiceException, rospy.ROSException, OSError):
@@ -210,7 +222,7 @@ class MuxClient:
         self._on_answer('')
 
     def _keep_stopping(self):
-        """While a press is not confirmed by the mux, ask it again: it may just be restarting."""
+        """Ask the mux again until it confirms a press: it may be restarting."""
         if self._pressed:
             self._engage()
 
@@ -227,10 +239,10 @@ class MuxClient:
 
 
 class Wheel:
-    """What one screen at a time may publish: the virtual joystick and the selection.
+    """What only one screen at a time may publish: the virtual joystick and the selection.
 
-    A screen that does not drive has no publisher of them: a latched selection of yesterday would
-    be told to whoever comes up, too.
+    A screen that does not drive has no publisher of them: every new node would be told its old
+    latched selection, too.
     """
 
     def __init__(self):
@@ -245,10 +257,10 @@ class Wheel:
         self._joy.publish(message)
 
     def select(self, names):
-        """Publish the robots that are checked."""
+        """Publish the checked robots."""
         self._select.publish(robots=list(names))
 
     def unregister(self):
-        """Give both back (blocking: it asks the master)."""
+        """Unregister both (blocking: it asks the master)."""
         for topic in (self._select, self._joy):
             topic.unregister()

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the mux tells ``/diagnostics``: who drives, what is waited for, what was refused."""
+"""What the mux publishes on ``/diagnostics``: who drives, what it waits for, what it refused."""
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from mhri.ros.diagnostics import publish_diagnostics
@@ -87,7 +87,7 @@ class MuxDiagnostics:
         return status
 
     def _owner(self, status, name):
-        """Say who owns an exclusive source, and who was refused."""
+        """Add who owns an exclusive source, and who was refused."""
         with self._lock:
             ownership = self._topics[name].ownership
             owner, refused = (ownership.owner, dict(ownership.refused)) if ownership else (None, {})

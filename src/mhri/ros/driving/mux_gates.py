@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the mux has from the gates: the stop they remember, the operator, their sign of life."""
+"""What the mux learns from the gates: the stop they remember, the operator, a sign of life."""
 from mhri.core.driving.stop_echo import StopEcho
 from mhri.msg import GatesState
 from mhri.ros.driving.in_force import InForce, Strangers, TAKE_SERVICE
@@ -9,11 +9,11 @@ from mhri.ros.graph.rospy_inside import caller_of, link_of
 
 
 class GatesWatch:
-    """Subscribes ``/gates/state`` (``mhri/GatesState``), and believes the gates in force alone.
+    """Subscribes ``/gates/state`` (``mhri/GatesState``), and believes only the gates in force.
 
     The functions are called on rospy's threads or the watch's own.
 
-    :param on_state: called with (must the mux stop, is it another gates, operator or '')
+    :param on_state: called with (the mux must stop, these are new gates, operator or '')
     :param is_stopped: returns whether the mux is stopped
     :param on_silent: called when the gates have been silent for 0.9 s
     """
@@ -42,11 +42,11 @@ class GatesWatch:
         self._force.stop()
 
     def in_control(self, caller):
-        """Tell whether a node may be the operator in control, as far as the gates have said."""
+        """Tell whether a node may be the operator in control, by what the gates have said."""
         return self._operator in ('', caller)
 
     def words(self):
-        """Return what is known of the gates, in words."""
+        """Return what is known about the gates, in words."""
         return self._neighbour.words()
 
     def on_release(self):

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A second mux does not start a fight: the newer one ends the older.
+"""A second mux starts no fight: the newer one ends the older.
 
-Of two muxes with one name the master ends the older by itself. One that was started under another
-name would go on publishing to the same topic, so it is asked to end.
+If two muxes have the same name, the master ends the older one. A mux with another name would go on
+publishing to the same topic, so the newer one asks it to end.
 """
 import time
 import xmlrpc.client
@@ -19,7 +19,7 @@ PATIENCE_S = 1.5
 def end_other_muxes():
     """Ask every other node that serves ``/mux/set_stop_all`` to shut down.
 
-    Only a mux has that service; whoever else publishes velocities (a test, a bag) is left alone.
+    Only a mux has that service; other publishers of velocities (a test, a bag) are left alone.
     """
     api = MasterApi(rospy.get_name(), timeout_s=2.0)
     try:
@@ -34,7 +34,7 @@ def end_other_muxes():
 
 
 def _end(api, name, uri):
-    """Ask one mux to end, and wait a little until the master has let it go."""
+    """Ask one mux to end, and wait a little until the master has dropped it."""
     xmlrpc.client.ServerProxy(uri, transport=TimedTransport(PATIENCE_S)).shutdown(
         rospy.get_name(), 'a newer mux has started')
     deadline = time.monotonic() + PATIENCE_S
@@ -45,7 +45,7 @@ def _end(api, name, uri):
 
 
 def is_superseded(service_uri):
-    """Tell whether another mux serves ``/mux/set_stop_all`` by now; False where nobody says so.
+    """Tell whether another mux serves ``/mux/set_stop_all`` by now; False if nobody knows.
 
     :param service_uri: that of this mux's own service
     """

@@ -1,11 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Mux and gates watch each other: one that hangs is noticed, and ended so that it is replaced.
+"""Mux and gates watch each other: each ends the other when it hangs, so that it is restarted.
 
-A node that crashes is started again by roslaunch; one that hangs is not, since nobody misses it.
-Both repeat what they say twice a second. Whichever falls silent is said to have done so, and ended
-by the other, if that can see that it will come back: it runs on this computer, and roslaunch is its
-parent.
+roslaunch restarts a node that crashes, but not one that hangs. Both repeat their state twice a
+second. If one falls silent, the other reports it, and ends it if it can see that it will come back:
+it runs on this computer, and roslaunch is its parent.
 """
 import os
 import signal
@@ -23,7 +22,7 @@ SILENT_S = 0.9
 END_S = 1.8
 _LOOK_S = 0.1
 _LEARN_AGAIN_S = 1.0
-# A watch that comes round so late was stopped itself, and knows nothing of the other one.
+# A watch that runs this late was stopped itself, and knows nothing about the other node.
 _OWN_SLEEP_S = 0.5
 # In between may be a shell that restarts it, what the shell runs it by, and a process that stands
 # by (:mod:`mhri.ros.stand_by`).
@@ -32,7 +31,7 @@ _LAUNCHERS = ('roslaunch', 'rostest')
 
 
 class Process:
-    """One process of this computer, not to be mistaken for a later one of the same number.
+    """One process of this computer, never mistaken for a later one with the same number.
 
     :param pid: its number
     :raises OSError: there is none, or it cannot be seen
@@ -70,7 +69,7 @@ class Process:
         return False
 
     def comes_back(self):
-        """Tell whether roslaunch started it, by itself or through a shell that restarts it."""
+        """Tell whether roslaunch started it, directly or through a shell that restarts it."""
         parent = self.parent
         for _ in range(_GENERATIONS):
             try:
@@ -102,7 +101,7 @@ class Process:
 
 
 def process_of(uri, caller_id, timeout_s=0.5):
-    """Return the :class:`Process` behind a node's address, None where it is of another computer.
+    """Return the :class:`Process` behind a node's address, None if it is on another computer.
 
     :raises OSError: the node does not answer, or its process cannot be looked at
     """
@@ -125,7 +124,7 @@ def process_of(uri, caller_id, timeout_s=0.5):
 class Neighbour:
     """Watches one node by its heartbeat, on a thread of its own.
 
-    :param label: what it is called in words, e.g. ``the gates``
+    :param label: its name in words, e.g. ``the gates``
     :param on_silent: called once when it has been silent for :data:`SILENT_S`
     :param on_back: called when it is heard again after that
     """
@@ -161,7 +160,7 @@ class Neighbour:
             self._caller, self._beat_at = caller_id, self._clock()
 
     def words(self):
-        """Return what is known of it, in words for the diagnostics."""
+        """Return what is known about it, in words for the diagnostics."""
         with self._lock:
             caller, beat_at, silent = self._caller, self._beat_at, self.silent
         if caller is None:
@@ -199,7 +198,7 @@ class Neighbour:
             self._end(caller)
 
     def _learn(self, caller, beat_at, now):
-        """Find out which process it is, and once a second whether it still is that one."""
+        """Find out which process it is, and check once a second that it still is."""
         if now < self._learn_at:
             return
         self._learn_at = now + _LEARN_AGAIN_S
@@ -219,7 +218,7 @@ class Neighbour:
             self._looked_at = self._clock()
 
     def _end(self, caller):
-        """Kill a process that hangs, once, where it will be started again."""
+        """Kill a process that hangs, once, if it will be restarted."""
         process = self._process
         if process is None or self._remedy:
             return

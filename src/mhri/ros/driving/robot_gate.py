@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The gate of one robot: its rule with the connections that its words leave by."""
+"""The gate of one robot: its rule, and the connections that carry its commands."""
 import math
 import time
 
@@ -21,31 +21,31 @@ from mhri.ros.graph.rospy_inside import (
     listeners, PromptPublisher, publisher_uri, unsubscribe)
 from mhri.ros.robots.link_probe import LinkProbe
 
-# A link that has confirmed nothing for so long is lost: the robot is held, with one zero behind the
-# little that is in it. Before that (0.1 s) nothing but zeros is written into it.
+# A link that has confirmed nothing for this long is lost: the robot is held, with one zero behind
+# the little still on its way. Before that (from 0.1 s on) only zeros are written into it.
 LOST_S = 0.33
 # Heard within this time, a robot is there [s].
 LIVE_S = 1.0
-# A robot has at most so many velocity topics: each costs connections and a registration.
+# Most velocity topics of a robot: each costs connections and a registration.
 MOST_TOPICS = 8
 
 
 class RobotGate:
-    """A :class:`GateRule` with the publishers of its robot, and its ears.
+    """A :class:`GateRule` with the publishers and subscribers of its robot.
 
     Publishes each velocity topic of the robot's type (``geometry_msgs/Twist``) and
     ``/<robot>/mhri_guard/command`` (``geometry_msgs/TwistStamped``); a zero goes to all of them, a
     command to one: the guard's while its echo is alive, else the first that the robot listens to.
     Subscribes ``/<robot>/mhri_guard/echo`` (``geometry_msgs/TwistStamped``) and the odometry, of
-    which only the time counts. Not thread-safe but for the ears: whoever owns it holds ``lock``.
+    which only the time counts. Apart from its callbacks it is not thread-safe: hold ``lock``.
 
     :param name: the robot
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
     :param session: names this run of the gates, see :class:`GuardLink`
-    :param command: the operator's command that was heard last, None before any
-    :param lock: held by the ears' callbacks
-    :param on_foreign_stop: called with the robot where another run of the gates has stopped it
-    :param on_displaced: called with the robot where somebody else has spoken to its guard
+    :param command: the operator's last command, None before the first
+    :param lock: held by the callbacks
+    :param on_foreign_stop: called with the robot if another run of the gates has stopped it
+    :param on_displaced: called with the robot if somebody else has spoken to its guard
     """
 
     def __init__(self, name, robot_type, session, command, lock, on_foreign_stop, on_displaced,
@@ -88,7 +88,7 @@ class RobotGate:
 
     @property
     def round_trip_s(self):
-        """Time to a node of the robot and back [s], NaN where it is not known."""
+        """Round-trip time to a node of the robot [s], NaN if unknown."""
         return self._round_trip_s
 
     def _on_odometry(self, _message):
@@ -98,7 +98,7 @@ class RobotGate:
                 self.send(self.rule.join(self._heard_at))
 
     def _on_echo(self, message):
-        """Take in what the guard says; tell it again of a stop, or its end, that it has missed."""
+        """Take in an echo; repeat a stop or a release that the guard has missed."""
         now = self._clock()
         with self._lock:
             if not self._guard.on_echo(message.header.frame_id, now):
@@ -110,27 +110,27 @@ class RobotGate:
             self._look_at_guard(now)
             if self._guard.displaced:
                 self._begin_session(now)
-            # A stop that another session has latched is said again until it is ours to release.
+            # Repeat a stop that another session latched, until it is ours to release.
             if self.rule.sent.is_zero() and (stopped != (self.rule.state == STOPPED)
                                              or stopped and not ours):
                 self._send_to_guard(ZERO)
 
     def _begin_session(self, now):
-        """Speak to the guard anew: another sender has taken its ear, and ours is not heard."""
+        """Start a new session: another sender has taken over the guard."""
         self._sessions += 1
         self._guard = GuardLink('{}-{}'.format(self._session, self._sessions))
         self._on_displaced(self.name)
         self.send(self.rule.join(now) or ZERO)
 
     def _look_at_guard(self, now):
-        """Let the robot wait for neutral where its guard has come or gone."""
+        """Let the robot wait for neutral if its guard has come or gone."""
         guarded = self._guard.alive(now) and bool(self._publishers[0].links())
         if guarded != self._guarded:
             self._guarded = guarded
             self.send(self.rule.join(now) or ZERO)
 
     def _look_at_links(self, now):
-        """Let the robot wait for neutral where something that it listens with is new."""
+        """Let the robot wait for neutral if one of its listeners is new."""
         links = [publisher.links() for publisher in self._publishers]
         if all(new is old for new, old in zip(links, self._links)):
             return
@@ -141,35 +141,35 @@ class RobotGate:
                   for found, names in zip(links[1:], obeying_now[1:]) for link in found)
         self._links, self._obeying = links, obeying_now
         if new:
-            # What it was told before, perhaps by gates that were killed, is not known: a zero.
+            # Killed gates may have told it something before: send a zero.
             self.send(self.rule.join(now) or ZERO)
 
     def command(self, velocity, now):
-        """Pass on the operator's command, as far as the rule lets it through."""
+        """Pass on what the rule allows of the operator's command."""
         self._look_at_links(now)
         self.send(self.rule.on_command(velocity, now))
 
     def task(self, velocity, now):
-        """Pass on the command of the robot's task, as far as the rule lets it through."""
+        """Pass on what the rule allows of the command of the robot's task."""
         self._look_at_links(now)
         self.send(self.rule.on_task(velocity, now))
 
     def tick(self, now):
-        """Let time pass: staleness, a guard that fell silent, a link that was lost or is back."""
+        """Let time pass: stale commands, a silent guard, a link lost or back."""
         self.send(self.rule.tick(now))
         self._look_at_links(now)
         self._look_at_guard(now)
         self.send(self.rule.hold(self._lost(now), now))
 
     def _lost(self, now):
-        """Tell whether the robot is not heard, or its link confirms nothing."""
+        """Tell whether the robot is not heard or its link confirms nothing."""
         heard_at = self._heard_at
         if heard_at is not None:
             connections = sum(ear.get_num_connections() for ear in self._odometry)
             if link_state(now - heard_at, connections, self.robot_type.silent_after_s) in (
                     SILENT, GONE):
                 return True
-        # Only the robot's own: the laptop of somebody who listens may be lost without harm.
+        # Only the robot's own links: losing a mere listener's laptop does no harm.
         return max(publisher.stalled_s(names) for publisher, names
                    in zip(self._publishers, self._obeying)) > LOST_S
 
@@ -182,7 +182,7 @@ class RobotGate:
                 publisher.publish_urgent(to_twist(0.0, 0.0))
             self._send_to_guard(velocity)
         elif self._guarded:
-            # A guard that still holds a stop is released by a zero first.
+            # A zero must first release a guard that still holds a stop.
             self._send_to_guard(ZERO if self._guard.stop_confirmed else velocity)
         else:
             chosen = self._chosen()
@@ -190,7 +190,7 @@ class RobotGate:
                 chosen.publish(to_twist(velocity.linear_mps, velocity.angular_rad_s))
 
     def _chosen(self):
-        """Return the publisher that commands leave by, None where nobody listens."""
+        """Return the publisher to use for commands, None if nobody listens."""
         if self._guarded:
             return self._publishers[0]
         return next((publisher for publisher, names in zip(self._publishers[1:], self._obeying[1:])
@@ -206,7 +206,7 @@ class RobotGate:
         (guard.publish_urgent if velocity.is_zero() else guard.publish)(message)
 
     def unheard(self, now):
-        """Return [(topic, type)] that nobody listens to although the robot is there."""
+        """Return the (topic, type) to which nobody listens though the robot is there, as a list."""
         there = self._guarded or self._heard_at is not None and now - self._heard_at < LIVE_S
         return [(publisher.resolved_name, publisher.type) for publisher in self._publishers
                 if not publisher.links()] if there else []
@@ -223,7 +223,7 @@ class RobotGate:
             round_trip_s=self._round_trip_s)
 
     def close(self):
-        """Give everything back (blocking: it asks the master); say the last word before."""
+        """Unregister everything (blocking: it asks the master); send the last zero before."""
         self._probe.close()
         self.power.close()
         for publisher in self._publishers:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which robots the gates know, and of what type they are: asked of the master off their path."""
+"""Which robots the gates know, and their types: asked of the master, off the driving path."""
 import threading
 import time
 
@@ -12,31 +12,31 @@ from mhri.ros.graph.look import robot_facts
 from mhri.ros.graph.master_api import MasterApi, MasterError
 
 ROBOTS_PARAMETER = '/mhri/robots'
-# What was ever checked, for the gates after these: a robot that was driven needs their zero, even
-# where it was unchecked meanwhile.
+# What was ever checked, for the next gates: a robot that was driven needs their zero, even if it
+# was unchecked meanwhile.
 DRIVEN_PARAMETER = '/mhri_gates/robots'
 PERIOD_S = 1.0
-# A robot that is heard and does not listen is told of its topics again this often.
+# How often a robot that is heard but does not listen is told again about its topics [s].
 ANNOUNCE_S = 5.0
 MOST_ROBOTS = 64
 
 
 def _names(value):
-    """Return the names of robots in a parameter, whatever else it holds."""
+    """Return the valid robot names in a parameter of any shape."""
     return [name for name in value if isinstance(name, str) and name_problem(name) is None] \
         if isinstance(value, list) else []
 
 
 class Roster:
-    """A thread that opens and closes gates as robots come into the list and go.
+    """A thread that opens and closes gates as robots enter and leave the list.
 
-    A robot is known while it is in the screen's list (parameter ``/mhri/robots``) or checked, and
-    once checked it stays until it has left the list; the gates after these know it as well.
+    A robot is known while it is in the screen's list (parameter ``/mhri/robots``) or checked. Once
+    checked it stays known, also to the next gates, until it has left the list.
 
     :param types: {name: RobotType}
     :param open_gate: called with (name, RobotType), on the thread; replaces what was open
     :param close_gate: called with a name, on the thread
-    :param unheard: returns [(topic, type)] that robots which are heard do not listen to
+    :param unheard: returns a list of (topic, type) to which robots that are heard do not listen
     """
 
     def __init__(self, types, open_gate, close_gate, unheard):
@@ -60,7 +60,7 @@ class Roster:
         return self
 
     def check(self, names):
-        """Take note of the robots that are checked; returns at once."""
+        """Take note of the checked robots; returns at once."""
         self._checked = frozenset(names)
         if not self._checked <= set(self._open):
             self._changed.set()
@@ -79,7 +79,7 @@ class Roster:
                     10.0, 'the robots could not be looked at: {}'.format(repr(error)[:300]))
 
     def _look(self):
-        """Compare what is wanted with what is open.
+        """Open and close gates as needed.
 
         :raises MasterError: the master cannot be asked now; what is open stays
         """
@@ -96,7 +96,7 @@ class Roster:
             self._ever.pop(name, None)
         known = list(self._ever)[:MOST_ROBOTS]
         if known != driven:
-            # Before their gates are open: nobody is driven who is not written down.
+            # Before their gates open: never drive a robot that is not noted.
             api.call('setParam', DRIVEN_PARAMETER, known)
         wanted = list(dict.fromkeys(sorted(self._checked) + sorted(listed) + list(self._ever)))
         wanted = wanted[:MOST_ROBOTS]
@@ -109,10 +109,10 @@ class Roster:
             self._settle(name, facts)
 
     def _announce(self, now):
-        """Register topics again that robots should listen to and do not.
+        """Register again the topics that robots should listen to and do not.
 
-        The master tells a robot of a new publisher once: one that hung or was out of reach just
-        then would never know.
+        The master announces a new publisher only once: a robot that hung or was out of reach at
+        that moment would never know.
 
         :raises MasterError: the master cannot be told now
         """
@@ -125,7 +125,7 @@ class Roster:
             MasterApi(rospy.get_name(), timeout_s=2.0).call_many(calls)
 
     def _settle(self, name, facts):
-        """Open the gate of a robot, or another one where its type has changed."""
+        """Open the gate of a robot, or replace it if its type has changed."""
         news = facts.seen is not None and facts.seen.anything()
         seen = facts.seen if news else self._seen.get(name, Seen())
         robot_type, errors = resolve_robot_type(self._types, name, facts.parameters, seen)
@@ -134,7 +134,7 @@ class Roster:
             self._problems[name] = words
             for text in words:
                 rospy.logwarn('%s', text)
-        # A type never changes under way for a topic or parameter that only went.
+        # A topic or parameter that merely vanished never changes a type under way.
         if name in self._open and (self._open[name] == robot_type
                                    or not (facts.parameters.get('robot_type') or news)):
             return

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The topic of one source: who speaks there, whether it may, and whether it is still there."""
+"""The topic of one source: who publishes there, who may, and who has gone."""
 import time
 
 from geometry_msgs.msg import Twist
@@ -12,7 +12,7 @@ from mhri.core.driving.sources import TWIST
 from mhri.ros.devices.input_node import LOST
 from mhri.ros.graph.rospy_inside import caller_of, link_of, publishers
 
-# The longest text that is taken from a message.
+# The longest text taken from a message.
 LONGEST_TEXT = 200
 _LATELY_S = 3.0
 
@@ -40,11 +40,11 @@ class SourceTopic:
                                             callback_args=self, queue_size=1, tcp_nodelay=True)
 
     def connected(self):
-        """Return the caller ids of the publishers that are connected."""
+        """Return the caller ids of the connected publishers."""
         return publishers(self._subscriber) if self._subscriber else set()
 
     def admits(self, message):
-        """Tell whether a message counts, which that of a second publisher does not always."""
+        """Tell whether a message counts; a second publisher's may not."""
         caller = caller_of(message)
         # Its own connection may not be in rospy's list yet.
         if self.ownership and not self.ownership.admits(caller, self.connected() | {caller}):
@@ -54,9 +54,9 @@ class SourceTopic:
         return True
 
     def device_of(self, message):
-        """Return (what tells this device from any other, its ``header.frame_id``, is lost).
+        """Return (identity of the device, its ``header.frame_id``, whether it is lost).
 
-        One that was started again has the same name, but another connection.
+        A restarted node has the same name but another connection.
         """
         caller, link = caller_of(message), link_of(message)
         known, number = self._links.get(caller, (None, 0))
@@ -69,7 +69,7 @@ class SourceTopic:
         return (caller, number, frame), frame, lost
 
     def has_gone(self):
-        """Tell, once, that the publisher that was listened to is not connected any more."""
+        """Tell, once, that the publisher listened to is no longer connected."""
         if self._heard is None or self._heard in self.connected():
             return False
         self._links.pop(self._heard, None)
@@ -77,23 +77,23 @@ class SourceTopic:
         return True
 
     def refuse(self, reason):
-        """Note why a message could not be used, '' where it could."""
+        """Note why a message could not be used, '' if it could."""
         self._refusal = (self._clock(), str(reason)[:LONGEST_TEXT]) if reason else None
 
     @property
     def spoke(self):
-        """Whether its publisher has been listened to."""
+        """Whether anything was heard from its publisher."""
         return self._heard is not None
 
     @property
     def refusal(self):
-        """Why the newest message could not be used, '' where it could or is long ago."""
+        """Why the newest message could not be used, '' if it could or is long ago."""
         said = self._refusal
         return said[1] if said and self._clock() - said[0] < _LATELY_S else ''
 
     @property
     def rival(self):
-        """(node, owner) where a second publisher was refused lately, else None."""
+        """(node, owner) if a second publisher was refused lately, else None."""
         said = self._rival
         return (said[1], self.ownership.owner) if said and self._clock() - said[0] < _LATELY_S \
             else None

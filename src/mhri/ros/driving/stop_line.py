@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""STOP ALL for a small process that is no node: a line to the mux, held open.
+"""STOP ALL for a small process that is not a node: a line to the mux, kept open.
 
 Calls ``/mux/set_stop_all`` (``std_srvs/SetBool``, true) by TCPROS itself
 (http://wiki.ros.org/ROS/TCPROS), with a time limit on each step, and without the time and memory
-that rospy and the messages take to load. Held open, it needs no master when it matters.
+that loading rospy and the messages takes. Kept open, it needs no master when it matters.
 """
 import io
 import socket
@@ -17,9 +17,9 @@ from rosgraph.network import (
 from mhri.ros.graph.master_api import MasterApi, MasterError
 
 STOP_SERVICE = '/mux/set_stop_all'
-# The name under which the watch asks; it is none of a node.
+# The caller id of the watch; not a node's name.
 CALLER = '/mhri_stop_watch'
-# A mux that cannot tell the master answers late.
+# A mux that cannot reach the master answers late.
 _TIMEOUT_S = 2.0
 # SetBool's request, true, and its answer: whether the call succeeded and, in the answer's own
 # length, "success" before the message.
@@ -32,7 +32,7 @@ _FAILURES = (OSError, MasterError, ROSHandshakeException, LookupError, ValueErro
 class StopLine:
     """The line; every call ends within a few seconds.
 
-    :param master_uri: the master to ask where the mux is
+    :param master_uri: the master, which knows the mux's address
     """
 
     def __init__(self, master_uri):
@@ -40,11 +40,11 @@ class StopLine:
         self._socket = None
 
     def fileno(self):
-        """Return the descriptor to wait for, None where the line is down."""
+        """Return the descriptor to wait for, None if the line is down."""
         return None if self._socket is None else self._socket.fileno()
 
     def connect(self):
-        """Bring the line up where it is down; tell whether it is up."""
+        """Connect the line if it is down; return whether it is up."""
         if self._socket is None:
             try:
                 self._open(urlsplit(self._master.call('lookupService', STOP_SERVICE)))
@@ -63,8 +63,8 @@ class StopLine:
             raise ValueError(found['error'])
 
     def stop(self):
-        """Stop all robots; tell whether the mux has confirmed it."""
-        # The line may have died unnoticed: once more over a new one.
+        """Stop all robots; return whether the mux has confirmed it."""
+        # The line may have died unnoticed: try again over a new one.
         return any(self.connect() and self._ask() for _ in range(2))
 
     def _ask(self):
@@ -79,7 +79,7 @@ class StopLine:
             return False
 
     def _read(self, size):
-        """Return so many bytes."""
+        """Read exactly this many bytes."""
         data = b''
         while len(data) < size:
             part = self._socket.recv(size - len(data))

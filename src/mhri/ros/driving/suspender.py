@@ -12,10 +12,10 @@ RETRY_S = 1.0
 
 
 class _Caller:
-    """Calls one ``set_suspended`` on a thread of its own, so that no node waits for another's.
+    """Calls one ``set_suspended`` on a thread of its own, so that no node waits for another.
 
-    A wish is kept until the node has answered. One that is not running is asked again every second
-    while it is wanted; while it is not, no call is needed, since an input node starts suspended.
+    A wish is kept until the node has answered. While a node that is not running is wanted, it is
+    asked again every second; otherwise no call is needed, since an input node starts suspended.
     """
 
     def __init__(self, service):
@@ -48,7 +48,7 @@ class _Caller:
     def _call(self, suspended):
         """Call once; return whether the wish is settled."""
         try:
-            # rospy's proxy would write an error into the log each time that it finds nobody.
+            # rospy's proxy would log an error each time it finds nobody.
             if not self._api.call_many([('lookupService', self._service)])[0]:
                 self.state = 'its node is not running'
                 return suspended
@@ -67,7 +67,7 @@ class Suspender:
     """The ``set_suspended`` services of all input nodes.
 
     :param services: names of services of type ``mhri/SetSuspended``
-    :param awake: those of them that are never suspended
+    :param awake: those that are never suspended
     """
 
     def __init__(self, services, awake=()):
@@ -76,7 +76,7 @@ class Suspender:
         self._active = None
 
     def state(self, service):
-        """Return what is known of an input node, in words."""
+        """Return what is known about an input node, in words."""
         return self._callers[service].state
 
     def activate(self, service):
@@ -86,6 +86,6 @@ class Suspender:
             caller.wish(name != service and name not in self._awake)
 
     def resume_again(self):
-        """Ask the active node once more: nothing is heard from it, it may have been restarted."""
+        """Ask the active node once more: it is silent, and may have been restarted."""
         if self._active is not None:
             self._callers[self._active].wish(False)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Passes on the velocities of robots on a task: ``/mux_in/task`` to the gates."""
+"""Passes the velocities of robots on a task from ``/mux_in/task`` to the gates."""
 from geometry_msgs.msg import Twist
 import rospy
 
@@ -14,7 +14,7 @@ class TaskMux:
 
     Published at once for each message that may pass.
 
-    :param lock: held while it is decided and published, so that nothing follows a stop
+    :param lock: held while deciding and publishing, so that nothing follows a stop
     :param allowed: called with the lock held; returns (stopped, enabled, is new)
     """
 
@@ -31,7 +31,7 @@ class TaskMux:
                                             queue_size=1, tcp_nodelay=True)
 
     def counts(self):
-        """Return {words: count} of what was refused and held back."""
+        """Return {words: count} of messages refused and held back."""
         with self._lock:
             counts = {'refused: ' + kind: count for kind, count in self._relay.refused.items()}
             counts.update(('held back: ' + kind, count)

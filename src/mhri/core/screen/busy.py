@@ -1,0 +1,33 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is asked before a robot that is in use is removed, and before the screen is closed."""
+from typing import Iterable, List
+
+from mhri.core.screen.views import RobotView
+
+
+def remove_question(robot: RobotView) -> str:
+    """Return what to ask before a robot is taken off the list; '' where nobody would miss it.
+
+    :param robot: :class:`mhri.core.screen.views.RobotView`
+    """
+    uses = ['driven' if robot.driven else 'selected'] if robot.driven or robot.selected else []
+    uses += ['being recorded'] if robot.recording else []
+    return '{} is {}: remove it?'.format(robot.name, ' and '.join(uses)) if uses else ''
+
+
+def close_question(robots: Iterable[RobotView]) -> str:
+    """Return what to ask before the screen is closed; '' while nothing drives or records."""
+    robots = tuple(robots)
+    parts = _part([robot.name for robot in robots if robot.driven], 'driven')
+    parts += _part([robot.name for robot in robots if robot.recording], 'being recorded')
+    return '{}: close anyway?'.format(', '.join(parts)) if parts else ''
+
+
+def _part(names: List[str], use: str) -> List[str]:
+    """Return a clause as a list of one, or nothing where there are no names."""
+    if not names:
+        return []
+    who = names[0] if len(names) == 1 else '{} robots'.format(len(names)) if len(names) > 3 \
+        else ' and '.join((', '.join(names[:-1]), names[-1]))
+    return ['{} {} {}'.format(who, 'is' if len(names) == 1 else 'are', use)]

@@ -1,0 +1,369 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The screen at every size, read pixel by pixel: pictures large, nothing clipped, all readable."""
+import itertools
+
+import numpy as np
+import pytest
+from python_qt_binding.QtCore import QPoint, QRect, Qt
+from python_qt_binding.QtGui import QColor, QImage, QPalette
+from python_qt_binding.QtTest import QTest
+from python_qt_binding.QtWidgets import QAbstractButton, QPushButton, QWidget
+
+from mhri.core.camera.images import Frame
+from mhri.core.screen import views
+from mhri.gui.driving.stop_button import StopButton
+from mhri.gui.screen import theme
+from mhri.gui.screen.labels import TextLine
+from mhri.gui.screen.screen import ScreenWidget
+from mhri.gui.screen.torn_off import TornOff
+from mhri.gui.screen.windows import TurtleBotWindow
+
+# A colour that nothing else on the screen has, also where the header darkens it.
+MAGENTA = (220, 0, 220)
+SMALL, LARGE = (1280, 720), (1920, 1080)
+KINDS = {
+    'plain': {}, 'long': {'long_names': True}, 'group': {'group': True}, 'stopped': {'stop': True}}
+LAYOUTS = [
+    # size, robots, theme, font, kind, drawer
+    ((1024, 600), 3, 'dark', 1.0, 'plain', True), ((1024, 600), 12, 'light', 1.0, 'plain', False),
+    ((1024, 600), 1, 'dark', 1.0, 'stopped', False), ((1024, 600), 6, 'dark', 1.0, 'long', False),
+    (SMALL, 1, 'light', 1.0, 'plain', True), (SMALL, 6, 'dark', 1.0, 'group', True),
+    (SMALL, 12, 'dark', 1.0, 'long', False), ((1366, 768), 3, 'contrast', 1.0, 'long', True),
+    ((1366, 768), 6, 'dark', 1.0, 'stopped', True), ((1366, 768), 12, 'dark', 1.0, 'plain', False),
+    (LARGE, 1, 'dark', 1.0, 'plain', True), (LARGE, 3, 'light', 1.0, 'group', True),
+    (LARGE, 6, 'contrast', 1.0, 'stopped', False), (LARGE, 12, 'dark', 1.0, 'plain', True),
+    (LARGE, 6, 'dark', 2.0, 'long', True), ((3840, 2160), 3, 'dark', 2.0, 'plain', True),
+    ((3840, 2160), 12, 'light', 2.0, 'long', True), ((794, 700), 3, 'dark', 1.0, 'long', False),
+    ((794, 700), 6, 'light', 1.0, 'plain', True), ((794, 700), 3, 'dark', 1.0, 'stopped', False)]
+
+
+def frame_of(colour, size=(640, 480)):
+    """Return a picture of one colour."""
+    rgb = np.zeros((size[1], size[0], 3), np.uint8)
+    rgb[:] = colour
+    return Frame(kind='rgb', rgb=rgb, depth_m=None, depth_range_m=None, full_size=size)
+
+
+def robots_of(count, long_names=False, group=False, stop=False):
+    """Return so many robots: the first driven, the third lost, the fifth with a flat battery."""
+    robots = []
+    for number in range(1, count + 1):
+        more = {'selected': number == 1 or group and number <= 3, 'driven': number == 1}
+        if number == 3:
+            more.update(link=views.GONE, note='nothing heard for 12 s: switched off, or out of reach')
+        if number == 5:
+            more.update(battery=0.12, slow=True, note='battery at 12 %')
+        if stop:
+            more.update(driven=False,
+                        proof=views.ProofView(views.PROOF_STOPPED, 'stopped in 20 ms'))
+        robots.append(views.RobotView(**{**dict(
+            name='{}{}'.format('inspection_crawler_' if long_names else 'bot', number),
+            type_label='TurtleBot2', number=number, link=views.LIVE, age_s=0.012, linear_mps=0.38,
+            angular_rad_s=-0.8, heading_rad=0.8, battery=0.82, x_m=1.0, y_m=2.0,
+            max_linear_mps=0.65, max_angular_rad_s=3.14), **more}))
+    return tuple(robots)
+
+
+class Scene:
+    """A screen with robots that nobody drives."""
+
+    def __init__(self, application, ui_dir, size, count, mode='joy', **kind):
+        self.application = application
+        self.screen = ScreenWidget(ui_dir)
+        self.screen.setAttribute(Qt.WA_DontShowOnScreen)
+        self.screen.resize(*size)
+        self.robots = robots_of(count, **kind)
+        self.stop = kind.get('stop', False)
+        self.view = views.PanelView(
+            ros=views.ROS_CONNECTED, sources=(('joy', 'Virtual joystick'), ('ps3joy', 'Pad')),
+            mode=mode, status='driving bot1', robots=self.robots, camera_bits_per_s=12e6,
+            stop_all=self.stop)
+        self.tiles = {}
+        for robot in self.robots:
+            tile = TurtleBotWindow(ui_dir, robot.name, robot.type_label, self.screen.stage)
+            tile.offer({'rgb', 'scan', 'record'})
+            self.tiles[robot.name] = tile
+
+    def show(self):
+        """Show it until nothing moves any more, and return the screen."""
+        self.screen.show()
+        self.screen.show_view(self.view)
+        self.screen.stage.show_tiles(self.tiles)
+        for _ in range(3):
+            self.application.processEvents()
+            self.screen.show_view(self.view)
+            for robot in self.robots:
+                tile = self.tiles[robot.name]
+                tile.show_view(robot, self.stop)
+                tile.view('rgb').show_frame(frame_of(MAGENTA))
+        self.application.processEvents()
+        return self.screen
+
+    def pixels(self):
+        """Return what is to be seen as an array (row, column, RGB)."""
+        return pixels_of(self.screen)
+
+
+def pixels_of(widget):
+    """Return a picture of a widget as an array (row, column, RGB)."""
+    image = widget.grab().toImage().convertToFormat(QImage.Format_RGB888)
+    bits = image.constBits()
+    bits.setsize(image.byteCount())
+    rows = np.frombuffer(bits, np.uint8).reshape(image.height(), image.bytesPerLine())
+    return rows[:, :3 * image.width()].reshape(image.height(), image.width(), 3).copy()
+
+
+def share_of_picture(pixels):
+    """Return which part of the pixels is picture, under a dark header as well."""
+    red, green, blue = (pixels[..., part].astype(int) for part in range(3))
+    picture = (red > 36) & (abs(red - blue) < 16) & (2 * green < red)
+    return picture.mean()
+
+
+@pytest.fixture
+def scene(application, operator, ui_dir):
+    """Return a maker of scenes."""
+    before = application.font()
+
+    def make(size, count, font=1.0, **more):
+        application.setFont(theme.larger(before, font))
+        return Scene(application, ui_dir, size, count, **more)
+    yield make
+    application.setFont(before)
+
+
+def place_in(window, widget):
+    """Return the rectangle of a widget in its window."""
+    return QRect(widget.mapTo(window, QPoint(0, 0)), widget.size())
+
+
+def visible(window, kind):
+    """Return the widgets of a kind that can be seen."""
+    return [widget for widget in window.findChildren(kind)
+            if widget.isVisible() and not widget.visibleRegion().isEmpty()]
+
+
+def is_scrolled(screen, widget):
+    """Tell whether a widget is in what scrolls."""
+    return screen.robot_list.isAncestorOf(widget) or \
+        screen.arrangement.looks.isAncestorOf(widget)
+
+
+def assert_tiles_are_apart(screen):
+    tiles = [tile for tile in screen.stage.children() if hasattr(tile, 'header')]
+    for tile in tiles:
+        assert tile.isVisible() and screen.stage.rect().contains(tile.geometry()), tile.name
+    for one, other in itertools.combinations(tiles, 2):
+        assert not one.geometry().intersects(other.geometry()), (one.name, other.name)
+
+
+def assert_nothing_is_outside(screen):
+    for widget in visible(screen, QAbstractButton) + visible(screen, TextLine):
+        if not is_scrolled(screen, widget) and screen.rect().width() > 800:
+            seen = widget.visibleRegion().boundingRect()
+            assert seen == widget.rect() or widget.rect().isEmpty(), \
+                (widget.objectName(), widget.rect(), seen)
+
+
+def assert_no_text_is_elided(screen):
+    for line in visible(screen, TextLine):
+        assert line.shown_text() in line.texts, (line.objectName(), line.text(), line.width())
+    for button in visible(screen, QPushButton):
+        if not hasattr(button, 'shown_text'):
+            words = button.fontMetrics().horizontalAdvance(button.text())
+            assert words <= button.width() - 4, (button.objectName(), button.text())
+
+
+def assert_text_can_be_read(screen, pixels):
+    """Look at the pixels of each line: the ground is what most of them are."""
+    for line in visible(screen, TextLine):
+        seen = line.visibleRegion().boundingRect()
+        box = seen.translated(line.mapTo(screen, QPoint(0, 0)))
+        if not line.shown_text().strip() or box.height() < line.height() or not line.isEnabled():
+            continue
+        crop = pixels[box.top():box.bottom() + 1, box.left():box.right() + 1].reshape(-1, 3)
+        colours, counts = np.unique(crop // 2 * 2, axis=0, return_counts=True)
+        ground = QColor(*map(int, colours[counts.argmax()]))
+        best = max(theme.contrast(QColor(*map(int, colour)), ground) for colour in colours)
+        assert best >= 4.5, (line.objectName(), line.text(), best)
+
+
+@pytest.mark.parametrize('size, count, name, font, kind, drawer', LAYOUTS)
+def test_layout(scene, size, count, name, font, kind, drawer):
+    made = scene(size, count, font, **KINDS[kind])
+    made.screen.arrangement.choose_theme(name)
+    made.screen.drawer_button.setChecked(drawer)
+    screen = made.show()
+    assert (screen.width(), screen.height()) == size
+    assert_tiles_are_apart(screen)
+    assert_nothing_is_outside(screen)
+    assert_no_text_is_elided(screen)
+    assert_text_can_be_read(screen, made.pixels())
+
+
+@pytest.mark.parametrize('size, count, least', [(LARGE, 1, 0.70), (LARGE, 3, 0.50),
+                                                (SMALL, 3, 0.45), ((1366, 768), 3, 0.45)])
+def test_most_of_the_screen_is_picture(scene, size, count, least):
+    made = scene(size, count, mode='ps3joy')
+    assert made.screen.drawer_button.isChecked()
+    made.show()
+    assert share_of_picture(made.pixels()) >= least
+
+
+def test_stop_is_the_largest_control(scene):
+    for size in ((1024, 600), SMALL, LARGE):
+        screen = scene(size, 3).show()
+        buttons = visible(screen, QAbstractButton)
+        largest = max(buttons, key=lambda button: button.width() * button.height())
+        assert isinstance(largest, StopButton)
+
+
+@pytest.mark.parametrize('name', sorted(set(theme.THEMES) - {theme.SYSTEM}))
+def test_colours_of_a_theme_can_be_told_from_their_ground(name):
+    palette = theme.palette_of(name)
+    for one in (palette, theme.over_picture(palette)):
+        grounds = [one.color(role) for role in (QPalette.Window, QPalette.Base, QPalette.Button)]
+        for ground in grounds:
+            for sign in (theme.LIVE, theme.ATTENTION, theme.STOP, theme.DRIVE):
+                assert theme.contrast(theme.colour(sign, one), ground) >= 3.0, (sign, ground.name())
+            assert theme.contrast(theme.colour(theme.TEXT, one), ground) >= 4.5
+        for ground in grounds[:2]:
+            assert theme.contrast(theme.colour(theme.MUTED, one), ground) >= 4.5, ground.name()
+        for sign in (theme.LIVE, theme.ATTENTION, theme.STOP, theme.DRIVE):
+            ink = theme.colour(sign, one)
+            assert theme.contrast(theme.readable_on(ink), ink) >= 4.5, sign
+    assert theme.contrast(QColor(Qt.white), theme.STOP_GROUND) >= 4.5
+
+
+def colour_at(pixels, widget, window, x, y):
+    """Return the colour at a place in a widget as an (R, G, B)."""
+    corner = widget.mapTo(window, QPoint(0, 0))
+    return tuple(int(part) for part in pixels[corner.y() + y, corner.x() + x])
+
+
+def test_trouble_is_on_the_edge_of_a_tile_and_driving_on_that_of_another(scene):
+    made = scene(SMALL, 6)
+    screen = made.show()
+    pixels = made.pixels()
+    inks = [theme.colour(name, theme.over_picture(screen.palette()))
+            for name in (theme.DRIVE, theme.STOP, theme.STOP)]
+    for name, ink in zip(('bot1', 'bot3', 'bot5'), inks):
+        tile = made.tiles[name]
+        assert colour_at(pixels, tile, screen, 1, tile.height() // 2) == ink.getRgb()[:3]
+    calm = made.tiles['bot2']
+    assert colour_at(pixels, calm, screen, 2, calm.height() // 2) == \
+        theme.PICTURE_GROUND.getRgb()[:3]
+
+
+def test_the_one_looked_at_is_marked(scene):
+    made = scene(SMALL, 3)
+    screen = made.show()
+    screen.look_at('bot2')
+    made.show()
+    tile = made.tiles['bot2']
+    assert screen.stage.large == ('bot2',)
+    assert colour_at(made.pixels(), tile, screen, 1, tile.height() // 2) == (0xf4, 0xf4, 0xf4)
+
+
+def test_layout_and_colours_are_chosen_by_hand_and_kept(scene):
+    made = scene(SMALL, 3)
+    screen = made.show()
+    looks = screen.arrangement.looks
+    screen.arrangement.show_page(looks)
+    made.show()
+    chosen = []
+    screen.arrangement.theme_chosen.connect(chosen.append)
+    for name in ('layout_alike', 'theme_light', 'numbers_box'):
+        button = looks.findChild(QWidget, name)
+        looks.ensureWidgetVisible(button)
+        QTest.mouseClick(button, Qt.LeftButton, Qt.NoModifier, QPoint(10, button.height() // 2))
+    assert chosen == ['light'] and not theme.is_dark(screen.palette())
+    assert screen.stage.large == ('bot1', 'bot2', 'bot3') and not screen.stage.numbers_shown
+    kept = screen.save_settings()
+    other = scene(SMALL, 3)
+    other.screen.restore_settings(kept)
+    assert other.screen.save_settings()['layout'] == 'alike'
+    assert not theme.is_dark(other.screen.palette())
+    other.screen.restore_settings({**kept, 'layout': 'sideways', 'theme': 'pink'})
+    assert other.screen.save_settings()['theme'] == 'light'
+
+
+def test_a_narrow_screen_with_known_robots_begins_with_pictures(scene):
+    for size, is_open in (((1024, 600), False), ((794, 700), False), (SMALL, True), (LARGE, True)):
+        made = scene(size, 3)
+        made.screen.arrangement.begin_with_robots()
+        screen = made.show()
+        assert screen.drawer_button.isChecked() == is_open, size
+        assert 'drawer' not in screen.save_settings()
+        screen.drawer_button.click()
+        assert screen.save_settings()['drawer'] != is_open
+        made.show()
+        assert screen.drawer_button.isChecked() != is_open, size
+
+
+@pytest.mark.parametrize('count', [1, 3, 12])
+def test_the_stick_floats_over_the_large_picture_alone(scene, count):
+    made = scene(SMALL, count)
+    made.screen.drawer_button.setChecked(False)
+    screen = made.show()
+    assert screen.joystick.parentWidget() is screen.stage
+    assert made.tiles['bot1'].geometry().contains(screen.joystick.geometry())
+    assert screen.joystick.width() < made.tiles['bot1'].height() / 2
+
+
+def test_with_a_pad_no_stick_covers_the_picture(scene):
+    made = scene(SMALL, 1, mode='ps3joy')
+    made.screen.drawer_button.setChecked(False)
+    screen = made.show()
+    assert not screen.joystick.isVisible()
+
+
+def test_without_robots_it_invites_to_look(scene, heard):
+    made = scene(SMALL, 0)
+    screen = made.show()
+    asked = heard(screen.look_requested)
+    button = screen.findChild(QPushButton, 'invitation_look_button')
+    assert button.isVisible() and not screen.joystick.geometry().intersects(button.geometry())
+    QTest.mouseClick(button, Qt.LeftButton)
+    assert len(asked) == 1
+
+
+def test_the_scan_lies_in_a_corner_and_leaves_the_picture_large(scene):
+    made = scene(SMALL, 1)
+    screen = made.show()
+    tile = made.tiles['bot1']
+    before = tile.view('rgb').picture.width()
+    tile.switches.choose(['rgb', 'scan'])
+    made.show()
+    scan = place_in(tile, tile.view('scan'))
+    assert tile.view('rgb').picture.width() == before
+    assert scan.width() < before / 2 and tile.rect().contains(scan)
+    assert scan.top() >= tile.header.geometry().bottom()
+    assert not place_in(screen, tile.view('scan')).intersects(place_in(screen, screen.joystick))
+    tile.switches.choose(['scan'])
+    made.show()
+    assert tile.view('scan').parentWidget() is tile.views_splitter
+    assert tile.view('scan').width() > before / 2
+
+
+def test_a_torn_off_tile_has_stop_and_a_way_back(scene, application):
+    made = scene(SMALL, 2)
+    screen = made.show()
+    tile = made.tiles['bot2']
+    window = TornOff(tile)
+    window.setAttribute(Qt.WA_DontShowOnScreen)
+    window.show()
+    screen.stage.refresh()
+    application.processEvents()
+    asked = []
+    tile.tear_requested.connect(asked.append)
+    assert 'bot2' in window.windowTitle()
+    assert tile.stop_button.isVisible() and tile.stop_button.height() >= 44
+    assert tile.tear_button.text() == 'Put back'
+    QTest.mouseClick(tile.tear_button, Qt.LeftButton)
+    assert asked == ['bot2'] and screen.stage.names == ('bot1',)
+    window.give_back()
+    tile.setParent(screen.stage)
+    screen.stage.refresh()
+    assert screen.stage.names == ('bot1', 'bot2') and tile.tear_button.text() == 'Tear off'
