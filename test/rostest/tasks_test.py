@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Robots on a task: the real nodes, two simulated robots seen by motion capture, and everything that
-ends a task. What is timed here is timed as the robot hears it.
+"""Robots on a task: the real nodes, two simulated robots seen by motion capture, what ends a task.
+
+What is timed here is timed as the robot hears it.
 """
 import math
 import os
@@ -31,6 +32,8 @@ from mhri.ros.resources import read_text  # noqa: E402
 from support.fake_mux import FakeOperator, StateEar  # noqa: E402
 
 PATIENCE_S = 120.0
+# Where bot2 begins.
+BOT2 = (2.0, 1.0)
 COMMANDS = {'bot1': '/bot1/teleop/input', 'bot2': '/bot2/cmd_vel'}
 
 
@@ -111,11 +114,15 @@ class Tasks(unittest.TestCase):
     def test_a_goal_is_reached_within_02_m(self):
         x, y = self.places['bot1'].last()
         goal = (x + (1.5 if x < 6.0 else -1.5), 2.2 if y < 1.8 else 1.2)
-        ended = self.ends(self.start('bot1', 'goto', '{{x: {}, y: {}, heading: 1.0}}'.format(*goal)))
+        words = '{{x: {}, y: {}, heading: 1.0}}'.format(*goal)
+        ended = self.ends(self.start('bot1', 'goto', words))
         self.assertEqual(ended[0][0], TaskState.DONE, ended)
         self.assertLess(math.dist(self.places['bot1'].last(), goal), 0.2)
 
     def test_the_terminal_drives_a_square_and_says_its_corners(self):
+        # Away from everything.
+        there = self.ends(self.start('bot1', 'goto', '{x: 5.0, y: 2.0, heading: 0.0}'))
+        self.assertEqual(there[0][0], TaskState.DONE, there)
         tool = task_tool('bot1', 'square', '0.6')
         self.addCleanup(tool.end)
         self.assertEqual(tool.wait(PATIENCE_S), 0, tool.said())
@@ -148,7 +155,7 @@ class Tasks(unittest.TestCase):
         wait_until(lambda: goal.get_comm_state() == actionlib.CommState.DONE, 'not refused', 30.0)
         self.assertIn('z: unknown key', goal.get_goal_status_text())
 
-    def test_a_follower_keeps_its_distance(self):
+    def test_a_follower_keeps_its_distance_and_returns(self):
         following = self.start('bot2', 'follow', '{leader: bot1, distance: 1.0}')
         x = self.places['bot1'].last()[0]
         leading = self.start('bot1', 'goto', '{{x: {}, y: 2.0, speed: 0.15}}'.format(
@@ -161,6 +168,9 @@ class Tasks(unittest.TestCase):
                                for robot in run.robots])
         following.cancel()
         self.assertEqual(self.ends(following), [(TaskState.STOPPED, 'it was cancelled')])
+        back = self.ends(self.start('bot2', 'return', ''))
+        self.assertEqual(back[0][0], TaskState.DONE, back)
+        self.assertLess(math.dist(self.places['bot2'].last(), BOT2), 0.4)
 
     def test_stop_all_ends_every_task_and_nothing_resumes(self):
         goal, _ = self.on_its_way()
@@ -201,7 +211,8 @@ class Tasks(unittest.TestCase):
 
     def test_the_example_of_the_guide(self):
         path = os.path.join(rospkg.RosPack().get_path('mhri'), 'doc', 'operators_guide.md')
-        example = re.search(r'```python\n(import actionlib\n.*?)```', read_text(path), re.S).group(1)
+        pattern = re.compile(r'```python\n(import actionlib\n.*?)```', re.S)
+        example = pattern.search(read_text(path)).group(1)
         self.assertLessEqual(len(example.splitlines()), 12)
         tool = Process([sys.executable, '-c', example])
         self.addCleanup(tool.end)

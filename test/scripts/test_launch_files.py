@@ -43,7 +43,7 @@ def test_host_by_default():
     config = load(MHRI)
     found = nodes(config)
     assert sorted(found) == ['/mhri_gates', '/mhri_joy', '/mhri_panel', '/mhri_pedal',
-                             '/mhri_voice', '/mux']
+                             '/mhri_tasks', '/mhri_voice', '/mux']
     assert found['/mhri_panel'].required and '--gui auto' in found['/mhri_panel'].args
     assert '--demo ' not in found['/mhri_panel'].args + ' '
     assert not found['/mux'].respawn, 'two hosts on one master would fight for its name'
@@ -72,9 +72,10 @@ def test_names_of_robots_add_no_options_to_the_panel(robots):
 
 
 def test_arguments_of_the_host():
-    assert sorted(nodes(load(MHRI, 'gui:=none', 'inputs:=none'))) == ['/mhri_gates', '/mux']
+    assert sorted(nodes(load(MHRI, 'gui:=none', 'inputs:=none'))) == [
+        '/mhri_gates', '/mhri_tasks', '/mux']
     assert sorted(nodes(load(MHRI, 'gui:=none', 'inputs:=joy'))) == [
-        '/mhri_gates', '/mhri_joy', '/mux']
+        '/mhri_gates', '/mhri_joy', '/mhri_tasks', '/mux']
     enabled = load(MHRI, 'enabling:=pedal').params
     assert enabled['/mhri_pedal/role'].value == 'enable'
     assert enabled['/mux/enabling'].value == 'pedal'

@@ -6,10 +6,13 @@ import random
 
 import numpy as np
 
+from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.robot_types import Limits
-from mhri.core.tasks.base import Body as TaskBody, ENDS, Other, Senses, Start
+from mhri.core.tasks.base import (
+    Body as TaskBody, ENDS, Other, Senses, Start, Step, Task)
 from mhri.core.tasks.brake import Scan, Surroundings
+from mhri.core.tasks.rows import BY_KEY
 from mhri.core.tasks.run import Facts, RobotRun
 from mhri.sim.body import Body, BodyType, Bumper
 from mhri.sim.plan import disc_distance
@@ -148,9 +151,52 @@ class World:
                 robot.body.step(DT_S / 5, self.now_s)
                 robot.contacts += robot.body.blocked
 
-    def until_ended(self, most_s=200.0):
+    def until_ended(self, most_s=200.0, brake=True):
         """Go on until every run has ended."""
         while any(robot.run is not None and robot.run.state not in ENDS for robot in self.robots):
             assert self.now_s < most_s, [(robot.name, robot.run.state, robot.run.text)
                                          for robot in self.robots if robot.run]
-            self.step()
+            self.step(has_laser=brake)
+
+
+class Wander(Task):
+    """Wants anything, at random."""
+
+    def __init__(self, seed):
+        self._chance = random.Random(seed)
+        self._velocity = Velocity()
+
+    def step(self, senses):
+        if self._chance.random() < 0.03:
+            self._velocity = Velocity(self._chance.uniform(0.0, 0.65),
+                                      self._chance.uniform(-1.5, 1.5))
+        return Step(self._velocity)
+
+
+def random_drive(seed, most_s, brake):
+    """Let a robot wander among five things; return it."""
+    chance = random.Random(seed)
+    discs = [(chance.uniform(-1.8, 1.8), chance.uniform(-1.8, 1.8), chance.uniform(0.03, 0.3))
+             for _ in range(5)]
+    world = World(room(4.0, 4.0), [disc for disc in discs
+                                   if math.hypot(*disc[:2]) > 0.5 + disc[2]])
+    robot = world.add('bot1', seed=seed)
+    while world.now_s < most_s:
+        if robot.run is None or robot.run.phase == 'ended':
+            robot.run = RobotRun('bot1', Wander(chance.random()), robot.task_body, 0.0,
+                                 world.now_s)
+        world.step(has_laser=brake)
+    return robot
+
+
+def random_goal(seed, brake=True):
+    """Send a robot to a place in a room with four things; return it at the end."""
+    chance = random.Random(seed)
+    discs = [(chance.uniform(-2.4, 2.4), chance.uniform(-2.4, 2.4), chance.uniform(0.05, 0.3))
+             for _ in range(4)]
+    world = World(room(), [disc for disc in discs if math.hypot(*disc[:2]) > 0.6 + disc[2]])
+    robot = world.add('bot1', seed=seed)
+    robot.begin(BY_KEY['goto'], '{{x: {:.2f}, y: {:.2f}, speed: 0.4}}'.format(
+        chance.uniform(-2.5, 2.5), chance.uniform(-2.5, 2.5)), 0.0)
+    world.until_ended(brake=brake)
+    return robot

@@ -21,6 +21,7 @@ KEYS = {'catkin_pkg': 'python3-catkin-pkg', 'cv2': 'python3-opencv', 'evdev': 'p
 UNNAMED = {'pocketsphinx', 'SimpleXMLRPCServer', 'httplib', 'urlparse', 'xmlrpclib', 'turtlesim'}
 # Used by other means than an import or a launch file.
 USED = {
+    'actionlib_msgs': 'our action',
     'cv_bridge': 'part of what a lab may rely on beside mhri: fixed in the design',
     'libturbojpeg': 'loaded with ctypes', 'message_runtime': 'our messages',
     'roslaunch': 'starts everything', 'rqt_gui': 'the window of the panel'}

@@ -17,7 +17,7 @@ LOOK_M = 1.0
 CLEARANCE_M = 0.14
 # Going around the other way than a moment ago has to be worth this much [rad].
 _KEEP_SIDE_RAD = math.radians(60.0)
-_TURN_GAIN, _MOST_TURN_RAD_S = 2.0, 1.5
+_TURN_GAIN, _MOST_TURN_RAD_S = 1.2, 0.8
 # Further off the heading than this the robot turns on the spot [rad].
 _TURN_FIRST_RAD = 0.7
 _SLOWS_MPS2 = 0.25

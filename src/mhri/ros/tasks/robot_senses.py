@@ -106,6 +106,12 @@ class RobotSenses:
             mocap.open()
             self._mocap = mocap
 
+    def untrack(self):
+        """Do without motion capture, which has gone (blocking: it asks the master)."""
+        mocap, self._mocap = self._mocap, None
+        if mocap is not None:
+            mocap.close()
+
     @property
     def has_laser(self):
         """Whether robots of its type have a laser."""
@@ -152,13 +158,15 @@ class RobotSenses:
 
     def captured(self):
         """Return its :class:`Pose` by motion capture, None where that says nothing that can be."""
-        pose = self._mocap.pose() if self._mocap else None
+        mocap = self._mocap
+        pose = mocap.pose() if mocap else None
         return pose if pose is not None and pose.is_finite() else None
 
     def ages(self):
         """Return {what: age [s], None before the first}, as :class:`Facts` has them."""
+        mocap = self._mocap
         return dict(odometry_age_s=self._odometry.age_s() if self._odometry else None,
-                    place_age_s=self._mocap.age_s() if self._mocap else 0.0,
+                    place_age_s=mocap.age_s() if mocap else 0.0,
                     scan_age_s=self._scan.age_s() if self._scan else None)
 
     @property

@@ -70,8 +70,12 @@ class SeenRobots:
         api = MasterApi(rospy.get_name(), timeout_s=2.0)
         published = {topic for topic, _ in api.call('getSystemState')[0]}
         for name in self.names():
-            if MOCAP_TOPIC.format(name) in published:
-                self.get(name).track()
+            robot = self.get(name)
+            if robot is not None and MOCAP_TOPIC.format(name) in published:
+                robot.track()
+            elif robot is not None and name in names:
+                # Only of who begins: whoever is on its way keeps to its frame, or is lost.
+                robot.untrack()
         numbers = api.call_many([('getParam', NUMBERS_PARAMETER)])[0]
         self._numbers = numbers if isinstance(numbers, dict) else {}
 

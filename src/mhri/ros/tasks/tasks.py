@@ -225,8 +225,10 @@ class Tasks:
         number = 0
         due = self._clock()
         while not (self._done.is_set() or rospy.is_shutdown()):
-            due = max(due + TICK_S, self._clock())
-            self._wake.wait(max(0.0, due - self._clock()))
+            # Never further off than a step, however often it was woken before its time.
+            now = self._clock()
+            due = min(max(due + TICK_S, now), now + TICK_S)
+            self._wake.wait(due - now)
             self._wake.clear()
             number += 1
             try:
