@@ -5,9 +5,9 @@
 A state is a dict of JSON values: ``robots`` (names), ``numbers`` ({robot: its own number}),
 ``mode`` (a source), ``limits`` [m/s, rad/s], ``together``, ``windows`` ({robot: geometry}: where
 its tile was when it was torn off), ``torn_off`` (robots), ``looks`` ({robot: what its tile shows})
-``panel`` (``splitter``, ``drawer``, ``geometry``, ``layout``, ``theme``, ``numbers``) and ``events`` (``sounds``). A geometry is [x, y,
-width, height, maximised] in pixels: a text that can be read, and no blob that Qt would have to
-trust.
+``panel`` (``splitter``, ``drawer``, ``geometry``, ``layout``, ``theme``, ``numbers``) and ``events``
+(``sounds``). A geometry is [x, y, width, height, maximised] in pixels: a text that can be read, and
+no blob that Qt would have to trust.
 """
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
 
