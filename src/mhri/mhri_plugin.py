@@ -31,11 +31,11 @@ class MhriPlugin(Plugin):
                          else ())
 
     def save_settings(self, plugin_settings, instance_settings):
-        """Keep the robots, limits, mode and window places in rqt's perspective."""
+        """Keep robots, limits, mode and places of windows in rqt's perspective."""
         instance_settings.set_value(_KEY, json.dumps(self._host.save_state()))
 
     def restore_settings(self, plugin_settings, instance_settings):
-        """Take them over again; a perspective that cannot be read is left out and said so."""
+        """Take them back; log what of a perspective cannot be used."""
         try:
             problems = self._host.restore_state(json.loads(instance_settings.value(_KEY, '{}')))
         except (ValueError, TypeError, RecursionError) as error:

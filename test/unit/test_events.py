@@ -95,15 +95,15 @@ ROBOT_CASES = {
     'cut_sent': ([{'power': 'cut sent'}], 'power.cut', 'which cannot confirm it'),
     'cut_failed': ([{'power': 'failed: no answer'}], 'power.failed', 'not changed: no answer'),
     'power_back': ([{'power': 'cut'}, {'power': 'restore asked'}, {'power': ''}], 'power.back',
-                   'motor power given back'),
+                   'motor power restored'),
 }
 HIS = ControlView(False, 'panel on lab-pc2 since 14:02')
 PANEL_CASES = {
     'no_master': ([{'ros': ROS_NO_MASTER}], 'master.lost', 'no ROS master'),
-    'master_back': ([{'ros': ROS_NO_MASTER}, {'ros': ROS_CONNECTED}], 'master.back', 'is there'),
+    'master_back': ([{'ros': ROS_NO_MASTER}, {'ros': ROS_CONNECTED}], 'master.back', 'is back'),
     'cut_off': ([{'ros': ROS_CUT_OFF}], 'screen.cut_off', 'restart it'),
     'no_mux': ([{'mode': None}], 'mux.silent', 'is not running'),
-    'mux_back': ([{'mode': None}, {'mode': 'joy'}], 'mux.back', 'runs again'),
+    'mux_back': ([{'mode': None}, {'mode': 'joy'}], 'mux.back', 'is running again'),
     'no_gates': ([{'answers': False}], 'gates.silent', 'the drive service does not answer'),
     'gates_back': ([{'answers': False}, {'answers': True}], 'gates.back', 'answers again'),
     'guard_unknown': ([{'robots': (replace(BOT, guarded=True, power='cut'),)},

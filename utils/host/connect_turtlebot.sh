@@ -12,22 +12,22 @@ help_text() {
   cat <<'HELP'
 Usage: connect_turtlebot.sh USER IP NAME [OPTION]...
 
-Logs in to a robot over ssh and starts it there under the name NAME, joined to mhri on this
-computer. mhri has to run here (mhri_run.sh), and the robot needs its files once
-(turtlebot_deploy.sh). What the robot says is shown; Ctrl-C, or closing the terminal, ends the
-robot's nodes. Asks for the robot's password unless ssh has a key for it.
+Logs in to a robot over ssh and starts it under the name NAME, joined to mhri on this computer.
+mhri must be running here (mhri_run.sh), and the robot needs its files once (turtlebot_deploy.sh).
+Shows the robot's output. Press Ctrl-C, or close the terminal, to end the robot's nodes. Asks for
+the robot's password unless ssh has a key for it.
 
   USER                 the user name on the robot
   IP                   the robot's address, e.g. 192.168.0.7
   NAME                 the robot's name: a letter, then letters, digits and _ (at most 32)
 
-  --host-ip ADDR       this computer's address, as the robot reaches it. Default: of those of
-                       'hostname -I' the one on the robot's network
-  --ssh-port PORT      the port of the robot's ssh server (default: as ssh is set up, else 22)
-  --to FOLDER          where turtlebot_deploy.sh put the files, in the home of USER (default mhri)
+  --host-ip ADDR       this computer's address, as the robot reaches it. Default: the one from
+                       'hostname -I' on the robot's network
+  --ssh-port PORT      the port of the robot's ssh server (default: from ssh's settings, else 22)
+  --to FOLDER          where turtlebot_deploy.sh put the files, in USER's home (default mhri)
   -h, --help           this text
 
-  These are passed on; 'turtle_remote.sh --help' says what they mean:
+  Passed on to the robot; see 'turtle_remote.sh --help':
   --type TYPE, --model MODEL, --launch FILE, --setup FILE, --ip ADDR, --port PORT, --no-camera,
   --no-smoother, --no-guard
 

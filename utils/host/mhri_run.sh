@@ -10,21 +10,21 @@ help_text() {
   cat <<'HELP'
 Usage: mhri_run.sh [OPTION]... [ARG:=VALUE]...
 
-Starts the human-robot interface on this computer: the mux and the panel, in rqt where rqt is
-installed. Installs what is missing and builds first; when nothing is missing and nothing has
-changed, it does neither and needs no network. Ctrl-C, or closing the panel, ends everything.
+Starts the human-robot interface on this computer: the mux, the gates and the screen, in rqt if that
+is installed. First installs what is missing and builds; if nothing is missing or has changed, it
+does neither and needs no network. Press Ctrl-C, or close the screen, to end everything.
 
 Robots
-  --sim N [TYPES]      add N simulated robots (1 to 12). TYPES names their types in turn, e.g.
-                       --sim 3 "turtlebot2 turtlebot3_burger turtlebot3_waffle"; also there:
+  --sim N [TYPES]      add N simulated robots (1 to 12). TYPES lists their types in turn, e.g.
+                       --sim 3 "turtlebot2 turtlebot3_burger turtlebot3_waffle"; another type is
                        turtlebot3_waffle_pi
   --sim-types TYPES    the same, as an option of its own
-  --demo               drive simulated robots by a script, with no hands: discover, select two of
-                       three, drive both, change the selection while moving, stop all. Prints what
-                       each robot did, writes pictures and ends: 0 where all went well, else 1.
-                       Means --sim 3 unless --sim is given; has a master of its own, so that a
-                       system that is running is not disturbed, and neither reads nor writes the
-                       settings of the panel.
+  --demo               drive simulated robots by a script: discover, select two of three, drive
+                       both, change the selection while they move, stop all. Prints what each
+                       robot did, writes pictures and ends: 0 if all went well, else 1. Means
+                       --sim 3 unless --sim is given. Uses a master of its own, so it does not
+                       disturb a running system, and neither reads nor writes the settings of the
+                       screen.
   --screenshot FILE    where --demo writes the picture of the screen (PNG; default mhri-demo.png,
                        here); beside it come four of its parts, e.g. mhri-demo_panel.png, _bot_window,
                        _depth and _stopped. What is there is overwritten.
@@ -34,31 +34,30 @@ Network
                        address of 'hostname -I'. With --sim, or a master on this machine:
                        127.0.0.1, and no network is needed.
   --master URI         use the ROS master at URI, e.g. http://192.168.0.103:11311. Default: port
-                       11311 of this computer; one that runs there is used, else one is started.
-                       One master, one mhri: where it runs already, nothing is started. A second
-                       system on one computer takes a port of its own.
+                       11311 of this computer; uses the master running there, else starts one.
+                       One master, one mhri: if mhri is already running, nothing is started. A
+                       second system on one computer needs a port of its own.
 
-  ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME are set from these; what the shell had is not used.
+  ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME are set from these; their values in your shell are not used.
 
 Other
   --install-space      build and run from the install space instead of the devel space
   ARG:=VALUE           an argument of launch/mhri.launch, e.g. gui:=none or robots:="bot1 bot2"
   -h, --help           this text
 
-Without a display (DISPLAY and WAYLAND_DISPLAY not set) the panel runs under Xvfb, 1920x1080.
+Without a display (DISPLAY and WAYLAND_DISPLAY not set) the screen runs under Xvfb, 1920x1080.
 
-Works on Debian 12, and on Ubuntu 20.04 with ROS Noetic. sudo is asked for only when packages are
-missing. The workspace is build/.ws in the checkout; deleting it costs a minute at the next
-start.
+Works on Debian 12, and on Ubuntu 20.04 with ROS Noetic. It uses sudo only when packages are missing.
+The workspace is build/.ws in the checkout; if you delete it, the next start takes a minute longer.
 
-Exit status: 0 the panel was closed, 1 could not start, or the panel or the demo failed,
+Exit status: 0 the screen was closed, 1 could not start, or the screen or the demo failed,
 2 wrong option, 130 or 143 ended by Ctrl-C or a signal.
 
 Examples
   mhri_run.sh                       drive the robots of the network
-  mhri_run.sh --ip 192.168.0.103    the same, on this of several addresses
+  mhri_run.sh --ip 192.168.0.103    the same, if the computer has several addresses
   mhri_run.sh --sim 3               three simulated robots; needs neither robots nor network
-  mhri_run.sh --demo                the proof that all of it works here
+  mhri_run.sh --demo                proof that everything works here
 HELP
 }
 

@@ -16,14 +16,14 @@ help_text() {
   cat <<'HELP'
 Usage: mhri_test.sh [--only GROUP]... [--jobs N] [--bench]
 
-Installs what is missing, builds in build/.ws and runs every test on this machine alone (127.0.0.1).
-The last line is the count, e.g. "412 passed, 0 failed"; the exit status is 0 only where something
-ran and nothing failed.
+Installs what is missing, builds in build/.ws and runs every test, on this machine only (127.0.0.1).
+The last line is the count, e.g. "412 passed, 0 failed"; the exit status is 0 only if something ran
+and nothing failed.
 
-  --only GROUP   run one group only (may be given again): lint, unit, oldest, scripts, rostest,
+  --only GROUP   run one group only (may be repeated): lint, unit, oldest, scripts, rostest,
                  gui, faults, bench, or fast
-  --jobs N       run N files at the same time where no times are measured, the others alone
-                 (default: the number of processors, at most 4); 1: one after the other
+  --jobs N       run N files at once; those that measure time run alone (default: the number of
+                 processors, at most 4); 1: one after another
   --bench        run the benchmarks (test/bench) in full instead of their short form
   -h, --help     this text
 
@@ -35,7 +35,7 @@ ran and nothing failed.
   bench    each benchmark; prints its table
 
 The result files (JUnit) are in build/.ws/build/test_results. Works on Debian 12, and on Ubuntu 20.04
-with ROS Noetic. The first run needs a network for what is missing, the second none.
+with ROS Noetic. The first run needs a network to install what is missing, later runs do not.
 HELP
 }
 

@@ -12,13 +12,13 @@ help_text() {
   cat <<'HELP'
 Usage: turtlebot_deploy.sh USER@IP [OPTION]...
 
-Copies the files of utils/remote to a robot, over one ssh connection: the password is asked for
-once, or not at all where ssh has a key. Only files that differ are sent; what was written is read
-again and compared. A file that is in use is replaced whole, never written into.
+Copies the files of utils/remote to a robot over one ssh connection. It asks for the password once,
+or not at all if ssh has a key. It sends only files that differ, then reads them back and compares
+them. It replaces a file in use as a whole and never writes into it.
 
   USER@IP              the user name on the robot and its address, e.g. turtlebot@192.168.0.7
-  --to FOLDER          where to put them, in the home of USER (default mhri)
-  --ssh-port PORT      the port of the robot's ssh server (default: as ssh is set up, else 22)
+  --to FOLDER          where to put them, in USER's home (default mhri)
+  --ssh-port PORT      the port of the robot's ssh server (default: from ssh's settings, else 22)
   -h, --help           this text
 
 Exit status: 0 the robot has the files of this computer, 1 it does not, 2 wrong option,

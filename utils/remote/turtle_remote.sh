@@ -17,38 +17,37 @@ Usage: turtle_remote.sh HOST_IP NAME [OPTION]...
 
 Starts this robot under the name NAME and joins it to mhri on the host. Runs on the robot, in a
 terminal or through connect_turtlebot.sh. First it sets the ROS variables and checks that the
-host's master answers, that the host reaches this robot, and that the name is free; each thing that
-is wrong is said with what mends it. Then it starts the robot's own bringup and its camera. Ctrl-C,
-or closing the terminal, ends all of it. When mhri is started anew on the host, the robot joins
-again by itself.
+host's master answers, that the host reaches this robot, and that the name is free; for each problem
+it says how to fix it. Then it starts the robot's own bringup and its camera. Press Ctrl-C, or close
+the terminal, to end everything. When you restart mhri on the host, the robot joins again by itself.
 
   HOST_IP              the host's address, e.g. 192.168.0.103
   NAME                 the robot's name: a letter, then letters, digits and _ (at most 32)
 
 Robot
   --type TYPE          turtlebot2, turtlebot3, turtlebot3_burger, turtlebot3_waffle,
-                       turtlebot3_waffle_pi, generic, or a type of your lab's (with --launch).
-                       Default: whichever of turtlebot_bringup and turtlebot3_bringup is here
-  --model MODEL        TurtleBot3: burger, waffle or waffle_pi. Default: TURTLEBOT3_MODEL, of this
-                       shell or of ~/.bashrc
-  --launch FILE        any other robot: its own launch file, a path from here (through
-                       connect_turtlebot.sh: from the home on the robot), or PACKAGE/FILE.launch
+                       turtlebot3_waffle_pi, generic, or your lab's own type (with --launch).
+                       Default: by whether turtlebot_bringup or turtlebot3_bringup is installed
+  --model MODEL        TurtleBot3: burger, waffle or waffle_pi. Default: TURTLEBOT3_MODEL from this
+                       shell or ~/.bashrc
+  --launch FILE        any other robot: its own launch file, as PACKAGE/FILE.launch or a path (relative
+                       paths start here, or in the robot's home through connect_turtlebot.sh)
   --no-camera          do not start the camera
-  --no-smoother        TurtleBot2: leave the velocity smoother out
-  --no-guard           do not start mhri_guard, which drops commands that come late, stops the robot
-                       when none come, and keeps it stopped by stop-all when the network is lost
+  --no-smoother        TurtleBot2: leave out the velocity smoother
+  --no-guard           do not start mhri_guard, which drops late commands, stops the robot when none
+                       arrive, and holds a stop-all on the robot when the network is lost
 
 Network
-  --ip ADDR            this robot's address. Default: of those of 'hostname -I' the one on the
-                       host's network
+  --ip ADDR            this robot's address. Default: the one from 'hostname -I' on the host's
+                       network
   --port PORT          the master's port on the host (default 11311)
 
 Other
-  --setup FILE         the setup.bash of the robot's workspace. Default: what this shell has
-                       already, else ~/catkin_ws/devel/setup.bash, else that of /opt/ros
+  --setup FILE         the setup.bash of the robot's workspace. Default: what this shell has already
+                       sourced, else ~/catkin_ws/devel/setup.bash, else the one in /opt/ros
   -h, --help           this text
 
-  ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME are set from these, ROS_NAMESPACE is taken away.
+  ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME are set from these; ROS_NAMESPACE is unset.
 
 Exit status: 0 only for --help, 1 could not start or the robot's launch ended, 2 wrong option,
 129, 130 or 143 ended by the end of the terminal, Ctrl-C or a signal.

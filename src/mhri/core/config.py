@@ -196,7 +196,7 @@ class Section:
                 for number, item in enumerate(value)]
 
     def named_sections(self, name: str) -> Dict[str, 'Section']:
-        """Return {key: sub-section} of a mapping of mappings; {} where the key is missing."""
+        """Return {key: sub-section} of a mapping of mappings; {} if the key is missing."""
         value = self.take(name, {})
         if not isinstance(value, dict):
             raise self.error(name, 'expected a mapping, got {}'.format(shown(value)))

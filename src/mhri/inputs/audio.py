@@ -19,7 +19,7 @@ from mhri.core.voice.sound import BLOCK_BYTES, BLOCK_S, RATE_HZ
 from mhri.inputs import child
 from mhri.inputs.reader import DeviceAbsent, DeviceLost
 
-# A microphone that gives nothing for so long is gone; ALSA does not always say so.
+# A microphone that gives nothing for this long is gone; ALSA does not always say so.
 _SILENT_S = 2.0
 _OPEN_S = 10.0
 # What is said while an utterance is recognised waits here: 4 s of sound.
@@ -85,7 +85,7 @@ class Microphone:
         self._last = time.monotonic()
 
     def read(self, timeout_s):
-        """Return the next block, or b'' where too little came in time.
+        """Return the next block, or b'' if too little came in time.
 
         :raises DeviceLost: it was pulled out
         """
@@ -99,7 +99,7 @@ class Microphone:
         return block
 
     def close(self):
-        """Give it back; does nothing where it is not open."""
+        """Give it back; does nothing if it is not open."""
         process, self._process = self._process, None
         if process is not None:
             process.kill()
@@ -135,7 +135,7 @@ class WavFile:
         return 'the recording ' + self._path
 
     def read(self, timeout_s):
-        """Return the next block, or b'' where it is not time for it."""
+        """Return the next block, or b'' if it is not time for it."""
         now = time.monotonic()
         # The first block is due when it is asked for: loading the recogniser takes a while.
         self._due = self._due or now
@@ -147,7 +147,7 @@ class WavFile:
         return self._file.readframes(BLOCK_BYTES // 2).ljust(BLOCK_BYTES, b'\0')
 
     def close(self):
-        """Close it; does nothing where it is not open."""
+        """Close it; does nothing if it is not open."""
         self._due = 0.0
         if self._file is not None:
             self._file.close()
@@ -211,7 +211,7 @@ class RawStream:
         self._held += data
 
     def read(self, timeout_s):
-        """Return the next block, or b'' where too little came in time.
+        """Return the next block, or b'' if too little came in time.
 
         :raises DeviceLost: it has ended, or cannot be read
         """
@@ -228,7 +228,7 @@ class RawStream:
         return block
 
     def close(self):
-        """Close it; does nothing where it is not open."""
+        """Close it; does nothing if it is not open."""
         if self._fd is not None:
             os.close(self._fd)
             self._fd = None

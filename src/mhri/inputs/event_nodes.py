@@ -122,7 +122,7 @@ def _usb(folder):
 
 
 def _line(folder, name):
-    """Return the one line of a file of the kernel, '' where it has gone or says nothing."""
+    """Return the one line of a file of the kernel, '' if it has gone or says nothing."""
     try:
         with open(os.path.join(folder, name), encoding='utf-8', errors='replace') as stream:
             return stream.readline().strip()

@@ -26,7 +26,7 @@ class Spotted:
 
 @dataclass(frozen=True)
 class Ended:
-    """An utterance has ended; ``hypothesis`` is None where it fits no command."""
+    """An utterance has ended; ``hypothesis`` is None if it fits no command."""
 
     began_s: float
     at_s: float

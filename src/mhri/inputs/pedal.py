@@ -85,7 +85,7 @@ class PedalReader(Reader):
 
     @property
     def note(self):
-        """What the operator has to do before every pedal counts, '' where nothing."""
+        """What the operator has to do before every pedal counts, '' if nothing."""
         source = self._open
         return source.note if source else ''
 

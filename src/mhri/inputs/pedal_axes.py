@@ -60,7 +60,7 @@ class PedalAxes:
 
     @property
     def note(self):
-        """What the operator has to do before every pedal counts, '' where nothing."""
+        """What the operator has to do before every pedal counts, '' if nothing."""
         return self._state.note() if self._state else ''
 
     def read(self, timeout_s):
@@ -82,7 +82,7 @@ class PedalAxes:
             self._joystick.wait(left_s)
 
     def close(self):
-        """Give the pedals back; does nothing where none are open."""
+        """Give the pedals back; does nothing if none are open."""
         joystick, self._joystick, self._last = self._joystick, None, None
         if joystick is not None:
             joystick.close()

@@ -141,7 +141,7 @@ class PedalKeys:
 
     @property
     def note(self):
-        """What the operator has to do before every pedal counts, '' where nothing."""
+        """What the operator has to do before every pedal counts, '' if nothing."""
         return self._state.note() if self._state else ''
 
     def _take(self):

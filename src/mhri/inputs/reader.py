@@ -18,7 +18,7 @@ class Reading:
     """The whole state of a device: what a ``sensor_msgs/Joy`` carries.
 
     ``axes`` are finite, as the driver gives them; ``buttons`` are 0 or 1. ``profile`` is the name
-    of the profile that says what they mean ('' where the source's row says it). ``rest`` are the
+    of the profile that says what they mean ('' if the source's row says it). ``rest`` are the
     values of the axes while nobody touches the device, () where all of them rest at 0: a trigger
     rests at -1, and at 0 it would be a half pressed one.
     """
@@ -50,7 +50,7 @@ class Reader:
         """Return the name of the device that :meth:`open` would open, without touching any.
 
         It is asked every two seconds while the node is suspended, and has to cost next to nothing.
-        '' where it cannot be told.
+        '' if it cannot be told.
 
         :raises DeviceAbsent: there is none
         """
@@ -67,14 +67,14 @@ class Reader:
         """Wait at most so long for a change.
 
         :param timeout_s: 0.0: only look
-        :returns: a :class:`Reading`, or None where nothing changed, or the device's state is not
+        :returns: a :class:`Reading`, or None if nothing changed, or the device's state is not
             known yet
         :raises DeviceLost: it is gone; it has to be closed and opened again
         """
         raise NotImplementedError
 
     def close(self):
-        """Give the device back; does nothing where none is open."""
+        """Give the device back; does nothing if none is open."""
         raise NotImplementedError
 
 

@@ -351,7 +351,7 @@ class Recogniser:
                 for part in decoder.seg()]
 
     def recognise(self, sound):
-        """Return the :class:`Hypothesis` of a whole utterance, or None where nothing fits.
+        """Return the :class:`Hypothesis` of a whole utterance, or None if nothing fits.
 
         :param sound: 16 bit little endian, mono, 16 kHz
         """

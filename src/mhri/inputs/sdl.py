@@ -187,7 +187,7 @@ class Joystick:
         return len(self._axes) + 2 * len(self._hats)
 
     def state(self):
-        """Return (axes, buttons) now: axes in [-1, 1] or None where not known yet, buttons 0 or 1.
+        """Return (axes, buttons) now: axes in [-1, 1] or None if not known yet, buttons 0 or 1.
 
         :raises DeviceLost: it is gone
         """

@@ -142,7 +142,7 @@ class Player:
         return self.is_open and self._channel.get_busy()
 
     def open(self):
-        """Open the device; does nothing where it is open.
+        """Open the device; does nothing if it is open.
 
         :raises DeviceAbsent: there is none, or it cannot be used
         """
@@ -207,7 +207,7 @@ def _follow(player):
 
 
 def main():
-    """Be the child: see :class:`Speaker`; ends with 0 where no try is worth another."""
+    """Be the child: see :class:`Speaker`; ends with 0 if no try is worth another."""
     try:
         player = Player()
     except DeviceAbsent as problem:

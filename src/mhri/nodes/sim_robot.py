@@ -84,7 +84,7 @@ def body_type(name, template):
 
 
 def seed_of():
-    """Return the parameter ``~seed``, a whole number from 0 up; None where there is none.
+    """Return the parameter ``~seed``, a whole number from 0 up; None if there is none.
 
     :raises ConfigError: it is no such number
     """

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A scripted drive without hands: the real panel, its real buttons, keys and stick.
+"""A scripted drive without hands, with the real panel, buttons, keys and stick.
 
 Looks for robots, selects two of three, drives both, changes the selection while they move, and
-stops all. It waits for what it sees in the robots' own odometry, never for a time to pass, and ends
-with the first thing that does not come true.
+stops all. It waits for what the robots' own odometry shows, never for a fixed time, and ends at the
+first step that fails.
 """
 from concurrent.futures import ThreadPoolExecutor
 import math
@@ -19,17 +19,17 @@ from mhri.core.screen.views import LIVE, PROOF_STOPPED
 from mhri.gui.screen.stale_cover import StaleCover
 
 POLL_MS = 50
-# How the panel's bottom line ends.
+# Endings of the bottom line.
 CENTRE, READY = 'centre the stick to drive', 'ready'
 PATIENCE_S = 20.0
 
 
 class DemoFailed(Exception):
-    """A step did not come true in time; the text says which."""
+    """A step did not succeed in time; the text says which."""
 
 
 class Hands:
-    """Mouse and keyboard of somebody who is not there: events as the window system sends them.
+    """A simulated mouse and keyboard: events as the window system sends them.
 
     :param panel: :class:`mhri.gui.screen.screen.ScreenWidget`
     """
@@ -83,10 +83,10 @@ class Hands:
 
 
 class Grip:
-    """A condition that holds something (stick or key) until another condition is true.
+    """Holds something (stick or key) until a condition is true.
 
-    Where the mux asks for a centred stick meanwhile (a computer that stalled for half a second was
-    taken for a silent source), it does what an operator does: lets go, and takes it again.
+    If the mux asks for a centred stick meanwhile (a computer that stalled for half a second looks
+    like a silent source), it does what an operator does: it lets go and takes hold again.
 
     :param take: function that takes it
     :param let_go: function that lets it go
@@ -149,7 +149,7 @@ class Diary:
 
 
 class Demo(QObject):
-    """Plays the script on the GUI thread, a step whenever its condition has come true.
+    """Plays the script on the GUI thread, one step whenever its condition is true.
 
     :param program: :class:`mhri.standalone.Standalone`
     :param screenshot: where to write a picture of the screen while the robots move, and those of
@@ -191,7 +191,7 @@ class Demo(QObject):
                            for name in names)
 
     def _reads(self, words):
-        """Return a condition: the line at the bottom of the panel ends with these words."""
+        """Return a condition: the bottom line ends with these words."""
         return lambda: self._operator.view().status.endswith(words)
 
     @staticmethod
@@ -199,12 +199,12 @@ class Demo(QObject):
         return lambda: one() and other()
 
     def _hold(self, forward, turn, condition):
-        """Return a condition that drives until another one is true."""
+        """Return a condition that drives until another condition is true."""
         return Grip(lambda: self._hands.hold_stick(forward, turn), self._hands.let_go,
                     lambda: self._operator.view().status, condition)
 
     def _found_three(self):
-        """Return a condition: three robots are live; until then it looks again every second."""
+        """Return a condition: three robots are live; it looks again every second until then."""
         looked_at = [-math.inf]
 
         def found():
@@ -218,12 +218,12 @@ class Demo(QObject):
         return found
 
     def _travelled(self, name, metres):
-        """Return a condition: the robot has driven so far from here."""
+        """Return a condition: the robot has driven this far from here."""
         begun = self._diary.robots[name]['path']
         return lambda: self._diary.robots[name]['path'] - begun >= metres
 
     def _steps(self):
-        """Yield (what is waited for, condition)."""
+        """Yield (what to wait for, condition)."""
         hands, operator = self._hands, self._operator
         yield 'the mux to be there', lambda: operator.view().mode is not None
         yield 'three robots to be found and live', self._found_three()
@@ -269,7 +269,7 @@ class Demo(QObject):
             self._say('wrote {}'.format(path))
 
     def _poll(self):
-        """Go on where the present condition is true."""
+        """Go on if the present condition is true."""
         self._diary.note(self._operator.view().robots)
         try:
             if self._waiting is not None:

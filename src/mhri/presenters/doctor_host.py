@@ -5,7 +5,7 @@ from mhri.gui.doctor.doctor_page import DoctorPage
 
 
 class DoctorHost:
-    """Opens the page when it is asked for, and shows what comes of it.
+    """Opens the page on request, and shows the result.
 
     :param operator: :class:`mhri.ros.screen.backend.ScreenBackend`
     :param screen: :class:`mhri.gui.screen.screen.ScreenWidget`
@@ -29,7 +29,7 @@ class DoctorHost:
         self._operator.examine()
 
     def show(self, findings, took_s):
-        """Show what was found; a sentence in place of the list says why there is none."""
+        """Show the findings; a sentence in place of the list says why there are none."""
         if isinstance(findings, str):
             self.page.show_failure(findings)
         else:

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The guard of everything that draws: what fails is logged once a second, and said on the screen.
+"""The guard of everything that draws: it logs failures once a second and shows them.
 
-PyQt ends the program at an exception that leaves a slot or an event handler, unless somebody has
-set an ``excepthook`` (https://www.riverbankcomputing.com/static/Docs/PyQt5/incompatibilities.html).
+PyQt ends the program if an exception leaves a slot or an event handler, unless an ``excepthook``
+is set (https://www.riverbankcomputing.com/static/Docs/PyQt5/incompatibilities.html).
 A screen that draws badly must go on: its STOP ALL does not need the drawing.
 """
 import math
@@ -22,7 +22,7 @@ _COVERS = weakref.WeakSet()
 
 
 def _note_slip(kind, value, trace):
-    """Take note of an exception that nobody caught, as in a painting."""
+    """Take note of an uncaught exception, e.g. from painting."""
     log_slips(kind, value, trace)
     for cover in list(_COVERS):
         try:
@@ -32,10 +32,10 @@ def _note_slip(kind, value, trace):
 
 
 def watch_slips():
-    """Let exceptions that nobody caught be said on the screen, and logged once each.
+    """Show uncaught exceptions on the screen, and log each once.
 
-    What was there before goes on, but for Python's own hook and pyqtgraph's, which print each one:
-    a painting that fails would print thousands.
+    Earlier hooks still run, except Python's own and pyqtgraph's, which print every exception:
+    failing to paint would print thousands.
     """
     before = sys.excepthook
     if getattr(before, 'of_mhri', False):
@@ -51,7 +51,7 @@ def watch_slips():
 
 
 class DrawGuard:
-    """Draws one window, and covers it while that fails.
+    """Draws one window, and covers it while drawing fails.
 
     :param window: the window or widget that is drawn
     """
@@ -64,7 +64,7 @@ class DrawGuard:
         watch_slips()
 
     def run(self, job, *args):
-        """Draw; return whether that went well."""
+        """Draw; return whether it succeeded."""
         try:
             job(*args)
         except Exception as error:  # the guard of this boundary: see the head of this file
@@ -76,7 +76,7 @@ class DrawGuard:
         return True
 
     def _log(self, reason):
-        """Log the exception at hand, unless one has just been."""
+        """Log the present exception, unless one was logged just now."""
         now = time.monotonic()
         if now - self._logged_at >= LOG_EVERY_S:
             self._logged_at = now
@@ -85,6 +85,6 @@ class DrawGuard:
                          traceback.format_exc(limit=-6)[-2000:])
 
     def end(self):
-        """Draw no more."""
+        """Stop drawing."""
         _COVERS.discard(self.cover)
         self.cover.end()

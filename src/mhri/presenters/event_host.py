@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Joins what changes on the screen with the event list, the bottom line and the tones.
 
-Everything here runs on the GUI thread; the tones are a child process's.
+Everything here runs on the GUI thread; a child process plays the tones.
 """
 import queue
 import time
@@ -13,7 +13,7 @@ from mhri.core.events.events import EventLog, LOST_TONE
 from mhri.gui.events.event_list import EventList
 from mhri.inputs.speaker import Speaker
 
-# Starting takes half a second of a core, which the screen needs itself at first; a tone that is to
+# Starting takes half a second of a core, which the screen itself needs at first; a tone that must
 # be heard before does not wait for it.
 START_MS = 5000
 
@@ -59,7 +59,7 @@ class EventHost(QObject):
         self._begin.timeout.connect(self._speaker.start)
 
     def start(self):
-        """Get ready to be heard, in a while."""
+        """Prepare the sound, in a while."""
         self._begin.start()
 
     def show(self, view):
@@ -72,7 +72,7 @@ class EventHost(QObject):
         self._tell(events)
 
     def note(self, kind, text, robot=''):
-        """Take in what no view tells, e.g. ``('request.refused', 'not done: ...')``.
+        """Take in what no view says, e.g. ``('request.refused', 'not done: ...')``.
 
         :param kind: a key of :data:`mhri.core.events.events.KINDS`
         """
@@ -82,7 +82,7 @@ class EventHost(QObject):
         return self.log.note(kind, text, self._clock(), self._wall(), robot)
 
     def _tell(self, events):
-        """Show events, and let them be heard."""
+        """Show events and play their tones."""
         if not events:
             return
         self.page.add(events)
@@ -101,12 +101,12 @@ class EventHost(QObject):
         self._show_headline()
 
     def _look_at(self, name):
-        """Look at the robot of a line, where it is still in the list."""
+        """Look at the robot of a line, if it is still in the list."""
         if name in self._names:
             self._screen.look_at(name)
 
     def _switch(self, on):
-        """Take in whether tones are wanted; that of a robot lost while driven always is."""
+        """Take in whether tones are wanted; the one for a robot lost while driven always is."""
         self._sounds = on
 
     def save_settings(self):
@@ -114,7 +114,7 @@ class EventHost(QObject):
         return {'sounds': self._sounds}
 
     def restore_settings(self, settings):
-        """Take over a dict of :meth:`save_settings`, or one that lacks some of it."""
+        """Take back a dict of :meth:`save_settings`, even if parts are missing."""
         self._sounds = settings.get('sounds', True)
         self.page.show_sounds(self._sounds)
 

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Joins the page on which a pad is calibrated with the pad; everything here is on the GUI thread.
+"""Joins the calibration page with the pad; everything here runs on the GUI thread.
 
-The pad is read by a process of its own (:mod:`mhri.inputs.pad_stream`), and only while the page is
-in sight. So that nothing drives, the page begins with STOP ALL, and the mode leaves the pad.
+A process of its own reads the pad (:mod:`mhri.inputs.pad_stream`), only while the page is visible.
+To keep everything still, the page begins with STOP ALL, and the mode leaves the pad.
 """
 import json
 import os
@@ -21,15 +21,15 @@ from mhri.ros.devices.pad_profiles import own_folder, pad_profiles, shipped_name
 
 TITLE = 'Pad'
 PAD = 'pad'
-# Soon enough for a person to see a stick follow the hand.
+# Fast enough for the picture of a stick to follow the hand.
 DRAW_MS = 50
-# A process that reads a pad and ends is started again no sooner.
+# A reading process that has ended is restarted no sooner.
 RESTART_MS = 2000
 MOST_BYTES = 100_000
 
 
 class PadHost(QObject):
-    """Shows the page, feeds it and writes what comes of it.
+    """Shows the page, feeds it and writes the result.
 
     :param operator: :class:`mhri.ros.screen.backend.ScreenBackend`
     :param screen: :class:`mhri.gui.screen.screen.ScreenWidget`
@@ -76,7 +76,7 @@ class PadHost(QObject):
         self._dialogue.on_stop(view.stop_all and view.stop_taken)
 
     def _on_shown(self, shown):
-        """Read the pad while the page is in sight."""
+        """Read the pad while the page is visible."""
         if shown and not self._closed:
             self._start()
             self._draw_timer.start()
@@ -91,19 +91,19 @@ class PadHost(QObject):
             self._reader.start(self._program[0], self._program[1:])
 
     def _end_reader(self):
-        """Let the reading end: it does so by itself when nobody holds its standard input."""
+        """End the reading process: it ends by itself when its standard input closes."""
         self._draw_timer.stop()
         self._restart_timer.stop()
         self._reader.closeWriteChannel()
 
     def _on_end(self, *_):
-        """Begin to read again, where the process failed, or was still ending as it was wanted."""
+        """Start reading again if the process failed, or was still ending when it was wanted."""
         if self.page.isVisible() and not self._closed:
             self._dialogue.on_line({'kind': 'absent', 'reason': 'the reading of the pad ended'})
             self._restart_timer.start()
 
     def _read(self):
-        """Take in what the process has said."""
+        """Take in the output of the process."""
         *lines, self._begun = (self._begun + bytes(self._reader.readAllStandardOutput())
                                ).split(b'\n')
         self._begun = self._begun[-MOST_BYTES:]
@@ -111,7 +111,7 @@ class PadHost(QObject):
             try:
                 line = json.loads(text)
             except ValueError:
-                continue  # whatever a driver prints on the same channel
+                continue  # ignore what a driver prints on the same channel
             if isinstance(line, dict):
                 self._dialogue.on_line(line)
 
@@ -119,7 +119,7 @@ class PadHost(QObject):
         self.page.show_calibration(self._dialogue.view())
 
     def _confirm(self):
-        """Do what the large button says."""
+        """Carry out what the large button says."""
         begins = self._dialogue.state == READY
         self._dialogue.confirm()
         if begins:
@@ -132,14 +132,14 @@ class PadHost(QObject):
         self._draw()
 
     def _leave_pad(self):
-        """Have nothing driven by a pad: its buttons would go on choosing robots."""
+        """Take the mode away from the pad: its buttons would go on choosing robots."""
         view = self._view
         if view and any(device.source == view.mode and device.kind == PAD
                         for device in view.devices):
             self._operator.request_mode(VIRTUAL_JOYSTICK)
 
     def _save(self, path, text, replace, name, pad):
-        """Write the profile (on a worker), and look whether it is the one for this pad."""
+        """Write the profile (on a worker), and check that it applies to this pad."""
         try:
             write_profile(path, text, replace)
             used = choose_profile(pad_profiles(), *pad)[0].name

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is asked of the panel as a whole: recordings of several robots, requests from elsewhere.
+"""Requests to the panel as a whole: recordings of several robots, and requests from elsewhere.
 
 Joins widgets and the ROS side; everything here runs on the GUI thread.
 """
@@ -10,7 +10,7 @@ from mhri.core.screen.requests import (
 
 
 def short_ends(ends):
-    """Return in fewer and fewer words how recordings ended, what went wrong first.
+    """Return how recordings ended, in fewer and fewer words, failures first.
 
     :param ends: pairs (robot's name, its :class:`mhri.core.recording.recording.RecordingStatus`)
     """
@@ -30,7 +30,7 @@ class RequestsHost:
     :param operator: :class:`mhri.ros.screen.backend.ScreenBackend`
     :param tell: function that shows the operator a sentence
     :param select: function that selects exactly the robots of a list
-    :param recording_wish: function from a robot's name to (path, choices) as its window has them
+    :param recording_wish: function from a robot's name to (path, choices) as its tile has them
     """
 
     def __init__(self, operator, tell, select, recording_wish):
@@ -42,7 +42,7 @@ class RequestsHost:
         self._ends = []
 
     def carry_out(self, action, names):
-        """Do what a ``mhri/PanelRequest`` asks for, or say why not; return that, too, else ''."""
+        """Carry out a ``mhri/PanelRequest``; if that fails, show and return the reason, else ''."""
         selection = self._operator.selection
         try:
             check_request(action, names, selection.robots)
@@ -60,7 +60,7 @@ class RequestsHost:
         return ''
 
     def record(self, names):
-        """Begin to record robots, each as its window has it set."""
+        """Start recording robots, each with the settings of its tile."""
         if not names:
             self._tell('nothing to record: select a robot first')
         self._ends = []
@@ -86,7 +86,7 @@ class RequestsHost:
         return running
 
     def tell_ends(self):
-        """Say what has become of the recordings that were asked for here and have ended."""
+        """Report on the recordings that were started here and have ended."""
         ended = []
         for name in sorted(self._asked):
             status = self._operator.recordings.status(name)

@@ -1,20 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""RViz's own widget in place of a drawn cloud, where rviz and its Python binding are installed.
+"""RViz's own widget in place of a drawn cloud, if rviz and its Python binding are installed.
 
-What is used of the binding: rviz_python_tutorial/myviz.py and src/python_bindings/sip of rviz
-(Noetic). It needs a GPU or a software OpenGL, and subscribes the cloud itself.
+Sources for the binding: rviz_python_tutorial/myviz.py and src/python_bindings/sip of rviz
+(Noetic). It needs a GPU or a software OpenGL, and subscribes to the cloud itself.
 """
 from importlib import import_module
 from importlib.util import find_spec
 import json
 
-# rviz is loaded when it is asked for: that takes a second or more, and much memory.
+# rviz is loaded only on request: that takes a second or more, and much memory.
 _PACKAGE, _BINDING = 'rviz', 'rviz.bindings'
 
 
 def is_installed():
-    """Tell whether there is an ``rviz`` package for Python; whether it loads is seen later."""
+    """Tell whether Python finds a package ``rviz``; it may still fail to load."""
     return find_spec(_PACKAGE) is not None
 
 
@@ -22,7 +22,7 @@ def config_text(topic, frame_id):
     """Return the configuration of an RViz that shows one cloud, as YAML (of which JSON is a part).
 
     :param topic: of type ``sensor_msgs/PointCloud2``
-    :param frame_id: of the cloud: it is shown in that, so that no tf is needed
+    :param frame_id: of the cloud, in which it is shown, so that no tf is needed
     """
     displays = [
         {'Class': 'rviz/Grid', 'Name': 'Grid', 'Enabled': True},
@@ -36,7 +36,7 @@ def config_text(topic, frame_id):
 def make_frame(topic, frame_id):
     """Return RViz's widget with one cloud and nothing around it (on the GUI thread, slow).
 
-    :raises Exception: whatever the binding raises where it cannot be loaded, or cannot draw
+    :raises Exception: whatever the binding raises if it cannot be loaded or cannot draw
     """
     rviz = import_module(_BINDING)
     frame = rviz.VisualizationFrame()
@@ -52,10 +52,10 @@ def make_frame(topic, frame_id):
 
 
 class RvizCloud:
-    """Offers RViz in a view of clouds, and changes over when that is chosen.
+    """Offers RViz in a view of clouds, and switches when it is chosen.
 
     :param view: :class:`mhri.gui.sensors.cloud_view.CloudView`
-    :param feed: :class:`mhri.ros.sensors.cloud_feed.CloudFeed`, whose topic RViz is to show
+    :param feed: :class:`mhri.ros.sensors.cloud_feed.CloudFeed`, whose topic RViz should show
     """
 
     def __init__(self, view, feed):
@@ -65,7 +65,7 @@ class RvizCloud:
         view.offer_rviz(is_installed())
 
     def _on_chosen(self, chosen):
-        """Change over, or say why not."""
+        """Switch, or say why not."""
         if not chosen:
             self._view.show_instead(None)
             return

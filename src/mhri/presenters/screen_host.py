@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Joins the two halves of the screen: the operator's ROS side and the widgets.
 
-One of the few modules that know both. Everything here runs on the GUI thread; the ROS side is asked
-by timers and never waited for.
+One of the few modules that know both. Everything here runs on the GUI thread; timers ask the
+ROS side, and nothing waits for it.
 """
 import gc
 import time
@@ -27,10 +27,12 @@ from mhri.presenters.tiles_host import TilesHost
 from mhri.ros.resources import resource_path
 
 DRAW_MS = 50
+# So long other things have their turn after a drawing, on a busy computer, too.
+REST_MS = 20
 STICK_MS = 50
-# How often the selection is said again: the operator's lease ends where this thread hangs.
+# How often to repeat the selection: the operator's lease ends if this thread hangs.
 LEASE_MS = 500
-# A row takes about 2 ms to make: more at once would be felt at the stick.
+# A row takes about 2 ms to make: the operator would feel more at once at the stick.
 ADD_AT_ONCE = 6
 
 
@@ -101,7 +103,7 @@ class ScreenHost(QObject):
         panel.release_requested.connect(operator.release)
         panel.power_cut_requested.connect(lambda: operator.set_motor_power(False))
         panel.control_requested.connect(operator.take_control)
-        self._draw_timer.timeout.connect(lambda: self._guard.run(self.draw))
+        self._draw_timer.timeout.connect(self._draw_in_turn)
         self._stick_timer.timeout.connect(self._repeat_stick)
         self._lease_timer.timeout.connect(operator.repeat_selection)
         self._stop_watch.said.connect(panel.show_look_result)
@@ -120,7 +122,7 @@ class ScreenHost(QObject):
         if self.operator.selection.robots:
             self.screen.arrangement.begin_with_robots()
         self.operator.start()
-        # What has been loaded by now stays: looking through it takes the collector 60 ms, in which
+        # What is loaded by now stays: searching it takes the garbage collector 60 ms, during which
         # no thread runs.
         gc.freeze()
         self._draw_timer.start()
@@ -130,8 +132,15 @@ class ScreenHost(QObject):
         self.events.start()
         self.draw()
 
+    def _draw_in_turn(self):
+        """Draw, and say when it is time again."""
+        begun = time.monotonic()
+        self._guard.run(self.draw)
+        took_ms = round(1000 * (time.monotonic() - begun))
+        self._draw_timer.setInterval(max(REST_MS, DRAW_MS - took_ms))
+
     def draw(self):
-        """Take what there is to see and hand it to the widgets."""
+        """Take the newest values and hand them to the widgets."""
         for name, parameters in self._to_add[:ADD_AT_ONCE]:
             self.operator.add(name, parameters)
         del self._to_add[:ADD_AT_ONCE]
@@ -154,7 +163,7 @@ class ScreenHost(QObject):
         self.requests.tell_ends()
 
     def _carry_out(self, action, names):
-        """Do what was asked for from elsewhere; what is refused is an event."""
+        """Carry out a request from elsewhere; a refusal is an event."""
         refused = self.requests.carry_out(action, names)
         if refused:
             self.events.note('request.refused', refused)
@@ -168,7 +177,7 @@ class ScreenHost(QObject):
         self._lost = lost
 
     def _repeat_stick(self):
-        """Say again where the stick is: a source that is not heard for 0.5 s counts as lost."""
+        """Repeat the position of the stick: a source not heard for 0.5 s counts as lost."""
         self.operator.send_stick(*self.screen.stick())
 
     def _look(self):
@@ -176,7 +185,7 @@ class ScreenHost(QObject):
         self.operator.look()
 
     def _show_found(self, found):
-        """Say what was found; the robots that answer come into the list a few with each drawing."""
+        """Say what was found; add the robots that answer to the list, a few with each drawing."""
         new = [item.name for item in found.live]
         self.operator.selection.numbers.meet(new)
         self._to_add += [(name, found.facts[name]) for name in new]
@@ -214,7 +223,8 @@ class ScreenHost(QObject):
 
     def asks_before_closing(self):
         """Return what to ask before the screen is closed, '' while nothing drives or records."""
-        return close_question(self.operator.view().robots)
+        # One that is closed must not look: it would have the seat of the one that drives now.
+        return '' if self._closed else close_question(self.operator.view().robots)
 
     def _select(self, names):
         self.operator.select(names)
@@ -231,7 +241,7 @@ class ScreenHost(QObject):
             self._select([name])
 
     def _leave(self, name):
-        """Drive a robot no more whose window was closed: its zero leaves here, at once."""
+        """Stop driving a robot whose window was closed; its zero leaves here, at once."""
         self._select([other for other in self.operator.selection.selected if other != name])
 
     def save_state(self):
@@ -246,9 +256,9 @@ class ScreenHost(QObject):
         return usable_state(state)[0]
 
     def restore_state(self, state):
-        """Take over a dict of :meth:`save_state`; call it before :meth:`start`.
+        """Take back a dict of :meth:`save_state`; call it before :meth:`start`.
 
-        :returns: what of it cannot be used and is left out, in words
+        :returns: what cannot be used and is left out, in words
         """
         state, problems = usable_state(state)
         self.operator.selection.numbers.restore(state.get('numbers', {}))

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The file that keeps the panel's settings: plain JSON.
 
-PyQt unpickles what an INI file of ``QSettings`` calls a Python object, and so runs code that
-somebody wrote into it.
+PyQt unpickles Python objects from an INI file of ``QSettings``, and so runs code that somebody
+wrote into it.
 """
 import errno
 import json
@@ -16,7 +16,7 @@ MOST_BYTES = 1_000_000
 
 
 class SettingsError(Exception):
-    """The file cannot be used; the text names it, the reason and where it is kept."""
+    """The file cannot be used; the text names it, the reason and where the copy is."""
 
 
 def default_path():
@@ -30,7 +30,7 @@ def _no_number(word):
 
 
 class SettingsFile:
-    """One file; nothing is opened before it is asked for.
+    """One file; opened only on demand.
 
     :param path: None for :func:`default_path`
     """
@@ -39,14 +39,14 @@ class SettingsFile:
         self.path = path or default_path()
 
     def read(self):
-        """Return what the file says, {} where there is none.
+        """Return what the file says, {} if there is none.
 
         :raises SettingsError: it cannot be read as a dict of JSON
         """
         try:
             text = self._text()
             found = json.loads(text, parse_constant=_no_number) if text.strip() else {}
-        # Too many levels of brackets end the parser, and not every text is one of UTF-8.
+        # Too many nested brackets break the parser, and not every text is UTF-8.
         except (OSError, ValueError, RecursionError) as error:
             raise SettingsError('{}: {}'.format(self.path, str(error)[:200]))
         if not isinstance(found, dict):
@@ -54,13 +54,13 @@ class SettingsFile:
         return found
 
     def _text(self):
-        """Return the text of the file, '' where there is none.
+        """Return the text of the file, '' if there is none.
 
-        :raises OSError: it cannot be opened, or is no ordinary file
-        :raises ValueError: it is too large, or no text
+        :raises OSError: it cannot be opened, or is not an ordinary file
+        :raises ValueError: it is too large, or not text
         """
         try:
-            # A pipe in its place would keep whoever opens it waiting.
+            # Opening a pipe in its place would block.
             handle = os.open(self.path, os.O_RDONLY | os.O_NONBLOCK)
         except FileNotFoundError:
             return ''
@@ -73,7 +73,7 @@ class SettingsFile:
         return data.decode('utf-8')
 
     def keep_aside(self):
-        """Copy the file beside itself before it is written anew; return the copy's path or None."""
+        """Copy the file beside itself before it is overwritten; return the copy's path or None."""
         aside = self.path + UNUSABLE
         try:
             if not os.path.isfile(self.path):
@@ -84,7 +84,7 @@ class SettingsFile:
         return aside
 
     def write(self, settings):
-        """Replace the file, whole or not at all.
+        """Replace the file completely or not at all.
 
         :raises SettingsError: it cannot be written
         """

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Lets STOP work while the GUI thread hangs: a beat from it to a process of its own.
+"""Lets STOP work while the GUI thread hangs: that thread sends a beat to a separate process.
 
-A thread would not do: what paints in C++ may hold Python's lock, and no thread runs then.
+A thread would not do: C++ code that paints may hold Python's lock, and then no thread runs.
 """
 import json
 import socket
@@ -17,12 +17,12 @@ from mhri.gui.driving.stop_button import stop_places
 from mhri.inputs import child
 
 _PROCESS = 'mhri.presenters.stop_watch_process'
-# A watch that was ended from elsewhere is started again after so many beats.
+# A watch that was ended from elsewhere is restarted after this many beats.
 _AGAIN_AFTER = 50
 
 
 class StopWatch(QObject):
-    """Starts the watch and beats for it; everything that can be seen of the program is watched.
+    """Starts the watch and sends it beats; it watches all visible windows of the program.
 
     :param master_uri: the master of the mux
     """
@@ -40,7 +40,7 @@ class StopWatch(QObject):
         self._timer.timeout.connect(self._beat)
 
     def start(self):
-        """Begin; where there is no X server it is said once that this cannot be had."""
+        """Start; without an X server, log once that this is not available."""
         if QGuiApplication.platformName() == 'xcb':
             self._timer.start()
         else:
@@ -57,7 +57,7 @@ class StopWatch(QObject):
         self._socket.setblocking(False)
 
     def _beat(self):
-        """Say that this thread lives, and hear what the watch has to say."""
+        """Send a sign of life, and take in what the watch says."""
         if self._socket is None:
             self._beats_to_start -= 1
             if self._beats_to_start >= 0:

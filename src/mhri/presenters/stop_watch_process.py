@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The process beside the screen: it stops all robots where a press of STOP finds the screen hung.
+"""The process beside the screen: it stops all robots if STOP is pressed while the screen hangs.
 
-Its standard input is a socket from :mod:`mhri.presenters.stop_watch`, of which each packet is a
-beat: :func:`mhri.gui.driving.stop_button.stop_places` as JSON. It says in packets of JSON what it
-did, ``{"said": text}``, or why it can do nothing, ``{"cannot": text}``. It ends with the screen.
+Its standard input is a socket from :mod:`mhri.presenters.stop_watch`. Each packet is a beat:
+:func:`mhri.gui.driving.stop_button.stop_places` as JSON. It answers in packets of JSON what it did,
+ ``{"said": text}``, or why it can do nothing, ``{"cannot": text}``. It ends with the screen.
 """
 import contextlib
 import json
@@ -20,7 +20,7 @@ from mhri.ros.driving.stop_line import StopLine
 
 _PACKET_BYTES = 1 << 18
 _RETRY_S = 0.25
-# How often a mux that is not there is looked for.
+# How often to look for a missing mux.
 _LOOK_S = 2.0
 STOPPED = 'STOP ALL was pressed while this screen hung: the robots were stopped without it'
 UNCONFIRMED = ('STOP ALL was pressed while this screen hung, NOT CONFIRMED: the drive service does '
@@ -47,7 +47,7 @@ class StopWatchProcess:
 
         :raises XError: the X server has gone
         """
-        # First the beats: a process that was kept waiting must not take the screen for hung.
+        # Beats first: a process that had to wait must not mistake the screen for hung.
         while self._hear():
             if self._presses.stops(self._places):
                 self._watch.press(time.monotonic())
@@ -58,7 +58,7 @@ class StopWatchProcess:
             self._wait()
 
     def _hear(self):
-        """Take the beats that have come; tell whether the screen is still there."""
+        """Take in the beats; return whether the screen is still there."""
         packet = None
         try:
             while True:
@@ -75,7 +75,7 @@ class StopWatchProcess:
             return False
 
     def _try(self):
-        """Stop where that is asked for; else hold the line up for then."""
+        """Stop if a press asks for it; else keep the line up for that moment."""
         if self._asking:
             self._asking = not self._line.stop()
             if not self._asking or not self._told:
@@ -93,7 +93,7 @@ class StopWatchProcess:
         poll.register(self._screen, select.POLLIN)
         poll.register(self._presses, select.POLLIN)
         if self._line.fileno() is not None:
-            # Nothing comes from there but its end.
+            # The only news from there is its end.
             poll.register(self._line, select.POLLIN)
         if self._asking or self._line.fileno() is None:
             waits.append(max(0.0, self._try_at - now))
@@ -104,7 +104,7 @@ class StopWatchProcess:
 
 
 def tell(screen, **words):
-    """Send a packet to the screen; one that does not listen any more is not waited for."""
+    """Send a packet to the screen; do not wait if it no longer listens."""
     try:
         screen.send(json.dumps(words).encode())
     except OSError:
@@ -121,7 +121,7 @@ def main():
         StopWatchProcess(screen, XPresses(), StopLine(sys.argv[1])).run()
     except XError as error:
         tell(screen, cannot=str(error))
-        # An end with beats unread would take that word from the screen: it ends this when it knows.
+        # Ending with unread beats would destroy that message: the screen ends this process.
         screen.setblocking(True)
         with contextlib.suppress(ConnectionError):
             while screen.recv(_PACKET_BYTES):

@@ -19,7 +19,7 @@ from mhri.presenters.rviz_cloud import RvizCloud
 from mhri.ros.camera.camera_budget import Wish
 from mhri.ros.robots.bot_feeds import MOCAP
 
-# How a stream is called where there is little room.
+# Short names of streams.
 _SHORT = {IMU: 'IMU', SCAN: 'scan', CLOUD: 'cloud'}
 
 
@@ -51,15 +51,17 @@ class TileHost:
         self._operator_folder()
 
     def draw(self, view, stop_all):
-        """Hand the window what there is.
+        """Hand the tile the newest values.
 
         :param view: :class:`mhri.core.screen.views.RobotView`
         """
-        window = self.window
-        # Whatever else there is to say matters more than why the picture is slow.
+        window, feeds = self.window, self._operator.feeds(self._name)
+        if not window.is_watched():
+            self._rest(feeds)
+            return
+        # Anything else matters more than why the picture is slow.
         window.show_view(replace(view, note=view.note or self._held_back), stop_all)
         self._held_back = ''
-        feeds = self._operator.feeds(self._name)
         if feeds is None:
             return
         window.offer(feeds.offers())
@@ -67,7 +69,7 @@ class TileHost:
             self._wired = True
             window.view('rgb').transport_chosen.connect(self._choose_transport)
             window.view('rgb').still_requested.connect(self._save_still)
-        feeds.want(self._wanted() | {MOCAP} if window.is_watched() else ())
+        feeds.want(self._wanted() | {MOCAP})
         status = self._operator.recordings.status(self._name)
         window.recording.offer_extras(self._operator.recordable(self._name))
         window.recording.show_recording(status)
@@ -84,7 +86,7 @@ class TileHost:
     def _wanted(self):
         """Return the views to be fed: a large tile tells the nearest thing, view or not."""
         wanted = self.window.wanted()
-        return wanted | {SCAN} if self.window.header.large and self.window.is_watched() else wanted
+        return wanted | {SCAN} if self.window.header.large else wanted
 
     def _extra_lines(self, feeds):
         """Return what the numbers over the picture say beside the motion; old scans say nothing."""
@@ -127,7 +129,7 @@ class TileHost:
     def _draw_state(self, view, feeds):
         """Show how old each stream is, and what motion capture says.
 
-        The age of the odometry is that of the link, in the header.
+        The header shows the age of the odometry as that of the link.
         """
         ages = []
         for row in VIEW_ROWS:
@@ -143,7 +145,7 @@ class TileHost:
             StateView(tuple(ages), view.figures, captured, self._drift.drift(odometry, captured)))
 
     def _operator_folder(self):
-        """Let the file dialog begin where recordings go unless told otherwise."""
+        """Start the file dialog in the default folder of recordings."""
         self.window.recording.set_default_path(
             os.path.join(recordings_folder(), '{}_<date-time>.bag'.format(self._name)))
 
@@ -154,7 +156,7 @@ class TileHost:
         self._operator.recordings.stop(self._name)
 
     def _draw_camera(self, camera, feed):
-        """Ask for pictures as large and as often as this tile is worth, and show the newest."""
+        """Ask for pictures of the size and rate this tile needs, and show the newest."""
         width, height = self.window.camera_size()
         large = self.window.header.large
         thumbnail_hz = self._operator.settings.thumbnail_hz
@@ -166,7 +168,7 @@ class TileHost:
         if frame is not None:
             camera.show_frame(frame)
         status = feed.status()
-        # Where there was no picture yet, its place says it.
+        # Without a picture, the placeholder says it.
         self._held_back = status.thinned if status.age_s is not None else ''
         camera.show_status(status, None if large else (thumbnail_hz, 'another'))
         if status.age_s is None and status.problem:
@@ -196,7 +198,7 @@ class TileHost:
         return next(iter(self.window.wanted() & PICTURES), None)
 
     def save_still(self):
-        """Keep the picture on show as a file, where there is one."""
+        """Save the picture on show as a file, if there is one."""
         frame = self.window.view('rgb').picture.frame if self._picture() else None
         if frame is not None:
             self._save_still(frame)
@@ -207,7 +209,7 @@ class TileHost:
         self._operator.do(self._write_still, path, frame.rgb)
 
     def _write_still(self, path, rgb):
-        """Write a PNG (on the operator's worker); what came of it is shown at the next drawing."""
+        """Write a PNG (on the operator's worker); the next drawing shows the result."""
         try:
             os.makedirs(os.path.dirname(path), exist_ok=True)
             written = cv2.imwrite(path, cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR))
@@ -216,9 +218,13 @@ class TileHost:
         self._notes.append(('saved {}'.format(path), True) if written else (
             'cannot write {}: is there room, and permission?'.format(path), False))
 
-    def close(self):
-        """Let the feeds rest: a closed window costs nothing."""
-        self.guard.end()
-        feeds = self._operator.feeds(self._name)
+    @staticmethod
+    def _rest(feeds):
+        """Let the feeds rest: a tile that nobody can see costs nothing."""
         if feeds is not None:
             feeds.want(())
+
+    def close(self):
+        """Draw no more."""
+        self.guard.end()
+        self._rest(self._operator.feeds(self._name))

@@ -1,10 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tiles of all robots: made one after the other, drawn one after the other, torn off, put back.
+"""The tiles of all robots: makes and draws them one by one, tears them off, puts them back.
 
 Everything here runs on the GUI thread.
 """
 import json
+import math
+import time
 
 from python_qt_binding.QtCore import QObject, QTimer, Signal
 import rospy
@@ -15,8 +17,9 @@ from mhri.gui.screen.window_maker import WindowMaker
 from mhri.presenters.tile_host import TileHost
 from mhri.ros.camera.camera_budget import CameraBudget
 
-SLICE_MS = 4
-# More tiles than that show no more: the rest of the robots are in the list alone.
+# A large tile is as pressing as a small one that has waited so many times as long.
+LARGE_FIRST = 4.0
+# More tiles than this help nobody: further robots are only in the list.
 MOST_TILES = 40
 
 
@@ -31,9 +34,9 @@ class TilesHost(QObject):
 
     #: a tile was clicked: name of its robot
     clicked = Signal(str)
-    #: this robot and no other is to be driven
+    #: drive this robot and no other
     drive_requested = Signal(str)
-    #: the window of a tile that was torn off was closed by its frame
+    #: a torn-off tile's window was closed by its frame
     closed = Signal(str)
 
     def __init__(self, operator, stage, ui_dir, tell, parent=None):
@@ -52,9 +55,9 @@ class TilesHost(QObject):
         self._torn = {}
         self._to_tear = set()
         self._due = []
+        self._drawn_at = {}
         self._stopped = False
         self._timer = QTimer(self)
-        self._timer.setInterval(SLICE_MS)
         self._timer.timeout.connect(self.draw_next)
 
     def show_view(self, view):
@@ -63,35 +66,38 @@ class TilesHost(QObject):
         names = [robot.name for robot in robots]
         for name in [name for name in self.windows if name not in names]:
             self.drop(name)
-        # One with each drawing: a tile takes some time to make.
+        # One with each drawing: making a tile takes some time.
         missing = next((robot for robot in robots
                         if robot.name not in self.windows and robot.type_label), None)
         if missing is not None:
             self.make(missing.name)
         self._stage.show_tiles({name: self.windows[name] for name in names
                                 if name in self.windows})
-        # Those that wait keep their order: else the last one never has its turn on a busy machine.
-        turns = {robot.name: turn for turn, robot in enumerate(self._due)}
+        now = time.monotonic()
         self._due = sorted((robot for robot in robots if robot.name in self.hosts),
-                           key=lambda robot: turns.get(robot.name, len(turns)))
+                           key=lambda robot: self._pressing(robot.name, now))
         self._stopped = view.stop_all
         self._timer.start()
         wishes = [self.hosts[robot.name].camera_wish(robot.selected) for robot in self._due]
         self._cameras.settle(filter(None, wishes))
 
+    def _pressing(self, name, now):
+        """Return a number that is the larger the longer a tile was not drawn: none starves."""
+        waited_s = now - self._drawn_at.get(name, -math.inf)
+        return waited_s * (LARGE_FIRST if self.windows[name].header.large else 1.0)
+
     def draw_next(self):
-        """Draw one tile, and return whether another is due.
+        """Draw the most pressing tile that is due, and return whether another is.
 
-        They have their turn later, so that a click never waits for all.
-
-        Those that were not reached before the next round come first in it.
+        One with each turn of the event loop, so that a click never waits for all.
         """
         if not self._due:
             self._timer.stop()
             return False
-        robot = self._due.pop(0)
+        robot = self._due.pop()
         host = self.hosts.get(robot.name)
         if host is not None:
+            self._drawn_at[robot.name] = time.monotonic()
             host.guard.run(self._guarded, robot.name, host.draw, robot, self._stopped)
         return bool(self._due)
 
@@ -102,7 +108,7 @@ class TilesHost(QObject):
         if problem:
             rospy.logwarn('%s: %s', name, problem)
             self._tell('{}: {}'.format(name, problem))
-        # Before it is in any window: it would come up as one of its own.
+        # Before it is in any window: else it would open as a window of its own.
         tile.setParent(self._stage)
         tile.stop_requested.connect(self._operator.stop_all)
         tile.clicked.connect(self.clicked)
@@ -114,7 +120,7 @@ class TilesHost(QObject):
         self._guarded(name, self._furnish, name, tile, view)
 
     def _furnish(self, name, tile, view):
-        """Show a new tile as it was left, where it was left."""
+        """Show a new tile as, and where, it was left."""
         feeds = self._operator.feeds(name)
         if feeds is not None:
             tile.offer(feeds.offers())
@@ -125,7 +131,7 @@ class TilesHost(QObject):
             self.toggle_torn(name)
 
     def _guarded(self, name, job, *args):
-        """Do something with a robot's tile; a lab's own one that fails gives way to mhri's."""
+        """Do something with a robot's tile; replace a lab's own class by mhri's if it fails."""
         key = self._keys[name]
         try:
             job(*args)
@@ -156,7 +162,7 @@ class TilesHost(QObject):
         self._stage.refresh()
 
     def _on_closed(self, name):
-        """Put the tile back; the robot of a window that was closed is not driven any more."""
+        """Put the tile back, and tell that its robot should no longer be driven."""
         self._put_back(name)
         self.closed.emit(name)
 
@@ -177,10 +183,11 @@ class TilesHost(QObject):
             self._discard(name)
 
     def _discard(self, name):
-        """Let a tile and its feeds go."""
+        """Remove a tile and its feeds."""
         if name in self._torn:
             self._put_back(name)
         self.hosts.pop(name).close()
+        self._drawn_at.pop(name, None)
         tile = self.windows.pop(name)
         self._stage.show_tiles(dict(self.windows))
         tile.hide()
@@ -188,7 +195,7 @@ class TilesHost(QObject):
         tile.deleteLater()
 
     def recording_wish(self, name):
-        """Return (path, choices) of a recording: those of its tile, or as they were there."""
+        """Return (path, choices) of a recording: from its tile, or as last seen there."""
         if name in self.windows:
             row = self.windows[name].recording
             return row.path, row.chosen_extras()
@@ -196,7 +203,7 @@ class TilesHost(QObject):
         return '', [key for key in self._operator.recordable(name) if key in extras]
 
     def save_stills(self):
-        """Keep every picture on show as a file."""
+        """Save every picture on show as a file."""
         for host in self.hosts.values():
             host.save_still()
 
@@ -227,7 +234,7 @@ class TilesHost(QObject):
         self._to_tear.update(torn)
 
     def close(self):
-        """End: no tile is drawn any more."""
+        """Stop drawing and remove all tiles."""
         self._timer.stop()
         for name in list(self.windows):
             self._keep_look(name)

@@ -12,7 +12,7 @@ from mhri.core.robots.link import Motion
 
 
 def header_of(message, message_class):
-    """Return (number, stamp [s]) of a message, or None where its type has no header.
+    """Return (number, stamp [s]) of a message, or None if its type has no header.
 
     :param message: of the class, or ``rospy.AnyMsg`` with its bytes
     """

@@ -33,7 +33,7 @@ class BodyType:
 def parse_bodies(text, origin):
     """Return {name: BodyType} of a YAML text.
 
-    :raises ConfigError: names the file and the key that is wrong
+    :raises ConfigError: names the file and the wrong key
     """
     top = parse_yaml(text, origin)
     bodies = {}
@@ -67,7 +67,7 @@ class Bumper:
     def room(self, x, y):
         """Return the gap [m] between the body, were it at x, y, and what it would meet first.
 
-        It is < 0 where they overlap, and never more than the true one.
+        It is < 0 if they overlap, and never more than the true one.
         """
         measured_x, measured_y, distance = self._measured
         still = distance - math.hypot(x - measured_x, y - measured_y)

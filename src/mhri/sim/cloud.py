@@ -13,7 +13,7 @@ _DOWN = ((np.arange(HEIGHT) - CENTRE_Y_PX) / FOCAL_PX).astype(np.float32)[:, Non
 
 
 def cloud_of(depth_mm, rgb):
-    """Return the points of a picture, (480, 640) of :data:`LAYOUT`, NaN where there is no depth.
+    """Return the points of a picture, (480, 640) of :data:`LAYOUT`, NaN if there is no depth.
 
     x is to the right, y down, z ahead (REP-103, optical frames).
 

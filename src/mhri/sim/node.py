@@ -37,7 +37,7 @@ class PowerSwitch:
     """What takes the power from its motors: the topic or service that the template names.
 
     :param robot: its name
-    :param spec: :class:`mhri.core.robots.robot_hardware.MotorPowerSpec`, None where it has none
+    :param spec: :class:`mhri.core.robots.robot_hardware.MotorPowerSpec`, None if it has none
     :param set_power: called with True for power, False for none
     """
 

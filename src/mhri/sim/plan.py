@@ -116,7 +116,7 @@ def _landmark(row):
 def parse_plan(text, origin):
     """Return the :class:`Plan` of a YAML text.
 
-    :raises ConfigError: names the file and the key that is wrong
+    :raises ConfigError: names the file and the wrong key
     """
     section = parse_yaml(text, origin)
     plan = Plan(

@@ -40,7 +40,7 @@ class WorldFull(Exception):
 
 
 def _file_problem(status):
-    """Return why a file cannot be this user's own world, '' where it can.
+    """Return why a file cannot be this user's own world, '' if it can.
 
     :param status: its ``os.stat_result``
     """

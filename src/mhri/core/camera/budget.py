@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which camera may have how much of the network: the driven robots' first, the thumbnails last.
+"""How much of the network each camera may have: driven robots first, thumbnails last.
 
-Within a limit [bit/s] a picture is one of: as it comes; thinned, which is one picture at a time
-over a connection that is closed again (:mod:`mhri.ros.camera.samples`); paused. What is thinned
-first is what matters least: the rest down to one picture in five seconds, then the one looked at
-down to :data:`LOOKED_AT_LEAST_HZ`, then the rest is paused, the dearest first. The picture of a
-driven robot is never touched, even where it alone passes the limit.
+Within a limit [bit/s] a stream is unlimited, thinned (one picture at a time over a connection that
+is then closed, :mod:`mhri.ros.camera.samples`) or paused. What matters least is thinned first: the
+rest down to one picture in five seconds, then the one looked at down to
+:data:`LOOKED_AT_LEAST_HZ`; then the rest is paused, the most expensive first. The picture of a
+driven robot is never touched, even if it alone exceeds the limit.
 """
 from dataclasses import dataclass, replace
 import math
@@ -27,7 +27,7 @@ _SENT_FOR_ONE = 1.1
 # Thinning has to save half at least.
 _SAVES = 2.0
 # That rates do not flap: figures are rounded up to so many steps in each octave, those that fall by
-# less than a part of them are taken for what they were, and a better rate has to fit for so long.
+# less than a part of them are taken for what they were, and a better rate has to fit for this long.
 _IN_OCTAVE = 8
 _FALLS = 0.2
 _CALM_S = 5.0
@@ -44,8 +44,8 @@ class Grant:
 
     ``rate_hz``: pictures a second at most [Hz], None: as they come, 0: none, and no connection.
     ``sampled``: the network is thinned, too: one picture at a time over a connection of its own;
-    else all come and only so many are decoded. ``lighter``: the best transport there is, whatever
-    was chosen. ``words``: what the operator is told, '' where nothing is held back.
+    else all arrive and only this many are decoded. ``lighter``: the best transport available,
+    whatever was chosen. ``words``: what to tell the operator, '' if nothing is held back.
     """
 
     rate_hz: Optional[float] = None
@@ -59,7 +59,7 @@ UNSEEN = Grant(0.0)
 
 
 class Figures(NamedTuple):
-    """What is known of a stream.
+    """What is known about a stream.
 
     ``bits``: size of a message [bit]; ``native_hz``: how often the camera sends [Hz]; None before
     they were measured, 0 for a camera that is silent. ``heavy``: it comes raw, as was chosen, and
@@ -106,7 +106,7 @@ class Plan:
     """What every picture may have.
 
     ``grants``: {name: :class:`Grant`}; ``bits_per_s``: what they take together, as planned;
-    ``note``: a sentence where the limit cannot be kept, else ''.
+    ``note``: a sentence if the limit cannot be kept, else ''.
     """
 
     grants: Dict[str, Grant]
@@ -124,7 +124,7 @@ class _Held:
 
 
 class BudgetPlanner:
-    """Plans again and again; keeps what it needs so that rates fall at once and rise calmly."""
+    """Plans repeatedly, so that rates drop at once and rise slowly."""
 
     def __init__(self) -> None:
         self._held: Dict[str, _Held] = {}
@@ -181,7 +181,7 @@ class BudgetPlanner:
 
     def _calm(self, seen: Sequence[Picture], limit: float, thumbnail_hz: float,
               now: float) -> Dict[str, float]:
-        """Return the rates: down at once, up where there has been room for a while."""
+        """Return the rates: down at once, up once there has been room for a while."""
         most = _targets(seen, limit, thumbnail_hz)
         held = {}
         for picture in seen:
@@ -243,9 +243,9 @@ def _targets(seen: Sequence[Picture], limit: float, thumbnail_hz: float) -> Dict
 
 def _share(pictures: Sequence[Picture], bits_per_s: float,
            thumbnail_hz: float) -> Dict[str, float]:
-    """Share bits out: what costs little has all it can use, what costs much an equal part.
+    """Share out bits: cheap pictures get all they can use, expensive ones equal parts.
 
-    Where not even the least rate of all fits, the dearest are paused, the last first of equals.
+    If not even the least rate of all fits, pause the most expensive, the last first of equals.
     """
     steps = {picture.name: picture.steps(thumbnail_hz) for picture in pictures}
     least = {picture.name: picture.cost(steps[picture.name][-1]) for picture in pictures}
@@ -265,7 +265,7 @@ def _share(pictures: Sequence[Picture], bits_per_s: float,
 
 
 def _note(seen: Sequence[Picture], limit: float) -> str:
-    """Say that the driven robots' pictures alone pass the limit; '' where they do not."""
+    """Say that the driven robots' pictures alone pass the limit; '' if they do not."""
     driven = sum(picture.cost(math.inf) for picture in seen if picture.importance == DRIVEN)
     if limit <= 0.0 or driven <= limit:
         return ''

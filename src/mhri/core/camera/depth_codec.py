@@ -53,7 +53,7 @@ def decode_depth(fmt: str, data: Data, view: Optional[Size] = None) -> Tuple[np.
 
 
 def parse_format(fmt: str) -> Tuple[str, str]:
-    """Return (encoding '16UC1', '32FC1' or '' where it is not told, codec 'png' or 'rvl').
+    """Return (encoding '16UC1', '32FC1' or '' if it is not told, codec 'png' or 'rvl').
 
     :raises FrameError: the format is not one of compressed depth
     """

@@ -50,7 +50,7 @@ class DepthColour:
         self._hatch: Optional[np.ndarray] = None
 
     def colour(self, depth_m: np.ndarray, now: float) -> Tuple[np.ndarray, Optional[Range]]:
-        """Return (rgb uint8 (h, w, 3), (near, far) [m] or None where nothing was ever valid).
+        """Return (rgb uint8 (h, w, 3), (near, far) [m] or None if nothing was ever valid).
 
         :param depth_m: float32 (h, w), NaN invalid
         :param now: time of receipt [s], for the smoothing

@@ -50,7 +50,7 @@ def decode_compressed(fmt: str, data: Data,
 
 
 def _decode_mosaic(fmt: str, kind: str, data: Data) -> Optional[np.ndarray]:
-    """Return the RGB picture of a compressed Bayer mosaic; None where it is none.
+    """Return the RGB picture of a compressed Bayer mosaic; None if it is none.
 
     At its full size: reduced, the colours of its pixels would be one grey.
     """

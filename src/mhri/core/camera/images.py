@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures as plain values: what a camera feed hands to whoever shows them."""
+"""Pictures as plain values, from a camera feed to the screen."""
 from dataclasses import dataclass
 from typing import Optional, Tuple, Union
 
@@ -17,10 +17,10 @@ Size = Tuple[int, int]
 #: the nearest and the farthest [m]
 Range = Tuple[float, float]
 
-# 8K video is 33 million pixels. What claims to be larger is taken for a corrupted header, so that
-# no frame can make the program allocate gigabytes.
+# 8K video has 33 million pixels. A larger claim counts as a corrupted header, so that no frame can
+# make the program allocate gigabytes.
 MAX_PIXELS = 40_000_000
-# A picture that is older is no live one [s].
+# An older picture is not live [s].
 OLD_AFTER_S = 1.0
 
 
@@ -30,11 +30,11 @@ class FrameError(ValueError):
 
 @dataclass(frozen=True)
 class Frame:
-    """One decoded picture, of the size it is shown at.
+    """One decoded picture, in the size it is shown at.
 
     ``kind`` is 'rgb' or 'depth'; ``rgb`` a C-contiguous uint8 array (h, w, 3) in RGB order, ready
     to show (depth: coloured already). ``depth_m``: float32 (h, w), distance along the optical axis
-    [m], NaN where invalid; None for 'rgb'. ``full_size`` is (width, height) of the picture as sent
+    [m], NaN if invalid; None for 'rgb'. ``full_size`` is (width, height) of the picture as sent
     [pixels]; ``depth_range_m`` the (near, far) of the colours [m] or None (rgb, or no valid pixel
     yet). ``received_s``: time of receipt [s, monotonic].
     """
@@ -49,15 +49,15 @@ class Frame:
 
 @dataclass(frozen=True)
 class StreamStatus:
-    """How a camera's stream does.
+    """The state of a camera's stream.
 
-    ``transport`` says what arrives: 'jpeg', 'png', 'raw', 'compressedDepth png' ...; '' before
-    the first picture. ``rate_hz`` and ``bits_per_s`` are what the network brought in the last 2 s;
+    ``transport`` says what arrives: 'jpeg', 'png', 'raw', 'compressedDepth png' ...; '' before the
+    first picture. ``rate_hz`` and ``bits_per_s`` are what the network brought in the last 2 s;
     ``age_s`` the age of the newest good picture [s], None before it. ``shown`` counts the pictures
-    that were taken, ``bad`` those that could not be decoded. ``problem`` names the last bad one, or
-    why nothing is there; '' while there is nothing to say. ``stale``: the newest good picture is
-    older than the newest bad one, or than ``old_after_s`` [s], which is longer for a picture that
-    is held back. ``thinned`` says that it is, and by what; '' where it is not.
+    that were taken, ``bad`` those that could not be decoded. ``problem`` says what was wrong with
+    the last bad one, or why there is none; '' while there is nothing to say. ``stale``: the newest
+    good picture is older than the newest bad one, or than ``old_after_s`` [s], which is longer for
+    a picture that is held back. ``thinned`` says that it is, and by what; '' if it is not.
     """
 
     transport: str = ''

@@ -22,7 +22,7 @@ _KEEP_BUFFER = 1024  # TJFLAG_NOREALLOC
 
 
 def _load() -> Optional[ctypes.CDLL]:
-    """Return the library with its functions declared, None where it is not installed."""
+    """Return the library with its functions declared, None if it is not installed."""
     for name in _NAMES:
         try:
             library = ctypes.CDLL(name)
@@ -104,7 +104,7 @@ def _encode_by_cv2(rgb: np.ndarray, quality: int) -> bytes:
 
 
 def _encode_by_library(rgb: np.ndarray, quality: int) -> Optional[bytes]:
-    """Return the bytes, or None where the library is not there or cannot."""
+    """Return the bytes, or None if the library is not there or cannot."""
     if _LIBRARY is None:
         return None
     compressor = _LIBRARY.tjInitCompress()

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The dialogue that writes a profile for the operator's own pad, without terminal, device or clock.
+"""The dialogue that writes a profile for a pad, without terminal, device or clock.
 
 One step after the other::
 
@@ -9,8 +9,8 @@ One step after the other::
     LEFT      another axis pushed and let go                     -> the buttons
     <action>  one button pressed and let go, or skip()           -> the next one, at last DONE
 
-What is not clear (two axes at once, a button that is taken) is said in :attr:`Calibration.problem`,
-and the step begins anew.
+If something is unclear (two axes at once, a button already used), :attr:`Calibration.problem` says
+so, and the step starts again.
 """
 import json
 import re
@@ -25,8 +25,8 @@ STEPS = (REST, FORWARD, LEFT) + _BUTTONS + (DONE,)
 
 _PROMPTS = {
     REST: 'Move every stick and trigger once, let go of everything, then press Enter.',
-    FORWARD: 'Push the stick that shall drive FORWARD all the way forward, and let go.',
-    LEFT: 'Push the stick that shall turn LEFT all the way to the left, and let go.',
+    FORWARD: 'Push the stick that should drive FORWARD all the way forward, and let go.',
+    LEFT: 'Push the stick that should turn LEFT all the way to the left, and let go.',
     'dead_man': 'Press the button that must be held for anything to move (dead-man button), or '
                 'Enter for none.',
     'turbo': 'Press the button to be held for full speed (half speed without it), or Enter for '
@@ -38,7 +38,7 @@ _PROMPTS = {
     DONE: 'Done.',
 }
 
-# Fractions of an axis' travel: pushed this far it was meant, within this it was let go.
+# Fractions of an axis' travel: beyond the first it was pushed on purpose, within the second let go.
 _PUSHED = 0.5
 _RELEASED = 0.2
 # A second axis that went this far of the first one's way makes the push unclear.
@@ -47,9 +47,9 @@ _DEAD_ZONE = 0.08
 
 
 def profile_name(device: str, taken: Collection[str] = ()) -> str:
-    """Return the name of a profile for a pad of this name: letters, digits and _.
+    """Return a profile name for a pad with this name: letters, digits and _.
 
-    :param taken: names that it may not have
+    :param taken: names that are not allowed
     """
     name = re.sub(r'[^a-z0-9]+', '_', device.lower()).strip('_')
     name = name if is_base_name(name) else 'pad_' + name if name else 'my_pad'
@@ -61,7 +61,7 @@ class Calibration:
 
     :param name: of the profile
     :param device: name of the pad
-    :param guid: of the pad, '' where it has none: then it is known by its name
+    :param guid: of the pad, '' if it has none; then its name identifies it
     """
 
     def __init__(self, name: str, device: str, guid: str = '') -> None:
@@ -83,28 +83,28 @@ class Calibration:
 
     @property
     def prompt(self) -> str:
-        """What the operator is asked to do now."""
+        """What to ask the operator to do now."""
         return _PROMPTS[self.step]
 
     @property
     def axes(self) -> Dict[str, int]:
-        """The axes that have a meaning by now: {step: index}."""
+        """The axes with a meaning so far: {step: index}."""
         return dict(self._axes)
 
     @property
     def buttons(self) -> Dict[str, int]:
-        """The buttons that have a meaning by now: {step: index}."""
+        """The buttons with a meaning so far: {step: index}."""
         return dict(self._buttons)
 
     def confirm(self) -> None:
-        """Take Enter: at rest it says that all is let go, at a button that there is none."""
+        """Take in Enter: at rest everything is let go, at a button there is none."""
         if self.step == REST:
             self._confirm_rest()
         elif self.step in _BUTTONS and not self._pressed:
             self._next()
 
     def _confirm_rest(self) -> None:
-        """Note what is seen with nothing touched."""
+        """Note the axes while nothing is touched."""
         rest = {index: value for index, value in enumerate(self._now) if value is not None}
         if len(rest) < 2:
             self.problem = 'Fewer than two axes have moved yet.'
@@ -114,7 +114,7 @@ class Calibration:
         self._next()
 
     def feed(self, axes: Sequence[Optional[float]], buttons: Sequence[int]) -> None:
-        """Take in a state of the pad: axes in [-1, 1] or None where unknown, buttons 0 or 1."""
+        """Take in a state of the pad: axes in [-1, 1] or None if unknown, buttons 0 or 1."""
         self._now = tuple(axes)
         self._down = frozenset(index for index, value in enumerate(buttons) if value)
         if self.step in (FORWARD, LEFT):
@@ -123,7 +123,7 @@ class Calibration:
             self._feed_buttons()
 
     def _feed_axes(self) -> None:
-        """Follow the axes until one was pushed and all are let go."""
+        """Follow the axes until one has been pushed and all are let go."""
         moved = [(self._fraction(index, value), index) for index, value in enumerate(self._now)
                  if value is not None and index in self._rest]
         for fraction, index in moved:
@@ -161,7 +161,7 @@ class Calibration:
         self._next()
 
     def _feed_buttons(self) -> None:
-        """Wait until one button was pressed and is let go."""
+        """Wait until one button has been pressed and let go."""
         self._pressed |= self._down - self._stuck
         if not self._pressed or self._down - self._stuck:
             return
@@ -177,7 +177,7 @@ class Calibration:
             self._next()
 
     def _again(self, problem: str) -> None:
-        """Begin the step anew."""
+        """Start the step again."""
         self.problem = problem
         self._travel = {}
         self._pressed = set()

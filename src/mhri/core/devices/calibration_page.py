@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The calibration of a pad on the screen: when it may be asked for what, and what is on show.
+"""The calibration of a pad on the screen: which step comes when, and what the page shows.
 
-Nothing drives meanwhile: it begins once STOP ALL is confirmed, and ends where that is released.
+Nothing drives meanwhile: it starts once STOP ALL is confirmed, and ends if that is released.
 
 state     pad comes  pad goes  stop confirmed  stop given up  confirm()         again()
 ABSENT    READY      -         -               -              -                 -
@@ -36,12 +36,12 @@ _MEANINGS = {FORWARD: 'forward', LEFT: 'turn', 'dead_man': 'dead-man', 'turbo': 
 class CalibrationView:
     """What the page shows.
 
-    ``pad`` is its name, '' where there is none. ``axes`` are in [-1, 1], None where nothing has
-    been heard of one yet; ``buttons`` are 0 or 1. ``axis_words`` and ``button_words`` are (index,
-    meaning) of those that have one by now. ``prompt`` says what to do, ``problem`` what went wrong
-    ('': nothing). ``action`` is what the one large button says, '' where there is nothing to press;
+    ``pad`` is its name, '' if there is none. ``axes`` are in [-1, 1], None for an axis not
+    heard yet; ``buttons`` are 0 or 1. ``axis_words`` and ``button_words`` are (index,
+    meaning) for those that have one so far. ``prompt`` says what to do, ``problem`` what went wrong
+    ('': nothing). ``action`` is the text of the large button, '' if there is nothing to press;
     ``step`` and ``steps`` count the questions, 0 before the first. ``can_restart`` tells whether
-    there is anything to begin anew.
+    there is anything to start again.
     """
 
     pad: str = ''
@@ -60,7 +60,7 @@ class CalibrationView:
 class CalibrationPage:
     """One pad at a time; see the table above.
 
-    :param taken: names that a profile may not have: those of the shipped ones
+    :param taken: names a profile may not have: those of the shipped ones
     """
 
     def __init__(self, taken: Collection[str] = ()) -> None:
@@ -77,7 +77,7 @@ class CalibrationPage:
 
     @property
     def name(self) -> str:
-        """The name that the profile gets."""
+        """The name the profile will have."""
         return profile_name(self._pad[0], self._taken)
 
     @property
@@ -96,7 +96,7 @@ class CalibrationPage:
         return self._calibration.text()
 
     def on_line(self, line: Mapping[str, object]) -> None:
-        """Take in what the process that reads the pad says (:mod:`mhri.inputs.pad_stream`)."""
+        """Take in a line from the process that reads the pad (:mod:`mhri.inputs.pad_stream`)."""
         if line.get('kind') == 'pad':
             self._appear(tidy_text(str(line.get('name', ''))), str(line.get('guid', '')))
         elif line.get('kind') == 'absent':
@@ -131,7 +131,7 @@ class CalibrationPage:
             self._begin(READY, 'The robots were released: nothing was saved.')
 
     def confirm(self) -> None:
-        """Take a press of the one large button, or Enter."""
+        """Take in a press of the large button, or Enter."""
         if self.state == READY:
             if self._stopped:
                 self._ask()
@@ -144,7 +144,7 @@ class CalibrationPage:
             self.state = SAVING
 
     def again(self) -> None:
-        """Begin anew."""
+        """Start again."""
         if self.state == ASKING:
             self._ask()
         elif self.state in (STOPPING, DONE, SAVED):
@@ -156,12 +156,12 @@ class CalibrationPage:
             self.state, self._said, self._problem = SAVED, sentence, ''
 
     def refused(self, reason: str, exists: bool = False) -> None:
-        """Take note that it was not written; ``exists``: there is one of its name."""
+        """Take note that it was not written; ``exists``: there is one with its name."""
         if self.state == SAVING:
             self.state, self._problem, self._replace = DONE, reason, exists
 
     def close(self) -> None:
-        """Forget what was asked, but for what is being saved."""
+        """Forget the answers, except what is being saved."""
         if self.state != SAVING:
             self._begin(ABSENT, _LOOKING)
 
@@ -177,7 +177,7 @@ class CalibrationPage:
         self._calibration.feed(self._axes, self._buttons)
 
     def _settle(self) -> None:
-        """Go on once the last question was answered."""
+        """Go on once the last question has been answered."""
         if self._calibration is not None and self._calibration.step == LAST_STEP:
             self.state = DONE
 

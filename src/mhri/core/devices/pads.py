@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which pad is used where there are several, and which profile says what its axes mean."""
+"""Which of several pads to use, and which profile says what its axes mean."""
 from dataclasses import dataclass
 from typing import Iterable, List, Optional, Sequence, Tuple
 
@@ -9,13 +9,13 @@ from mhri.core.driving.profile import Profile, parse_profile
 
 GENERIC = 'generic'
 _HEXADECIMAL = set('0123456789abcdef')
-# What kernel drivers show beside the pad that it belongs to, and what is for the feet.
+# What kernel drivers show beside the pad itself, and devices for the feet.
 _NO_PADS = ('motion sensors', 'touchpad', 'accelerometer', 'pedal', 'rudder', 'footswitch')
 
 
 @dataclass(frozen=True)
 class PadInfo:
-    """A pad that is connected: its place in SDL's list, its name, its GUID ('' where not known)."""
+    """A connected pad: its place in SDL's list, its name, its GUID ('' if not known)."""
 
     index: int
     name: str
@@ -23,7 +23,7 @@ class PadInfo:
 
 
 def same_guid(guid: str) -> str:
-    """Return a GUID as it is compared: lower case, without the check sum of the device's name.
+    """Return a GUID for comparison: lower case, without the check sum of the device's name.
 
     SDL 2.26 and later put that into the third and fourth byte; older ones have zeros there.
     """
@@ -40,8 +40,8 @@ def load_profiles(
         files: Iterable[Tuple[str, str, str]]) -> Tuple[List[Profile], List[ConfigError]]:
     """Parse the profiles of all pads; a bad file does not hide the good ones.
 
-    :param files: [(name, path, text)] in the order of preference; the name is that of the file
-        without ending, and the profile has to say the same
+    :param files: [(name, path, text)] in the order of preference; the name is the file's
+        without its ending, and the profile must say the same
     :returns: ([Profile], [ConfigError])
     """
     profiles: List[Profile] = []
@@ -60,7 +60,7 @@ def load_profiles(
 
 
 def choose_profile(profiles: Sequence[Profile], name: str, guid: str = '') -> Tuple[Profile, str]:
-    """Return the profile for a pad, and what the operator has to know about the choice ('').
+    """Return the profile for a pad, and what the operator should know about the choice ('').
 
     First the one that names its GUID; then the one that names the longest part of its name, since
     'Wireless Controller' is many pads and 'Xbox Wireless Controller' is one; then ``generic``.
@@ -88,7 +88,7 @@ def choose_profile(profiles: Sequence[Profile], name: str, guid: str = '') -> Tu
 
 
 def is_known(profiles: Sequence[Profile], pad: PadInfo) -> bool:
-    """Tell whether some profile names a pad by its GUID or its name."""
+    """Tell whether a profile names a pad by its GUID or its name."""
     try:
         return not choose_profile(profiles, pad.name, pad.guid)[1]
     except LookupError:
@@ -100,7 +100,7 @@ def choose_pad(wanted: object, pads: Iterable[PadInfo], profiles: Sequence[Profi
 
     :param wanted: '' (any: the first that a profile knows, else the first), a whole number (its
         place in the list, from 0), a GUID, or a part of its name in any case
-    :raises LookupError: there is none; the text says what was looked for and the remedy
+    :raises LookupError: there is none; the text says what was wanted and the remedy
     """
     word = str(wanted).strip()
     pads = [pad for pad in pads if not any(part in pad.name.lower() for part in _NO_PADS)]
@@ -116,7 +116,7 @@ def choose_pad(wanted: object, pads: Iterable[PadInfo], profiles: Sequence[Profi
 
 
 def is_wanted(wanted: object, pad: PadInfo) -> bool:
-    """Tell whether a pad is the one that is asked for; '' asks for any."""
+    """Tell whether a pad is the wanted one; '' wants any."""
     word = str(wanted).strip()
     if word.isdigit() and len(word) < 4:
         return pad.index == int(word)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which of the devices that are there is the pedal, and which profile it is read with."""
+"""Which connected device is the pedal, and which profile to read it with."""
 from dataclasses import dataclass
 import re
 from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
@@ -14,15 +14,15 @@ GENERIC = {KEYS: 'three_keys', AXES: 'rudder_pedals'}
 
 
 class NoPedal(LookupError):
-    """No device, or not one alone, can be taken for the pedal; says which, why and the remedy."""
+    """No device, or more than one, could be the pedal; says which, why and the remedy."""
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """A device that is there.
+    """A connected device.
 
-    ``usb`` is ``vendor:product`` in lower case hexadecimal, '' where it has none; ``places`` are
-    paths or other words by which it can be asked for; ``kind`` is that of its profile.
+    ``usb`` is ``vendor:product`` in lower case hexadecimal, '' if it has none; ``places`` are
+    paths or other names for it; ``kind`` is that of its profile.
     """
 
     kind: str
@@ -46,7 +46,7 @@ class Wish:
     profile: str = ''
 
     def fits(self, candidate: Candidate) -> bool:
-        """Tell whether a device is the one that was asked for by ``device``."""
+        """Tell whether ``device`` asks for this device."""
         if _USB_ID.match(self.device):
             return candidate.usb == self.device.lower()
         if self.device in candidate.places or self.device.startswith('/'):
@@ -55,7 +55,7 @@ class Wish:
 
 
 def usb_of_guid(guid: str) -> str:
-    """Return ``vendor:product`` of a GUID of SDL, '' where it holds none.
+    """Return ``vendor:product`` of a GUID of SDL, '' if it holds none.
 
     Its 16 bytes are bus, check sum, vendor, 0, product, 0, ...: two bytes each, the lower first.
     """
@@ -69,8 +69,8 @@ def choose(candidates: Iterable[Candidate], wish: Wish,
            profiles: Mapping[str, PedalProfile]) -> Tuple[Candidate, PedalProfile]:
     """Return (candidate, profile).
 
-    Where several devices fit, none is taken: an operator's keyboard must never be grabbed by a
-    guess, and nobody should press one pedal while the robots listen to another.
+    If several devices fit, take none: a guess must never grab an operator's keyboard, and nobody
+    should press one pedal while the robots listen to another.
 
     :param profiles: {name: PedalProfile}
     :raises NoPedal: nothing fits, or more than one, or the profile is not for such a device
@@ -96,7 +96,7 @@ def choose(candidates: Iterable[Candidate], wish: Wish,
 
 
 def _wished_profile(wish: Wish, profiles: Mapping[str, PedalProfile]) -> Optional[PedalProfile]:
-    """Return the profile that was asked for by name, None where none was."""
+    """Return the profile asked for by name, None if none was."""
     if not wish.profile:
         return None
     if wish.profile not in profiles:
@@ -110,7 +110,7 @@ def _wished_profile(wish: Wish, profiles: Mapping[str, PedalProfile]) -> Optiona
 
 
 def _automatic(profiles: Mapping[str, PedalProfile]) -> List[PedalProfile]:
-    """Return the profiles that need not be asked for."""
+    """Return the profiles that are used automatically."""
     return [profile for profile in profiles.values() if profile.automatic]
 
 
@@ -121,7 +121,7 @@ def _known_to(candidate: Candidate, profiles: Sequence[PedalProfile]) -> bool:
 
 
 def _profile_for(candidate: Candidate, profiles: Mapping[str, PedalProfile]) -> PedalProfile:
-    """Return the profile of a device, the generic one where no file knows it."""
+    """Return the profile of a device, the generic one if no file knows it."""
     for profile in _automatic(profiles):
         if _known_to(candidate, [profile]):
             return profile

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Foot pedals: what each of them does, from a file; and what the feet ask for, from their values.
+"""Foot pedals: what each does, read from a file, and what their values ask for.
 
-A pedal has a value: a switch 0 or 1, an axis the share of its travel. All pedals of a device
-together give the axes and buttons of a ``sensor_msgs/Joy`` as the mux reads them: ``axes[0]`` left
-+1 .. right -1, ``axes[1]`` forward +1 .. back -1; ``buttons[0]`` an enabling pedal is pressed, then
-one button for each pedal in the order of the file.
+A pedal has a value: 0 or 1 for a switch, the fraction of its travel for an axis. All pedals of a
+device together give the axes and buttons of a ``sensor_msgs/Joy`` as the mux reads them:
+``axes[0]`` left +1 .. right -1, ``axes[1]`` forward +1 .. back -1; ``buttons[0]`` is an enabling
+pedal, then comes one button for each pedal in the order of the file.
 """
 from dataclasses import dataclass
 import math
@@ -47,9 +47,9 @@ class Pedal:
     enabling: bool = False
 
     def travel(self, raw: Optional[float]) -> Optional[float]:
-        """Return the share of its travel that an axis shows; overshoot is cut off.
+        """Return the fraction of its travel that an axis shows; overshoot is clipped.
 
-        :returns: None where the axis has shown nothing yet, or nothing that is a number
+        :returns: None if the axis has shown nothing yet, or nothing that is a number
         """
         if raw is None or not math.isfinite(raw):
             return None
@@ -63,9 +63,9 @@ class PedalProfile:
 
     ``kind`` is KEYS (a foot switch that types) or AXES (rudder pedals, a joystick). ``usb`` holds
     the ``vendor:product`` (hexadecimal) and ``names`` the parts of names, whatever their case, of
-    the devices it is for. ``dead_zone`` is the share of an axis' travel that counts as rest (the
-    remainder is stretched); from ``pressed_at`` on it counts as pressed. One that is not
-    ``automatic`` is used only where it is asked for by its name.
+    the devices it is for. ``dead_zone`` is the fraction of an axis' travel that counts as rest
+    (the remainder is stretched); from ``pressed_at`` on it counts as pressed. A profile that is not
+    ``automatic`` is used only on request, by its name.
     """
 
     name: str
@@ -110,8 +110,8 @@ class PedalProfile:
 class _Direction:
     """Which way the driving pedals go; decided as they are pressed, until they are released.
 
-    Reversing at full speed is nothing a robot should do because a foot slipped: where the direction
-    pedal changes under a pressed driving pedal, nothing moves until the latter has been released.
+    A robot must not reverse at full speed because a foot slipped: if the direction pedal changes
+    while a driving pedal is pressed, nothing moves until the latter has been released.
     """
 
     REST, AHEAD, BACK, HOLD = 'rest', 'ahead', 'back', 'hold'
@@ -133,10 +133,10 @@ class _Direction:
 
 
 class PedalState:
-    """What the feet ask for; one for each time that a device is opened.
+    """What the feet ask for; make a new one each time a device is opened.
 
-    A pedal counts from the moment it has been seen released: one that is held down (by a foot or a
-    fallen book) while the device is opened does nothing until it has been let go.
+    A pedal counts once it has been seen released: one held down (by a foot or a fallen book) while
+    the device is opened does nothing until it has been let go.
 
     :param role: DRIVE, or ENABLE: the axes stay at zero, ``buttons[0]`` is what matters
     """
@@ -149,12 +149,12 @@ class PedalState:
         self._known = False
         self._unknown = [True] * len(profile.pedals)
         marked = tuple(pedal.enabling for pedal in profile.pedals)
-        # Where the file marks none, any pedal but one that only sets the direction.
+        # If the file marks none, any pedal except one that only sets the direction.
         self._enabling = marked if any(marked) else tuple(
             not pedal.direction for pedal in profile.pedals)
 
     def note(self) -> str:
-        """Return what the operator has to do before every pedal counts, '' where nothing."""
+        """Return what the operator must do before every pedal counts, '' if nothing."""
         if any(self._unknown):
             return 'move once: {} (nothing is known yet of it)'.format(self._names(self._unknown))
         held = [not armed for armed in self._armed]
@@ -168,9 +168,9 @@ class PedalState:
              ) -> Optional[Tuple[Tuple[float, float], Tuple[int, ...]]]:
         """Return (axes, buttons) for the values of all pedals, in the order of the profile.
 
-        :param values: in [-1, 1]; None where a pedal's value is not known
-        :returns: None until every value has been known once; a value that is unknown later is not
-            to be trusted: everything is zero, and has to be seen released again
+        :param values: in [-1, 1]; None if a pedal's value is not known
+        :returns: None until every value has been known once; if a value becomes unknown
+            later, everything is zero and must be seen released again
         """
         self._unknown = [value is None for value in values]
         counted = [value for value in values if value is not None]
@@ -211,7 +211,7 @@ def _within_one(value: float) -> float:
 def parse_pedal_profile(text: str, origin: str) -> PedalProfile:
     """Return the :class:`PedalProfile` that a YAML text describes.
 
-    :raises ConfigError: names the file and the key that is wrong
+    :raises ConfigError: names the file and the wrong key
     """
     section = parse_yaml(text, origin)
     name = section.text('name')
@@ -303,8 +303,8 @@ def load_pedal_profiles(
     """Parse many profiles; one bad file never hides the good ones.
 
     :param files: pairs (origin, text), the more important first
-    :returns: ({name: PedalProfile}, [ConfigError]); of two files with one name the first stays, so
-        that an operator's own file takes the place of a shipped one
+    :returns: ({name: PedalProfile}, [ConfigError]); of two files with the same name the first
+        counts, so that an operator's own file replaces a shipped one
     """
     profiles: Dict[str, PedalProfile] = {}
     errors: List[ConfigError] = []

@@ -5,9 +5,9 @@ from typing import Generic, Optional, TypeVar
 
 State = TypeVar('State')
 
-# At most so often; what changes in between is coalesced and its newest state sent.
+# Shortest time between two messages [s]; of changes in between only the newest state is sent.
 MIN_PERIOD_S = 0.01
-# A stick that is held still sends nothing by itself, and the mux takes silence for a loss.
+# A stick held still sends nothing by itself, and the mux takes silence for a loss.
 REPEAT_S = 0.05
 
 
@@ -24,7 +24,7 @@ class Pacer(Generic[State]):
         self._sent_at: Optional[float] = None
 
     def offer(self, state: State) -> None:
-        """Take in a state (anything but None); it replaces one that was not published yet."""
+        """Take in a state (anything but None); it replaces one not published yet."""
         self._newest = state
         self._changed = True
 
@@ -34,9 +34,9 @@ class Pacer(Generic[State]):
         return self._changed
 
     def due_in(self, now: float) -> float:
-        """Return how long until something is to be published [s], 0.0: now.
+        """Return the time until something is due [s], 0.0: now.
 
-        Without any state it is the time of a repetition, so that a caller has something to wait by.
+        Without any state it is the time of a repetition, so that a caller has a time to wait.
         """
         if self._newest is None:
             return REPEAT_S
@@ -46,7 +46,7 @@ class Pacer(Generic[State]):
         return max(0.0, self._sent_at + period_s - now)
 
     def take(self, now: float) -> Optional[State]:
-        """Return the state to publish now, or None where it is not time for one."""
+        """Return the state to publish now, or None if it is not time for one."""
         if self._newest is None or self.due_in(now) > 0.0:
             return None
         self._sent_at = now

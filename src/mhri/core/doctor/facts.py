@@ -39,7 +39,7 @@ class Finding:
 class Folder:
     """A folder that is written to.
 
-    ``what`` it is for ('recordings', 'logs'), ``problem`` why it cannot be written to, '' where it
+    ``what`` it is for ('recordings', 'logs'), ``problem`` why it cannot be written to, '' if it
     can; ``device`` is the same for two on one disk.
     """
 
@@ -55,9 +55,9 @@ class Computer:
     """The computer the doctor runs on.
 
     ``variables`` are those of its environment that begin with ``ROS_``; ``resolved`` are names and
-    their IPv4 addresses, None where a name is unknown; ``route_ip`` is the own address that
-    packets to the master leave from, None where there is no way or the master is on this computer;
-    ``packages`` maps what mhri depends on to the reason why it cannot be used, '' where it can.
+    their IPv4 addresses, None if a name is unknown; ``route_ip`` is the own address that
+    packets to the master leave from, None if there is no way or the master is on this computer;
+    ``packages`` maps what mhri depends on to the reason why it cannot be used, '' if it can.
     """
 
     name: str = 'host'
@@ -82,7 +82,7 @@ class Computer:
                    for address in self.addresses_of(host))
 
     def good_ip(self) -> Optional[str]:
-        """Return the address that robots should be told, None where there is only loopback."""
+        """Return the address that robots should be told, None if there is only loopback."""
         outward = [address for address in self.addresses if not is_loopback(address)]
         return self.route_ip or (outward[0] if outward else None)
 
@@ -152,7 +152,7 @@ class Connection:
     """A connection as a node tells of it: ``out`` or not, its topic, who is at the other end.
 
     ``peer`` is the other node's name of an outgoing, its URI of an incoming one; ``address`` the
-    IPv4 address that the other end really has, '' where it is not told.
+    IPv4 address that the other end really has, '' if it is not told.
     """
 
     out: bool
@@ -166,7 +166,7 @@ class Node:
     """A registered node and how it answered.
 
     ``publications`` and ``subscriptions`` are {topic: type} in its own words, ``connections`` its
-    :class:`Connection` list; each is None where it did not say. ``uri_later`` is where it was
+    :class:`Connection` list; each is None if it did not say. ``uri_later`` is where it was
     registered at the end of the examination.
     """
 
@@ -187,7 +187,7 @@ class Stream:
     """What a publisher said of a topic when it was asked for it, and the stamps that came.
 
     ``problem`` says why it was not connected; ``listened_s`` is for how long messages were waited
-    for [s], 0 where they were not; ``samples`` are (received, stamp) pairs by the clock here and
+    for [s], 0 if they were not; ``samples`` are (received, stamp) pairs by the clock here and
     the sender's [s]; ``refused`` what the gates refused, in their own words: '/node: twist, 3
     times'.
     """
@@ -210,7 +210,7 @@ class Facts:
 
     ``later`` is the graph, ``later_nodes`` the nodes asked once more at the end, where something
     looked odd: only what is odd both times is told. ``known`` maps message types to the md5 sum
-    that this computer has, None where it has none. ``wanted`` are the robots asked for, () for all.
+    that this computer has, None if it has none. ``wanted`` are the robots asked for, () for all.
     """
 
     computer: Computer = Computer()

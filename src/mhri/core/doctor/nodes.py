@@ -16,7 +16,7 @@ _Key = TypeVar('_Key', str, Tuple[str, ...])
 
 
 def robot_of(node: str) -> str:
-    """Return the namespace of a node, '' where it has none."""
+    """Return the namespace of a node, '' if it has none."""
     namespace, _, rest = node.lstrip('/').partition('/')
     return namespace if rest else ''
 
@@ -145,7 +145,7 @@ def _beside(facts: Facts, node: Node) -> Set[str]:
 
 
 def true_address(facts: Facts, node: Node) -> str:
-    """Return the address that a node which does not answer ought to tell, '' where it is unknown.
+    """Return the address that a node which does not answer ought to tell, '' if it is unknown.
 
     Where it is seen to be connected from another address than it tells, that is it. Else, where
     nothing answers at the address it tells, it is the one at which the rest of its robot does.

@@ -43,7 +43,7 @@ class WatchdogTrial:
     def step(self, now: float, motion: Optional[Motion], heard_at: float) -> Optional[float]:
         """Take the newest motion; return the turn to send now [rad/s], None for silence.
 
-        :param motion: :class:`mhri.core.robots.link.Motion`, None where nothing was heard yet
+        :param motion: :class:`mhri.core.robots.link.Motion`, None if nothing was heard yet
         :param heard_at: when it was heard [s]
         """
         if not now - heard_at <= FRESH_S:

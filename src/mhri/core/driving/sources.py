@@ -75,7 +75,7 @@ def parse_mux_config(text: str, origin: str, read_profile: ReadProfile) -> MuxCo
     """Return the :class:`MuxConfig` that a YAML text describes.
 
     :param read_profile: function from a profile's name to (origin, text); may raise OSError
-    :raises ConfigError: names the file and the key that is wrong
+    :raises ConfigError: names the file and the wrong key
     """
     section = parse_yaml(text, origin)
     sources: List[Source] = []

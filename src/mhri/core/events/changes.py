@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What has changed from one view of the screen to the next, as an operator would tell it.
+"""What has changed from one view of the screen to the next, as an operator would put it.
 
-What flaps is told once: a state has to hold for a while before it counts, the longer the less it
-matters to know of it at once.
+A state that flaps is reported once: it must last a while before it counts, the longer the less
+urgent it is.
 """
 from typing import Callable, Dict, Generic, Iterator, List, NamedTuple, Optional, Tuple, TypeVar
 
@@ -15,7 +15,7 @@ from mhri.core.screen.views import (
     GONE, LIVE, PanelView, PROOF_NOT_CONFIRMED, PROOF_STOPPED, ROS_CONNECTED, ROS_CUT_OFF,
     ROS_NO_MASTER, RobotView, SILENT, UNANSWERED, WAITING)
 
-# For so long [s] something has to hold before it is told. What is lost is told at once.
+# How long [s] something must last before it is reported. A loss is reported at once.
 BACK_S = 2.0
 BAD_LINK_S = 2.0
 GOOD_LINK_S = 5.0
@@ -26,7 +26,7 @@ SETTLED_S = 1.0
 _T = TypeVar('_T')
 # Kind and words.
 _Told = Iterator[Tuple[str, str]]
-# What the drive service answers where it does not do what it was asked for begins so.
+# How an answer of the drive service begins if it refuses.
 _REFUSALS = ('not ', 'motor power unchanged')
 _FAILED = FAILED.format('')
 _BATTERY_WORDS = {LOW: 'battery {:.0f} %: charge it soon', FLAT: 'battery {:.0f} %: charge it now',
@@ -34,10 +34,10 @@ _BATTERY_WORDS = {LOW: 'battery {:.0f} %: charge it soon', FLAT: 'battery {:.0f}
 
 
 class Change(NamedTuple):
-    """One thing that has changed: ``robot`` ('' for all), its kind and a sentence.
+    """One thing that has changed: its robot ('' for all), kind and sentence.
 
-    The kind is "subject.what", e.g. ``link.lost``; what is told last of a subject holds. ``again``
-    is true where it only says more of what was told already.
+    The kind is "subject.what", e.g. ``link.lost``; the last change of a subject holds. ``again``
+    is true if it only adds to what was already reported.
     """
 
     robot: str
@@ -56,7 +56,7 @@ class Held(Generic[_T]):
         self._next = value
 
     def take(self, value: _T, hold_s: float, now: float) -> bool:
-        """Take in what is so now; tell whether it counts from now on and did not before."""
+        """Take in the present value; return whether it counts from now on and did not before."""
         if value != self._next:
             self._next, self.since = value, now
         if value == self.value or now - self.since < hold_s:
@@ -85,7 +85,7 @@ class RobotChanges:
     def see(self, view: RobotView, answers: bool, now: float) -> List[Change]:
         """Return what has changed since the last view.
 
-        :param answers: whether the gates are heard; without them nobody knows of guard and power
+        :param answers: whether the gates are heard; without them guard and power are unknown
         """
         told = list(self._see_link(view, now))
         found = [*self._see_driving(view), *self._see_battery(view), *self._see_switch(view)]
@@ -99,7 +99,7 @@ class RobotChanges:
         return told + [Change(self._name, kind, text) for kind, text in found]
 
     def _see_link(self, view: RobotView, now: float) -> Iterator[Change]:
-        """Tell of found, silent, gone, back; a robot is back once it has been for a while."""
+        """Report found, silent, gone and back; a robot is back once it has stayed a while."""
         self._live.take(view.link == LIVE, BACK_S if self._link in (SILENT, GONE) else 0.0, now)
         if view.link == LIVE and self._link == WAITING:
             self._link = LIVE
@@ -112,12 +112,13 @@ class RobotChanges:
             yield self._lose(view, now)
 
     def _lose(self, view: RobotView, now: float) -> Change:
-        """Tell of a robot that is heard no longer."""
+        """Report a robot that is no longer heard."""
         again = self._link == SILENT
         self._link = view.link
         if not again:
             self._lost_at = now
-            # Whoever is not heard is sent zeros and may have been unchecked: before counts as well.
+            # A robot that is not heard gets zeros and may be unchecked by now: the state before
+            # counts, too.
             self._lost_driven = any(seen.selected or seen.driven for seen in (view, self._old))
         kind, word = ('link.silent', 'silent') if view.link == SILENT else ('link.gone', 'gone')
         if self._lost_driven:
@@ -125,7 +126,7 @@ class RobotChanges:
         return Change(self._name, kind, word + (': ' + view.note if view.note else ''), again)
 
     def _see_driving(self, view: RobotView) -> _Told:
-        """Tell of the check and of the proof of a stop."""
+        """Report the check and the proof of a stop."""
         if view.selected != self._old.selected:
             yield ('drive.checked', 'checked') if view.selected else \
                 ('drive.unchecked', 'unchecked')
@@ -137,14 +138,14 @@ class RobotChanges:
                 yield 'proof.doubtful', view.proof.text
 
     def _see_battery(self, view: RobotView) -> _Told:
-        """Tell of a battery that is low, flat, or charged again."""
+        """Report a battery that is low, flat, or charged again."""
         level = battery_level(view.battery, self._battery)
         if level != self._battery and view.battery is not None:
             yield 'battery.' + level, _BATTERY_WORDS[level].format(100.0 * view.battery)
         self._battery = level
 
     def _see_switch(self, view: RobotView) -> _Told:
-        """Tell of the robot's own emergency stop."""
+        """Report the robot's own emergency stop."""
         pressed = self._pressed if view.hardware_stop is None else view.hardware_stop
         if pressed != self._pressed:
             yield ('hardware.pressed', 'its own emergency stop is pressed') if pressed else \
@@ -152,14 +153,14 @@ class RobotChanges:
         self._pressed = pressed
 
     def _see_quality(self, view: RobotView, now: float) -> _Told:
-        """Tell of a link that is bad, and of one that is good again."""
+        """Report a link that is bad, or good again."""
         warning = link_warning(view.figures)
         if self._bad.take(bool(warning), BAD_LINK_S if warning else GOOD_LINK_S, now):
             yield ('quality.bad', 'bad link: ' + warning) if warning else \
                 ('quality.good', 'the link is good again')
 
     def _see_power(self, view: RobotView) -> _Told:
-        """Tell what has become of the power of its motors; what is under way is told at its end."""
+        """Report changes of its motor power once they are complete."""
         before = self._power
         if view.power.startswith(_FAILED) or view.power in (CUT, CUT_SENT, UNTOUCHED):
             self._power = view.power
@@ -168,13 +169,13 @@ class RobotChanges:
         if view.power.startswith(_FAILED):
             yield 'power.failed', 'motor power not changed: ' + view.power[len(_FAILED):]
         elif view.power == UNTOUCHED:
-            yield 'power.back', 'motor power given back'
+            yield 'power.back', 'motor power restored'
         else:
             yield 'power.cut', 'motor power cut' + (
-                '' if view.power == CUT else ': told to the robot, which cannot confirm it')
+                '' if view.power == CUT else ': sent to the robot, which cannot confirm it')
 
     def _see_guard(self, view: RobotView, now: float) -> _Told:
-        """Tell of a guard that was there and is not any more."""
+        """Report a guard that has gone, or is back."""
         if not self._guarded.take(view.guarded, 0.0 if view.guarded else GUARD_S, now):
             return
         if not view.guarded:
@@ -185,7 +186,7 @@ class RobotChanges:
 
 
 class RecordingChanges:
-    """What becomes of the recordings.
+    """What happens to the recordings.
 
     :param status_of: function that returns the :class:`RecordingStatus` of a robot
     """
@@ -211,7 +212,7 @@ class RecordingChanges:
 
     @staticmethod
     def _tell(old: RecordingStatus, status: RecordingStatus) -> _Told:
-        """Tell of begin, end and trouble."""
+        """Report start, end and trouble."""
         if status.state == NOT_RECORDED:
             if (old.state, old.note) != (status.state, status.note):
                 yield 'recording.failed', 'not recorded: ' + status.note
@@ -228,7 +229,7 @@ class RecordingChanges:
 class ScreenChanges:
     """What changes about the whole screen and everything on it.
 
-    :param status_of: as of :class:`RecordingChanges`
+    :param status_of: as for :class:`RecordingChanges`
     """
 
     def __init__(self, status_of: Callable[[str], RecordingStatus]) -> None:
@@ -243,7 +244,7 @@ class ScreenChanges:
         self._limits: Optional[Held[Tuple[float, float]]] = None
 
     def see(self, view: PanelView, now: float) -> List[Change]:
-        """Return what has changed since the last view, in the order in which to tell it.
+        """Return what has changed since the last view, in the order in which to report it.
 
         :param now: seconds of a clock that never goes back
         """
@@ -257,7 +258,7 @@ class ScreenChanges:
         return told
 
     def _see_list(self, view: PanelView, now: float) -> Iterator[Change]:
-        """Tell of robots that come and go, and of what changes about each."""
+        """Report robots that come and go, and what changes about each."""
         names = {robot.name for robot in view.robots}
         for name in [name for name in self._robots if name not in names]:
             del self._robots[name]
@@ -270,7 +271,7 @@ class ScreenChanges:
             yield from self._robots[robot.name].see(robot, view.answers, now)
 
     def _see_ros(self, old: PanelView, view: PanelView) -> _Told:
-        """Tell of the master, and of this screen's own end."""
+        """Report the master, and this screen's own end."""
         if view.ros == ROS_CUT_OFF != old.ros:
             yield 'screen.cut_off', 'this screen is cut off and shows nothing new: restart it'
         elif view.ros == ROS_NO_MASTER and self._master:
@@ -278,21 +279,21 @@ class ScreenChanges:
             yield 'master.lost', 'no ROS master: looking again every second'
         elif view.ros == ROS_CONNECTED and not self._master:
             self._master = True
-            yield 'master.back', 'the ROS master is there again'
+            yield 'master.back', 'the ROS master is back'
 
     def _see_services(self, view: PanelView, now: float) -> _Told:
-        """Tell of mux and gates that fall silent, and come back."""
+        """Report mux and gates that fall silent or come back."""
         if view.ros != ROS_CONNECTED:
             return
         if self._mux.take(view.mode is not None, SERVICE_S, now):
-            yield ('mux.back', 'what decides who drives runs again') if self._mux.value else \
+            yield ('mux.back', 'what decides who drives is running again') if self._mux.value else \
                 ('mux.silent', 'what decides who drives is not running')
         if self._gates.take(view.answers, SERVICE_S, now):
             yield ('gates.back', 'the drive service answers again') if view.answers else \
                 ('gates.silent', UNANSWERED + ': no robot can be driven')
 
     def _see_driver(self, old: PanelView, view: PanelView) -> _Told:
-        """Tell of stop-all, of who drives, and of what was refused."""
+        """Report stop-all, who drives, and what was refused."""
         if view.stop_all != old.stop_all:
             yield ('stop.engaged', 'STOP ALL') if view.stop_all else \
                 ('stop.released', 'STOP ALL released')
@@ -304,7 +305,7 @@ class ScreenChanges:
             yield 'request.refused', view.stop_note
 
     def _see_source(self, view: PanelView, now: float) -> _Told:
-        """Tell of another source, of one that cannot drive, and of another speed limit."""
+        """Report a new source, one that cannot drive, and a new speed limit."""
         if view.mode is None:
             return
         if self._mode not in (None, view.mode):

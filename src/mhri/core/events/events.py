@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The event list: what an operator would want to know afterwards, and what is still unseen of it.
+"""The event list: what an operator wants to know afterwards, and which of it is still unseen.
 
-An event is plain data, kept as it is by whoever wants to (:meth:`Event.as_dict`). What repeats
-itself within a short time is one line with a count, at the place of the newest.
+An event is plain data that anybody can keep (:meth:`Event.as_dict`). Events that repeat within a
+short time become one line with a count, in the place of the newest.
 """
 from dataclasses import asdict, dataclass
 from datetime import datetime
@@ -15,10 +15,10 @@ from mhri.core.events.changes import Change, ScreenChanges
 from mhri.core.screen.text import tidy_text
 from mhri.core.screen.views import PanelView
 
-# How much an event matters, least first.
+# Severities, least first.
 CALM, ATTENTION, ALARM = 'calm', 'attention', 'alarm'
 SEVERITIES = (CALM, ATTENTION, ALARM)
-# The tones; that of a robot lost while driven cannot be silenced.
+# The tones; the one for a robot lost while driven cannot be silenced.
 LOST_TONE, ATTENTION_TONE, CALM_TONE = 'lost', 'attention', 'calm'
 
 MOST = 2000
@@ -63,7 +63,7 @@ class Event:
 
     ``number`` counts up from 1 and is never used twice. ``time_s`` is the wall time [s since 1970]
     of the newest of ``count`` equal ones, the first of which was at ``since_s``; ``replaces`` is
-    the number of the line that stood for those before, 0 where there is none. ``robot`` is '' where
+    the number of the line that stood for those before, 0 if there is none. ``robot`` is '' where
     it is about everything. ``kind`` is a key of :data:`KINDS`, ``sound`` the tone to play now ('').
     """
 
@@ -84,7 +84,7 @@ class Event:
 
     @property
     def subject(self) -> str:
-        """What it is about: of several events about the same the newest holds."""
+        """What it is about: the newest of several events with one subject holds."""
         return self.kind.partition('.')[0]
 
     @property
@@ -96,7 +96,7 @@ class Event:
 
 
 class Headline(NamedTuple):
-    """What the bottom line says of the unseen events: words ('' for none) and a severity."""
+    """What the bottom line says about unseen events: words ('' for none) and a severity."""
 
     text: str
     severity: str
@@ -115,7 +115,7 @@ class EventLog:
     """The newest events, and which of them nobody has looked at yet.
 
     :param status_of: function that returns the :class:`RecordingStatus` of a robot by its name
-    :param most: more events than this are not kept; the oldest go first
+    :param most: how many events to keep; the oldest go first
     """
 
     def __init__(self, status_of: Callable[[str], RecordingStatus] = _no_recording,
@@ -124,14 +124,14 @@ class EventLog:
         self._most = most
         self._number = 0
         self._events: Dict[int, Event] = {}
-        # Of what may be repeated: when it was told last (monotonic), and how.
+        # For what may repeat: when it was last reported (monotonic), and how.
         self._told: Dict[Tuple[str, str, str], Tuple[float, Event]] = {}
         self._unseen: Dict[Tuple[str, str], Event] = {}
         self._unseen_count = 0
 
     @property
     def events(self) -> Tuple[Event, ...]:
-        """All events that are kept, the oldest first."""
+        """All events kept, the oldest first."""
         return tuple(self._events.values())
 
     @property
@@ -148,10 +148,10 @@ class EventLog:
         return [self._tell(change, now_s, wall_s) for change in self._changes.see(view, now_s)]
 
     def note(self, kind: str, text: str, now_s: float, wall_s: float, robot: str = '') -> Event:
-        """Take in what no view tells, and return it as an event.
+        """Take in what no view says, and return it as an event.
 
         :param kind: a key of :data:`KINDS`
-        :raises KeyError: it is none
+        :raises KeyError: it is not one
         """
         return self._tell(Change(robot, kind, text), now_s, wall_s)
 
@@ -177,7 +177,7 @@ class EventLog:
         return event
 
     def _keep(self, event: Event, before: Optional[Event]) -> None:
-        """Put an event at the end, and in the place of the one that it repeats."""
+        """Put an event at the end, replacing the one that it repeats."""
         if before is not None:
             self._events.pop(before.number, None)
         self._events[event.number] = event
@@ -192,10 +192,10 @@ class EventLog:
         self._unseen_count = 0
 
     def headline(self) -> Headline:
-        """Return what to say of the unseen events: the worst, the newest of those, by name.
+        """Return what to say about unseen events: the newest of the worst ones, by name.
 
-        What is over (a robot is back) is no longer the worst. E.g. "bot3 lost while driven
-        14:02:06 (2 more)"; "3 events" where none of them matters; '' for none.
+        An event that is over (the robot is back) does not count as the worst. E.g. "bot3 lost while
+        driven 14:02:06 (2 more)"; "3 events" if none of them matters; '' for none.
         """
         open_ = [event for event in self._unseen.values() if event.severity != CALM]
         if not open_:

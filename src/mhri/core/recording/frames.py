@@ -10,7 +10,7 @@ _UNPACK_U32 = struct.Struct('<I').unpack_from
 class FrameSplitter:
     """Cuts the bytes of one TCPROS connection into frames: a length (4 bytes) and a message.
 
-    ``wanted`` is how many bytes are still missing of the present message, 0 where unknown.
+    ``wanted`` is how many bytes are still missing of the present message, 0 if unknown.
     """
 
     LONGEST = 10 ** 9

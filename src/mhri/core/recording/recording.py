@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is recorded, under which name, and what is said about it."""
+"""What to record, under which name, and what to say about it."""
 from collections import deque
 from dataclasses import dataclass
 from datetime import datetime
@@ -19,20 +19,20 @@ FAILED = 'failed'        # never began, or stopped by itself; the note says why 
 MB = 10 ** 6
 ACTIVE = '.active'
 _VARIABLE = re.compile(r'\$(?:([A-Za-z_]\w*)|\{([A-Za-z_]\w*)\})', re.ASCII)
-# Folders of the system that take no files, whoever asks.
+# Folders of the system that never take files.
 _NO_FILES_IN = ('/dev', '/proc', '/sys')
 
-#: what an operator may choose: (key, label); IMU is always recorded
+#: what an operator may choose: (key, label); the IMU is always recorded
 CHOICES = (('odometry', 'Odometry'), ('commands', 'Commands'), ('scan', 'Laser scan'),
            ('rgb', 'RGB camera (compressed)'), ('depth', 'Depth camera (compressed)'))
-# Below a robot's namespace: where the commands go of one that has a guard.
+# Below a robot's namespace: where commands to a robot with a guard go.
 GUARD_COMMAND = 'mhri_guard/command'
 _COMMAND_TOPICS = ('/robot_controller/twist', '/robot_controller/robot_select',
                    '/robot_controller/stop_all', '/mux/mode')
 
 
 class PathRefused(Exception):
-    """A path under which no recording can be kept; the text says why, for a person."""
+    """A path that cannot take a recording; the text tells the operator why."""
 
 
 @dataclass(frozen=True)
@@ -41,8 +41,8 @@ class RecordingStatus:
 
     ``path`` is that of the file as it is or will be called when it ends ('' before the start),
     ``duration_s`` counts from the opening of the file, ``messages`` and ``bytes`` are received
-    (written or about to be), ``rate_hz`` is that of the last second or so. ``note`` is for a
-    person, '' where there is nothing to say; ``attention`` is true where it is a warning.
+    (written or about to be), ``rate_hz`` is that of the last second or so. ``note`` is for
+    the operator, '' if there is nothing to say; ``attention`` is true if it is a warning.
     """
 
     state: str = OFF
@@ -72,13 +72,13 @@ class RecordingLimits:
 
 
 class RateMeter:
-    """Messages per second over the last second or two, from a count that is looked at often."""
+    """Messages per second over the last second or two, from a count that is read often."""
 
     def __init__(self) -> None:
         self._seen: Deque[Tuple[float, int]] = deque(maxlen=40)
 
     def rate_hz(self, now_s: float, count: int) -> float:
-        """Return the rate, 0 until there are two looks at least 0.2 s apart."""
+        """Return the rate [Hz], 0 until there are two readings at least 0.2 s apart."""
         if not self._seen or now_s - self._seen[-1][0] >= 0.05:
             self._seen.append((now_s, count))
         while len(self._seen) > 2 and now_s - self._seen[1][0] >= 1.0:
@@ -90,10 +90,10 @@ class RateMeter:
 def topics_of(robot: str, robot_type: RobotType, choices: Collection[str] = ()) -> Tuple[str, ...]:
     """Return the topics to record of a robot, absolute, without repetition.
 
-    Of each list of a template every candidate is taken: one that does not exist brings nothing.
-    Cameras are recorded compressed, with their ``camera_info``; what has no compressed topic can be
-    added by name. Of the commands those on the host are recorded, and those to the robot: it does
-    not matter to the gates who merely listens.
+    Every candidate in a template's list is taken: one that does not exist does no harm. Cameras are
+    recorded compressed, with their ``camera_info``; topics without a compressed form can be added
+    by name. Commands are recorded on the host and at the robot; a mere listener does not affect the
+    gates.
 
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
     :param choices: keys of ``CHOICES``
@@ -152,13 +152,13 @@ def expand(text: str, env: Mapping[str, str]) -> str:
 
 def split_path(text: str, env: Mapping[str, str],
                is_folder: Callable[[str], bool]) -> Tuple[str, str]:
-    """Return (folder, name) of what the operator typed; the name is '' where only a folder is.
+    """Return (folder, name) of what the operator typed; the name is '' if only a folder is.
 
-    A path that is a folder, or ends in a slash, is a folder; anything else is a file, and gets
-    ``.bag`` where it has it not. Relative paths are seen from the folder of ROS. Nothing typed is
-    the folder of ROS.
+    A path that is a folder, or ends in a slash, is a folder; anything else is a file, to which
+    ``.bag`` is added if missing. Relative paths start at the folder of ROS. An empty text is the
+    folder of ROS.
 
-    :param is_folder: function from a path to True where a folder of this name exists
+    :param is_folder: function from a path to True if a folder of this name exists
     :raises PathRefused: there cannot be such a file
     """
     text = text.strip()
@@ -185,7 +185,7 @@ def split_path(text: str, env: Mapping[str, str],
 
 
 def system_folder(real_folder: str) -> Optional[str]:
-    """Return the folder of the system that a (real) folder is in, or None where files may be."""
+    """Return the system folder that a (real) folder is in, or None if it may take files."""
     for top in _NO_FILES_IN:
         if real_folder == top or real_folder.startswith(top + '/'):
             return top
@@ -198,7 +198,7 @@ def numbered(name: str, number: int) -> str:
 
 
 def fallback_note(text: str, reason: str, path: str) -> str:
-    """Say that a path could not be used, and what is used instead."""
+    """Return a note that a path could not be used, and what is used instead."""
     shown = ''.join(char if char.isprintable() else '?' for char in text.strip())
     if len(shown) > 80:
         shown = shown[:77] + '...'
@@ -209,9 +209,9 @@ _FALLBACK = re.compile(r'cannot write to ".*": (.*); saving to /.* instead(?:; )
 
 
 def read_fallback(note: str) -> Tuple[str, str]:
-    """Return (why the path could not be used, the rest of a note); ('', note) where it could.
+    """Return (why the path could not be used, the rest of a note); ('', note) if it could.
 
-    The opposite of :func:`fallback_note`, for who shows the path elsewhere.
+    The inverse of :func:`fallback_note`, for a caller that shows the path elsewhere.
     """
     found = _FALLBACK.search(note)
     if found is None:
@@ -230,8 +230,8 @@ def warning_of(limits: RecordingLimits, free_bytes: Optional[int],
                queue_bytes: int) -> Tuple[str, bool]:
     """Return (words about the disk, whether to stop); ('', False) while all is well.
 
-    :param free_bytes: space left on the disk, None where unknown
-    :param queue_bytes: received and not yet written
+    :param free_bytes: space left on the disk, None if unknown
+    :param queue_bytes: received but not yet written
     """
     if queue_bytes >= limits.stop_queue_bytes:
         return 'the disk is too slow: {} wait to be written'.format(size_text(queue_bytes)), True

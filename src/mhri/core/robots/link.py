@@ -10,7 +10,7 @@ from mhri.core.screen.views import GONE, LIVE, SILENT, WAITING
 
 STANDSTILL_MPS = 0.01
 STANDSTILL_RAD_S = 0.03
-# No robot drives, turns or travels beyond these: m/s or rad/s, and m from where it was switched on.
+# No robot drives, turns or travels beyond these: m/s or rad/s, and m from where it started.
 POSSIBLE_SPEED = 100.0
 POSSIBLE_M = 1e6
 
@@ -60,8 +60,8 @@ def link_state(age_s: Optional[float], connections: int, silent_after_s: float =
     :param connections: number of open connections to its streams
     :param silent_after_s: its messages may be this far apart [s]; 0: silence means nothing
         while a connection is open
-    :param reached: whether a node of the robot takes commands; for a robot without odometry nothing else
-        is known
+    :param reached: whether a node of the robot takes commands; for a robot without odometry nothing
+        else is known
     :returns: WAITING, LIVE, SILENT or GONE
     """
     if age_s is not None and age_s <= (silent_after_s or SILENT_AFTER_S):

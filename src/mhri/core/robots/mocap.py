@@ -21,7 +21,7 @@ class Pose:
 
 @dataclass(frozen=True)
 class Drift:
-    """The difference between odometry and motion capture: distance [m], heading in (-pi, pi] [rad]."""
+    """Odometry minus motion capture: distance [m], heading in (-pi, pi] [rad]."""
 
     distance_m: float
     heading_rad: float

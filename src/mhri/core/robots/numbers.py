@@ -24,7 +24,7 @@ class RobotNumbers:
         self._numbers: Dict[str, int] = {}
 
     def restore(self, kept: Dict[str, int]) -> None:
-        """Take back what :meth:`kept` returned, except what contradicts the numbers already given."""
+        """Take back what :meth:`kept` returned, except what contradicts given numbers."""
         for name, number in kept.items():
             if name not in self._numbers and number not in self._numbers.values():
                 self._numbers[name] = number
@@ -35,7 +35,7 @@ class RobotNumbers:
         return {name: number for name, number in by_number if number <= MOST_NUMBERS}
 
     def meet(self, names: Iterable[str]) -> None:
-        """Give each robot without a number the lowest free one, in natural order if there are several."""
+        """Give each robot without a number the lowest free one, in natural order."""
         for name in sorted(set(names).difference(self._numbers), key=natural_key):
             taken = set(self._numbers.values())
             self._numbers[name] = next(

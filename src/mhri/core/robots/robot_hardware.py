@@ -66,7 +66,7 @@ def read_motor_power(section: Section) -> Optional[MotorPowerSpec]:
     """Return the :class:`MotorPowerSpec` at ``motor_power``; None if there is none.
 
     :param section: :class:`mhri.core.config.Section` of a robot type
-    :raises ConfigError: names the key that is wrong
+    :raises ConfigError: names the wrong key
     """
     part = _part(section, 'motor_power')
     if part is None:
@@ -94,7 +94,7 @@ def read_hardware_stop(section: Section) -> Optional[HardwareStopSpec]:
     """Return the :class:`HardwareStopSpec` at ``hardware_stop``; None if there is none.
 
     :param section: :class:`mhri.core.config.Section` of a robot type
-    :raises ConfigError: names the key that is wrong
+    :raises ConfigError: names the wrong key
     """
     part = _part(section, 'hardware_stop')
     if part is None:

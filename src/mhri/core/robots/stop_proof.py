@@ -57,10 +57,10 @@ class StopProof:
         NOT_CONFIRMED  -> STOPPED        READINGS readings of standstill in a row, over ROW_S
 
     A reading of standstill has all three planar velocities near zero, a pose that does not change,
-    and no impossible number. It counts from when it was measured, not from when it arrived, and only
-    if the stop had reached the robot by then. The time given is that of the first reading of the
-    row. If the robot was not heard for ``silent_after_s`` before that reading, it may have stood
-    still long before, and the words say so.
+    and no impossible number. It counts from when it was measured, not from when it arrived, and
+    only if the stop had reached the robot by then. The time given is that of the first reading of
+    the row. If the robot was not heard for ``silent_after_s`` before that reading, it may have
+    stood still long before, and the words say so.
 
     :param now: when the zero was sent
     :param round_trip_s: of the link to the robot [s], None if unknown

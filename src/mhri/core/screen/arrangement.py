@@ -1,15 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the tiles of the screen go: the pictures as large as they can be, no two over each other.
+"""Where the tiles go: pictures as large as possible, and none over another.
 
 Tiles are large (what the operator drives by) or small (the rest, a strip beside or below). Every
 way of placing them is tried: the large ones as large as they can be, the small ones of use.
 """
+from collections import Counter
 from dataclasses import dataclass
+from functools import lru_cache
 from math import ceil, sqrt
-from typing import Iterator, Sequence, Tuple
+from typing import Dict, Iterator, Sequence, Tuple
 
-# What the strip of small tiles may get of the stage.
+# How many pictures there are of each shape (width by height).
+Kinds = Dict[float, int]
+
+# Fractions of the stage that the strip of small tiles may have.
 _STRIP_SHARES = tuple(share / 100.0 for share in range(10, 52, 2))
 # A small picture is of use up to this part of the width of a large one; till there, a pixel of its
 # width counts so much.
@@ -17,7 +22,7 @@ _SMALL_ENOUGH = 0.26
 _SMALL_COUNTS = 1.3
 # So much more has to be seen in another arrangement before the tiles move.
 WORTH_MOVING = 1.06
-# Shape (width by height) of a picture that is not there yet.
+# Shape (width / height) of a picture that has not arrived yet.
 USUAL_SHAPE = 4.0 / 3.0
 _GROUP_AT_MOST = 4
 
@@ -41,7 +46,7 @@ class Box:
 
 @dataclass(frozen=True)
 class Arrangement:
-    """A box for each large and each small tile, in order, and the area that is picture [px²]."""
+    """A box for each large and each small tile, in order, and the area of all pictures [px²]."""
 
     large: Tuple[Box, ...] = ()
     small: Tuple[Box, ...] = ()
@@ -52,8 +57,8 @@ def choose_large(robots: Sequence[str], driven: Sequence[str], looked_at: str,
                  style: str = AUTO) -> Tuple[str, ...]:
     """Return the robots whose tiles are large, in the order of ``robots``.
 
-    By itself (AUTO): a group of up to four that is driven together, else the one looked at, else
-    the one that is driven, else the first. ONE shows one alone, ALIKE all.
+    AUTO: a group of two to four that is driven together, else the robot looked at, else the one
+    that is driven, else the first. ONE shows one alone, ALIKE all.
 
     :param driven: the robots that are checked
     :param looked_at: the robot that was chosen last, '' for none
@@ -70,7 +75,7 @@ def choose_large(robots: Sequence[str], driven: Sequence[str], looked_at: str,
 
 
 def _grid(box: Box, shapes: Sequence[float], columns: int, gap: int) -> Tuple[Box, ...]:
-    """Return a box for each shape, row by row, so many beside each other."""
+    """Return a box for each shape, row by row, in this many columns."""
     rows = ceil(len(shapes) / columns)
     width = (box.width - gap * (columns - 1)) // columns
     height = (box.height - gap * (rows - 1)) // rows
@@ -78,9 +83,15 @@ def _grid(box: Box, shapes: Sequence[float], columns: int, gap: int) -> Tuple[Bo
                      (height + gap), width, height) for index in range(len(shapes)))
 
 
-def _seen(boxes: Sequence[Box], shapes: Sequence[float]) -> float:
-    """Return the area of all pictures [px²]."""
-    return sum(box.picture(shape) for box, shape in zip(boxes, shapes))
+def _cell(box: Box, kinds: Kinds, columns: int, gap: int) -> Tuple[int, int, float]:
+    """Return width and height of a box of such a grid, and the area of all its pictures [px²]."""
+    rows = ceil(sum(kinds.values()) / columns)
+    width = (box.width - gap * (columns - 1)) // columns
+    height = (box.height - gap * (rows - 1)) // rows
+    if min(width, height) < 1:
+        return width, height, 0.0
+    return width, height, sum(count * min(height, width / shape) ** 2 * shape
+                              for shape, count in kinds.items())
 
 
 def _worth(large_px: float, larges: int, small_px: float, smalls: int) -> float:
@@ -89,10 +100,11 @@ def _worth(large_px: float, larges: int, small_px: float, smalls: int) -> float:
     return large + _SMALL_COUNTS * min(sqrt(small_px / smalls), _SMALL_ENOUGH * large)
 
 
-def _best_grid(box: Box, shapes: Sequence[float], gap: int) -> Tuple[Box, ...]:
-    """Return the grid that shows most of the pictures."""
-    return max((_grid(box, shapes, columns, gap) for columns in range(1, len(shapes) + 1)),
-               key=lambda boxes: _seen(boxes, shapes), default=())
+def _best_columns(box: Box, kinds: Kinds, gap: int) -> Tuple[float, int]:
+    """Return the area of the pictures in the grid that shows most of them, and its columns."""
+    area, fewer = max((_cell(box, kinds, columns, gap)[2], -columns)
+                      for columns in range(1, sum(kinds.values()) + 1))
+    return area, -fewer
 
 
 def _snug(boxes: Tuple[Box, ...], shapes: Sequence[float], gap: int, room: Box,
@@ -112,10 +124,9 @@ def _snug(boxes: Tuple[Box, ...], shapes: Sequence[float], gap: int, room: Box,
                      width, heights[rows.index(box.y)]) for box in boxes)
 
 
-def _fitness(boxes: Sequence[Box], least: Tuple[int, int]) -> int:
-    """Return how near to their least size boxes are: 6 if all have it, 0 for next to nothing."""
-    return int(6.0 * min(1.0, *(min(box.width / least[0], box.height / least[1])
-                                for box in boxes)))
+def _fitness(width: int, height: int, least: Tuple[int, int]) -> int:
+    """Return how near to their least size boxes are: 6 if they have it, 0 for next to nothing."""
+    return int(6.0 * min(1.0, width / least[0], height / least[1]))
 
 
 def _splits(width: int, height: int, gap: int) -> Iterator[Tuple[Box, Box]]:
@@ -133,31 +144,45 @@ def arrange(width: int, height: int, large: Sequence[float], small: Sequence[flo
             least: Tuple[int, int], gap: int) -> Arrangement:
     """Return where the tiles go.
 
-    :param width: of the stage [px]; ``height`` the same
+    :param width: of the stage [px], like ``height``
     :param large: shape (width by height) of the picture of each large tile
     :param small: the same of each small one
-    :param least: least width and height of a small tile [px]; kept wherever that is possible
+    :param least: least width and height of a small tile [px]; kept if possible
     :param gap: between two tiles [px]
     """
     whole = Box(0, 0, max(1, width), max(1, height))
+    return _arrange(whole, tuple(large), tuple(small), least, gap)
+
+
+# It is asked for at each layout, and changes with a size or a shape alone.
+@lru_cache(maxsize=32)
+def _arrange(whole: Box, large: Tuple[float, ...], small: Tuple[float, ...],
+             least: Tuple[int, int], gap: int) -> Arrangement:
+    if not large and not small:
+        return Arrangement()
     if not large or not small:
-        boxes = _best_grid(whole, tuple(large) or tuple(small), gap)
-        seen = _seen(boxes, tuple(large) or tuple(small))
-        return Arrangement(boxes, (), seen) if large else Arrangement((), boxes, seen)
-    best, best_score = Arrangement(), (-1, -1.0)
+        shapes = large or small
+        area, columns = _best_columns(whole, Counter(shapes), gap)
+        boxes = _grid(whole, shapes, columns, gap)
+        return Arrangement(boxes, (), area) if large else Arrangement((), boxes, area)
+    best, best_score = None, (-1, -1.0)
+    larges, smalls = Counter(large), Counter(small)
     for room, strip in _splits(whole.width, whole.height, gap):
         if min(room.width, room.height, strip.width, strip.height) < 1:
             continue
-        larges = _best_grid(room, large, gap)
-        large_px = _seen(larges, large)
+        large_px, large_columns = _best_columns(room, larges, gap)
         for columns in range(1, len(small) + 1):
-            smalls = _grid(strip, small, columns, gap)
-            if min(min(box.width, box.height) for box in smalls) < 1:
+            width, height, small_px = _cell(strip, smalls, columns, gap)
+            if min(width, height) < 1:
                 continue
-            small_px = _seen(smalls, small)
-            score = (_fitness(smalls, least), _worth(large_px, len(large), small_px, len(small)))
+            score = (_fitness(width, height, least),
+                     _worth(large_px, len(large), small_px, len(small)))
             if score > best_score:
                 best_score = score
-                best = Arrangement(larges, _snug(smalls, small, gap, strip, least[0]),
-                                   large_px + small_px)
-    return best
+                best = (room, large_columns, strip, columns, large_px + small_px)
+    if best is None:
+        return Arrangement()
+    room, large_columns, strip, columns, picture_px = best
+    return Arrangement(_grid(room, large, large_columns, gap),
+                       _snug(_grid(strip, small, columns, gap), small, gap, strip, least[0]),
+                       picture_px)

@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""When a robot's battery is worth a word: the same thresholds for row, tile, line and event."""
+"""When to mention a robot's battery: the same thresholds for row, tile, line and event."""
 from typing import Optional
 
 # Levels of a battery, best first.
 FINE, LOW, FLAT = 'fine', 'low', 'flat'
 LOW_AT = 0.30
 FLAT_AT = 0.15
-# A battery sags while the robot drives: a level is left only by so much more charge.
+# A battery sags while the robot drives: leaving a level takes this much more charge.
 HYSTERESIS = 0.03
 
 

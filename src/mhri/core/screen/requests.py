@@ -12,7 +12,7 @@ ACTIONS = SELECTING + (RECORD, STOP_RECORDING)
 
 
 class RequestRefused(ValueError):
-    """A request that the panel does not carry out; the text says why, for a person."""
+    """A request that the panel refuses; the text tells the operator why."""
 
 
 def check_request(action: str, names: Sequence[str], robots: Sequence[str]) -> None:
@@ -36,12 +36,12 @@ def selection_after(action: str, names: Sequence[str], robots: Sequence[str],
                     selected: Collection[str]) -> Tuple[str, ...]:
     """Return the robots that are selected after a request, in the order of the list.
 
-    ``next`` and ``previous`` go round and select one robot alone: that after the last selected one,
-    or before the first.
+    ``next`` and ``previous`` wrap around and select one robot alone: the one after the last
+    selected robot, or before the first.
 
     :param action: one of :data:`SELECTING`
     :param robots: the list
-    :param selected: those of it that are selected now
+    :param selected: those selected now
     :raises RequestRefused: see :func:`check_request`
     """
     check_request(action, names, robots)

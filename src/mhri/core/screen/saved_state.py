@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the screen kept from its last run, as far as it can be used: anybody may have edited it.
+"""What the screen kept from its last run, checked: anybody may have edited it.
 
 A state is a dict of JSON values: ``robots`` (names), ``numbers`` ({robot: its own number}),
 ``mode`` (a source), ``limits`` [m/s, rad/s], ``together``, ``windows`` ({robot: geometry}: where
 its tile was when it was torn off), ``torn_off`` (robots), ``looks`` ({robot: what its tile shows})
-``panel`` (``splitter``, ``drawer``, ``geometry``, ``layout``, ``theme``, ``numbers``) and ``events``
-(``sounds``). A geometry is [x, y, width, height, maximised] in pixels: a text that can be read, and
-no blob that Qt would have to trust.
+``panel`` (``splitter``, ``drawer``, ``geometry``, ``layout``, ``theme``, ``numbers``) and
+``events`` (``sounds``). A geometry is [x, y, width, height, maximised] in pixels: a text that can
+be read, and no blob that Qt would have to trust.
 """
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
 
@@ -26,7 +26,7 @@ _MOST_VALUES = 500
 
 State = Dict[str, Any]
 _Reader = Callable[[Any], Any]
-# ... that tells of problems within: value, list of problems, its key.
+# ... that reports problems within: value, list of problems, its key.
 _PartReader = Callable[[Any, List[str], str], Any]
 
 
@@ -39,12 +39,12 @@ def _refuse(expected: str) -> NoReturn:
 
 
 def is_word(value: Any) -> bool:
-    """Tell whether a value is a short text that can be printed."""
+    """Tell whether a value is a short printable text."""
     return isinstance(value, str) and 0 < len(value) <= _LONGEST_WORD and value.isprintable()
 
 
 def _is_whole(value: Any, least: int, most: int) -> bool:
-    """Tell whether a value is a whole number in a range; true and false are none."""
+    """Tell whether a value is a whole number in a range; true and false are not."""
     return type(value) is int and least <= value <= most
 
 
@@ -60,7 +60,7 @@ def _is_robot(name: Any) -> bool:
 
 
 def _read_numbers(value: Any) -> Dict[str, int]:
-    """Return {name: number}: of two robots with one number neither could be told by its key."""
+    """Return {name: number}; refuse two robots with one number, since a key means one robot."""
     if not (isinstance(value, dict) and len(value) <= MOST_NUMBERS
             and all(map(_is_robot, value))
             and all(_is_whole(number, 1, MOST_NUMBERS) for number in value.values())
@@ -78,7 +78,7 @@ def _read_mode(value: Any) -> Optional[str]:
 def read_limits(value: Any) -> List[float]:
     """Return a pair of speed limits [m/s, rad/s].
 
-    :raises ValueError: it is none; the text says what was expected
+    :raises ValueError: it is not one; the text says what was expected
     """
     if not isinstance(value, (list, tuple)) or len(value) != 2 or any(
             type(part) not in (int, float) for part in value):
@@ -122,7 +122,7 @@ def read_sizes(value: Any) -> List[int]:
 
 
 def _count_values(value: Any, depth: int = 0) -> int:
-    """Return how many values a value of JSON is made of.
+    """Return how many values a JSON value contains.
 
     :raises ValueError: it is too deep, or has a key or text that is too long
     """
@@ -136,7 +136,7 @@ def _count_values(value: Any, depth: int = 0) -> int:
 
 
 def _read_look(value: Any) -> State:
-    """Return how a window looked; a lab's own window may keep what it likes, in reason."""
+    """Return how a tile looked; a lab's own class may keep what it likes, within limits."""
     if not isinstance(value, dict) or _count_values(value) > _MOST_VALUES:
         _refuse('a dict of at most {} values'.format(_MOST_VALUES))
     return {**value, **{key: read(value[key]) for key, read in _LOOK.items() if key in value}}
@@ -176,7 +176,7 @@ def _read_recording(value: Any) -> State:
 
 
 def _by_robot(read: _Reader) -> _PartReader:
-    """Return what reads a dict of robots, and leaves out those that cannot be read."""
+    """Return a reader for a dict of robots that leaves out what it cannot read."""
     def _read(value: Any, problems: List[str], key: str) -> State:
         if not isinstance(value, dict):
             _refuse('a dict of robots')
@@ -223,7 +223,7 @@ _STATE: Dict[str, _PartReader] = {
 
 def _read_parts(value: State, readers: Dict[str, _PartReader], problems: List[str],
                 above: str) -> State:
-    """Return of a dict what its readers can read; say of the rest why not."""
+    """Return what the readers can read of a dict; report why not for the rest."""
     found = {}
     for key, read in readers.items():
         if key in value:
@@ -235,7 +235,7 @@ def _read_parts(value: State, readers: Dict[str, _PartReader], problems: List[st
 
 
 def usable_state(state: Any) -> Tuple[State, Tuple[str, ...]]:
-    """Return (the part of a kept state that can be used, why not for each of the others).
+    """Return (the usable part of a kept state, why each other part is not).
 
     :param state: whatever was read
     """

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a lab sets of the panel with parameters: the camera budget and the disk's reserves."""
+"""What a lab can set for the screen by parameters: camera budget, disk reserves and more."""
 from dataclasses import dataclass
 from typing import Any, Dict, List, Tuple
 
@@ -14,12 +14,12 @@ NAMESPACE = '/mhri/panel'
 class PanelSettings:
     """The parameters below :data:`NAMESPACE`, each with its default.
 
-    ``thumbnail_hz`` and ``thumbnail_width_px`` are the rate and the width of the pictures in the
-    windows of robots that are not highlighted; ``record_warn_free_mb`` and ``record_stop_free_mb``
-    the free space [MB] at which a recording warns and at which it stops and closes its file.
-    ``slow_with_link`` lets the pace of all fall with the slowest link among the selected robots.
-    ``camera_budget_mbit_s`` is what all pictures may take of the network together [Mbit/s], 0 for
-    no limit (:mod:`mhri.core.camera.budget`).
+    ``thumbnail_hz`` and ``thumbnail_width_px`` are the rate [Hz] and greatest width [px] of
+    pictures in small tiles; ``record_warn_free_mb`` and ``record_stop_free_mb`` are the free space
+    [MB] at which a recording warns, and at which it stops and closes its file. ``slow_with_link``
+    slows all selected robots down with the slowest of their links. ``camera_budget_mbit_s`` is what
+    all pictures together may take of the network [Mbit/s], 0 for no limit
+    (:mod:`mhri.core.camera.budget`).
     """
 
     thumbnail_hz: float = 5.0
@@ -44,7 +44,7 @@ _FLAGS = ('slow_with_link',)
 
 
 def _read(section: Section, key: str) -> Any:
-    """Return one setting, its default where it is not given.
+    """Return one setting, or its default if it is not given.
 
     :raises ConfigError: it cannot be used
     """
@@ -57,9 +57,9 @@ def _read(section: Section, key: str) -> Any:
 def parse_settings(parameters: Any,
                    before: PanelSettings = PanelSettings()
                    ) -> Tuple[PanelSettings, List[ConfigError]]:
-    """Return (PanelSettings, [ConfigError]); what cannot be used stays as it was.
+    """Return (PanelSettings, [ConfigError]); unusable ones stay as they were.
 
-    :param parameters: what the parameter server has below the namespace: a dict, or None
+    :param parameters: the parameters below the namespace: a dict, or None
     :param before: the settings in force
     """
     errors = []

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The sources of the drop-down, as a parameter has them that any program may set."""
+"""The sources of the drop-down, read from a parameter that any program may set."""
 from typing import Any, Dict, Iterable, List, Tuple
 
 from mhri.core.robots.names import is_global_name
@@ -20,7 +20,7 @@ def _rows(parameter: Any) -> List[Dict[str, Any]]:
 
 
 def source_rows(parameter: Any) -> _Rows:
-    """Return pairs (name, label); a row that is none is left out, and so is all that is no list.
+    """Return pairs (name, label); leave out invalid rows, and anything but a list.
 
     :param parameter: ``/mux/sources``: a list of dicts with ``name`` and ``label``
     """
@@ -28,7 +28,7 @@ def source_rows(parameter: Any) -> _Rows:
 
 
 def suspend_services(parameter: Any) -> Dict[str, str]:
-    """Return {name of a source: the service that suspends its node} of the sources that have one.
+    """Return {name of a source: service that suspends its node}, for those that have one.
 
     :param parameter: as for :func:`source_rows`
     """
@@ -38,7 +38,7 @@ def suspend_services(parameter: Any) -> Dict[str, str]:
 
 
 def called_by_device(rows: _Rows, devices: Iterable[DeviceView]) -> _Rows:
-    """Return the rows with the name of the device that is there for a label, or that it is not."""
+    """Return the rows labelled with the connected device's name, or marked as not connected."""
     labels = {device.source: device for device in devices}
     return tuple((name, _label(label, labels.get(name, DeviceView(name)))) for name, label in rows)
 

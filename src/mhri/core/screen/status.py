@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The one line at the bottom of the panel: the one thing that matters now."""
+"""The line at the bottom of the screen: the one thing that matters now."""
 from typing import Optional, Tuple
 
 from mhri.core.screen.asked import asked_and_done
@@ -17,10 +17,10 @@ _Line = Tuple[str, str]
 
 
 def status_line(view: PanelView, waits_for: Optional[str], master_uri: str = '') -> _Line:
-    """Say who is driven, by what, and what it waits for; or what keeps it all from working.
+    """Return who is driven, by what and what it waits for; or what keeps everything from working.
 
     :param view: :class:`mhri.core.screen.views.PanelView`, its status not yet filled
-    :param waits_for: the last word of ``/mux/waits_for``; None where the mux has not been heard
+    :param waits_for: the last word of ``/mux/waits_for``; None if the mux has not been heard
     :returns: (sentence, level), never empty
     """
     for rule in (_no_ros, _stopped, _no_mux, _no_gates):
@@ -87,7 +87,7 @@ def _lost_robot(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
 
 
 def _driving(view: PanelView, waits_for: Optional[str]) -> _Line:
-    """Say who is driven, by what, and what it waits for."""
+    """Return who is driven, by what, and what it waits for."""
     mode = view.mode or ''
     label = dict(view.sources).get(mode, mode)
     if not view.dead_man:
@@ -116,7 +116,7 @@ def _driving(view: PanelView, waits_for: Optional[str]) -> _Line:
 
 
 def _with_batteries(view: PanelView, line: _Line) -> _Line:
-    """Add the robots whose batteries are low, the emptiest first; what is driven stays said."""
+    """Add the robots with low batteries, the emptiest first, to what the line says."""
     low = sorted((robot.battery, robot.name) for robot in view.robots
                  if robot.battery is not None and battery_level(robot.battery) != FINE)
     if not low:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What may be said of a stop that is in force: never more than is proved."""
+"""What to say about a stop in force: never more than is proved."""
 from typing import Iterable, NamedTuple, Sequence, Tuple
 
 from mhri.core.screen.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED, RobotView
@@ -11,8 +11,10 @@ _MOST_NAMES = 3
 
 
 class StopWords(NamedTuple):
-    """``headlines`` say the same in fewer and fewer words, for where there is less and less room;
-    ``note`` is what follows from it, ``sentence`` is for the bottom line.
+    """What the screen says about a stop.
+
+    ``headlines`` say the same in fewer and fewer words, for less room; ``note`` says what follows,
+    ``sentence`` is for the bottom line.
     """
 
     headlines: Tuple[str, ...]
@@ -20,7 +22,7 @@ class StopWords(NamedTuple):
     sentence: str
 
 
-# The robots may not know of the stop yet: nobody has said that it is in force.
+# The robots may not know about the stop yet: nobody has confirmed it.
 NOT_TAKEN = StopWords(('STOPPING - not confirmed yet', 'STOPPING'),
                       'waiting for the drive service to say that the stop is in force',
                       'stop all is asked for, and not confirmed yet')
@@ -33,9 +35,9 @@ NOBODY_HEARD = StopWords((IN_FORCE,), 'no command goes out until you release it'
 
 
 def stop_words(robots: Iterable[RobotView], taken: bool = True, answers: bool = True) -> StopWords:
-    """Say how far the stop of some robots is proved.
+    """Return how far the stop of the robots is proved.
 
-    A robot that has never been heard, and is not being proved, has no part in it.
+    A robot that was never heard, and has no proof under way, does not count.
 
     :param robots: :class:`mhri.core.screen.views.RobotView` of all
     :param taken: whether the gates have said that the stop is in force
@@ -59,7 +61,7 @@ def stop_words(robots: Iterable[RobotView], taken: bool = True, answers: bool = 
 
 
 def _not_confirmed(names: Sequence[str]) -> StopWords:
-    """Name those that are not proved to stand still."""
+    """Name the robots not proved to stand still."""
     who = _listed(names)
     shortest = min(who, _counted(names), key=len)
     return StopWords(
@@ -71,7 +73,7 @@ def _not_confirmed(names: Sequence[str]) -> StopWords:
 
 
 def _stopping(names: Sequence[str], count: int) -> StopWords:
-    """Name those whose proof is still to come."""
+    """Name the robots whose proof is still to come."""
     who = _listed(names)
     return StopWords(
         ('{} \u2013 stopping {}'.format(IN_FORCE, who),

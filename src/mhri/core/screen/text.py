@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Texts of others, made fit for a screen: short, of one line, without marks that reorder them."""
+"""Texts from elsewhere, made fit for a screen: short, on one line, without direction marks."""
 from typing import Iterable, Tuple
 
 MOST_CHARACTERS = 200
@@ -9,10 +9,10 @@ _MORE = '...'
 
 
 def tidy_text(text: str, most: int = MOST_CHARACTERS) -> str:
-    """Return a text with at most so many characters, every one of which can be printed.
+    """Return a text with at most this many characters, all of them printable.
 
-    A line break, a control character or one that turns the direction of writing becomes a space. A
-    text that was cut ends in "...". It stays text: whoever shows it must not take it for HTML.
+    Line breaks, control characters and those that change the direction of writing become spaces. A
+    cut text ends in "...". The result is plain text: do not show it as HTML.
 
     :param text: of any length
     :param most: at least 4
@@ -22,5 +22,5 @@ def tidy_text(text: str, most: int = MOST_CHARACTERS) -> str:
 
 
 def tidy_names(names: Iterable[str], most: int = MOST_NAMES) -> Tuple[str, ...]:
-    """Return the first of some names, each as :func:`tidy_text` has it."""
+    """Return the first names, each made tidy by :func:`tidy_text`."""
     return tuple(tidy_text(name) for name, _ in zip(names, range(most)))

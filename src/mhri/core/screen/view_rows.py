@@ -2,16 +2,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The registry of views: what a tile can show of its robot.
 
-A further view is a file in ``gui/`` (the widget), one in ``ros/`` (its feed), and one row here. The
-classes are named and not imported: neither side knows the other, and what nobody looks at is not
-loaded.
+To add a view, write a file in ``gui/`` (the widget), one in ``ros/`` (its feed), and a row here.
+The classes are named, not imported: neither side knows the other, and a view is loaded only when
+somebody looks at it.
 
-A feed class has ``of(robot, kind, key)``, which returns a feed or, where a robot of this type has
-none, None; a feed has ``open()``, ``close()``, ``take()`` (the newest value, None where nothing is
+A feed class has ``of(robot, kind, key)``, which returns a feed, or None if a robot of this type has
+none; a feed has ``open()``, ``close()``, ``take()`` (the newest value, None if nothing is
 new) and ``age_s()``. A widget class has ``show_value(value)``, ``show_age(age_s)``,
-``save_settings()`` and ``restore_settings(settings)``. Where a feed has ``status()``, a
-:class:`mhri.core.camera.images.StreamStatus`, its bits are counted with those of the pictures, and
-its widget has ``show_status(status)``.
+``save_settings()`` and ``restore_settings(settings)``. If a feed has ``status()``, a
+:class:`mhri.core.camera.images.StreamStatus`, its bits count with those of the pictures, and its
+widget has ``show_status(status)``.
 """
 from dataclasses import dataclass
 from importlib import import_module
@@ -24,8 +24,8 @@ IMU, SCAN, CLOUD, RGB, DEPTH, RECORD = 'imu', 'scan', 'cloud', 'rgb', 'depth', '
 class ViewRow:
     """One view: key, label of its switch, class of its feed and of its widget.
 
-    ``picture`` is true for those of which a tile shows one at a time; rows of the same widget share
-    it.
+    ``picture`` is true for views of which a tile shows one at a time; rows with the same widget
+    share it.
     """
 
     key: str

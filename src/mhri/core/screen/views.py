@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the screen shows, as plain values: the one language between ros/ and gui/.
+"""What the screen shows, as plain values: the only language between ros/ and gui/.
 
 The host of the panel takes a :class:`PanelView` from the ROS side a few times a second on the GUI
 thread and hands it to the widgets, which draw it and know nothing else.
@@ -22,7 +22,7 @@ PROOF_WAITING = 'waiting'            # zero sent, standstill not read yet
 PROOF_STOPPED = 'stopped'            # its own odometry reads standstill
 PROOF_NOT_CONFIRMED = 'not_confirmed'  # it moves on, moved again, or cannot be heard
 
-# What is said in every row while the gates are not heard.
+# What every row says while the gates are not heard.
 UNANSWERED = 'the drive service does not answer'
 
 # States of the ROS connection.
@@ -42,10 +42,10 @@ class ProofView:
 
 @dataclass(frozen=True)
 class LinkFigures:
-    """What was measured of a robot's link; None where it is not known.
+    """The measurements of a robot's link; None if unknown.
 
-    ``round_trip_s`` is the time there and back [s], ``offset_s`` by how much the robot's clock is
-    ahead of the one here [s], ``loss`` the part of its odometry that did not arrive, in [0, 1].
+    ``round_trip_s`` is the round-trip time [s], ``offset_s`` how far the robot's clock is ahead of
+    the local one [s], ``loss`` the fraction of its odometry that did not arrive, in [0, 1].
     """
 
     round_trip_s: Optional[float] = None
@@ -55,30 +55,30 @@ class LinkFigures:
 
 @dataclass(frozen=True)
 class RobotView:
-    """One robot as its row and its window show it.
+    """One robot as its row and its tile show it.
 
-    ``number`` is its own for good, from 1; 0 where it has none.
+    ``number`` is its own for good, from 1; 0 if it has none.
 
     ``age_s`` is the age of the newest odometry [s]; speeds are the robot's own odometry [m/s,
     rad/s], ``heading_rad`` its yaw in (-pi, pi], x and y in metres in its ``odom`` frame; None
-    where nothing has been heard. ``battery`` is a fraction in [0, 1]. ``recording`` is true while a
-    bag of it is open. ``note`` is what is worth saying in words about the link, e.g. "nothing for
-    3.2 s"; '' while all is well. ``figures`` are what was measured of the link, ``slow`` is true
-    where something asks for attention.
+    if nothing was heard. ``battery`` is a fraction in [0, 1]. ``recording`` is true while a
+    bag of it is open. ``note`` is a remark on the link in words, e.g. "nothing for 3.2 s"; '' while
+    all is well. ``figures`` are the measurements of the link, ``slow`` is true if something needs
+    attention.
 
     What the gates say: ``driven`` is true while the velocity last sent to it is not zero,
     ``guarded`` while its commands go through a guard on the robot, ``obeys`` is whom it obeys ('',
-    'operator', 'task'), ``stands`` why it is kept standing ('', 'stopped', 'not_heard', 'joining'),
-    ``waits`` is true while it is left out until the stick has been centred, ``stop_latched`` once
-    its guard has confirmed the stop. ``hardware_stop`` is true while the robot's own emergency stop
-    holds it, None where nothing tells. ``power`` says in words what was done to the power of its
-    motors (:mod:`mhri.core.driving.motor_power`), '' where nothing was, ``offers_power`` whether
-    anything can be. ``sent_mps`` and ``sent_rad_s`` are the velocity last sent to it (None: not
-    known), ``reached`` is false while nothing on it takes commands.
+    'operator', 'task'), ``stands`` why it is kept still ('', 'stopped', 'not_heard', 'joining'),
+    ``waits`` is true while it waits for a centred stick, ``stop_latched`` once its guard has
+    confirmed the stop. ``hardware_stop`` is true while the robot's own emergency stop holds it,
+    None if nothing reports it. ``power`` says in words what was done to its motor power
+    (:mod:`mhri.core.driving.motor_power`), '' for nothing, ``offers_power`` whether it can be cut.
+    ``sent_mps`` and ``sent_rad_s`` are the velocity last sent to it (None: not known), ``reached``
+    is false while nothing on it takes commands.
 
-    What the screen makes of it: ``asked`` is the operator's command [m/s, rad/s] where the robot has
-    done something else for a moment, else None; ``why`` says in a sentence why it stands though the
-    stick is held, '' for nothing.
+    What the screen makes of it: ``asked`` is the operator's command [m/s, rad/s] where the robot
+    has done something else for a moment, else None; ``why`` says in a sentence why it stands though
+    the stick is held, '' for nothing.
     """
 
     name: str
@@ -120,11 +120,11 @@ class RobotView:
 
 @dataclass(frozen=True)
 class StateView:
-    """What else is known of a robot while its window is open.
+    """What else is known about a robot while its tile is on show.
 
-    ``ages`` are (name of a stream that is shown, age of its newest message [s], None where nothing
+    ``ages`` are (name of a stream that is shown, age of its newest message [s], None if nothing
     has come yet). ``figures`` are those of the link. ``captured`` is where motion capture sees the
-    robot, ``drift`` how far its odometry is off since the window was opened; None where nobody
+    robot, ``drift`` how far its odometry has drifted since the tile was opened; None if nobody
     tracks it.
     """
 
@@ -136,7 +136,7 @@ class StateView:
 
 @dataclass(frozen=True)
 class HeardView:
-    """What the voice node heard last, the command it made of it ('' for none), and why not."""
+    """What the voice node heard last, the command it understood ('' for none), or why none."""
 
     text: str
     command: str = ''
@@ -148,9 +148,9 @@ class HeardView:
 class DeviceView:
     """What an input node says of its device.
 
-    ``name`` is that of the device that is there, '' where there is none; ``note`` is why not and
-    what to do, or what the one there is waits for; both are '' where the node cannot tell.
-    ``kind`` is what it is, e.g. 'pad'.
+    ``name`` is the name of the connected device, '' if there is none; ``note`` says why there is
+    none and what to do, or what the device waits for; both are '' if the node cannot tell.
+    ``kind`` is e.g. 'pad'.
     """
 
     source: str
@@ -160,7 +160,7 @@ class DeviceView:
 
     @property
     def absent(self) -> bool:
-        """Whether it is known that there is no device."""
+        """Whether there is certainly no device."""
         return bool(self.note and not self.name)
 
 

@@ -148,7 +148,7 @@ _RULES: Tuple[Callable[[PanelView, RobotView, _Stick], str], ...] = (
 
 
 class WhyStill:
-    """Says it once it has been so for a moment: a stick that is pushed is not yet a robot that moves.
+    """Says it once it has lasted a moment: a robot needs time to follow a pushed stick.
 
     What is no longer so is no longer said.
     """

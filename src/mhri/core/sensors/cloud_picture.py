@@ -46,7 +46,7 @@ _FOLLOWERS = {HEIGHT: (0.5, -math.inf), DISTANCE: (0.5, 0.0), INTENSITY: (1e-3, 
 class Picture(NamedTuple):
     """A drawn cloud: ``pixels`` uint32 (h, w), each 0xffrrggbb, and what they mean.
 
-    ``scale`` is the range of the colours, in metres or the unit of the intensity, None where they
+    ``scale`` is the range of the colours, in metres or the unit of the intensity, None if they
     are those of the points; ``grid_m`` the distance of the lines on the floor, ``colouring`` what
     the colours mean. ``cut``: what is more than :data:`CEILING_M` above the floor is left out.
     """

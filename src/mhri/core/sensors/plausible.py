@@ -70,7 +70,7 @@ def sifted(kinds: Sequence[str], values: Sequence[float]) -> Tuple[List[float], 
 
 
 def beams_problem(count: int, angle_min: float, angle_increment: float) -> Optional[str]:
-    """Return in words why a scan cannot be, None where it can.
+    """Return in words why a scan cannot be, None if it can.
 
     :param count: number of its ranges
     :param angle_min: of the first of them [rad]
@@ -85,7 +85,7 @@ def beams_problem(count: int, angle_min: float, angle_increment: float) -> Optio
 
 
 def measured_ranges(ranges: Sequence[float], least: float, greatest: float) -> np.ndarray:
-    """Return ranges [m] as an array with NaN where there is no measurement.
+    """Return ranges [m] as an array with NaN if there is no measurement.
 
     :param least: what the sensor says it can measure at least [m]; NaN and absurd ones do not count
     :param greatest: the same for the greatest

@@ -74,7 +74,7 @@ class Cloud:
 
     ``points`` is float32 (n, 3), x, y and z [m] in the frame of the message, all finite.
     ``colours`` is uint32 (n,), each 0xffrrggbb; ``intensity`` float32 (n,) in the unit of the
-    sensor, NaN where it says none; None where the message has no such thing. ``optical``: z is
+    sensor, NaN if it says none; None if the message has no such thing. ``optical``: z is
     ahead, x to the right, y down; else x is ahead, y to the left, z up (REP-103). ``sent`` is the
     number of points in the message, measured or not, ``kept_of`` how many of them one that is kept
     stands for. ``received_s``: time of receipt [s, monotonic].
@@ -201,7 +201,7 @@ class _View:
         self._every, self.kept_of = _thinned(raw.height, raw.width)
 
     def columns(self, names: Sequence[str]) -> Optional[List[np.ndarray]]:
-        """Return the values of some fields, each (h, w); None where one is missing.
+        """Return the values of some fields, each (h, w); None if one is missing.
 
         :raises CloudError: a field cannot be read
         """
@@ -209,7 +209,7 @@ class _View:
         return [self._column(field) for field in found if field] if all(found) else None
 
     def colours(self) -> Optional[np.ndarray]:
-        """Return 0xffrrggbb of each point, (n,); None where the message has no colours."""
+        """Return 0xffrrggbb of each point, (n,); None if the message has no colours."""
         for name in _PACKED:
             field = self._fields.get(name)
             if field is not None:
@@ -222,7 +222,7 @@ class _View:
         return _OPAQUE | red << 16 | green << 8 | blue
 
     def intensity(self) -> Optional[np.ndarray]:
-        """Return the intensity of each point, (n,); None where the message has none."""
+        """Return the intensity of each point, (n,); None if the message has none."""
         for name in _INTENSITIES:
             column = self.columns((name,))
             if column is not None:

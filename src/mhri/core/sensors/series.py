@@ -93,7 +93,7 @@ class BinRing:
         return other
 
     def curve(self, key: str, now_s: float, window_s: float) -> Tuple[np.ndarray, np.ndarray]:
-        """Return (x, y) of one value: x seconds before ``now_s`` (<= 0), NaN where the line breaks.
+        """Return (x, y) of one value: x seconds before ``now_s`` (<= 0), NaN if the line breaks.
 
         Bins are put together by their number and not by their age, so that a peak keeps its shape
         while it travels.
@@ -130,7 +130,7 @@ def _points(first: np.ndarray, last: np.ndarray, low: np.ndarray,
 
 def _broken(x: np.ndarray, y: np.ndarray, wraps: bool,
             step_s: float) -> Tuple[np.ndarray, np.ndarray]:
-    """Put a NaN where nothing came for long, and where an angle goes around."""
+    """Put a NaN if nothing came for long, and where an angle goes around."""
     breaks = np.diff(x) > max(GAP_S, 2.0 * step_s)
     if wraps:
         breaks |= np.abs(np.diff(y)) > math.pi
@@ -154,7 +154,7 @@ class Series:
         return self.rings[key].curve(key, self.now_s, window_s)
 
     def latest(self, key: str) -> Optional[float]:
-        """Return the newest value of a key, None before the first one; NaN where it had none."""
+        """Return the newest value of a key, None before the first one; NaN if it had none."""
         ring = self.rings[key]
         return None if ring.latest is None else float(ring.latest[ring.keys.index(key)])
 

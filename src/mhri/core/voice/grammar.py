@@ -58,7 +58,7 @@ class Grammar:
     """The phrases of a language with the robots of the panel's list.
 
     :param language: :class:`mhri.core.voice.language.Language`
-    :param robots: names, each in the place of its number, from 1; '' where nobody has it
+    :param robots: names, each in the place of its number, from 1; '' if nobody has it
     :param knows: function that tells whether the model's dictionary has a word
     """
 
@@ -134,7 +134,7 @@ class Grammar:
         return '\n'.join(rules) + '\n'
 
     def parse(self, text: str) -> Optional[Command]:
-        """Return the :class:`Command` that words mean, or None where they mean none.
+        """Return the :class:`Command` that words mean, or None if they mean none.
 
         A word of ``stop`` anywhere stops, but for the phrases of the grammar that have it inside
         ("stop recording") and begin with the wake word or stand alone.

@@ -68,7 +68,7 @@ class Language:
 def parse_language(text: str, origin: str) -> Language:
     """Return the :class:`Language` that a YAML text describes.
 
-    :raises ConfigError: names the file and the key that is wrong
+    :raises ConfigError: names the file and the wrong key
     """
     section = parse_yaml(text, origin)
     stop = _phrases(section, 'stop')

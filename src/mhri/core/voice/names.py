@@ -83,7 +83,7 @@ def spoken_names(name: str, knows: _Knows) -> Tuple[str, ...]:
 
 
 def in_places(names: Iterable[str], numbers: Any) -> Tuple[str, ...]:
-    """Return names so that the place of each, from 1, is its number; '' where nobody there has it.
+    """Return names so that the place of each, from 1, is its number; '' if nobody there has it.
 
     One whose number is not known, or cannot be spoken, is left out.
 

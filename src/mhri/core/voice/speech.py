@@ -140,7 +140,7 @@ class VoiceRules:
              now: float) -> Heard:
         """Judge an utterance; return :class:`Heard`.
 
-        :param text: the words, '' where they fit nothing
+        :param text: the words, '' if they fit nothing
         :param command: :class:`Command` or None
         :param confidence: [0, 1] of the recogniser; 0.5 and more means a command, with push-to-talk
             0.25 and more
@@ -161,7 +161,7 @@ class VoiceRules:
 
     def _problem(self, command: Optional[Command], confidence: float, began: float,
                  window: float) -> str:
-        """Say why an utterance is not obeyed; '' where it is."""
+        """Say why an utterance is not obeyed; '' if it is."""
         if command is None:
             return NO_COMMAND
         if command.kind == STOP:

@@ -12,7 +12,7 @@ from mhri.gui.screen import theme
 COMMAND_WORDS = {
     'keys': 'show or hide these keys',
     'drawer': 'open or close the panel at the left',
-    'focus': 'go to the panel by keyboard, or back to the pictures',
+    'focus': 'go on to the panel, to the buttons below, and back to the pictures',
     'full_screen': 'fill the whole screen, or be a window again',
     'numbers': 'show or hide the numbers over the pictures',
     'stills': 'save a still of every picture',
@@ -129,12 +129,10 @@ class KeyHelp(QWidget):
         for column in range(columns):
             left, y = unit + column * each, 2 * unit
             for keys, text in KEY_ROWS[column * in_each:(column + 1) * in_each]:
-                box = metrics.boundingRect(
-                    QRect(left + keys_px + unit, y, max(1, words_px), 100 * unit),
-                    int(Qt.TextWordWrap), text)
-                places += [(QRect(left, y, keys_px, unit), keys, True),
-                           (QRect(box.x(), y, box.width(), box.height()), text, False)]
-                y += box.height() + unit // 3
+                room = QRect(left + keys_px + unit, y, max(1, words_px), 100 * unit)
+                room.setHeight(metrics.boundingRect(room, int(Qt.TextWordWrap), text).height())
+                places += [(QRect(left, y, keys_px, unit), keys, True), (room, text, False)]
+                y += room.height() + unit // 3
         return places
 
     def paintEvent(self, event):  # noqa: N802

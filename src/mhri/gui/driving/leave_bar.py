@@ -23,6 +23,7 @@ class LeaveBar(QWidget):
         self._sign, self._line = Sign(self), TextLine(self)
         self._sign.show_sign((theme.TRIANGLE, theme.ATTENTION))
         self._line.setObjectName('leave_label')
+        self._line.set_wrapped(True)
         self.close_button = self._button('leave_button', 'Close')
         self.stay_button = self._button('stay_button', 'Stay')
         row = QHBoxLayout(self)

@@ -136,11 +136,15 @@ class ScreenLayout(QObject):
             self._screen.tabs.setCurrentIndex(pages.index(page))
 
     def change_focus(self):
-        """Take the keyboard from the pictures to the panel, or back."""
+        """Take the keyboard from the pictures to the panel, from there to the foot, and back."""
         screen = self._screen
         focus = screen.window().focusWidget()
-        if focus is not None and screen.drawer.isAncestorOf(focus):
+        if focus is not None and screen.foot.isAncestorOf(focus):
             screen.stage.setFocus(Qt.TabFocusReason)
+        elif focus is not None and screen.drawer.isAncestorOf(focus):
+            next(button for button in (
+                screen.stop_bar.release_button, screen.control_bar.take_button,
+                screen.events_button) if button.isVisible()).setFocus(Qt.TabFocusReason)
         else:
             screen.drawer_button.setChecked(True)
             screen.robot_list.setFocus(Qt.TabFocusReason)

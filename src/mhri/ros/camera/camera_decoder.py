@@ -75,7 +75,7 @@ class Decoder:
             self._changed.notify_all()
 
     def explain(self, hint):
-        """Say why nothing comes; '' where something should."""
+        """Say why nothing comes; '' if something should."""
         with self._changed:
             self._hint = tidy_text(hint)
 

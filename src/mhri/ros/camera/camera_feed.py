@@ -96,7 +96,7 @@ class CameraFeed:
         return Subscription, offer.topic, session.hear
 
     def close(self, wait_s=0.0):
-        """Decode nothing more and give the topic back; the latter on the feed's own thread.
+        """Decode nothing more and unregister the topic; the latter on the feed's own thread.
 
         :param wait_s: wait at most so long for it [s]
         """
@@ -161,7 +161,7 @@ class CameraFeed:
         return Figures(bits, native_hz, heavy)
 
     def take(self):
-        """Return the newest :class:`Frame`, None where there is no new one since the last call."""
+        """Return the newest :class:`Frame`, None if there is no new one since the last call."""
         session = self._session
         return session.take() if session is not None else None
 

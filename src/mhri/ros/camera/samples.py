@@ -22,7 +22,7 @@ PATIENCE_S = 3.0
 CONNECT_S = 1.0
 AGAIN_S = 1.0
 LOOK_S = 0.1
-# So many pictures the first time: they tell how often the camera sends.
+# This many pictures the first time: they tell how often the camera sends.
 FIRST = 4
 
 
@@ -30,7 +30,7 @@ class Samples:
     """Single messages of one topic as bytes; stands in for a :class:`Subscription`.
 
     The node is not registered as a subscriber: the graph shows the connections, while they last, at
-    the publisher alone. ``native_hz`` is how often the camera sends, None where it is not known.
+    the publisher alone. ``native_hz`` is how often the camera sends, None if unknown.
 
     :param on_bytes: called with (type, bytes-like) on a thread of this object
     :param on_problem: called with a sentence where the publisher cannot be had
@@ -79,7 +79,7 @@ class Samples:
             link.cut()
 
     def _connect(self):
-        """Return a connection to the first publisher that answers, None where none does."""
+        """Return a connection to the first publisher that answers, None if none does."""
         try:
             for uri in [self._uri] if self._uri else self._publishers():
                 try:

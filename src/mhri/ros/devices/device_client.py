@@ -82,7 +82,7 @@ class DeviceClient:
             self._changed.notify()
 
     def unregister(self):
-        """Give every topic back (blocking: it asks the master)."""
+        """Unregister every topic (blocking: it asks the master)."""
         for topic in (self._rumble, self._talk, self._heard_topic):
             topic.unregister()
         self._states.unregister()

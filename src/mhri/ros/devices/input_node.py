@@ -124,7 +124,7 @@ class InputNode:
                 ': ' + self._words if self._words else '')
 
     def _hanging_s(self):
-        """Return for how long a call into the driver has taken too long [s]; 0.0 where it has not.
+        """Return for how long a call into the driver has taken too long [s]; 0.0 if it has not.
 
         Call it with the lock held.
         """

@@ -42,7 +42,7 @@ def _paths():
 
 
 def _changed_at(path):
-    """Return when a file was changed last, None where it is gone."""
+    """Return when a file was changed last, None if it is gone."""
     try:
         return os.stat(path).st_mtime_ns
     except OSError:

@@ -176,7 +176,7 @@ def _ask_nodes(facts, robots, uris, deadline):
 
 
 def _own_md5(kind):
-    """Return the md5 sum of a message type on this computer, None where it is not here."""
+    """Return the md5 sum of a message type on this computer, None if it is not here."""
     try:
         found = genpy.message.get_message_class(kind)
     except (ImportError, ValueError):

@@ -39,7 +39,7 @@ def own_addresses():
 def resolve(host):
     """Return the IPv4 addresses of a name (blocking, for long where no name server answers).
 
-    :returns: a tuple, or None where the name is unknown
+    :returns: a tuple, or None if the name is unknown
     """
     try:
         return tuple(sorted({entry[4][0] for entry in socket.getaddrinfo(
@@ -66,7 +66,7 @@ def resolve_all(hosts, limit_s):
 
 
 def route_ip(address):
-    """Return the own address from which packets to another one leave; None where there is no way.
+    """Return the own address from which packets to another one leave; None if there is no way.
 
     Nothing is sent: connecting a UDP socket only looks at the routes.
     """
@@ -124,7 +124,7 @@ def _folder(what, path):
 
 
 def _package_path():
-    """Return where ROS finds mhri, None where it does not."""
+    """Return where ROS finds mhri, None if it does not."""
     try:
         return os.path.realpath(rospkg.RosPack().get_path('mhri'))
     except rospkg.ResourceNotFound:
@@ -132,7 +132,7 @@ def _package_path():
 
 
 def _packages(package_path):
-    """Return {what package.xml wants at run time: why it cannot be used, '' where it can}."""
+    """Return {what package.xml wants at run time: why it cannot be used, '' if it can}."""
     if package_path is None:
         return {}
     root = xml.etree.ElementTree.parse(os.path.join(package_path, 'package.xml')).getroot()

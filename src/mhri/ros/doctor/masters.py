@@ -93,7 +93,7 @@ def look_elsewhere(master, computer, caller_id, only_with_mux=False, uris=None):
     answers, threads = {}, []
 
     def ask(uri):
-        """Note whether a master has a mux that runs; nothing where none answers."""
+        """Note whether a master has a mux that runs; nothing if none answers."""
         try:
             api = MasterApi(caller_id, LIMIT_S, uri)
             muxes = dict(api.call('getSystemState')[0]).get(MODE, ())

@@ -204,7 +204,7 @@ def _refused(fields, frame):
 
 
 def _host_of(uri):
-    """Return the host of a URI, '' where there is none."""
+    """Return the host of a URI, '' if there is none."""
     try:
         return urlsplit(uri).hostname or ''
     except ValueError:
@@ -212,7 +212,7 @@ def _host_of(uri):
 
 
 def _value(item):
-    """Return the value in one answer of a multicall, None where it is not "success"."""
+    """Return the value in one answer of a multicall, None if it is not "success"."""
     if not isinstance(item, list) or not isinstance(item[0], (list, tuple)):
         return None
     answer = item[0]
@@ -220,7 +220,7 @@ def _value(item):
 
 
 def _topics(pairs):
-    """Return {topic: type} of a node's own list, None where it is none."""
+    """Return {topic: type} of a node's own list, None if it is none."""
     try:
         return {str(name): str(kind) for name, kind in pairs}
     except (TypeError, ValueError):
@@ -228,13 +228,13 @@ def _topics(pairs):
 
 
 def _address(text):
-    """Return the IPv4 address in what a node says of a connection, '' where there is none."""
+    """Return the IPv4 address in what a node says of a connection, '' if there is none."""
     found = _OTHER_END.search(str(text))
     return found.group(1) if found and is_ipv4(found.group(1)) else ''
 
 
 def _connections(entries):
-    """Return the :class:`Connection` tuple of ``getBusInfo``, None where it cannot be read."""
+    """Return the :class:`Connection` tuple of ``getBusInfo``, None if it cannot be read."""
     try:
         return tuple(Connection(entry[2] == 'o', str(entry[4]), str(entry[1]),
                                 _address(entry[6] if len(entry) > 6 else ''))

@@ -60,7 +60,7 @@ def measure_watchdog(name):
     """Turn a robot slowly, fall silent, see whether it stops by itself; zeros at the end, always.
 
     For a robot on blocks, or a simulated one. Needs ``rospy.init_node``; blocks for 10 s at most.
-    Does nothing where the robot is selected in a panel or stop-all is in force.
+    Does nothing if the robot is selected in a panel or stop-all is in force.
 
     :returns: :class:`mhri.core.doctor.facts.Finding`
     """
@@ -150,7 +150,7 @@ def _try(name, template):
 
 
 def _connected(publishers, tick):
-    """Return the first publisher with a subscriber, as the gate chooses; None where none has."""
+    """Return the first publisher with a subscriber, as the gate chooses; None if none has."""
     deadline = time.monotonic() + CONNECT_S
     while time.monotonic() < deadline:
         chosen = next((item for item in publishers if item.get_num_connections()), None)

@@ -228,14 +228,14 @@ class Gates:
         """Cut the power of all motors at any time; restore it unless a stop is in force."""
         with self._lock:
             if request.data and self._stop:
-                return SetBoolResponse(False, 'release the stop first: the power comes with it')
+                return SetBoolResponse(False, 'release the stop first: that restores the power')
             without = [gate.name for gate in self._gates.values() if not gate.power.available]
             for gate in self._gates.values():
                 (gate.power.restore if request.data else gate.power.cut)()
             self.on_change()
-        words = 'the power of the motors is ' + ('given back' if request.data else 'being cut')
+        words = 'motor power is being ' + ('restored' if request.data else 'cut')
         return SetBoolResponse(True, words + (
-            '; not of {}: nothing there takes it'.format(', '.join(without)) if without else ''))
+            '; not for {}: it cannot be cut there'.format(', '.join(without)) if without else ''))
 
     def _check(self):
         """Let the gates know which robots are checked now."""

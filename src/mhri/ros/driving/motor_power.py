@@ -116,7 +116,7 @@ class MotorPower:
         try:
             self._way = self._make_way(robot_type.motor_power)
         except MessageMissing as error:
-            self.problem = 'the power of its motors cannot be cut: {}'.format(error)
+            self.problem = 'its motor power cannot be cut: {}'.format(error)
         # The master may hang, and must not delay a cut.
         self._notes = Worker('motor power notes ' + robot, idle_s=3600.0)
         if self._way is not None:

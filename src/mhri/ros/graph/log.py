@@ -73,7 +73,7 @@ class PatientHandler(logging.Handler):
 def install():
     """Put every handler that the program logs to behind a queue; call it after init_node.
 
-    :returns: the :class:`PatientHandler` of each; none where they are in place already
+    :returns: the :class:`PatientHandler` of each; none if they are in place already
     """
     patient = {}
     named = logging.root.manager.loggerDict.values()

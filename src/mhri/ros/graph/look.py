@@ -23,8 +23,8 @@ NODES_EACH = 3
 class Facts:
     """What is known of one robot before it is in the list.
 
-    :param parameters: those of the robot as a nested dict, {} where it has none
-    :param seen: :class:`Seen`, None where the graph was not looked at, or
+    :param parameters: those of the robot as a nested dict, {} if it has none
+    :param seen: :class:`Seen`, None if the graph was not looked at, or
         has nothing of the robot
     """
 

@@ -65,7 +65,7 @@ class MasterApi:
         """Send several calls as one request.
 
         :param calls: [(method, arg, ...)]
-        :returns: their values in order; None where the master refused the single call
+        :returns: their values in order; None if the master refused the single call
         :raises MasterError: no answer in time, or one that cannot be understood
         """
         batch = xmlrpc.client.MultiCall(self._proxy)
@@ -87,7 +87,7 @@ class MasterApi:
                 self.uri, repr(error)[:200]))
 
     def node_uri(self, name):
-        """Return the URI under which a node is registered, or None where it is not.
+        """Return the URI under which a node is registered, or None if it is not.
 
         :raises MasterError: the master cannot be reached
         """

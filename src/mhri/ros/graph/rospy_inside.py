@@ -53,7 +53,7 @@ class Flow:
     def quiet_s(self):
         """Return for how long nothing was confirmed although something is due [s], else 0.
 
-        0 where the system does not tell, and while two round trips have not passed.
+        0 if the system does not tell, and while two round trips have not passed.
         """
         if self._option is None:
             return 0.0
@@ -230,7 +230,7 @@ class PromptPublisher(rospy.Publisher):
 
 
 def caller_of(message):
-    """Return the caller id of whoever sent a message, '' where that is not known."""
+    """Return the caller id of whoever sent a message, '' if unknown."""
     return (message._connection_header or {}).get('callerid', '')
 
 

@@ -198,7 +198,7 @@ class BagFile:
         os.fdatasync(self._fd)
 
     def free_bytes(self):
-        """Return the space left for this user on the disk, None where it cannot be told."""
+        """Return the space left for this user on the disk, None if it cannot be told."""
         try:
             found = os.fstatvfs(self._fd)
         except OSError:
@@ -305,7 +305,7 @@ def open_bag(text, robot, when, env=None):
     :param text: what was typed: empty, a folder, or a file with or without ``.bag``; ``~`` and
         variables are replaced
     :param when: a :class:`datetime.datetime` in local time
-    :returns: (:class:`BagFile`, note); the note is '' where all is as asked for
+    :returns: (:class:`BagFile`, note); the note is '' if all is as asked for
     :raises PathRefused: not even the default can be written; the text says why
     """
     env = os.environ if env is None else env

@@ -128,6 +128,6 @@ class RawLink:
 
 
 def _definition(found):
-    """Return the text of a message type that its publisher did not send, '' where unknown here."""
+    """Return the text of a message type that its publisher did not send, '' if unknown here."""
     known = genpy.message.get_message_class(found['type'])
     return known._full_text if known is not None and known._md5sum == found['md5sum'] else ''

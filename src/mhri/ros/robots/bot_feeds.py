@@ -8,7 +8,7 @@ MOCAP = 'mocap'
 
 
 class BotFeeds:
-    """The feeds of one robot's window; the GUI thread wishes, a worker opens and closes.
+    """The feeds of one robot's tile; the GUI thread asks, a worker opens and closes.
 
     :param robot: the robot's name
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
@@ -29,14 +29,14 @@ class BotFeeds:
         return frozenset(self._feeds) - {MOCAP} | ({RECORD} if self._type.imu else frozenset())
 
     def want(self, keys):
-        """Say which views are to be fed from now on; returns at once."""
+        """Choose the views to feed from now on; returns at once."""
         keys = frozenset(keys) & frozenset(self._feeds)
         if keys != self._wanted:
             self._wanted = keys
             self._worker.do(self._switch)
 
     def _switch(self):
-        """Open and close until the newest wish is met (blocking, on the worker)."""
+        """Open and close feeds until they match the newest wish (blocking, on the worker)."""
         for key in self._open - self._wanted:
             self._feeds[key].close()
         for key in self._wanted - self._open:
@@ -49,16 +49,16 @@ class BotFeeds:
         self._switch()
 
     def get(self, key):
-        """Return an open feed, None where it is not wanted or not open yet."""
+        """Return an open feed, None if it is not wanted or not open yet."""
         return self._feeds.get(key) if key in self._open and key in self._wanted else None
 
     def refused(self):
-        """Return {key: messages left out so far because they cannot be} of feeds that had any."""
+        """Return {key: impossible messages left out so far} for feeds that had any."""
         counts = {key: feed.refused() for key, feed in list(self._feeds.items())
                   if hasattr(feed, 'refused')}
         return {key: count for key, count in counts.items() if count}
 
     def bits_per_s(self):
-        """Return what pictures and clouds of this robot take of the network now [bit/s]."""
+        """Return how much of the network this robot's pictures and clouds take now [bit/s]."""
         feeds = [self.get(row.key) for row in VIEW_ROWS]
         return sum(feed.status().bits_per_s for feed in feeds if hasattr(feed, 'status'))

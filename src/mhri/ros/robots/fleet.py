@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The robots of the panel: their types and links, made and mended off the GUI thread."""
+"""The robots of the panel: their types and links, made and repaired off the GUI thread."""
 import threading
 import time
 from dataclasses import replace
@@ -20,7 +20,7 @@ class Fleet:
 
     :param types: {name: RobotType}
     :param gates: :class:`mhri.ros.driving.gates_client.GatesClient`
-    :param worker: :class:`mhri.ros.worker.Worker` for the feeds of the windows
+    :param worker: :class:`mhri.ros.worker.Worker` for the feeds of the tiles
     """
 
     def __init__(self, types, gates, worker, clock=time.monotonic):
@@ -49,9 +49,9 @@ class Fleet:
         return link
 
     def connect(self, name, facts=None):
-        """Make the link of a robot, or a new one where its type has changed (blocking).
+        """Make the link of a robot, or a new one if its type has changed (blocking).
 
-        :param facts: its :class:`mhri.ros.graph.look.Facts` where they are known already
+        :param facts: its :class:`mhri.ros.graph.look.Facts` if already known
         """
         try:
             if facts is None:
@@ -90,10 +90,10 @@ class Fleet:
         self._problems[name] = words
 
     def supervise(self):
-        """Look again at the type of each robot that is not heard: it may have come up meanwhile.
+        """Look again at the type of each robot that is not heard: it may have started meanwhile.
 
-        What was seen of one that can be reached stays: a type never changes under way for a topic
-        that comes or goes.
+        A robot that can be reached keeps its type: a topic that comes or goes never changes a type
+        under way.
         """
         with self._lock:
             names = [name for name in self._wanted if name not in self._links
@@ -140,7 +140,7 @@ class Fleet:
         return link.robot_type if link else None
 
     def camera_bits_per_s(self):
-        """Return what the pictures on show of all robots take of the network now [bit/s]."""
+        """Return how much of the network all pictures on show take now [bit/s]."""
         with self._lock:
             links = list(self._links.values())
         return sum(link.feeds.bits_per_s() for link in links)
@@ -162,7 +162,7 @@ class Fleet:
         return replace(view, note=view.note or (problems[0] if problems else ''), **ours)
 
     def close(self):
-        """Give the topics of all robots back (blocking)."""
+        """Unregister the topics of all robots (blocking)."""
         with self._lock:
             self._wanted.clear()
             links, self._links = list(self._links.values()), {}

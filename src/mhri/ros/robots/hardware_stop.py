@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A robot's own emergency stop, as the robot tells it."""
+"""A robot's own emergency stop, as the robot reports it."""
 import rospy
 
 from mhri.core.robots.names import topic_of
@@ -8,9 +8,9 @@ from mhri.ros.messages import message_class, MessageMissing, read_field
 
 
 class HardwareStop:
-    """Hears the topic that a robot type names as ``hardware_stop``.
+    """Listens to the topic that a robot type names as ``hardware_stop``.
 
-    What was heard last stands for as long as a publisher is connected: many say it once, latched.
+    The last message counts while a publisher is connected: many publish it once, latched.
 
     :param robot: the robot's name
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
@@ -42,7 +42,7 @@ class HardwareStop:
 
     @property
     def stopped(self):
-        """Whether it holds the robot; None where nothing tells, or not any more."""
+        """Whether it holds the robot; None if nothing reports it (any more)."""
         subscriber = self._subscriber
         return self._stopped if subscriber and subscriber.get_num_connections() else None
 

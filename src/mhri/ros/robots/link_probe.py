@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Asks a robot's node once a second for a word, and times the answer.
+"""Asks a robot's node a question once a second, and times the answer.
 
-The question is ``getPid`` of the ROS slave API, over a connection that is kept open, so that what
-is timed is one way there and one way back, not the making of a connection.
+The question is ``getPid`` of the ROS slave API, over a connection kept open, so that the time is
+one round trip without setting up a connection.
 """
 import http.client
 import threading
@@ -22,7 +22,7 @@ class LinkProbe:
 
     :param name: the robot
     :param uri_of: function that returns the XML-RPC address of a node on the robot, or None
-    :param on_round_trip: called with the time [s], or None where no answer came, on the thread
+    :param on_round_trip: called with the time [s], or None if no answer came, on the thread
     """
 
     def __init__(self, name, uri_of, on_round_trip):

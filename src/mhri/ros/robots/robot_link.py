@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""One robot as this program hears it: its odometry, its link and the proof of its stops."""
+"""One robot as this program hears it: odometry, link and the proof of its stops."""
 import importlib
 import math
 import threading
@@ -24,21 +24,21 @@ from mhri.ros.driving.gates_client import is_driven, round_trip_s, STANDS_WORDS
 from mhri.ros.robots.hardware_stop import HardwareStop
 from mhri.ros.sensors.refusals import Refusals
 
-_READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
-            'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
+ODOMETRY_READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
+                    'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
 
-# Below a robot's namespace: the late commands that its guard kept from it.
+# Below a robot's namespace: the late commands that its guard dropped.
 DROPPED = 'mhri_guard/dropped'
 DROPPED_SHOWN_S = 1.0
-# Whoever has taken commands for so long and told no odometry has none.
+# A robot that has taken commands for this long without odometry has none.
 MUTE_AFTER_S = 3.0
 
 
 def battery_fraction(message):
     """Return the charge in a ``sensor_msgs/BatteryState`` as a fraction in [0, 1], or None.
 
-    The message asks for a fraction; drivers that write percent are understood, and those that
-    divide by a nominal voltage may say a little over 1 (turtlebot3_core does).
+    The message specifies a fraction; percent is understood as well, and drivers that divide by a
+    nominal voltage may report a little over 1 (turtlebot3_core does).
     """
     value = message.percentage
     if not can_be(BATTERY, value):
@@ -47,11 +47,11 @@ def battery_fraction(message):
 
 
 class Feed:
-    """The messages of one topic, each handed on with the time it came.
+    """The messages of one topic, each passed on with its time of arrival.
 
-    rospy has one connection for all subscribers of a topic in a program, and the class of whoever
-    came first decides what all of them get. So this asks for the real class, that an rqt plugin
-    beside the panel may rely on, and takes bytes (``rospy.AnyMsg``) where another asked for those.
+    rospy has one connection for all subscribers of a topic in a program, and the class of the first
+    one decides what they all get. So this asks for the real class, on which an rqt plugin beside
+    the panel may rely, and accepts bytes (``rospy.AnyMsg``) if another one asked for those.
 
     :param read: function from the message to a value
     :param on_message: called with (feed, message, received at [s]) on the ROS thread
@@ -63,7 +63,7 @@ class Feed:
         self._read = read
         self._on_message = on_message
         self._refusals = Refusals(topic, time.monotonic)
-        # Not a queue of one: what is left out here must not look like a loss of the link.
+        # Not a queue of one: a message dropped here must not look like a loss of the link.
         self._subscriber = rospy.Subscriber(topic, message_class, self._hear, queue_size=20,
                                             tcp_nodelay=True)
 
@@ -71,21 +71,21 @@ class Feed:
         self._on_message(self, message, time.monotonic())
 
     def value(self, message):
-        """Return the value in a message, None where its bytes are none."""
+        """Return the value in a message, None if its bytes are not valid."""
         message = self._refusals.read(message, self._class)
         return None if message is None else self._read(message)
 
     def header(self, message):
-        """Return (number, stamp [s]) of a message, or None where it has no header."""
+        """Return (number, stamp [s]) of a message, or None if it has no header."""
         return header_of(message, self._class)
 
     def connections(self):
-        """Return the number of publishers connected; 0 once it has stopped listening."""
+        """Return the number of connected publishers; 0 after it has stopped listening."""
         subscriber = self._subscriber
         return subscriber.get_num_connections() if subscriber else 0
 
     def unregister(self):
-        """Stop listening (blocking: it asks the master); others may look at it all the while."""
+        """Stop listening (blocking: it asks the master); others may read it meanwhile."""
         subscriber, self._subscriber = self._subscriber, None
         subscriber.unregister()
 
@@ -96,7 +96,7 @@ class RobotLink:
     :param name: the robot's namespace
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
     :param gates: :class:`mhri.ros.driving.gates_client.GatesClient`
-    :param feeds: :class:`mhri.ros.robots.bot_feeds.BotFeeds` of its window
+    :param feeds: :class:`mhri.ros.robots.bot_feeds.BotFeeds` of its tile
     """
 
     def __init__(self, name, robot_type, gates, feeds, clock=time.monotonic):
@@ -130,8 +130,8 @@ class RobotLink:
             self._quality.on_round_trip(round_trip_s(gate))
 
     def _open_feeds(self):
-        """Subscribe the odometry topics of the template."""
-        module, class_name, read = _READERS[self.robot_type.odometry_type]
+        """Subscribe to the odometry topics of the template."""
+        module, class_name, read = ODOMETRY_READERS[self.robot_type.odometry_type]
         try:
             message_class = getattr(importlib.import_module(module), class_name)
         except ImportError:
@@ -151,12 +151,12 @@ class RobotLink:
                 self._quality.on_message(number, delay_of(came_at, stamp_s), now)
             self._heard_at = now
             self._pending = (feed, message)
-            # Bytes that are no message prove nothing, and neither does what was said before them.
+            # Bytes that are not a message prove nothing, nor does anything before them.
             if self._proof is not None and self._take():
                 self._proof.on_motion(self._motion, now, late_s)
 
     def listen_to_guard(self):
-        """Hear what the robot's guard drops, once it has one (blocking: it asks the master)."""
+        """Listen to what the robot's guard drops, once it has one (blocking: asks the master)."""
         gate = self._gates.robot(self.name)
         if self._guard_feed is None and gate is not None and gate.guarded:
             self._guard_feed = Feed('/{}/{}'.format(self.name, DROPPED), TwistStamped,
@@ -169,7 +169,7 @@ class RobotLink:
         self._battery = feed.value(message)
 
     def _take(self):
-        """Read the newest message, where it was not read yet; tell whether it says a motion."""
+        """Read the newest message if it is unread; return whether it holds a motion."""
         if self._pending is None:
             return False
         feed, message = self._pending
@@ -187,7 +187,7 @@ class RobotLink:
 
     @property
     def stopped_ms(self):
-        """Time that the robot took to stand still at the stop in force [ms], None before that."""
+        """Time the robot took to stand still at the stop in force [ms], None before that."""
         with self._lock:
             return self._proof.stopped_ms if self._proof else None
 
@@ -222,7 +222,7 @@ class RobotLink:
         return seen_by_gates(view, self._gates.robot(self.name), self._gates.answers())
 
     def _takes_commands(self, now):
-        """Tell whether the robot has listened to commands for long enough to be heard, too."""
+        """Tell whether the robot has listened to commands long enough to be heard as well."""
         gate = self._gates.robot(self.name)
         if gate is None or not gate.topic or not self._gates.answers():
             self._reached_at = None
@@ -240,28 +240,30 @@ class RobotLink:
 
 
 def seen_by_gates(view, gate, answers):
-    """Return a view with what the gates say of the robot: they alone know what it is sent.
+    """Return a view with what the gates say: only they know what the robot is sent.
 
     :param view: :class:`mhri.core.screen.views.RobotView`
-    :param gate: their ``mhri/RobotGate``; None where they do not know the robot
-    :param answers: whether they have been heard lately; what they said before counts for nothing
+    :param gate: their ``mhri/RobotGate``; None if they do not know the robot
+    :param answers: whether they were heard lately; otherwise their state is ignored
     """
     if not answers:
         return replace(view, note=UNANSWERED, slow=True)
     if gate is None:
         return view
     stands = STANDS_WORDS.get(gate.stands, gate.stands) if gate.obeys else ''
+    # A warning about its link stays: it is worth more than what it does.
+    calm = 'on a task' if gate.obeys == RobotGate.TASK and view.link == LIVE else ''
     return with_stop_words(replace(
         view, driven=is_driven(gate) and bool(gate.topic), guarded=gate.guarded,
         obeys=gate.obeys, stands=gate.stands, power=gate.power,
         waits=gate.stands == RobotGate.JOINING, stop_latched=gate.stop_confirmed,
         sent_mps=gate.sent.linear.x, sent_rad_s=gate.sent.angular.z, reached=bool(gate.topic),
-        note=stands if stands and view.link == LIVE else view.note,
+        note=stands if stands and view.link == LIVE else view.note or calm,
         slow=view.slow or bool(stands)))
 
 
 def with_stop_words(view):
-    """Return a view that says what else keeps the robot from moving, beside the proof of a stop."""
+    """Return a view that adds to the proof of a stop what else keeps the robot from moving."""
     words = ['its own emergency stop is pressed'] if view.hardware_stop else []
     words += ['motor power ' + view.power] if view.power else []
     if view.proof is not None:

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The ROS side of the panel: comes up when a master is there, and never blocks the GUI thread.
+"""The ROS side of the panel: starts when there is a master, and never blocks the GUI thread.
 
-Its methods are called on the GUI thread and return at once; what takes time is
-done on threads of its own, and what comes of it waits in :meth:`ScreenBackend.take_events`.
+Its methods are called on the GUI thread and return at once; slow work runs on
+other threads, and its results wait in :meth:`ScreenBackend.take_events`.
 """
 import queue
 import threading
@@ -43,10 +43,10 @@ OTHER_SCREEN = 'another screen of this program'
 
 
 class ScreenBackend:
-    """Everything that one operator can do, and all that there is to see.
+    """Everything one operator can do and see.
 
     :param argv: the node's command line (remappings)
-    :param seat: :class:`mhri.ros.screen.seat.Seat` that the screens of this process share
+    :param seat: :class:`mhri.ros.screen.seat.Seat` shared by the screens of this process
     """
 
     def __init__(self, argv=(), seat=SEAT):
@@ -79,7 +79,7 @@ class ScreenBackend:
         return self._jobs.settings
 
     def start(self):
-        """Begin to look for a master; returns at once."""
+        """Start looking for a master; returns at once."""
         threading.Thread(target=self._connect, name='ros_start', daemon=True).start()
 
     def _connect(self):
@@ -103,7 +103,7 @@ class ScreenBackend:
         self._claim = Claim(rospy.get_name())
         self._gates.start()
         mux = MuxClient(self._on_answer, lambda: self._worker.do(self._meet_mux), self._pressed)
-        # A topic that is given back at once leaves its subscribers knocking for a while.
+        # Unregistering a topic at once leaves its subscribers knocking for a while.
         self._gates.wait_first()
         if self.drives():
             mux.take_wheel()
@@ -120,7 +120,7 @@ class ScreenBackend:
         self._ros = ROS_CONNECTED
 
     def _supervise(self):
-        """Mend what is missing: the sources of the mux, the links and types of robots."""
+        """Fill in what is missing: the sources of the mux, the links and types of robots."""
         if self._watch.state != LOST:
             self._meet_mux()
             self._jobs.settle_parameters(self.selection.numbered() if self.drives() else None)
@@ -144,7 +144,7 @@ class ScreenBackend:
             self._first_mode = None
 
     def _on_gates(self, state, now):
-        """Take in the word of the gates (on a ROS thread)."""
+        """Take in the state of the gates (on a ROS thread)."""
         self._claim.hear(state.operator, now)
         self._fleet.on_gates(state.robots)
         if state.stop_all != self._stopped_by_gates:
@@ -157,7 +157,7 @@ class ScreenBackend:
     # What the operator does.
 
     def send_stick(self, forward, turn):
-        """Send the virtual joystick; nothing happens before ROS is there, or while others drive."""
+        """Send the virtual joystick; does nothing before ROS is there or while others drive."""
         if self._mux and self.drives():
             self._mux.send_stick(forward, turn)
 
@@ -167,7 +167,7 @@ class ScreenBackend:
             self._mux.request_mode(name)
 
     def restore_mode(self, name):
-        """Ask for a source as soon as the mux is there."""
+        """Ask for a source as soon as the mux is running."""
         self._first_mode = name
 
     def request_limits(self, linear_mps, angular_rad_s):
@@ -177,26 +177,26 @@ class ScreenBackend:
             self._mux.request_limits(linear_mps, angular_rad_s)
 
     def keep_together(self, together):
-        """Hold all selected robots to what the slowest of them can do, or let each do its best."""
+        """Keep all selected robots to the pace of the slowest, or let each do its best."""
         self._together = together
         self.repeat_selection()
 
     def select(self, names):
-        """Drive exactly these robots; nothing happens while somebody else is in control."""
+        """Drive exactly these robots; does nothing while somebody else is in control."""
         if self.drives():
             self.selection.check(names)
             if self._mux:
                 self._mux.select(self.selection.selected)
 
     def drives(self):
-        """Tell whether this screen may speak for the operator, as far as is known here."""
+        """Tell whether this screen may speak for the operator, as far as it knows."""
         return self._seat.holds(self) and (self._claim is None or self._claim.drives)
 
     def repeat_selection(self):
-        """Say again which robots are checked: the operator's lease, at 2 Hz.
+        """Repeat which robots are checked, at 2 Hz: this renews the operator's lease.
 
-        Only for the thread that the operator's hands act on: where that hangs, the lease ends. A
-        screen that has lost control drops its selection: nothing comes back unasked.
+        Call it only on the GUI thread: if that hangs, the lease must end. A screen that has lost
+        control drops its selection: nothing comes back unasked.
         """
         if self._mux is None or self._closing.is_set():
             return
@@ -210,23 +210,23 @@ class ScreenBackend:
             self._worker.do(self._settle_wheel)
 
     def _settle_wheel(self):
-        """Have the topics of the one who drives, or give them back (on the worker)."""
+        """Register the topics of the screen that drives, or unregister them (on the worker)."""
         if self.drives() and not self._closing.is_set():
             if self._mux.take_wheel():
-                # Whatever another screen of this program selected counts no more.
+                # What another screen of this program selected no longer counts.
                 self._mux.select(self.selection.selected)
         elif not self._closing.is_set():
             self._mux.leave_wheel()
 
     def take_control(self):
-        """Become the operator in control, whoever is; everybody gets a zero."""
+        """Become the operator in control, whoever it is now; every robot gets a zero."""
         self._seat.take(self)
         self.selection.check(())
         self.repeat_selection()
         self._gates.take_control(lambda done, text: done or self._events.put(('told', text)))
 
     def set_motor_power(self, on):
-        """Cut the power of the motors of all robots that offer it (False), or give it back."""
+        """Cut the motor power of all robots that offer it (False), or restore it (True)."""
         self._gates.set_motor_power(on, lambda done, text: self._on_answer(text))
 
     def add(self, name, parameters=None):
@@ -244,7 +244,7 @@ class ScreenBackend:
         return None
 
     def remove(self, name):
-        """Stop a robot and take it out of the list."""
+        """Stop a robot and remove it from the list."""
         self.select([other for other in self.selection.selected if other != name])
         self.selection.remove(name)
         link = self._fleet.drop(name)
@@ -252,18 +252,18 @@ class ScreenBackend:
             self._worker.do(link.close)
 
     def look(self):
-        """Look for connected robots; the result comes as the event ``('found', Found)``."""
+        """Look for connected robots; the result is the event ``('found', Found)``."""
         if self._ros != ROS_CONNECTED:
             self._events.put(('look_failed', 'no ROS master at {}'.format(self.master_uri)))
             return
         self._worker.do(self._jobs.look, self.selection.robots)
 
     def examine(self):
-        """Examine network, master and robots; the result comes as ``('examined', (list, s))``."""
+        """Examine network, master and robots; the result is ``('examined', (list, s))``."""
         self._jobs.examine()
 
     def talk(self, pressed):
-        """Open or close the ear of the voice node (push-to-talk)."""
+        """Start or stop push-to-talk at the voice node."""
         if self._devices:
             self._devices.talk(pressed)
 
@@ -273,13 +273,13 @@ class ScreenBackend:
             self._devices.rumble()
 
     def stop_all(self):
-        """Stop every robot; pressed without a master, it is kept until there is one."""
+        """Stop every robot; without a master, keep the stop until there is one."""
         self._pressed = True
         if self._mux:
             self._mux.stop_all()
 
     def release(self):
-        """Give up stop-all, where the mux agrees."""
+        """Release stop-all, if the mux agrees."""
         self._pressed = False
         if self._mux:
             self._mux.release()
@@ -287,7 +287,7 @@ class ScreenBackend:
     # What there is to see.
 
     def take_events(self):
-        """Return what has come since the last call, as a list of tuples."""
+        """Return the events since the last call, as a list of tuples."""
         return [self._events.get_nowait() for _ in range(self._events.qsize())]
 
     def feeds(self, name):
@@ -295,18 +295,18 @@ class ScreenBackend:
         return self._fleet.feeds(name)
 
     def recordable(self, name):
-        """Return what of a robot can be recorded besides its IMU: keys of ``CHOICES``."""
+        """Return what can be recorded of a robot besides its IMU: keys of ``CHOICES``."""
         kind = self._fleet.robot_type(name)
         return tuple(key for key, _ in CHOICES if key == 'commands' or kind and getattr(kind, key))
 
     def record(self, name, path, choices):
-        """Begin to record a robot; :attr:`recordings` says what comes of it."""
+        """Start recording a robot; :attr:`recordings` has the result."""
         kind = self._fleet.robot_type(name)
         if kind is not None:
             self.recordings.start(name, kind, path, choices)
 
     def do(self, job, *args):
-        """Do something that may take a while (a file) off the GUI thread."""
+        """Do something slow (e.g. with a file) off the GUI thread."""
         self._feeder.do(job, *args)
 
     def robot_view(self, name):
@@ -364,7 +364,8 @@ class ScreenBackend:
 
         Takes as long as the word needs to leave, and bags that are open need to be closed whole.
 
-        :param forget: give every topic back as well, in the background: for a program that lives on
+        :param forget: unregister every topic as well, in the background: for a program that lives
+            on
         """
         if self._closing.is_set():
             return

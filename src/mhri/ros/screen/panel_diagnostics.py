@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the panel tells ``/diagnostics``: the links of its robots, and what it did not believe."""
+"""What the panel publishes on ``/diagnostics``: its robots' links, and whom it did not believe."""
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from mhri.core.screen.views import LIVE
@@ -11,7 +11,7 @@ class PanelDiagnostics:
     """Publishes ``diagnostic_msgs/DiagnosticArray`` on ``/diagnostics`` at 1 Hz.
 
     :param operator: :class:`mhri.ros.screen.backend.ScreenBackend`
-    :param clients: those of gates and mux, whose ``strangers`` were not believed
+    :param clients: the clients of gates and mux, whose ``strangers`` were not believed
     """
 
     def __init__(self, operator, *clients):

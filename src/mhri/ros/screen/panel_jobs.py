@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the panel asks the master for and what takes a while: parameters, discovery, the doctor."""
+"""What the panel asks the master, and other slow jobs: parameters, discovery, the doctor."""
 import threading
 import time
 
@@ -20,7 +20,7 @@ NUMBERS_PARAMETER = '/mhri/robot_numbers'
 
 
 class PanelJobs:
-    """Each method but :meth:`examine` blocks: for a worker. What comes of them are events.
+    """Each method except :meth:`examine` blocks, so call it on a worker. Results are events.
 
     :param types: {name: RobotType}
     :param events: a :class:`queue.Queue`; gets ``('found', Found)``, ``('look_failed', sentence)``
@@ -37,7 +37,7 @@ class PanelJobs:
     def settle_parameters(self, robots):
         """Read the panel's parameters, and write the list of robots for gates, voice and pad.
 
-        :param robots: {name: number}; None where another screen is in control: its list counts
+        :param robots: {name: number}; None if another screen is in control, whose list counts
         """
         calls = [('getParam', NAMESPACE)]
         if robots not in (None, self._told_robots):

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The panel's ear for pad buttons, voices and labs' own nodes."""
+"""Receives requests from pad buttons, voices and labs' own nodes."""
 import rospy
 
 from mhri.core.screen.text import tidy_names, tidy_text
 from mhri.msg import PanelRequest
 
-# More than this wait only where a program has run wild; the newest are dropped then.
+# More than this wait only if a program runs wild; the newest are then dropped.
 _MOST = 50
 
 

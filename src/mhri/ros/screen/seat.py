@@ -1,18 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which of the screens of one process drives: to the gates they are one node."""
+"""Which screen of a process drives: to the gates they are all one node."""
 import threading
 
 
 class Seat:
-    """One place for many screens; whoever asks first has it until it leaves or another takes it."""
+    """One seat for many screens; the first to ask has it until it leaves or another takes it."""
 
     def __init__(self):
         self._lock = threading.Lock()
         self._holder = None
 
     def holds(self, screen):
-        """Tell whether a screen has the seat; a free one is given to it."""
+        """Tell whether a screen has the seat; a free seat is given to it."""
         with self._lock:
             if self._holder is None:
                 self._holder = screen
@@ -24,7 +24,7 @@ class Seat:
             self._holder = screen
 
     def leave(self, screen):
-        """Free the seat where this screen has it."""
+        """Free the seat if this screen has it."""
         with self._lock:
             if self._holder is screen:
                 self._holder = None

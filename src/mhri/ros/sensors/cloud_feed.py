@@ -130,14 +130,14 @@ class CloudFeed:
         self._stream.open()
 
     def close(self, wait_s=0.0):
-        """Read nothing more and give the topic back; the latter on the feed's own thread.
+        """Read nothing more and unregister the topic; the latter on the feed's own thread.
 
         :param wait_s: wait at most so long for it [s]
         """
         self._stream.close(wait_s)
 
     def take(self):
-        """Return the newest :class:`Cloud`, None where there is no new one since the last call."""
+        """Return the newest :class:`Cloud`, None if there is no new one since the last call."""
         return self._stream.take()
 
     def status(self):

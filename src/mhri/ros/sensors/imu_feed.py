@@ -16,9 +16,9 @@ from mhri.core.sensors.series import BinRing, IMU_KEYS, ODOMETRY_KEYS, roll_pitc
 from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.sensors.refusals import Refusals
 
-# So many samples at most wait for the next drawing; then the ROS thread sorts them in itself.
+# This many samples at most wait for the next drawing; then the ROS thread sorts them in itself.
 _MOST_PENDING = 1024
-# Of several topics with the same thing the first one counts while it is not silent for so long.
+# Of several topics with the same thing the first one counts while it is not silent for this long.
 _SILENT_S = 1.0
 _NAN = math.nan
 

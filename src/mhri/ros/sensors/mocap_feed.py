@@ -61,7 +61,7 @@ class MocapFeed:
             return self._pose
 
     def _read(self, message):
-        """Return the :class:`Pose` in a message, NaN where it cannot be; None for mere bytes."""
+        """Return the :class:`Pose` in a message, NaN if it cannot be; None for mere bytes."""
         message = self._refusals.read(message, PoseStamped)
         if message is None:
             return None

@@ -29,7 +29,7 @@ class Refusals:
         return self._count
 
     def read(self, message, message_class):
-        """Return a message as one of its class, None where its bytes are none.
+        """Return a message as one of its class, None if its bytes are none.
 
         :param message: of the class, or ``rospy.AnyMsg``: what comes where another subscriber of
             the topic in this program asked for bytes

@@ -69,7 +69,7 @@ class ScanFeed:
         return sum(refusals.count for refusals in self._refusals)
 
     def take(self):
-        """Return (ranges, angle_min, angle_increment, range_max), or None where nothing is new.
+        """Return (ranges, angle_min, angle_increment, range_max), or None if nothing is new.
 
         ``ranges`` is an array [m] in which NaN stands for no measurement: nothing within reach, too
         near, outside what the sensor says it can, or beyond what any can. There are

@@ -33,7 +33,7 @@ from mhri.ros.worker import Worker
 ROBOTS_PARAMETER = '/mhri/robots'
 NUMBERS_PARAMETER = '/mhri/robot_numbers'
 VOICE_SOURCE = 'voice'
-# A stop that the mux does not take is repeated for so long; it is said aloud then.
+# A stop that the mux does not take is repeated for this long; it is said aloud then.
 _INSIST_S = 3.0
 _RETRY_S = 0.2
 

@@ -1,0 +1,140 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The screen with 12 robots on show: the Qt event loop, the CPU, and how long it takes to come up.
+
+The robots are played from a bag, cameras (640x480, 30 Hz) and odometry (30 Hz), as they come from
+computers of their own. One is looked at on 1920x1080, eleven are thumbnails. What a timer of 2 ms
+is late is the time a click would have waited. Promised: the loop's p99 <= 33 ms; <= 1.0 of a core;
+from a warm start to a screen that can be used <= 2.5 s, beside a bare window of PyQt.
+"""
+import argparse
+import os
+import statistics
+import subprocess
+import sys
+import threading
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from bench_gui_stall import LoopWatch, row  # noqa: E402
+from support.played_cameras import play_cameras  # noqa: E402
+from support.ros_system import System, wait_for  # noqa: E402
+
+NAMES = ['bot{}'.format(number) for number in range(1, 13)]
+START_UP = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'support', 'start_up.py')
+
+
+def start_up(system, *words):
+    """Return how long it takes from the start of a process until it can be used [s]."""
+    begun = time.monotonic()
+    done = subprocess.run([sys.executable, START_UP, *words], env=system.env, timeout=120,
+                          check=True, stdout=subprocess.PIPE, universal_newlines=True)
+    return float(done.stdout.split()[-1]) - begun
+
+
+def print_start_up(system, times):
+    """Print how long a bare window and the screen take in turn; the first ones warm the disk."""
+    took = {'bare': [], 'screen': []}
+    for number in range(times + 1):
+        for name, words in (('bare', ()), ('screen', NAMES)):
+            seconds = start_up(system, name, *words)
+            if number:
+                took[name].append(seconds)
+    print('start to a window that can be used [s]: bare {:.2f}, screen with {} robots {:.2f}'
+          ' (medians of {})'.format(statistics.median(took['bare']), len(NAMES),
+                                    statistics.median(took['screen']), times), flush=True)
+
+
+class Screen:
+    """The screen in this process with twelve robots."""
+
+    def __init__(self):
+        import psutil
+        from python_qt_binding.QtWidgets import QApplication
+        from mhri.presenters.screen_host import ScreenHost
+        from mhri.ros.screen.backend import ScreenBackend
+        self._process = psutil.Process()
+        self._app = QApplication(['panel'])
+        self.host = ScreenHost(ScreenBackend(['panel']))
+        self.operator = self.host.operator
+        self.host.screen.resize(1920, 1080)
+        self.host.screen.show()
+        self.host.start(NAMES)
+        self.until(lambda: len(self.host.windows) == len(NAMES) and all(
+            self.operator.robot_view(name).link == 'live' for name in NAMES), 'the robots')
+        self.host.screen.stage.set_style('one')
+        self.host.screen.look_at(NAMES[0])
+        self.until(lambda: all(self._has_picture(name) for name in NAMES), 'their pictures')
+
+    def _has_picture(self, name):
+        return self.host.windows[name].view('rgb').picture.frame is not None
+
+    def until(self, condition, what):
+        """Let Qt work until a condition comes true."""
+        wait_for(lambda: (self._app.processEvents(), condition())[1], 60, what)
+
+    def run(self, seconds):
+        """Let Qt work for some seconds, without a measurement's own work."""
+        from python_qt_binding.QtCore import QTimer
+        QTimer.singleShot(round(seconds * 1000), self._app.quit)
+        self._app.exec_()
+
+    def gaps(self, seconds):
+        """Return how long the event loop was blocked [ms], sorted."""
+        watch = LoopWatch()
+        self.run(seconds)
+        return watch.take()
+
+    def cores(self, seconds):
+        """Return how much of a core it takes, in all and by the thread that draws."""
+        def used():
+            here = threading.get_native_id()
+            times = self._process.cpu_times()
+            own = [thread for thread in self._process.threads() if thread.id == here][0]
+            return times.user + times.system, own.user_time + own.system_time, time.monotonic()
+        before = used()
+        self.run(seconds)
+        whole, own, took = (now - then for now, then in zip(used(), before))
+        return whole / took, own / took
+
+    def measure(self, title, seconds):
+        """Print a line of each."""
+        self.run(1.0)
+        whole, own = self.cores(seconds)
+        print(row(title, self.gaps(seconds)))
+        feed = self.operator.feeds(NAMES[0]).get('rgb')
+        print('{:<44} {:.2f} of a core, drawing {:.2f}; pictures come at {:.0f} Hz'.format(
+            '', whole, own, feed.status().rate_hz if feed else 0.0), flush=True)
+
+
+def main():
+    """Print the figures."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--short', action='store_true', help='fewer seconds')
+    short = parser.parse_args().short
+    seconds = 4.0 if short else 15.0
+    with System() as system:
+        system.screen()
+        system.start_master()
+        system.node('mux', '__name:=mux')
+        system.node('gates')
+        import rospy
+        for name in NAMES:
+            rospy.set_param('/{}/robot_type'.format(name), 'turtlebot2')
+        player = play_cameras(system, NAMES, *((1.0, 15) if short else (4.0, 2)), odometry=True)
+        print_start_up(system, 1 if short else 5)
+        screen = Screen()
+        print('Qt event loop blocked [ms]                     turns     p50     p99     max')
+        screen.measure('12 robots, one large, 11 thumbnails', seconds)
+        screen.operator.select(NAMES[:1])
+        screen.measure('the same, one of them checked', seconds)
+        screen.host.screen.hide()
+        screen.measure('nobody can see it', seconds)
+        screen.host.close()
+        rospy.signal_shutdown('measured')
+        system.kill(player)
+
+
+if __name__ == '__main__':
+    main()
