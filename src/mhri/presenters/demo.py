@@ -252,7 +252,10 @@ class Demo(QObject):
         yield '{} and {} to move'.format(two, three), self._hold(
             0.4, -0.35, self._both(self._travelled(three, 0.3), self._moves(two, three)))
         self._take_screenshot()
-        self._take_pictures(panel=host.screen, bot_window=host.windows[two])
+        self._take_pictures(panel=host.screen)
+        hands.click('views_button', host.windows[two])
+        self._take_pictures(bot_window=host.windows[two])
+        hands.click('views_button', host.windows[two])
         self._say('stop all')
         hands.press_stop_keys()
         yield 'every robot to be proven stopped', lambda: all(

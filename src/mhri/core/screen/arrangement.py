@@ -165,7 +165,7 @@ def _arrange(whole: Box, large: Tuple[float, ...], small: Tuple[float, ...],
         area, columns = _best_columns(whole, Counter(shapes), gap)
         boxes = _grid(whole, shapes, columns, gap)
         return Arrangement(boxes, (), area) if large else Arrangement((), boxes, area)
-    best, best_score = None, (-1, -1.0)
+    best, best_score = None, (-1, -1.0, 0.0)
     larges, smalls = Counter(large), Counter(small)
     for room, strip in _splits(whole.width, whole.height, gap):
         if min(room.width, room.height, strip.width, strip.height) < 1:
@@ -176,7 +176,7 @@ def _arrange(whole: Box, large: Tuple[float, ...], small: Tuple[float, ...],
             if min(width, height) < 1:
                 continue
             score = (_fitness(width, height, least),
-                     _worth(large_px, len(large), small_px, len(small)))
+                     _worth(large_px, len(large), small_px, len(small)), small_px)
             if score > best_score:
                 best_score = score
                 best = (room, large_columns, strip, columns, large_px + small_px)
