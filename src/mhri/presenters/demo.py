@@ -217,6 +217,11 @@ class Demo(QObject):
 
         return found
 
+    @staticmethod
+    def _views_open(tile):
+        """Return a condition: the switches of a tile are below its header."""
+        return lambda: tile.switches.mapTo(tile, QPoint(0, 0)).y() >= tile.header.height()
+
     def _travelled(self, name, metres):
         """Return a condition: the robot has driven this far from here."""
         begun = self._diary.robots[name]['path']
@@ -254,6 +259,7 @@ class Demo(QObject):
         self._take_screenshot()
         self._take_pictures(panel=host.screen)
         hands.click('views_button', host.windows[two])
+        yield 'the views to open', self._views_open(host.windows[two])
         self._take_pictures(bot_window=host.windows[two])
         hands.click('views_button', host.windows[two])
         self._say('stop all')
