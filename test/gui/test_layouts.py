@@ -51,7 +51,8 @@ def robots_of(count, long_names=False, group=False, stop=False):
     for number in range(1, count + 1):
         more = {'selected': number == 1 or group and number <= 3, 'driven': number == 1}
         if number == 3:
-            more.update(link=views.GONE, note='nothing heard for 12 s: switched off, or out of reach')
+            more.update(link=views.GONE,
+                        note='nothing heard for 12 s: switched off, or out of reach')
         if number == 5:
             more.update(battery=0.12, slow=True, note='battery at 12 %')
         if stop:

@@ -141,7 +141,8 @@ def test_an_old_picture_does_not_look_live(view, operator):
     assert view.status_sign.sign == (theme.TRIANGLE, theme.ATTENTION)
     assert sum(pixel(view, 0.2, 0.8)) < 0.7 * sum(fresh)
     edge = pixel(view, 0.004, 0.5)
-    assert edge == pytest.approx(theme.colour(theme.ATTENTION, view.palette()).getRgb()[:3], abs=40)
+    ink = theme.colour(theme.ATTENTION, view.picture.palette())
+    assert edge == pytest.approx(ink.getRgb()[:3], abs=40)
     view.show_status(LIVE)
     assert view.picture.warning == ''
 

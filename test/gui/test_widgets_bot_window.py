@@ -52,7 +52,8 @@ def test_the_edge_is_painted(window, operator):
         window.show_view(replace(VIEW, driven=driven))
         operator.settle()
         pixel = window.grab().toImage().pixelColor(2, window.height() // 2)
-        assert (pixel == theme.colour(theme.DRIVE, window.palette())) == (name is not None)
+        ink = theme.colour(theme.DRIVE, theme.over_picture(window.palette()))
+        assert (pixel == ink) == (name is not None)
 
 
 def test_the_header_line(window):
@@ -153,10 +154,13 @@ def test_a_small_tile_shows_its_picture_alone_and_a_tiny_one_its_name(window, op
 
 
 def test_the_header_lies_on_the_picture_where_that_is_all(window, operator):
-    window.offer({'rgb', 'scan'})
+    window.offer({'rgb', 'scan', 'imu'})
     operator.settle()
-    assert window.view('rgb').mapTo(window, window.rect().topLeft()).y() <= 4
-    window.switches.choose({'rgb', 'scan'})
+    for views_over_it in ({'rgb'}, {'rgb', 'scan'}):
+        window.switches.choose(views_over_it)
+        operator.settle()
+        assert window.view('rgb').mapTo(window, window.rect().topLeft()).y() <= 4
+    window.switches.choose({'rgb', 'imu'})
     operator.settle()
     assert window.view('rgb').mapTo(window, window.rect().topLeft()).y() >= window.header.height()
 

@@ -69,7 +69,7 @@ def test_a_warning_never_replaces_the_speed_and_what_is_old_is_dimmed(robots, op
 
 
 def test_a_narrow_row_says_the_turn_without_its_unit(robots, operator):
-    for width, shown in ((560, 'right 0.20 rad/s'), (390, 'right 0.20')):
+    for width, shown in ((560, 'right 0.20 rad/s'), (420, 'right 0.20')):
         robots.resize(width, 300)
         robots.show_robots([replace(LIVE, driven=True)])
         operator.settle()

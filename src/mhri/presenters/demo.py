@@ -217,6 +217,17 @@ class Demo(QObject):
 
         return found
 
+    @staticmethod
+    def _views_open(tile):
+        """Return a condition: the switches of a tile are below its header, and it is drawn."""
+        return lambda: tile.switches.mapTo(tile, QPoint(0, 0)).y() >= tile.header.height() \
+            and not any(cover.isVisible() for cover in tile.findChildren(StaleCover))
+
+    def _all_drawn(self):
+        """Return a condition: no part of the screen stands still."""
+        return lambda: not any(cover.isVisible() for cover in
+                               self._program.host.screen.findChildren(StaleCover))
+
     def _travelled(self, name, metres):
         """Return a condition: the robot has driven this far from here."""
         begun = self._diary.robots[name]['path']
@@ -251,8 +262,13 @@ class Demo(QObject):
         yield 'the panel to be ready', self._reads(READY)
         yield '{} and {} to move'.format(two, three), self._hold(
             0.4, -0.35, self._both(self._travelled(three, 0.3), self._moves(two, three)))
+        yield 'every tile to be drawn', self._all_drawn()
         self._take_screenshot()
-        self._take_pictures(panel=host.screen, bot_window=host.windows[two])
+        self._take_pictures(panel=host.screen)
+        hands.click('views_button', host.windows[two])
+        yield 'the views to open', self._views_open(host.windows[two])
+        self._take_pictures(bot_window=host.windows[two])
+        hands.click('views_button', host.windows[two])
         self._say('stop all')
         hands.press_stop_keys()
         yield 'every robot to be proven stopped', lambda: all(
@@ -260,7 +276,7 @@ class Demo(QObject):
         hands.let_go()
         yield 'every tile to say so', lambda: all(
             tile.hud.sentence.startswith('stopped') for tile in host.windows.values()) \
-            and not any(cover.isVisible() for cover in host.screen.findChildren(StaleCover))
+            and self._all_drawn()()
         self._take_pictures(stopped=host.screen)
         yield 'the pictures to be written', lambda: all(one.done() for _, one in self._written)
         for path, written in self._written:

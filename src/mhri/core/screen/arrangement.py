@@ -20,6 +20,8 @@ _STRIP_SHARES = tuple(share / 100.0 for share in range(10, 52, 2))
 # width counts so much.
 _SMALL_ENOUGH = 0.26
 _SMALL_COUNTS = 1.3
+# With room to spare it becomes larger, up to this part of the area of a large one.
+_SMALL_AT_MOST = 0.2
 # So much more has to be seen in another arrangement before the tiles move.
 WORTH_MOVING = 1.06
 # Shape (width / height) of a picture that has not arrived yet.
@@ -165,7 +167,7 @@ def _arrange(whole: Box, large: Tuple[float, ...], small: Tuple[float, ...],
         area, columns = _best_columns(whole, Counter(shapes), gap)
         boxes = _grid(whole, shapes, columns, gap)
         return Arrangement(boxes, (), area) if large else Arrangement((), boxes, area)
-    best, best_score = None, (-1, -1.0)
+    best, best_score = None, (-1, -1.0, 0.0)
     larges, smalls = Counter(large), Counter(small)
     for room, strip in _splits(whole.width, whole.height, gap):
         if min(room.width, room.height, strip.width, strip.height) < 1:
@@ -176,7 +178,8 @@ def _arrange(whole: Box, large: Tuple[float, ...], small: Tuple[float, ...],
             if min(width, height) < 1:
                 continue
             score = (_fitness(width, height, least),
-                     _worth(large_px, len(large), small_px, len(small)))
+                     _worth(large_px, len(large), small_px, len(small)),
+                     min(small_px / len(small), _SMALL_AT_MOST * large_px / len(large)))
             if score > best_score:
                 best_score = score
                 best = (room, large_columns, strip, columns, large_px + small_px)

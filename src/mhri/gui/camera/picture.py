@@ -13,6 +13,8 @@ from mhri.gui.screen import theme
 NO_MEASUREMENT = 'no measurement'
 _FRAME_PX = 5
 _SCALE_STEPS = 128
+# Scale and cross are left out where the picture would be narrower than this [heights of a line].
+_ROOMY_UNITS = 18.0
 # As DepthColour hatches what has no measurement.
 _NONE_GROUND, _NONE_LINES = '#a0a0a0', '#606060'
 # A picture that is smaller than its room by no more than this is shown as it is, which is quicker
@@ -106,8 +108,12 @@ class PictureView(QWidget):
 
     def room(self):
         """Return the rectangle that a picture may fill."""
-        scale = self._scale_width() if self._with_scale else 0
+        scale = self._scale_width() if self._with_scale and self._is_roomy() else 0
         return self.rect().adjusted(0, 0, -scale, 0)
+
+    def _is_roomy(self):
+        """Tell whether there is room for more than the picture: a thumbnail has none."""
+        return self.width() >= _ROOMY_UNITS * self.fontMetrics().height()
 
     def target(self):
         """Return the rectangle that the picture on show fills; empty without one."""
@@ -176,11 +182,11 @@ class PictureView(QWidget):
         painter.fillRect(self.rect(), ground)
         painter.setRenderHint(QPainter.SmoothPixmapTransform)
         painter.drawImage(target, self._image)
-        if self._with_scale:
+        if self._with_scale and self._is_roomy():
             self._paint_scale(painter)
         if self._warning:
             self._paint_warning(painter, target)
-        elif self._frame.depth_m is not None:
+        elif self._frame.depth_m is not None and self._is_roomy():
             self._paint_cross(painter, target)
 
     def _scale_width(self):

@@ -57,7 +57,8 @@ class MotionDial(QWidget):
     def _radius(self):
         """Return the radius of the dial [px]."""
         units = 0.3 if self._is_small() else 1.3
-        return max(4.0, min(self.width(), self.height()) / 2.0 - self.fontMetrics().height() * units)
+        edge = self.fontMetrics().height() * units
+        return max(4.0, min(self.width(), self.height()) / 2.0 - edge)
 
     def _is_small(self):
         """Tell whether there is no room for words."""

@@ -22,7 +22,7 @@ ANSWER_WITHIN_S = 2.0
 CUT_AFTER_S = 2.0
 # What is pressed sooner after the page of the stop appeared was meant for what was there before.
 SETTLED_S = 0.5
-# From this width on [heights of a line] the buttons never make the words shorter.
+# From this width on the buttons never make the words shorter [heights of a line].
 _ROOMY_UNITS = 38.0
 CUT_OFF = 'This screen is cut off: STOP ALL here reaches nothing'
 CUT_OFF_NOTE = ('another program has taken its name, or it was ended from elsewhere: stop the '

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What lies over the picture of a tile, and where: header, numbers, and a small view in a corner."""
+"""What lies over the picture of a tile, and where: header, numbers, a small view in a corner."""
 from python_qt_binding.QtCore import QPoint, QRect
 
 from mhri.core.screen.view_rows import PICTURES, SCAN
@@ -8,7 +8,7 @@ from mhri.core.screen.view_rows import PICTURES, SCAN
 EDGE_PX = 4
 # Heights of a line that the numbers may take, in a large tile and in a small one.
 _HUD_UNITS = (7.0, 4.0)
-# The small view takes this part of the picture, but is never less high than this [heights of a line].
+# The small view takes this part of the picture, but never less than so many heights of a line.
 _INSET_SHARE, _INSET_UNITS = 0.36, 9.0
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What stands where the pictures will be while there is no robot: what to do, and a button for it."""
+"""What stands where pictures will be while there is no robot: what to do, and a button for it."""
 from python_qt_binding.QtCore import Qt, Signal
 from python_qt_binding.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 

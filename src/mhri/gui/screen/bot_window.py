@@ -157,7 +157,7 @@ class BotWindow(QWidget):
         return self.shown() if self.is_watched() else set()
 
     def shown(self):
-        """Return the set of views that the tile has room for: a small one shows its picture alone."""
+        """Return the views that the tile has room for: a small one shows its picture alone."""
         chosen = self.switches.wanted()
         if self.header.large:
             return chosen
