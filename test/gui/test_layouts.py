@@ -295,7 +295,9 @@ def test_a_narrow_screen_with_known_robots_begins_with_pictures(scene):
         made.screen.arrangement.begin_with_robots()
         screen = made.show()
         assert screen.drawer_button.isChecked() == is_open, size
+        assert 'drawer' not in screen.save_settings()
         screen.drawer_button.click()
+        assert screen.save_settings()['drawer'] != is_open
         made.show()
         assert screen.drawer_button.isChecked() != is_open, size
 

@@ -119,13 +119,27 @@ def test_a_robot_that_is_removed_is_recorded_no_more_and_the_screen_says_so(sess
     session.operator.record('bot3', '', ())
     session.until(lambda: recordings.status('bot3').messages > 10)
     session.host.screen.robot_list.activate('bot3')
+    asked = session.hands.widget('remove_label')
     session.hands.click('remove_button')
+    session.until(lambda: 'bot3 is being recorded: remove it?' in asked.text() and asked.isVisible(),
+                  what='the question')
+    assert 'bot3' in recordings.running()
+    session.hands.click('remove_confirm_button')
     session.until(lambda: recordings.status('bot3').state == 'ended', what='the end')
     assert recordings.running() == ()
     path = recordings.status('bot3').path
     session.until(lambda: session.host.screen.look_label.text().startswith('bot3: saved'))
     assert os.path.exists(path) and path.endswith('.bag'), 'closed whole'
-    session.host._add('bot3')
+    undo = session.hands.widget('undo_button')
+    session.until(undo.isVisible, what='Undo')
+
+    def is_back():
+        session.hands.click('undo_button')
+        return 'bot3' in session.operator.selection.robots
+    session.until(is_back, what='the robot to be back')
+    assert session.operator.selection.robots == tuple(ROBOTS), 'in its place'
+    assert session.operator.selection.numbers.of('bot3') == 3
+    assert 'bot3' not in session.operator.selection.selected
     session.until(lambda: session.operator.robot_view('bot3').link == 'live')
 
 

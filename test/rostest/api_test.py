@@ -75,6 +75,7 @@ class ApiTest(unittest.TestCase):
             (os.environ.get('PYTHONPATH', ''), MESSAGES))
         cls.system.node('mux', '__name:=mux')
         cls.system.node('gates')
+        cls.system.node('tasks')
         for name in INPUTS:
             cls.system.node(name, '__name:=' + name)
         for number, kind in enumerate(('turtlebot2', 'turtlebot3_burger')):
@@ -95,6 +96,9 @@ class ApiTest(unittest.TestCase):
 
     def test_gates(self):
         self.page_is_true('mhri_gates')
+
+    def test_tasks(self):
+        self.page_is_true('mhri_tasks')
 
     def page_is_true(self, node):
         """Hold a node's page, its placeholders filled in, against the node."""

@@ -90,7 +90,7 @@ class Robot:
                       self.seen.around(self.odometry()),
                       {other.name: Other(other.pose(), other.name < self.name
                                          and other.run is not None
-                                         and other.run.state not in ENDS)
+                                         and other.run.state not in ENDS, other.kind.radius_m)
                        for other in self._world.robots if other is not self})
 
     def command(self, velocity):

@@ -16,6 +16,10 @@ from mhri.core.tasks.retrace import Trail
 from mhri.core.tasks.rows import BY_KEY, TASKS
 from mhri.core.tasks.run import BLOCKED_AFTER_S
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from support.task_world import DT_S, room, World  # noqa: E402
+
 
 def alone(task, parameters, walls=room(), discs=(), **start):
     """Let one robot do one task to its end; return it."""
@@ -28,10 +32,6 @@ def alone(task, parameters, walls=room(), discs=(), **start):
 
 @pytest.mark.parametrize('x, y, heading', [
     (2.0, 1.5, None), (-2.0, 0.0, 1.0), (0.0, -2.0, 3.1), (0.4, 0.0, -1.5), (0.0, 0.0, 2.0)])
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
-from support.task_world import DT_S, room, World  # noqa: E402
 def test_goto_ends_where_it_was_sent(x, y, heading):
     robot = alone('goto', '{{x: {}, y: {}{}}}'.format(
         x, y, '' if heading is None else ', heading: {}'.format(heading)))
@@ -67,7 +67,7 @@ def test_a_team_stands_side_by_side():
     world = World(room(8.0, 8.0))
     team = ('bot1', 'bot2', 'bot3')
     for number, name in enumerate(team):
-        world.add(name, -2.0, number - 1.0, seed=number).begin(
+        world.add(name, -2.0, (0.0, 1.0, -1.0)[number], seed=number).begin(
             BY_KEY['goto'], '{x: 1.0, y: 0.0, heading: 0.0}', 0.0, team)
     world.until_ended()
     assert [robot.run.state for robot in world.robots] == [DONE] * 3

@@ -27,6 +27,8 @@ from mhri.presenters.tiles_host import TilesHost
 from mhri.ros.resources import resource_path
 
 DRAW_MS = 50
+# So long other things have their turn after a drawing, on a busy computer, too.
+REST_MS = 20
 STICK_MS = 50
 # How often to repeat the selection: the operator's lease ends if this thread hangs.
 LEASE_MS = 500
@@ -101,7 +103,7 @@ class ScreenHost(QObject):
         panel.release_requested.connect(operator.release)
         panel.power_cut_requested.connect(lambda: operator.set_motor_power(False))
         panel.control_requested.connect(operator.take_control)
-        self._draw_timer.timeout.connect(lambda: self._guard.run(self.draw))
+        self._draw_timer.timeout.connect(self._draw_in_turn)
         self._stick_timer.timeout.connect(self._repeat_stick)
         self._lease_timer.timeout.connect(operator.repeat_selection)
         self._stop_watch.said.connect(panel.show_look_result)
@@ -129,6 +131,13 @@ class ScreenHost(QObject):
         self._stop_watch.start()
         self.events.start()
         self.draw()
+
+    def _draw_in_turn(self):
+        """Draw, and say when it is time again."""
+        begun = time.monotonic()
+        self._guard.run(self.draw)
+        took_ms = round(1000 * (time.monotonic() - begun))
+        self._draw_timer.setInterval(max(REST_MS, DRAW_MS - took_ms))
 
     def draw(self):
         """Take the newest values and hand them to the widgets."""

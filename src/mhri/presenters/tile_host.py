@@ -55,11 +55,13 @@ class TileHost:
 
         :param view: :class:`mhri.core.screen.views.RobotView`
         """
-        window = self.window
+        window, feeds = self.window, self._operator.feeds(self._name)
+        if not window.is_watched():
+            self._rest(feeds)
+            return
         # Anything else matters more than why the picture is slow.
         window.show_view(replace(view, note=view.note or self._held_back), stop_all)
         self._held_back = ''
-        feeds = self._operator.feeds(self._name)
         if feeds is None:
             return
         window.offer(feeds.offers())
@@ -67,7 +69,7 @@ class TileHost:
             self._wired = True
             window.view('rgb').transport_chosen.connect(self._choose_transport)
             window.view('rgb').still_requested.connect(self._save_still)
-        feeds.want(self._wanted() | {MOCAP} if window.is_watched() else ())
+        feeds.want(self._wanted() | {MOCAP})
         status = self._operator.recordings.status(self._name)
         window.recording.offer_extras(self._operator.recordable(self._name))
         window.recording.show_recording(status)
@@ -84,7 +86,7 @@ class TileHost:
     def _wanted(self):
         """Return the views to be fed: a large tile tells the nearest thing, view or not."""
         wanted = self.window.wanted()
-        return wanted | {SCAN} if self.window.header.large and self.window.is_watched() else wanted
+        return wanted | {SCAN} if self.window.header.large else wanted
 
     def _extra_lines(self, feeds):
         """Return what the numbers over the picture say beside the motion; old scans say nothing."""
@@ -216,9 +218,13 @@ class TileHost:
         self._notes.append(('saved {}'.format(path), True) if written else (
             'cannot write {}: is there room, and permission?'.format(path), False))
 
-    def close(self):
-        """Close the feeds: a closed tile costs nothing."""
-        self.guard.end()
-        feeds = self._operator.feeds(self._name)
+    @staticmethod
+    def _rest(feeds):
+        """Let the feeds rest: a tile that nobody can see costs nothing."""
         if feeds is not None:
             feeds.want(())
+
+    def close(self):
+        """Draw no more."""
+        self.guard.end()
+        self._rest(self._operator.feeds(self._name))

@@ -5,6 +5,8 @@
 Everything here runs on the GUI thread.
 """
 import json
+import math
+import time
 
 from python_qt_binding.QtCore import QObject, QTimer, Signal
 import rospy
@@ -15,7 +17,8 @@ from mhri.gui.screen.window_maker import WindowMaker
 from mhri.presenters.tile_host import TileHost
 from mhri.ros.camera.camera_budget import CameraBudget
 
-SLICE_MS = 4
+# A large tile is as pressing as a small one that has waited so many times as long.
+LARGE_FIRST = 4.0
 # More tiles than this help nobody: further robots are only in the list.
 MOST_TILES = 40
 
@@ -52,9 +55,9 @@ class TilesHost(QObject):
         self._torn = {}
         self._to_tear = set()
         self._due = []
+        self._drawn_at = {}
         self._stopped = False
         self._timer = QTimer(self)
-        self._timer.setInterval(SLICE_MS)
         self._timer.timeout.connect(self.draw_next)
 
     def show_view(self, view):
@@ -70,27 +73,31 @@ class TilesHost(QObject):
             self.make(missing.name)
         self._stage.show_tiles({name: self.windows[name] for name in names
                                 if name in self.windows})
-        # Waiting tiles keep their order: else the last one never gets its turn on a busy machine.
-        turns = {robot.name: turn for turn, robot in enumerate(self._due)}
+        now = time.monotonic()
         self._due = sorted((robot for robot in robots if robot.name in self.hosts),
-                           key=lambda robot: turns.get(robot.name, len(turns)))
+                           key=lambda robot: self._pressing(robot.name, now))
         self._stopped = view.stop_all
         self._timer.start()
         wishes = [self.hosts[robot.name].camera_wish(robot.selected) for robot in self._due]
         self._cameras.settle(filter(None, wishes))
 
-    def draw_next(self):
-        """Draw one tile, and return whether another is due.
+    def _pressing(self, name, now):
+        """Return a number that is the larger the longer a tile was not drawn: none starves."""
+        waited_s = now - self._drawn_at.get(name, -math.inf)
+        return waited_s * (LARGE_FIRST if self.windows[name].header.large else 1.0)
 
-        Tiles take turns, so that a click never waits for all of them. Those not reached before the
-        next round come first in it.
+    def draw_next(self):
+        """Draw the most pressing tile that is due, and return whether another is.
+
+        One with each turn of the event loop, so that a click never waits for all.
         """
         if not self._due:
             self._timer.stop()
             return False
-        robot = self._due.pop(0)
+        robot = self._due.pop()
         host = self.hosts.get(robot.name)
         if host is not None:
+            self._drawn_at[robot.name] = time.monotonic()
             host.guard.run(self._guarded, robot.name, host.draw, robot, self._stopped)
         return bool(self._due)
 
@@ -180,6 +187,7 @@ class TilesHost(QObject):
         if name in self._torn:
             self._put_back(name)
         self.hosts.pop(name).close()
+        self._drawn_at.pop(name, None)
         tile = self.windows.pop(name)
         self._stage.show_tiles(dict(self.windows))
         tile.hide()

@@ -13,11 +13,13 @@ class StreamMeter:
 
     def __init__(self, window_s: float = WINDOW_S) -> None:
         self._window_s = window_s
-        self._came: Deque[Tuple[float, int]] = deque(maxlen=_MOST)
+        self._came: Deque[Tuple[float, int]] = deque()
+        self._bytes = 0
 
     def add(self, now: float, size: int) -> None:
         """Note a message of so many bytes."""
         self._came.append((now, size))
+        self._bytes += size
         self._prune(now)
 
     def look_back(self, window_s: float) -> None:
@@ -25,8 +27,8 @@ class StreamMeter:
         self._window_s = window_s
 
     def _prune(self, now: float) -> None:
-        while self._came and self._came[0][0] < now - self._window_s:
-            self._came.popleft()
+        while self._came and (self._came[0][0] < now - self._window_s or len(self._came) > _MOST):
+            self._bytes -= self._came.popleft()[1]
 
     def read(self, now: float) -> Tuple[float, float]:
         """Return (messages per second, bits per second); the rate is 0 with fewer than two."""
@@ -39,4 +41,4 @@ class StreamMeter:
         if len(self._came) < 2 or span <= 0.0:
             return 0.0, 8.0 * self._came[0][1] / self._window_s
         rate = (len(self._came) - 1) / span
-        return rate, 8.0 * rate * sum(size for _, size in self._came) / len(self._came)
+        return rate, 8.0 * rate * self._bytes / len(self._came)

@@ -31,6 +31,7 @@ class LinkQuality:
         self._unanswered = 0
         self._delays: Deque[Tuple[float, float]] = collections.deque()
         self._counts: Deque[Tuple[float, int]] = collections.deque()
+        self._lost = 0
         self._seq: Optional[int] = None
 
     def on_round_trip(self, round_trip_s: Optional[float]) -> None:
@@ -60,26 +61,26 @@ class LinkQuality:
         # A restarted publisher is no loss, nor are two publishers.
         gap = gap if 0 <= gap <= MOST_LOST else 0
         self._counts.append((now, gap))
+        self._lost += gap
         self._forget(now)
 
     def _forget(self, now: float) -> None:
         while self._delays and self._delays[0][0] < now - OFFSET_WINDOW_S:
             self._delays.popleft()
         while self._counts and self._counts[0][0] < now - LOSS_WINDOW_S:
-            self._counts.popleft()
+            self._lost -= self._counts.popleft()[1]
 
     def read(self, now: float) -> LinkFigures:
         """Return the :class:`mhri.core.screen.views.LinkFigures` of this moment."""
         self._forget(now)
         trips = self._round_trips
-        lost = sum(gap for _, gap in self._counts)
         offset = None
         if self._delays and trips:
             # The quickest message took about half the quickest round trip.
             offset = min(trips) / 2.0 - self._delays[0][1]
         return LinkFigures(
             round_trip_s=statistics.median(trips) if trips else None, offset_s=offset,
-            loss=lost / (lost + len(self._counts)) if self._counts else None)
+            loss=self._lost / (self._lost + len(self._counts)) if self._counts else None)
 
 
 def link_warning(figures: LinkFigures, dropped: bool = False) -> str:

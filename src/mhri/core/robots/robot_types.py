@@ -12,6 +12,8 @@ from mhri.core.robots.robot_hardware import (
 ODOMETRY_TYPES = ('nav_msgs/Odometry', 'turtlesim/Pose')
 # Unless its type says otherwise, a robot is silent after this long without odometry [s].
 SILENT_AFTER_S = 1.0
+# And so large is one whose type does not say it: a robot on a task keeps that much room [m].
+RADIUS_M = 0.25
 _HARDWARE: Dict[str, Callable[[Section], Any]] = {
     'motor_power': read_motor_power, 'hardware_stop': read_hardware_stop}
 # http://wiki.ros.org/Names, without "~": no topic of a robot is private to us.
@@ -82,7 +84,8 @@ class RobotType:
     of topics that only robots of this type publish, to recognise robots without a ``robot_type``.
     ``silent_after_s``: a robot is silent after this long without odometry [s]; 0 means that silence
     says nothing (it sends odometry only in motion). ``motor_power`` and ``hardware_stop`` are None
-    if there is no such thing. ``instance`` is the first segment of all its topics if one node may
+    if there is no such thing. ``radius_m`` is the radius of the disc around all of it [m].
+    ``instance`` is the first segment of all its topics if one node may
     have several such robots, each with its own first segment.
     """
 
@@ -103,6 +106,7 @@ class RobotType:
     battery: Tuple[str, ...] = ()
     known_by: Dict[str, str] = field(default_factory=dict)
     silent_after_s: float = SILENT_AFTER_S
+    radius_m: float = RADIUS_M
     motor_power: Optional[MotorPowerSpec] = None
     hardware_stop: Optional[HardwareStopSpec] = None
     instance: Optional[str] = None
@@ -167,7 +171,7 @@ def parse_robot_type(text: str, origin: str) -> RobotType:
         limits=_limits(section.section('limits')),
         models={key: _limits(item) for key, item in section.named_sections('models').items()},
         odometry_type=odometry_type, known_by=_known_by(section),
-        silent_after_s=_silent_after_s(section),
+        silent_after_s=_silent_after_s(section), radius_m=_radius_m(section),
         **{key: read(section) for key, read in _HARDWARE.items()},
         instance=section.text('instance', None), **_all_topics(section))
     _check_instance(section, robot_type)
@@ -207,6 +211,11 @@ def _silent_after_s(section: Section) -> float:
         raise section.error('silent_after_s', 'expected 0 (its silence means nothing) or a number '
                             'from 0.3 to 60, got {!r}'.format(value))
     return value
+
+
+def _radius_m(section: Section) -> float:
+    """Read the radius of the disc around all of the robot."""
+    return section.number('radius_m', 0.02, 10.0, RADIUS_M)
 
 
 def _topics(section: Section, key: str) -> Tuple[str, ...]:
@@ -315,9 +324,9 @@ def _overridden(robot_type: RobotType, overrides: object, origin: str) -> RobotT
     changes.update((key, read(section)) for key, read in _HARDWARE.items() if key in section)
     if 'silent_after_s' in section:
         changes['silent_after_s'] = _silent_after_s(section)
-    for key in ('label', 'window'):
-        if key in section:
-            changes[key] = section.text(key)
+    if 'radius_m' in section:
+        changes['radius_m'] = _radius_m(section)
+    changes.update((key, section.text(key)) for key in ('label', 'window') if key in section)
     if 'limits' in section:
         limits = section.section('limits')
         changes['limits'] = Limits(

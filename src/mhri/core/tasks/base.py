@@ -7,7 +7,7 @@ keeps it from obstacles, ends it when it has to, and brings its robot to rest.
 """
 from dataclasses import dataclass, field
 import math
-from typing import Callable, Dict, Mapping, Optional, Sequence, Tuple, Union
+from typing import Callable, Dict, Iterable, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -40,11 +40,12 @@ class Other:
     """Another robot that is seen in the same frame.
 
     ``goes_first`` is true where this robot has to let it pass: it is on a task, too, and has the
-    lower number.
+    lower number. ``radius_m`` is that of the disc around it.
     """
 
     pose: Pose
     goes_first: bool = False
+    radius_m: float = 0.25
 
 
 @dataclass(frozen=True)
@@ -221,6 +222,22 @@ def turn_to(pose: Pose, x_m: float, y_m: float) -> float:
 def way(pose: Pose, x_m: float, y_m: float) -> float:
     """Return the way from a pose to a place [m]."""
     return math.hypot(x_m - pose.x_m, y_m - pose.y_m)
+
+
+def discs(pose: Pose, others: Iterable[Other], more_m: float) -> np.ndarray:
+    """Return the edges of other robots as an array (n, 2) in the frame of a pose [m].
+
+    :param more_m: they are taken for so much larger: they move
+    """
+    rows = [NOWHERE]
+    turns = np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False) - pose.heading_rad
+    for other in others:
+        gap_x, gap_y = other.pose.x_m - pose.x_m, other.pose.y_m - pose.y_m
+        cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
+        middle = (cos * gap_x + sin * gap_y, cos * gap_y - sin * gap_x)
+        rows.append((other.radius_m + more_m) * np.column_stack((np.cos(turns), np.sin(turns)))
+                    + middle)
+    return np.vstack(rows)
 
 
 def wrapped(angle_rad: float) -> float:

@@ -68,11 +68,12 @@ class Surroundings:
     def see(self, scan: Scan, odometry: Pose) -> None:
         """Take in a scan that was made here."""
         kept = self.around(odometry)
-        kept = kept[~scan.looks_at(kept) & (np.hypot(kept[:, 0], kept[:, 1]) < KEEP_M)]
+        kept = self._met[~scan.looks_at(kept) & (np.hypot(kept[:, 0], kept[:, 1]) < KEEP_M)]
         if len(kept):
-            kept = np.unique(np.round(kept / _GRID_M), axis=0) * _GRID_M
-        turn = _turned(odometry.heading_rad)
-        self._met = np.vstack((scan.points(), kept)) @ turn.T + (odometry.x_m, odometry.y_m)
+            # One of each cell; none is moved, which time after time would lead it astray.
+            kept = kept[np.unique(np.round(kept / _GRID_M), axis=0, return_index=True)[1]]
+        fresh = scan.points() @ _turned(odometry.heading_rad).T + (odometry.x_m, odometry.y_m)
+        self._met = np.vstack((fresh, kept))
 
     def around(self, odometry: Pose) -> np.ndarray:
         """Return what is around the robot, were it here: an array (n, 2) in its frame [m]."""

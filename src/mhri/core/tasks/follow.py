@@ -46,7 +46,8 @@ class Follow(Task):
         gap_m = self._gap(pose.x_m, pose.y_m, place)
         over_m = gap_m - self._distance_m
         if over_m < _SLACK_M:
-            return Step(text='{:.1f} m behind {}'.format(gap_m, self._leader), left_m=max(0, over_m))
+            return Step(text='{:.1f} m behind {}'.format(gap_m, self._leader),
+                        left_m=max(0.0, over_m))
         velocity = self._pilot.towards(senses, pose, *self._trail[0], rest=False)
         text = '{:.1f} m behind {}, wants {:.1f}'.format(gap_m, self._leader, self._distance_m)
         if velocity is None:

@@ -11,26 +11,32 @@ States and what leads out of them::
               brake
     ended     zeros                               (nothing): nothing resumes by itself
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 from typing import List, Optional, Tuple
+
+import numpy as np
 
 from mhri.core.driving.gate import HELD, OPERATOR, TASK
 from mhri.core.driving.limits import Velocity, ZERO
 from mhri.core.screen.battery import FLAT_AT
 from mhri.core.tasks.base import (
-    BLOCKED, Body, ENDS, FAILED, LOST, RUNNING, Senses, Step, STOPPED, TAKEN_OVER, Task, TIMEOUT,
-    turn_to, WAITING, way)
+    BLOCKED, Body, discs, ENDS, FAILED, LOST, RUNNING, Senses, Step, STOPPED, TAKEN_OVER, Task,
+    TIMEOUT, turn_to, WAITING, way)
 from mhri.core.tasks.brake import braked, SCAN_OLD_S
 
 READYING, JOINING, UNDER_WAY, ENDED = 'readying', 'joining', 'under_way', 'ended'
 # Odometry or place that is older is lost [s]; what is new has so long to be heard.
 OLD_S, READY_S, JOIN_S = 0.5, 5.0, 3.0
 BLOCKED_AFTER_S = 5.0
+# Longer where it lets another robot pass.
+PASSED_AFTER_S = 20.0
 # Who goes second stands while the other is within this [m] and this far off its heading [rad].
-PASS_M, PASS_RAD = 1.0, 1.2
+PASS_M, PASS_RAD = 0.8, 0.8
 _STANDS_MPS = 0.02
 _HELD_ANEW_S = 1.0
+# What lasers do not see when it is near: other robots, which may move by so much in a moment [m].
+_MOVES_M = 0.06
 
 
 @dataclass(frozen=True)
@@ -100,7 +106,7 @@ class RobotRun:
         return ZERO
 
     def _reason(self, facts: Facts) -> Optional[Tuple[str, str]]:
-        """Return (state, sentence) of what ends the task now, whatever it does; None for nothing."""
+        """Return (state, sentence) of what ends the task now, None for nothing."""
         if facts.stop_all:
             return STOPPED, 'stop-all is in force: release it, then start the task again'
         if not facts.answers:
@@ -151,20 +157,23 @@ class RobotRun:
     def _drive(self, facts: Facts) -> Velocity:
         """Return what the task wants, as far as the way is free."""
         assert self._task is not None and facts.senses is not None
-        step = self._task.step(facts.senses)
+        senses = replace(facts.senses, points=np.vstack((facts.senses.points, discs(
+            facts.senses.pose, facts.senses.others.values(), _MOVES_M))))
+        step = self._task.step(senses)
         self.left_m = step.left_m
         self.said += step.said
         if step.state in ENDS:
             self.end(step.state, step.text, facts.now_s)
             return ZERO
-        velocity = braked(step.velocity, facts.senses.points, self._body, facts.scan_age_s) \
+        velocity = braked(step.velocity, senses.points, self._body, facts.scan_age_s) \
             if facts.has_laser else step.velocity
         held = self._held(step, velocity, facts)
         self._mark(held, facts.now_s)
         self.state, self.text = (WAITING, held) if held else (RUNNING, step.text)
-        if self._held_since is not None and held \
-                and facts.now_s - self._held_since > BLOCKED_AFTER_S:
-            self.end(BLOCKED, 'for {:g} s: {}'.format(BLOCKED_AFTER_S, held), facts.now_s)
+        patience_s = PASSED_AFTER_S if held.startswith(_LETS_PASS) else BLOCKED_AFTER_S
+        if held and self._held_since is not None \
+                and facts.now_s - self._held_since > patience_s:
+            self.end(BLOCKED, 'for {:g} s: {}'.format(patience_s, held), facts.now_s)
         if self.phase == ENDED or held.startswith(_LETS_PASS):
             return ZERO
         return velocity

@@ -79,6 +79,6 @@ def make(values: Values, start: Start) -> Square:
 
 
 ROW = TaskKind(
-    'square', 'Square', 'a square to the left by odometry; says each corner, and how far off it ends',
+    'square', 'Square', 'to the left, by odometry; says each corner, and how far off it ends',
     (Field('side', 'm', 'length of a side', REQUIRED, 0.2, 100.0),
      Field('number', '', 'rounds', 1.0, 1.0, 100.0), SPEED, TIMEOUT_S), make)

@@ -12,7 +12,7 @@ from mhri.gui.screen import theme
 COMMAND_WORDS = {
     'keys': 'show or hide these keys',
     'drawer': 'open or close the panel at the left',
-    'focus': 'go to the panel by keyboard, or back to the pictures',
+    'focus': 'go on to the panel, to the buttons below, and back to the pictures',
     'full_screen': 'fill the whole screen, or be a window again',
     'numbers': 'show or hide the numbers over the pictures',
     'stills': 'save a still of every picture',

@@ -142,6 +142,9 @@ class RemoveSteps(QObject):
             part.setVisible(asking)
         for part in self._others:
             part.setVisible(not asking)
+        if not undo and self.undo_button.hasFocus():
+            # Else Return would press whatever is next.
+            self._list.setFocus(Qt.OtherFocusReason)
         self.undo_button.setVisible(undo)
         self._button.setVisible(not undo)
         self._button.setText(KEEP if asking else REMOVE)

@@ -39,7 +39,7 @@ class ScreenLayout(QObject):
         self._tall = True
         self._floating = False
         self._busy = False
-        self._begins_closed = False
+        self._begins_closed = self._drawer_chosen = False
         self._layout, self._theme = AUTO, theme.DARK
         self._build()
         self._connect()
@@ -120,7 +120,7 @@ class ScreenLayout(QObject):
 
     def begin_with_robots(self):
         """Begin with the drawer closed where it would take too much of the width."""
-        self._begins_closed = True
+        self._begins_closed = not self._drawer_chosen
         self.arrange()
 
     def add_page(self, title, page):
@@ -136,11 +136,15 @@ class ScreenLayout(QObject):
             self._screen.tabs.setCurrentIndex(pages.index(page))
 
     def change_focus(self):
-        """Take the keyboard from the pictures to the panel, or back."""
+        """Take the keyboard from the pictures to the panel, from there to the foot, and back."""
         screen = self._screen
         focus = screen.window().focusWidget()
-        if focus is not None and screen.drawer.isAncestorOf(focus):
+        if focus is not None and screen.foot.isAncestorOf(focus):
             screen.stage.setFocus(Qt.TabFocusReason)
+        elif focus is not None and screen.drawer.isAncestorOf(focus):
+            next(button for button in (
+                screen.stop_bar.release_button, screen.control_bar.take_button,
+                screen.events_button) if button.isVisible()).setFocus(Qt.TabFocusReason)
         else:
             screen.drawer_button.setChecked(True)
             screen.robot_list.setFocus(Qt.TabFocusReason)
@@ -160,7 +164,7 @@ class ScreenLayout(QObject):
     def _show_drawer(self, shown):
         """Open or close the drawer."""
         screen = self._screen
-        self._begins_closed = False
+        self._drawer_chosen, self._begins_closed = True, False
         screen.drawer.setVisible(shown)
         if not shown and screen.drawer.isAncestorOf(screen.focusWidget() or screen):
             screen.stage.setFocus()
@@ -207,6 +211,8 @@ class ScreenLayout(QObject):
         if self._begins_closed and screen.isVisible() and \
                 screen.splitter.sizes()[0] > _DRAWER_SHARE * screen.width():
             screen.drawer_button.setChecked(False)
+            # Nobody has asked for it.
+            self._drawer_chosen = False
         is_open = self.drawer_open
         side = max(screen.drawer.minimumSizeHint().width(), screen.splitter.sizes()[0]) \
             if is_open else 0
@@ -260,15 +266,17 @@ class ScreenLayout(QObject):
 
     def save_settings(self):
         """Return what is kept between runs."""
-        return {'splitter': self._screen.splitter.sizes(), 'drawer': self.drawer_open,
-                'layout': self._layout, 'theme': self._theme,
-                'numbers': self._screen.stage.numbers_shown}
+        chosen = {'drawer': self.drawer_open} if self._drawer_chosen else {}
+        return {'splitter': self._screen.splitter.sizes(), 'layout': self._layout,
+                'theme': self._theme, 'numbers': self._screen.stage.numbers_shown, **chosen}
 
     def restore_settings(self, settings):
         """Take back what :meth:`save_settings` returned."""
         if len(settings.get('splitter', ())) == self._screen.splitter.count():
             self._screen.splitter.setSizes(settings['splitter'])
-        self._screen.drawer_button.setChecked(settings.get('drawer', True) is not False)
+        if 'drawer' in settings:
+            self._screen.drawer_button.setChecked(settings['drawer'] is not False)
+            self._drawer_chosen = True
         if settings.get('layout') in LAYOUTS:
             self.choose_layout(settings['layout'])
         if settings.get('theme') in theme.THEMES:

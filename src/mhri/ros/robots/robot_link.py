@@ -24,8 +24,8 @@ from mhri.ros.driving.gates_client import is_driven, round_trip_s, STANDS_WORDS
 from mhri.ros.robots.hardware_stop import HardwareStop
 from mhri.ros.sensors.refusals import Refusals
 
-_READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
-            'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
+ODOMETRY_READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
+                    'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
 
 # Below a robot's namespace: the late commands that its guard dropped.
 DROPPED = 'mhri_guard/dropped'
@@ -131,7 +131,7 @@ class RobotLink:
 
     def _open_feeds(self):
         """Subscribe to the odometry topics of the template."""
-        module, class_name, read = _READERS[self.robot_type.odometry_type]
+        module, class_name, read = ODOMETRY_READERS[self.robot_type.odometry_type]
         try:
             message_class = getattr(importlib.import_module(module), class_name)
         except ImportError:
@@ -251,12 +251,14 @@ def seen_by_gates(view, gate, answers):
     if gate is None:
         return view
     stands = STANDS_WORDS.get(gate.stands, gate.stands) if gate.obeys else ''
+    # A warning about its link stays: it is worth more than what it does.
+    calm = 'on a task' if gate.obeys == RobotGate.TASK and view.link == LIVE else ''
     return with_stop_words(replace(
         view, driven=is_driven(gate) and bool(gate.topic), guarded=gate.guarded,
         obeys=gate.obeys, stands=gate.stands, power=gate.power,
         waits=gate.stands == RobotGate.JOINING, stop_latched=gate.stop_confirmed,
         sent_mps=gate.sent.linear.x, sent_rad_s=gate.sent.angular.z, reached=bool(gate.topic),
-        note=stands if stands and view.link == LIVE else view.note,
+        note=stands if stands and view.link == LIVE else view.note or calm,
         slow=view.slow or bool(stands)))
 
 

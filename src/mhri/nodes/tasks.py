@@ -1,0 +1,46 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The executable ``tasks``: runs :class:`mhri.ros.tasks.tasks.Tasks` as ``/mhri_tasks``."""
+import signal
+import sys
+
+from diagnostic_msgs.msg import DiagnosticStatus
+import rospy
+
+from mhri.ros.diagnostics import publish_diagnostics
+from mhri.ros.graph import log
+from mhri.ros.graph.handshake import limit_handshakes
+from mhri.ros.graph.master_watch import MasterWatch
+from mhri.ros.graph.rospy_inside import ended_by_hand
+from mhri.ros.resources import robot_types
+from mhri.ros.tasks.tasks import Tasks
+
+
+def main():
+    """Run until shut down; every robot on a task gets a zero then.
+
+    Ended by ``rosnode kill`` the exit status is 1, so that ``mhri.launch`` starts it again.
+    """
+    types, _ = robot_types()
+    limit_handshakes()
+    rospy.init_node('mhri_tasks', disable_rostime=True)
+    log.install()
+    by_hand = ended_by_hand()
+    signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
+    tasks = Tasks(types)
+    rospy.on_shutdown(tasks.close)
+    MasterWatch().start()
+    tasks.start()
+
+    def fill(status):
+        """Fill the diagnostics: each robot on a task."""
+        summary = tasks.summary()
+        status.summary(DiagnosticStatus.OK, '{} robots on a task'.format(len(summary)))
+        for name, (state, text) in sorted(summary.items()):
+            status.add(name, '{}: {}'.format(state, text))
+        return status
+
+    publish_diagnostics({'tasks': fill})
+    rospy.spin()
+    if by_hand():
+        sys.exit('the tasks were ended by rosnode kill')

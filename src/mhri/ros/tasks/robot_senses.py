@@ -1,0 +1,173 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What one robot senses, for its task: odometry, motion capture, laser and battery."""
+import importlib
+import threading
+import time
+
+import rospy
+from sensor_msgs.msg import BatteryState, LaserScan
+
+from mhri.core.robots.mocap import Pose
+from mhri.core.robots.names import topic_of
+from mhri.core.sensors.plausible import beams_problem, measured_ranges, thinned
+from mhri.core.tasks.base import Body
+from mhri.core.tasks.brake import Scan, Surroundings
+from mhri.core.tasks.retrace import Trail
+from mhri.ros.graph.rospy_inside import unsubscribe
+from mhri.ros.robots.robot_link import battery_fraction, ODOMETRY_READERS
+from mhri.ros.sensors.mocap_feed import MocapFeed
+from mhri.ros.sensors.refusals import Refusals
+
+# A finer scan is thinned: its nearest beams count.
+MOST_BEAMS = 400
+
+
+class _Newest:
+    """The newest message of some topics, read when it is asked for."""
+
+    def __init__(self, topics, message_class, clock, **options):
+        self._class = message_class
+        self._clock = clock
+        self._lock = threading.Lock()
+        self.heard_at = None
+        self._message = None
+        self._refusals = Refusals(', '.join(topics), clock)
+        self._subscribers = [rospy.Subscriber(topic, message_class, self._hear, queue_size=1,
+                                              tcp_nodelay=True, **options) for topic in topics]
+
+    def _hear(self, message):
+        with self._lock:
+            self._message, self.heard_at = message, self._clock()
+
+    def take(self):
+        """Return the newest message, None where there is none since the last time."""
+        with self._lock:
+            message, self._message = self._message, None
+        return None if message is None else self._refusals.read(message, self._class)
+
+    def note(self, problem):
+        """Say what cannot be."""
+        self._refusals.note(problem)
+
+    def age_s(self):
+        """Return the age of the newest message [s], None before the first."""
+        return None if self.heard_at is None else self._clock() - self.heard_at
+
+    def close(self):
+        """Stop listening (blocking: it asks the master)."""
+        for subscriber in self._subscribers:
+            unsubscribe(subscriber)
+
+
+class RobotSenses:
+    """A robot's odometry at all times, for its trail; the rest from :meth:`open` on.
+
+    :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
+    """
+
+    def __init__(self, name, robot_type, clock=time.monotonic):
+        self.name = name
+        self.robot_type = robot_type
+        self._clock = clock
+        self.body = Body(robot_type.radius_m, robot_type.limits)
+        self.trail = Trail()
+        self.pose = None
+        self._odometry = self._open_odometry()
+        self._scan = self._battery = None
+        self._charge = None
+        self._mocap = None
+        self._surroundings = Surroundings()
+
+    def _open_odometry(self):
+        module, class_name, self._read = ODOMETRY_READERS[self.robot_type.odometry_type]
+        try:
+            message_class = getattr(importlib.import_module(module), class_name)
+        except ImportError:
+            rospy.logwarn('%s: cannot read its odometry, %s is not installed here', self.name,
+                          self.robot_type.odometry_type)
+            return None
+        return _Newest(self._topics('odometry'), message_class, self._clock)
+
+    def _topics(self, key):
+        return [topic_of(self.name, topic) for topic in getattr(self.robot_type, key)]
+
+    def open(self):
+        """Begin to listen to laser and battery (blocking: it asks the master)."""
+        if self._scan is None and self.has_laser:
+            self._scan = _Newest(self._topics('scan'), LaserScan, self._clock, buff_size=1 << 20)
+        if self._battery is None and self.robot_type.battery:
+            self._battery = _Newest(self._topics('battery'), BatteryState, self._clock)
+
+    def track(self):
+        """Begin to listen to motion capture (blocking: it asks the master)."""
+        if self._mocap is None:
+            mocap = MocapFeed(self.name, self._clock)
+            mocap.open()
+            self._mocap = mocap
+
+    @property
+    def has_laser(self):
+        """Whether robots of its type have a laser."""
+        return bool(self.robot_type.scan)
+
+    @property
+    def tracked(self):
+        """Whether motion capture is listened to."""
+        return self._mocap is not None
+
+    def look(self):
+        """Read what has come since the last time."""
+        message = self._odometry.take() if self._odometry else None
+        if message is not None:
+            motion = self._read(message)
+            if motion is not None and motion.is_possible():
+                self.pose = Pose(motion.x_m, motion.y_m, motion.heading_rad)
+                self.trail.add(self.pose)
+        scan = self._scan.take() if self._scan else None
+        if scan is not None and self.pose is not None:
+            self._see(scan)
+        battery = self._battery.take() if self._battery else None
+        if battery is not None:
+            self._charge = battery_fraction(battery)
+
+    def _see(self, message):
+        problem = beams_problem(len(message.ranges), message.angle_min, message.angle_increment)
+        if problem:
+            self._scan.note(problem)
+            return
+        ranges, together = thinned(measured_ranges(
+            message.ranges, message.range_min, message.range_max), MOST_BEAMS)
+        step = message.angle_increment
+        first, step = message.angle_min + 0.5 * (together - 1) * step, together * step
+        if step < 0.0:
+            # Mounted upside down it counts to the right.
+            ranges, first, step = ranges[::-1], first + (len(ranges) - 1) * step, -step
+        self._surroundings.see(Scan(ranges, first, step, message.range_min, message.range_max),
+                               self.pose)
+
+    def points(self):
+        """Return what its laser has met, in its frame, were it where it was heard last."""
+        return self._surroundings.around(self.pose)
+
+    def captured(self):
+        """Return its :class:`Pose` by motion capture, None where that says nothing that can be."""
+        pose = self._mocap.pose() if self._mocap else None
+        return pose if pose is not None and pose.is_finite() else None
+
+    def ages(self):
+        """Return {what: age [s], None before the first}, as :class:`Facts` has them."""
+        return dict(odometry_age_s=self._odometry.age_s() if self._odometry else None,
+                    place_age_s=self._mocap.age_s() if self._mocap else 0.0,
+                    scan_age_s=self._scan.age_s() if self._scan else None)
+
+    @property
+    def charge(self):
+        """Charge of its battery in [0, 1], None where it is not known."""
+        return self._charge
+
+    def close(self):
+        """Stop listening (blocking: it asks the master)."""
+        for feed in (self._odometry, self._scan, self._battery, self._mocap):
+            if feed is not None:
+                feed.close()

@@ -1,0 +1,328 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The node of the tasks: robots on a task are given their velocities, 20 times a second.
+
+Interfaces (global names; SI units):
+
+- serves the action ``/mhri_tasks/run`` (``mhri/RunTask``), any number of goals at a time
+- publishes ``/mux_in/task`` (``mhri/TeamTwist``, 20 Hz while a robot is on a task, with zeros for
+  0.6 s after it) and ``/mhri_tasks/list`` (``mhri/TaskList``, latched, on change)
+- subscribes ``/gates/state`` (``mhri/GatesState``) and ``/robot_controller/stop_all``
+  (``std_msgs/Bool``), each from the node in force alone; of every robot that the gates know its
+  odometry; of robots on a task laser and battery as well; and ``/vrpn_client_node/<robot>/pose``
+  where motion capture runs
+
+The action server has a lock of its own, held while it calls :meth:`Tasks._on_goal`: nothing of it
+is called while this object's lock is held.
+"""
+import threading
+import time
+
+import actionlib
+from geometry_msgs.msg import Twist
+import rospy
+from std_msgs.msg import Bool
+
+from mhri.core.config import ConfigError, short
+from mhri.core.robots.names import name_problem
+from mhri.core.tasks.base import DONE, FAILED, LOST, Start, STOPPED, TAKEN_OVER
+from mhri.core.tasks.rows import BY_KEY, TASKS
+from mhri.core.tasks.run import ENDED, Facts, RobotRun
+from mhri.msg import (
+    GatesState, RunTaskAction, RunTaskFeedback, RunTaskResult, TaskList, TaskRun, TeamTwist)
+from mhri.ros.convert import to_twist
+from mhri.ros.driving.in_force import InForce, STOP_SERVICE, TAKE_SERVICE
+from mhri.ros.graph.master_api import MasterError
+from mhri.ros.graph.rospy_inside import PromptPublisher
+from mhri.ros.tasks.seen_robots import SeenRobots
+from mhri.ros.tasks.words import kind_message, state_message
+from mhri.ros.worker import Worker
+
+TICK_S = 0.05
+FEEDBACK_EVERY = 4
+# Zeros for so long after a task has ended [s]: then its gate lets go of it.
+ZEROS_S = 0.6
+# The gates speak at 2 Hz: a word late by this much is a word that does not come [s].
+SILENT_S = 0.9
+MOST_ROBOTS = 64
+
+
+class _Goal:
+    """A goal that was accepted: its handle, and the run of each of its robots."""
+
+    def __init__(self, handle, goal, values):
+        self.handle = handle
+        self.id = handle.get_goal_id().id
+        self.key = goal.task
+        self.parameters = goal.parameters
+        self.team = tuple(goal.robots)
+        self.values = values
+        self.cancelled = False
+        self.runs = []
+        self.ready = False
+
+    def over(self):
+        """Tell whether every robot has ended."""
+        return self.ready and all(run.phase == ENDED for run in self.runs)
+
+    def message(self):
+        """Return its ``mhri/TaskRun``."""
+        return TaskRun(id=self.id, task=self.key, parameters=self.parameters,
+                       robots=[state_message(run) for run in self.runs])
+
+
+class Tasks:
+    """The tasks of all robots.
+
+    :param types: {name: RobotType}
+    :param clock: seconds, monotonic
+    """
+
+    def __init__(self, types, clock=time.monotonic):
+        self._clock = clock
+        self._lock = threading.RLock()
+        self._wake = threading.Event()
+        self._done = threading.Event()
+        self._seen = SeenRobots(types, clock)
+        self._goals = {}
+        # {robot: its newest RobotRun}: a robot has one task.
+        self._runs = {}
+        self._gates = {}
+        self._heard_at = None
+        self._gates_stop = self._mux_stop = False
+        self._told = None
+        self._worker = Worker('tasks_calls')
+        self._gates_force = InForce(TAKE_SERVICE)
+        self._mux_force = InForce(STOP_SERVICE)
+        self._server = None
+
+    def start(self):
+        """Listen, serve and begin to tick; returns at once."""
+        self._task = PromptPublisher('/mux_in/task', TeamTwist)
+        self._list = rospy.Publisher('/mhri_tasks/list', TaskList, queue_size=1, latch=True)
+        self._gates_force.subscribe('/gates/state', GatesState, self._on_gates, queue_size=10,
+                                    tcp_nodelay=True)
+        self._mux_force.subscribe('/robot_controller/stop_all', Bool, self._on_stop, queue_size=10,
+                                  tcp_nodelay=True)
+        self._gates_force.start()
+        self._mux_force.start()
+        self._worker.start()
+        self._server = actionlib.ActionServer('/mhri_tasks/run', RunTaskAction, self._on_goal,
+                                              self._on_cancel, auto_start=False)
+        self._server.start()
+        self._tell(0)
+        threading.Thread(target=self._run, name='tasks', daemon=True).start()
+        return self
+
+    def close(self):
+        """End every task with a zero."""
+        with self._lock:
+            now = self._clock()
+            for run in self._runs.values():
+                run.end(FAILED, 'mhri_tasks was ended', now)
+            self._publish(now)
+        self._finish()
+        self._done.set()
+        self._worker.stop()
+
+    def summary(self):
+        """Return {robot: (task state, sentence)} of the robots on a task."""
+        with self._lock:
+            return {name: (run.state, run.text) for name, run in self._runs.items()
+                    if run.phase != ENDED}
+
+    def _on_gates(self, message):
+        with self._lock:
+            names = set(self._gates)
+            self._gates = {robot.name: robot for robot in message.robots}
+            self._heard_at = self._clock()
+            self._gates_stop = message.stop_all
+            if names != set(self._gates):
+                self._worker.do(self._know)
+        self._wake.set()
+
+    def _on_stop(self, message):
+        with self._lock:
+            self._mux_stop = message.data
+        if message.data:
+            self._wake.set()
+
+    def _know(self):
+        """See the robots that the gates know; tried again where the master does not answer."""
+        try:
+            self._seen.know(list(self._gates))
+        except (MasterError, OSError) as error:
+            rospy.logwarn_throttle(5.0, 'the robots cannot be looked at: {}'.format(error))
+            if not self._done.wait(1.0):
+                self._worker.do(self._know)
+
+    def _on_goal(self, handle):
+        """Accept a goal that can be understood, and begin it on the worker."""
+        goal = handle.get_goal()
+        try:
+            values = _values_of(goal)
+        except ConfigError as error:
+            handle.set_rejected(RunTaskResult(), short(error))
+            return
+        handle.set_accepted('started')
+        accepted = _Goal(handle, goal, values)
+        with self._lock:
+            self._goals[accepted.id] = accepted
+        self._worker.do(self._begin, accepted)
+
+    def _on_cancel(self, handle):
+        with self._lock:
+            goal = self._goals.get(handle.get_goal_id().id)
+            if goal is not None:
+                goal.cancelled = True
+                for run in goal.runs:
+                    run.end(STOPPED, 'it was cancelled', self._clock())
+        self._wake.set()
+
+    def _begin(self, goal):
+        """Open what the robots of a goal need, and begin their runs (on the worker)."""
+        try:
+            known = [name for name in goal.team if name in self._gates]
+            self._seen.know(list(self._gates))
+            self._seen.open(known)
+            problem = ''
+        except (MasterError, OSError) as error:
+            problem = 'the ROS master does not answer: {}'.format(error)
+        with self._lock:
+            now = self._clock()
+            for name in goal.team:
+                run = self._new_run(goal, name, problem, now)
+                before = self._runs.get(name)
+                if before is not None:
+                    before.end(TAKEN_OVER, 'it got another task: {}'.format(goal.key), now)
+                self._runs[name] = run
+                goal.runs.append(run)
+                if goal.cancelled:
+                    run.end(STOPPED, 'it was cancelled', now)
+            goal.ready = True
+
+    def _new_run(self, goal, name, problem, now):
+        """Return the run of one robot; one that cannot be begun has ended."""
+        robot, kind, state = self._seen.get(name), BY_KEY[goal.key], FAILED
+        task = body = None
+        if not problem and robot is None:
+            state = LOST
+            problem = 'the drive service does not know it: add it to the list of robots'
+        if not problem and kind.needs_others and not robot.tracked:
+            problem = 'nobody knows where it is: motion capture does not see it'
+        if not problem:
+            body = robot.body
+            try:
+                task = kind.make(goal.values, Start(name, goal.team, body, robot.trail.places()))
+            except ValueError as error:
+                problem = str(error)
+        run = RobotRun(name, task, body, goal.values.number('timeout'), now)
+        if problem:
+            run.end(state, problem, now)
+        return run
+
+    def _run(self):
+        number = 0
+        due = self._clock()
+        while not (self._done.is_set() or rospy.is_shutdown()):
+            due = max(due + TICK_S, self._clock())
+            self._wake.wait(max(0.0, due - self._clock()))
+            self._wake.clear()
+            number += 1
+            try:
+                self._tick(number)
+            except Exception as error:  # without this thread no task would ever end
+                rospy.logerr_throttle(1.0, 'the tasks failed: {!r}'.format(error))
+                with self._lock:
+                    for run in self._runs.values():
+                        run.end(FAILED, 'an error of mhri_tasks: {!r}'.format(error)[:200],
+                                self._clock())
+
+    def _tick(self, number):
+        self._seen.look()
+        with self._lock:
+            self._publish(self._clock())
+        self._finish()
+        self._tell(number)
+
+    def _publish(self, now):
+        """Publish what every robot on a task shall do; called with the lock held."""
+        busy = {name for name, run in self._runs.items() if run.phase != ENDED}
+        message = TeamTwist()
+        for name, run in self._runs.items():
+            if run.phase == ENDED:
+                if now - run.ended_s <= ZEROS_S:
+                    message.robots.append(name)
+                    message.twists.append(Twist())
+                continue
+            velocity = run.tick(self._facts(name, now, busy))
+            message.robots.append(name)
+            message.twists.append(to_twist(velocity.linear_mps, velocity.angular_rad_s))
+        if message.robots:
+            message.header.stamp = rospy.Time.now()
+            self._task.publish(message)
+
+    def _facts(self, name, now, busy):
+        """Return the :class:`Facts` of a robot."""
+        gate, robot = self._gates.get(name), self._seen.get(name)
+        known = dict(stop_all=self._mux_stop or self._gates_stop, known=gate is not None,
+                     answers=self._heard_at is not None and now - self._heard_at <= SILENT_S)
+        if gate is not None:
+            known.update(obeys=gate.obeys, stands=gate.stands)
+        if robot is not None:
+            known.update(robot.ages(), has_laser=robot.has_laser, battery=robot.charge,
+                         senses=self._seen.senses(robot, now, busy))
+        return Facts(now, **known)
+
+    def _finish(self):
+        """Tell the results of the goals that are over; called without the lock."""
+        with self._lock:
+            over = [goal for goal in self._goals.values() if goal.over()]
+            for goal in over:
+                del self._goals[goal.id]
+        for goal in over:
+            result = RunTaskResult(robots=[state_message(run) for run in goal.runs])
+            words = '; '.join('{}: {}'.format(run.robot, run.text) for run in goal.runs)
+            rospy.loginfo('task %s ended: %s', goal.key, words)
+            if goal.cancelled:
+                goal.handle.set_canceled(result, words)
+            elif all(run.state == DONE for run in goal.runs):
+                goal.handle.set_succeeded(result, words)
+            else:
+                goal.handle.set_aborted(result, words)
+
+    def _tell(self, number):
+        """Publish feedback five times a second, and the list on change."""
+        if number % FEEDBACK_EVERY:
+            return
+        with self._lock:
+            goals = [goal for goal in self._goals.values() if goal.ready]
+            runs = [goal.message() for goal in goals]
+        for goal, run in zip(goals, runs):
+            goal.handle.publish_feedback(RunTaskFeedback(robots=run.robots))
+        told = [(run.id, [(robot.robot, robot.state) for robot in run.robots]) for run in runs]
+        if told != self._told:
+            self._told = told
+            message = TaskList(tasks=[kind_message(kind) for kind in TASKS], runs=runs)
+            message.header.stamp = rospy.Time.now()
+            self._list.publish(message)
+
+
+def _values_of(goal):
+    """Return the parameters of a ``mhri/RunTaskGoal``.
+
+    :raises ConfigError: something of it cannot be used
+    """
+    kind = BY_KEY.get(goal.task)
+    if kind is None:
+        raise ConfigError('task', '', 'no task {!r}; there are {}'.format(
+            goal.task[:60], ', '.join(BY_KEY)))
+    origin = 'task ' + goal.task
+    if not 0 < len(goal.robots) <= MOST_ROBOTS or len(set(goal.robots)) < len(goal.robots):
+        raise ConfigError(origin, 'robots', 'expected 1 to {} robots, each once'.format(
+            MOST_ROBOTS))
+    for name in goal.robots:
+        problem = name_problem(name)
+        if problem:
+            raise ConfigError(origin, 'robots', '{!r}: {}'.format(name[:64], problem))
+    return kind.read(goal.parameters)

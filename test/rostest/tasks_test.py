@@ -1,0 +1,210 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Robots on a task: the real nodes, two simulated robots seen by motion capture, and everything that
+ends a task. What is timed here is timed as the robot hears it.
+"""
+import math
+import os
+import re
+import signal
+import sys
+import time
+import unittest
+
+import actionlib
+from geometry_msgs.msg import PoseStamped, Twist
+import psutil
+import roslib.packages
+import rospkg
+import rospy
+import rostest
+from rostest_tools import (
+    measured, moves, NEUTRAL, Process, Recorder, rests, Stick, wait_until)
+from std_srvs.srv import SetBool
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
+
+from mhri.msg import (  # noqa: E402
+    ControlMode, RunTaskAction, RunTaskGoal, TaskList, TaskState)
+from mhri.ros.resources import read_text  # noqa: E402
+from support.fake_mux import FakeOperator, StateEar  # noqa: E402
+
+PATIENCE_S = 120.0
+COMMANDS = {'bot1': '/bot1/teleop/input', 'bot2': '/bot2/cmd_vel'}
+
+
+def velocity(twist):
+    """Return what a command says, as (m/s, rad/s)."""
+    return (twist.linear.x, twist.angular.z)
+
+
+def place(message):
+    """Return (x, y) [m] of a pose."""
+    return (message.pose.position.x, message.pose.position.y)
+
+
+def task_tool(*words):
+    """Start the terminal's mhri_task."""
+    return Process([roslib.packages.find_node('mhri', 'mhri_task')[0]] + list(words))
+
+
+class Tasks(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        cls.operator, cls.state = FakeOperator(), StateEar()
+        cls.stick = Stick('/mux_in/joy')
+        cls.set_stop = rospy.ServiceProxy('/mux/set_stop_all', SetBool)
+        cls.mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=1, latch=True)
+        cls.mode.publish('joy')
+        cls.commands = {name: Recorder(topic, Twist, velocity) for name, topic in COMMANDS.items()}
+        cls.places = {name: Recorder('/vrpn_client_node/{}/pose'.format(name), PoseStamped, place)
+                      for name in COMMANDS}
+        cls.lists = Recorder('/mhri_tasks/list', TaskList, lambda message: message)
+        cls.client = actionlib.ActionClient('/mhri_tasks/run', RunTaskAction)
+
+    def setUp(self):
+        """Nothing is stopped, nobody is checked, no robot is on a task."""
+        self.set_stop.wait_for_service(60.0)
+        self.stick.wait_listener()
+        self.stick.hold(NEUTRAL)
+        self.operator.check()
+        wait_until(lambda: self.set_stop(False).success, 'not released', 30.0)
+        self.assertTrue(self.client.wait_for_server(rospy.Duration(60.0)))
+        for recorder in self.places.values():
+            recorder.wait_publisher(60.0)
+        for name in COMMANDS:
+            self.state.wait_robot(name, lambda gate: gate.topic and not gate.obeys and
+                                  not gate.stands, 'the gate of ' + name, 60.0)
+
+    def start(self, robots, task, parameters):
+        """Start a task; return its handle."""
+        return self.client.send_goal(RunTaskGoal(task, robots.split(), parameters))
+
+    def ends(self, goal):
+        """Wait for the end; return [(state, sentence)] of its robots."""
+        wait_until(lambda: goal.get_comm_state() == actionlib.CommState.DONE, 'the task goes on',
+                   PATIENCE_S)
+        return [(robot.state, robot.text) for robot in goal.get_result().robots]
+
+    def on_its_way(self, robot='bot1', parameters='{x: 9.0, y: 2.0}'):
+        """Start a robot on a long way and wait until it moves; return (goal, since when)."""
+        begun = time.monotonic()
+        x = self.places[robot].last()[0]
+        goal = self.start(robot, 'goto', parameters.replace('9.0', '9.0' if x < 6.0 else '2.0'))
+        self.commands[robot].wait(moves, begun, 60.0)
+        return goal, begun
+
+    def rests_for_good(self, robot, since):
+        """Wait for silence after the first zero; nothing but zeros may have come since that."""
+        zero = self.commands[robot].wait(rests, since, 30.0)
+        self.commands[robot].wait_silence(1.2, 60.0)
+        self.assertEqual([item for item in self.commands[robot].since(zero.at)
+                          if moves(item.value)], [])
+        return zero.at - since
+
+    def test_a_goal_is_reached_within_02_m(self):
+        x, y = self.places['bot1'].last()
+        goal = (x + (1.5 if x < 6.0 else -1.5), 2.2 if y < 1.8 else 1.2)
+        ended = self.ends(self.start('bot1', 'goto', '{{x: {}, y: {}, heading: 1.0}}'.format(*goal)))
+        self.assertEqual(ended[0][0], TaskState.DONE, ended)
+        self.assertLess(math.dist(self.places['bot1'].last(), goal), 0.2)
+
+    def test_the_terminal_drives_a_square_and_says_its_corners(self):
+        tool = task_tool('bot1', 'square', '0.6')
+        self.addCleanup(tool.end)
+        self.assertEqual(tool.wait(PATIENCE_S), 0, tool.said())
+        for number in (1, 2, 3, 4):
+            self.assertIn('bot1: corner {}: x '.format(number), tool.said())
+        errors = re.search(r'by odometry ([\d.]+) m .* by motion capture ([\d.]+) m', tool.said())
+        self.assertLess(float(errors.group(1)), 0.1, tool.said())
+        self.assertLess(float(errors.group(2)), 0.2, tool.said())
+
+    def test_ctrl_c_stops_the_robot(self):
+        begun = time.monotonic()
+        x = self.places['bot1'].last()[0]
+        tool = task_tool('bot1', 'goto', '9.0' if x < 6.0 else '2.0', 'y=2.0')
+        self.addCleanup(tool.end)
+        self.commands['bot1'].wait(moves, begun, 60.0)
+        ended = tool.send(signal.SIGINT)
+        self.assertEqual(tool.wait(30.0), 1)
+        self.assertIn('bot1: stopped: it was cancelled', tool.said())
+        self.rests_for_good('bot1', ended)
+
+    def test_words_that_cannot_be_are_refused_by_name(self):
+        for words, said in ((('bot1', 'goto', '1.0'), 'y: is missing'),
+                            (('bot1', 'dance'), 'no task dance'),
+                            (('bot9', 'goto', '1', '2'), 'add it to the list of robots')):
+            tool = task_tool(*words)
+            self.addCleanup(tool.end)
+            self.assertNotEqual(tool.wait(60.0), 0)
+            self.assertIn(said, tool.said())
+        goal = self.start('bot1', 'goto', '{x: 1, z: 1, y: 1}')
+        wait_until(lambda: goal.get_comm_state() == actionlib.CommState.DONE, 'not refused', 30.0)
+        self.assertIn('z: unknown key', goal.get_goal_status_text())
+
+    def test_a_follower_keeps_its_distance(self):
+        following = self.start('bot2', 'follow', '{leader: bot1, distance: 1.0}')
+        x = self.places['bot1'].last()[0]
+        leading = self.start('bot1', 'goto', '{{x: {}, y: 2.0, speed: 0.15}}'.format(
+            5.0 if x < 3.5 else 2.5))
+        self.assertEqual(self.ends(leading)[0][0], TaskState.DONE)
+        wait_until(lambda: math.dist(self.places['bot1'].last(), self.places['bot2'].last()) < 1.25,
+                   'bot2 is left behind', PATIENCE_S)
+        self.assertGreater(math.dist(self.places['bot1'].last(), self.places['bot2'].last()), 0.6)
+        self.assertIn('bot2', [robot.robot for run in self.lists.last().runs
+                               for robot in run.robots])
+        following.cancel()
+        self.assertEqual(self.ends(following), [(TaskState.STOPPED, 'it was cancelled')])
+
+    def test_stop_all_ends_every_task_and_nothing_resumes(self):
+        goal, _ = self.on_its_way()
+        stopped = time.monotonic()
+        self.assertTrue(self.set_stop(True).success)
+        measured('stop-all, first zero', self.rests_for_good('bot1', stopped))
+        self.assertEqual(self.ends(goal)[0][0], TaskState.STOPPED)
+        wait_until(lambda: self.set_stop(False).success, 'not released', 30.0)
+        self.commands['bot1'].wait_silence(1.2, 30.0)
+        self.assertEqual([item for item in self.commands['bot1'].since(stopped + 0.5)
+                          if moves(item.value)], [])
+        self.assertEqual(self.lists.last().runs, [])
+
+    def test_checking_a_robot_takes_it_over(self):
+        goal, _ = self.on_its_way()
+        checked = self.operator.check('bot1')
+        self.assertEqual(self.ends(goal)[0][0], TaskState.TAKEN_OVER)
+        self.rests_for_good('bot1', checked)
+        self.assertEqual(self.ends(self.start('bot1', 'hold', ''))[0][0], TaskState.TAKEN_OVER)
+
+    def test_another_task_takes_the_place_of_the_last_one(self):
+        goal, _ = self.on_its_way()
+        other = self.start('bot1', 'hold', '{seconds: 1.0}')
+        self.assertEqual(self.ends(goal), [(TaskState.TAKEN_OVER, 'it got another task: hold')])
+        self.assertEqual(self.ends(other)[0][0], TaskState.DONE)
+
+    def test_killed_it_leaves_zeros_and_comes_back_with_nothing_to_do(self):
+        self.on_its_way()
+        process = [process for process in psutil.process_iter(['cmdline'])
+                   if '__name:=mhri_tasks' in (process.info['cmdline'] or ())]
+        killed = time.monotonic()
+        for one in process:
+            one.kill()
+        took = measured('mhri_tasks killed, first zero', self.rests_for_good('bot1', killed))
+        self.assertLess(took, 2.0)
+        wait_until(lambda: self.lists.since(killed) and not self.lists.last().runs,
+                   'mhri_tasks does not come back', 60.0)
+
+    def test_the_example_of_the_guide(self):
+        path = os.path.join(rospkg.RosPack().get_path('mhri'), 'doc', 'operators_guide.md')
+        example = re.search(r'```python\n(import actionlib\n.*?)```', read_text(path), re.S).group(1)
+        self.assertLessEqual(len(example.splitlines()), 12)
+        tool = Process([sys.executable, '-c', example])
+        self.addCleanup(tool.end)
+        self.assertEqual(tool.wait(PATIENCE_S), 0, tool.said())
+        self.assertIn('bot1 done', tool.said())
+
+
+if __name__ == '__main__':
+    rospy.init_node('tasks_test')
+    rostest.rosrun('mhri', 'tasks', Tasks)
