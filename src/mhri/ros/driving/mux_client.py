@@ -7,7 +7,8 @@ Publishes ``/mux_in/mode_select`` (``mhri/ControlMode``) and ``/mux_in/speed_lim
 (``sensor_msgs/Joy``) and ``/robot_controller/robot_select`` (``mhri/RobotSelect``, latched).
 Subscribes ``/mux/mode``, ``/mux/speed_limit``, ``/mux/waits_for``, ``/mux/advice``,
 ``/mux/dead_man``, ``/robot_controller/stop_all``, ``/robot_controller/twist``, and believes only
-the mux in force (:mod:`mhri.ros.driving.in_force`). Calls ``/mux/set_stop_all`` on a thread of its own.
+the mux in force (:mod:`mhri.ros.driving.in_force`). Calls ``/mux/set_stop_all`` on a thread of its
+own.
 """
 import threading
 import time
