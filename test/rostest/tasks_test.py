@@ -73,10 +73,14 @@ class Tasks(unittest.TestCase):
         wait_until(lambda: self.set_stop(False).success, 'not released', 30.0)
         self.assertTrue(self.client.wait_for_server(rospy.Duration(60.0)))
         for recorder in self.places.values():
-            recorder.wait_publisher(60.0)
+            recorder.wait(lambda where: True, patience_s=60.0)
         for name in COMMANDS:
             self.state.wait_robot(name, lambda gate: gate.topic and not gate.obeys and
                                   not gate.stands, 'the gate of ' + name, 60.0)
+
+    def tearDown(self):
+        """Whatever a test that failed has left to do is ended."""
+        self.client.cancel_all_goals()
 
     def start(self, robots, task, parameters):
         """Start a task; return its handle."""
