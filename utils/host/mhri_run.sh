@@ -38,7 +38,7 @@ Network
                        One master, one mhri: if mhri is already running, nothing is started. A
                        second system on one computer needs a port of its own.
 
-  ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME are set from these; their values in your shell are not used.
+  ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME are set from these; values from your shell are not used.
 
 Other
   --install-space      build and run from the install space instead of the devel space
@@ -47,7 +47,7 @@ Other
 
 Without a display (DISPLAY and WAYLAND_DISPLAY not set) the screen runs under Xvfb, 1920x1080.
 
-Works on Debian 12, and on Ubuntu 20.04 with ROS Noetic. It uses sudo only when packages are missing.
+Works on Debian 12, and on Ubuntu 20.04 with ROS Noetic. It uses sudo only if packages are missing.
 The workspace is build/.ws in the checkout; if you delete it, the next start takes a minute longer.
 
 Exit status: 0 the screen was closed, 1 could not start, or the screen or the demo failed,

@@ -30,8 +30,8 @@ Robot
                        Default: by whether turtlebot_bringup or turtlebot3_bringup is installed
   --model MODEL        TurtleBot3: burger, waffle or waffle_pi. Default: TURTLEBOT3_MODEL from this
                        shell or ~/.bashrc
-  --launch FILE        any other robot: its own launch file, as PACKAGE/FILE.launch or a path (relative
-                       paths start here, or in the robot's home through connect_turtlebot.sh)
+  --launch FILE        any other robot: its own launch file, as PACKAGE/FILE.launch or a path
+                       (relative to here, or to the robot's home through connect_turtlebot.sh)
   --no-camera          do not start the camera
   --no-smoother        TurtleBot2: leave out the velocity smoother
   --no-guard           do not start mhri_guard, which drops late commands, stops the robot when none

@@ -73,7 +73,7 @@ class Microphone:
     def _take(self, timeout_s):
         """Read what comes within a time.
 
-        :raises DeviceLost: there will be nothing any more
+        :raises DeviceLost: nothing more will come
         """
         stream = self._process.stdout
         if not select.select([stream], [], [], timeout_s)[0]:
@@ -110,7 +110,7 @@ class Microphone:
 class WavFile:
     """A recording, played once at the pace it was spoken at; silence follows.
 
-    It is no lost device when it has ended: looked for again, it would drive the robots again.
+    Its end does not count as a lost device: found again, it would drive the robots again.
     """
 
     def __init__(self, path):
@@ -157,7 +157,7 @@ class WavFile:
 class RawStream:
     """Raw sound from a FIFO, a character device, or the standard input ('-').
 
-    It is there while somebody writes to it, and lost when the last writer closes it.
+    It exists while somebody writes to it, and is lost when the last writer closes it.
     """
 
     def __init__(self, path):
@@ -198,7 +198,7 @@ class RawStream:
         return bool(select.select([self._fd], [], [], timeout_s)[0])
 
     def _take(self):
-        """Read what there is, at most up to the end of a block.
+        """Read what is available, at most up to the end of a block.
 
         :raises DeviceLost: it has ended
         """

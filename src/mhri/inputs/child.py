@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Starts a module of mhri as a process of its own, whatever lies in the working folder.
+"""Starts a module of mhri as a separate process, whatever lies in the working folder.
 
-``python3 -c`` and ``python3 -m`` look for modules in the working folder first: in one with a
-``json.py`` or an ``mhri.py`` the child would run those.
+``python3 -c`` and ``python3 -m`` look for modules in the working folder first: a child would run a
+``json.py`` or an ``mhri.py`` there.
 """
 import os
 import sys
@@ -17,7 +17,7 @@ def command(module, *arguments):
     """Return the command that runs ``main()`` of a module with the modules of this process.
 
     :param module: dotted name
-    :param arguments: texts, which it finds as ``sys.argv[1:]``
+    :param arguments: texts, which the module finds as ``sys.argv[1:]``
     """
     paths = os.pathsep.join(path for path in sys.path if os.path.isabs(path))
     return [sys.executable, '-I', '-c', _RUN, paths, module, *arguments]

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which input devices are there, without opening any of them.
+"""Finds the connected input devices without opening any of them.
 
-What the kernel says in ``/sys/class/input`` everybody may read. So a device that may not be opened
-is still named in the message that says so, and an operator's keyboard is not opened just to look.
+Everybody may read ``/sys/class/input``. So a message can name a device that may not be opened, and
+nobody opens an operator's keyboard just to look.
 """
 from dataclasses import dataclass
 import glob
@@ -36,7 +36,7 @@ class Switch:
 
 @dataclass(frozen=True)
 class _Node:
-    """One event node as the kernel describes it."""
+    """One event node, as described by the kernel."""
 
     path: str
     usb: str
@@ -47,8 +47,8 @@ class _Node:
     def device(self):
         """Return what all nodes of one device have in common.
 
-        ``phys`` is the port, with the interface behind the slash; what has none (a virtual or some
-        Bluetooth device) is a device of its own unless it has a serial number.
+        ``phys`` is the port, with the interface behind the slash; a node without one (a virtual or
+        some Bluetooth device) is a device of its own unless it has a serial number.
         """
         return self.usb, self.phys.split('/')[0] or self.uniq or self.path
 
@@ -56,7 +56,7 @@ class _Node:
 def find_switches(sys_input=None, dev_input=None):
     """Return every device with keys, in the order in which the kernel numbered them.
 
-    :returns: list of :class:`Switch`; empty where the system shows no input devices
+    :returns: list of :class:`Switch`; empty if the system shows no input devices
     """
     nodes = [node for node in _nodes(sys_input or SYS_INPUT, dev_input or DEV_INPUT) if node]
     devices = {}
@@ -70,7 +70,7 @@ def find_switches(sys_input=None, dev_input=None):
 def find_pads(sys_input=None):
     """Return a :class:`mhri.core.devices.pads.PadInfo` for each joystick, wheel or pad.
 
-    It has the GUID that SDL makes of what the kernel says, where SDL's own drivers are off.
+    Its GUID is the one SDL derives from the kernel's data when SDL's own drivers are off.
     """
     folders = [folder for _, folder in _folders(sys_input or SYS_INPUT)
                if _has_keys(_line(folder, 'capabilities/key'), *_PAD_KEYS)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A stream of sound turned into what was heard: stops at once, commands when they have ended."""
+"""Turns a stream of sound into what was heard: stops at once, commands when they have ended."""
 from dataclasses import dataclass
 from typing import Optional
 
@@ -43,7 +43,7 @@ _NOT_LOOKED = object()
 class Listener:
     """Feeds what the endpointer cuts out to the recogniser.
 
-    In silence only loudness is looked at, so that it costs next to nothing.
+    In silence it checks only loudness, which costs next to nothing.
 
     :param recogniser: :class:`mhri.inputs.recogniser.Recogniser`
     :param is_stop: function that tells whether a :class:`Hypothesis` is a stop to be obeyed
@@ -93,7 +93,7 @@ class Listener:
         return [Spotted(self._at_s, found.text)] if found and self._is_stop(found) else []
 
     def finish(self):
-        """End the open utterance, also where the stream ends; return what was heard by it."""
+        """End the open utterance, also when the stream ends; return what was heard."""
         if not self._sound:
             return []
         sound, self._sound = b''.join(self._sound), []

@@ -3,10 +3,9 @@
 """The process that hears a microphone: ``python3 -m mhri.inputs.microphone <part of its name>``.
 
 It writes a line of JSON, ``{"device": name}`` or ``{"absent": reason}``, and then raw sound in the
-form of :mod:`mhri.core.voice.sound`, until the microphone is gone or nobody reads any longer. It
-is a
-process of its own since the one that recognises reads nothing for tenths of a second, and PortAudio
-would throw away what is said then: a stop, perhaps.
+form of :mod:`mhri.core.voice.sound`, until the microphone is gone or nobody reads any more. It
+is a separate process because the one that recognises reads nothing for tenths of a second, and
+PortAudio would throw away what is said meanwhile: a stop, perhaps.
 """
 import json
 import os
@@ -70,7 +69,7 @@ def main():
     try:
         out.write((json.dumps({'device': name}) + '\n').encode())
         while True:
-            # Sound that was lost under load is no reason to give the microphone up.
+            # Sound lost under load is no reason to give up the microphone.
             out.write(stream.read(BLOCK_BYTES // 2, exception_on_overflow=False))
     except (OSError, KeyboardInterrupt):
         # Pulled out, or nobody reads: whoever reads sees the end.

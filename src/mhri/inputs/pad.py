@@ -21,7 +21,7 @@ RUMBLE_S = 0.5
 
 
 class PadReader(Reader):
-    """Opens the pad that is wanted and reads it; :meth:`want` and :meth:`rumble` on any thread.
+    """Opens the wanted pad and reads it; call :meth:`want` and :meth:`rumble` on any thread.
 
     :param profiles: function returning every :class:`Profile` in the order of
         preference; called whenever a pad is opened, so that a new profile needs no restart
@@ -49,18 +49,18 @@ class PadReader(Reader):
         self._find = Remembered(self._found)
 
     def want(self, device):
-        """Choose the pad by a part of its name, its GUID or its index; '' is any of them.
+        """Choose the pad by a part of its name, its GUID or its index; '' is any pad.
 
-        Takes effect within 50 ms: another pad that is open is given up like a lost one.
+        Takes effect within 50 ms: another open pad is treated like a lost one.
         """
         self._wanted = str(device).strip()
 
     def rumble(self):
-        """Shake the pad once, where one is open and can."""
+        """Shake the pad once, if one is open and can shake."""
         self._rumble.set()
 
     def find(self):
-        """Name the pad that is there; see :class:`mhri.inputs.reader.Reader`."""
+        """Name the connected pad; see :class:`mhri.inputs.reader.Reader`."""
         return self._find(self._wanted, find_pads())
 
     def _found(self, wanted, pads):
@@ -111,7 +111,7 @@ class PadReader(Reader):
             self._pad.wait(left_s)
 
     def _obey(self):
-        """Do what other threads have asked for.
+        """Carry out the requests of other threads.
 
         :raises DeviceLost: another pad is wanted
         """
@@ -125,7 +125,7 @@ class PadReader(Reader):
                 _LOG.debug('%s cannot rumble', self._pad.info.name)
 
     def _is_known(self, axes):
-        """Tell whether the axes that drive have been heard of; a 0 that is made up could drive."""
+        """Tell whether the values of the driving axes are known; an assumed 0 could drive."""
         unknown = sorted({index for index in self._driving if axes[index] is None})
         self.note = 'move the stick once: nothing is known yet of axis {}'.format(
             ' and '.join(map(str, unknown))) if unknown else self._choice
@@ -139,7 +139,7 @@ class PadReader(Reader):
 
 
 def rest_of(profile, axis_count):
-    """Return the values of all axes while nobody touches the pad, () where they are all 0."""
+    """Return the values of all axes while nobody touches the pad, () if they are all 0."""
     rest = [0.0] * axis_count
     for axis in (profile.forward, profile.turn):
         rest[axis.index] = axis.rest

@@ -18,7 +18,7 @@ LOOK_S = 0.01
 
 
 class Refused(Exception):
-    """The calibration ends without a profile; the text says why and what to do."""
+    """The calibration ends without a profile; the text says why, and what to do."""
 
 
 def _options(argv):
@@ -36,11 +36,11 @@ def calibrate(argv, folder, taken, joysticks=None, stdin=None):
     """Ask, write ``<folder>/<name>.yaml`` and say where it is.
 
     :param argv: the command line, see ``mhri_joy --calibrate --help``
-    :param folder: made where it is missing
+    :param folder: made if missing
     :param taken: names of profiles that may not be used
     :param joysticks: stands in for :class:`mhri.inputs.sdl.Joysticks`
     :param stdin: a stream with a file descriptor, for Enter
-    :returns: 0, or the text of what went wrong
+    :returns: 0, or a text that says what went wrong
     """
     options = _options(argv)
     try:
@@ -61,7 +61,7 @@ def calibrate(argv, folder, taken, joysticks=None, stdin=None):
 
 
 def _calibrate(options, folder, taken, joysticks, stdin):
-    """Do it; return the path.
+    """Calibrate; return the path.
 
     :raises Refused: the name cannot be used, or the dialogue was ended
     """
@@ -80,12 +80,12 @@ def _calibrate(options, folder, taken, joysticks, stdin):
 
 
 def write_profile(path, text, replace):
-    """Write a profile that can be read back, whole or not at all; its folder is made.
+    """Write a profile completely or not at all, once it can be parsed; make its folder.
 
-    :param replace: whether there may be one already
+    :param replace: whether to replace an existing one
     :raises FileExistsError: there is one that may not be replaced
     :raises OSError: it cannot be written
-    :raises ConfigError: it is no profile
+    :raises ConfigError: it is not a profile
     """
     parse_profile(text, path)
     os.makedirs(os.path.dirname(path), exist_ok=True)
@@ -95,7 +95,7 @@ def write_profile(path, text, replace):
     try:
         with open(part, encoding='utf-8') as stream:
             parse_profile(stream.read(), path)
-        # Not by a look before: another one may have been written during the dialogue.
+        # Checked only now: another profile may have been written during the dialogue.
         if replace:
             os.replace(part, path)
         else:
@@ -106,7 +106,7 @@ def write_profile(path, text, replace):
 
 
 def _check(name, path, taken, force):
-    """Look at the name before anybody has pressed anything.
+    """Check the name before anybody has pressed anything.
 
     :raises Refused: it cannot be used
     """

@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A process that reads a pad for whoever must not wait for its driver, e.g. a screen.
+"""A process that reads a pad for a program that must not wait for its driver, e.g. the screen.
 
-It writes a JSON object a line to standard output, on change::
+It writes a JSON object per line to standard output, on change::
 
     {"kind": "absent", "reason": "..."}
     {"kind": "pad", "name": "...", "guid": "..."}
     {"kind": "state", "axes": [0.1, null], "buttons": [0, 1]}
 
-An axis is null until something is known of it. It ends with its standard input.
+An axis is null until its value is known. The process ends when its standard input closes.
 """
 import json
 import os
@@ -20,7 +20,7 @@ from mhri.inputs.reader import DeviceAbsent, DeviceLost
 from mhri.inputs.sdl import Joysticks
 
 LOOK_S = 0.5
-# A screen draws at most so often, and a button is held for longer.
+# A screen draws no more often than this [s], and a button is held longer.
 STATE_S = 0.02
 
 

@@ -3,8 +3,7 @@
 """The foot pedal as an input device: which one, of whichever kind, and its readings.
 
 Axes and buttons are those of the contract (see :mod:`mhri.core.devices.pedals`), whatever the
-device, so
-that no profile has to go with them.
+device, so that they need no profile.
 """
 import os
 
@@ -17,7 +16,7 @@ from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader, Remembered
 
 
 def _resolved(wish, candidates):
-    """Return a wish, a link to a device (as in /dev/input/by-id) taken for the device."""
+    """Return a wish with a link to a device (as in /dev/input/by-id) resolved."""
     if wish.device.startswith('/'):
         for path in (place for item in candidates for place in item.places):
             if os.path.realpath(path) == os.path.realpath(wish.device):
@@ -26,12 +25,12 @@ def _resolved(wish, candidates):
 
 
 class PedalReader(Reader):
-    """Opens the pedal that is wanted and reads it; the ``want_`` methods may be called anywhere.
+    """Opens the wanted pedal and reads it; call the ``want_`` methods on any thread.
 
     :param profiles: function returning {name: PedalProfile}; called whenever a pedal is looked
         for, so that a new profile needs no restart
     :param role: DRIVE or ENABLE
-    :param sources: {kind: PedalKeys or PedalAxes}, the shipped ones where None
+    :param sources: {kind: PedalKeys or PedalAxes}, None for the shipped ones
     """
 
     kind = 'foot pedal'
@@ -47,16 +46,16 @@ class PedalReader(Reader):
     def want_device(self, device):
         """Choose the pedal: see :class:`Wish`; '' leaves it to the profiles.
 
-        One that is open already is given up within 50 ms like a lost one.
+        Another open pedal is treated like a lost one within 50 ms.
         """
         self._wish = Wish(str(device).strip(), self._wish.profile)
 
     def want_profile(self, profile):
-        """Choose the profile by its name; '' is the one that is for the device."""
+        """Choose the profile by its name; '' is the one for the device."""
         self._wish = Wish(self._wish.device, str(profile).strip())
 
     def find(self):
-        """Name the pedal that is there; see :class:`mhri.inputs.reader.Reader`."""
+        """Name the connected pedal; see :class:`mhri.inputs.reader.Reader`."""
         candidates = self._sources[KEYS].look() if KEYS in self._sources else []
         return self._find(self._wish, candidates + [candidate_of(info) for info in find_pads()])
 
@@ -85,12 +84,12 @@ class PedalReader(Reader):
 
     @property
     def note(self):
-        """What the operator has to do before every pedal counts, '' if nothing."""
+        """What the operator must do before every pedal counts, '' if nothing."""
         source = self._open
         return source.note if source else ''
 
     def _look(self, profiles):
-        """Return (candidates, problems) of all kinds of devices that are asked for."""
+        """Return (candidates, problems) of all kinds of devices asked for."""
         wished = profiles.get(self._opened_for.profile)
         candidates, problems = [], []
         for kind, source in self._sources.items():

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pedals that are joysticks to the system, such as rudder pedals; read through pygame."""
+"""Pedals that the system sees as joysticks, such as rudder pedals, read through pygame."""
 import time
 
 from mhri.core.devices.pedal_choice import Candidate, usb_of_guid
@@ -17,7 +17,7 @@ def candidate_of(info):
 
 
 class PedalAxes:
-    """The joysticks of this computer, one of which can be open as pedals.
+    """The joysticks of this computer, one of which may be open as pedals.
 
     :param role: DRIVE or ENABLE
     :param joysticks: stands in for :class:`mhri.inputs.sdl.Joysticks`
@@ -60,7 +60,7 @@ class PedalAxes:
 
     @property
     def note(self):
-        """What the operator has to do before every pedal counts, '' if nothing."""
+        """What the operator must do before every pedal counts, '' if nothing."""
         return self._state.note() if self._state else ''
 
     def read(self, timeout_s):

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Foot switches, which are keyboards to the system; read through evdev.
+"""Foot switches, which the system sees as keyboards, read through evdev.
 
-The device is grabbed, so that the pedals do not type into whatever window is open, and given back
-on close. Only the chosen one is: see :func:`mhri.core.devices.pedal_choice.choose`.
+The device is grabbed, so that the pedals do not type into an open window, and released on close.
+Only the chosen one is grabbed: see :func:`mhri.core.devices.pedal_choice.choose`.
 """
 import errno
 import math
@@ -23,16 +23,16 @@ _REMEDY = ('permission denied. Put yourself into the group input (sudo usermod -
            'and log in anew, or install the rule resource/pedals/70-mhri-pedals.rules as '
            'doc/input_pedal.md says')
 
-# So long each reading is the newest: a little more than the shortest time between two messages, so
-# that none is replaced by the next before it has been published.
+# How long each reading stays the newest [s]: a little more than the shortest time between two
+# messages, so that none is replaced before it has been published.
 _HOLD_S = 0.012
 
 
 class _Node:
     """One open event node of a switch, and which of its keys are down.
 
-    It is grabbed as soon as no key is down: of a key that was pressed before, everybody else would
-    never see the release, and a desktop would repeat it without end.
+    It is grabbed as soon as no key is down: otherwise nobody else would see the release of a key
+    pressed before, and a desktop would repeat it without end.
     """
 
     def __init__(self, path):
@@ -70,7 +70,7 @@ class _Node:
                     yield
 
     def _key(self, event):
-        """Take in a key; return whether its state changed. A 2 is a repetition, no press."""
+        """Take in a key; return whether its state changed. A 2 is a repetition, not a press."""
         before = len(self.down)
         if event.value == 1:
             self.down.add(event.code)
@@ -79,7 +79,7 @@ class _Node:
         return len(self.down) != before
 
     def _read_again(self):
-        """After lost events ask the kernel which keys are down; return whether that is news."""
+        """After lost events ask the kernel which keys are down; return whether that is a change."""
         if not self._dropped:
             return False
         self._dropped = False
@@ -87,18 +87,18 @@ class _Node:
         return before != self.down
 
     def _grab(self):
-        """Take the device for this program alone, once nothing is pressed."""
+        """Grab the device for this program alone, once nothing is pressed."""
         if not self._grabbed and not self.down:
             self._device.grab()
             self._grabbed = True
 
     def close(self):
-        """Close it, which also gives the grab back."""
+        """Close it, which also ends the grab."""
         self._device.close()
 
 
 class PedalKeys:
-    """The foot switches of this computer, one of which can be open.
+    """The foot switches of this computer, one of which may be open.
 
     :param role: DRIVE or ENABLE
     :param clock: function returning seconds that never go back
@@ -117,7 +117,7 @@ class PedalKeys:
         self._next_at = 0.0
 
     def look(self):
-        """Return a :class:`Candidate` for each device with keys that is there."""
+        """Return a :class:`Candidate` for each connected device with keys."""
         return [Candidate(KEYS, switch.usb, switch.name, switch.paths)
                 for switch in find_switches()]
 
@@ -141,11 +141,11 @@ class PedalKeys:
 
     @property
     def note(self):
-        """What the operator has to do before every pedal counts, '' if nothing."""
+        """What the operator must do before every pedal counts, '' if nothing."""
         return self._state.note() if self._state else ''
 
     def _take(self):
-        """Turn what is held now into a reading, and queue it if it is news."""
+        """Turn what is held now into a reading, and queue it if it is new."""
         held = set().union(*(node.down for node in self._nodes))
         names = {name for name, code in self._codes.items() if code in held}
         axes, buttons = self._state.read(self._profile.from_keys(names))
@@ -171,7 +171,7 @@ class PedalKeys:
             del self._waiting[0]
 
     def read(self, timeout_s):
-        """Return the next reading; one that lasted shorter than a message is not left out.
+        """Return the next reading, even one that lasted shorter than a message.
 
         :raises DeviceLost: the switch is gone, or was taken away by another program
         """
@@ -189,7 +189,7 @@ class PedalKeys:
         return self._given
 
     def _due(self):
-        """Tell whether a reading can be handed out."""
+        """Tell whether a reading can be returned."""
         return bool(self._waiting) and self._clock() >= self._next_at
 
     def _wait(self, timeout_s):

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What every input device looks like to :class:`mhri.ros.devices.input_node.InputNode`."""
+"""The interface of every input device to :class:`mhri.ros.devices.input_node.InputNode`."""
 from dataclasses import dataclass
 from typing import Tuple
 
 
 class DeviceAbsent(Exception):
-    """No device can be opened; the text says what was looked for and the remedy."""
+    """No device can be opened; the text says what was wanted, and the remedy."""
 
 
 class DeviceLost(Exception):
@@ -19,8 +19,8 @@ class Reading:
 
     ``axes`` are finite, as the driver gives them; ``buttons`` are 0 or 1. ``profile`` is the name
     of the profile that says what they mean ('' if the source's row says it). ``rest`` are the
-    values of the axes while nobody touches the device, () where all of them rest at 0: a trigger
-    rests at -1, and at 0 it would be a half pressed one.
+    values of the axes while nobody touches the device, () if all of them rest at 0: a trigger rests
+    at -1, and at 0 it would be half pressed.
     """
 
     axes: Tuple[float, ...]
@@ -35,11 +35,11 @@ class Reading:
 
 
 class Reader:
-    """A device that is read on one thread: every method is called on that thread alone.
+    """A device that is read on one thread: call every method only on that thread.
 
-    ``kind`` is the word for it in messages, e.g. 'pad'; ``name`` that of the open device itself,
-    e.g. 'Logitech Gamepad F710'; ``note`` what the operator has to know of it ('': nothing), e.g.
-    that it waits for something.
+    ``kind`` is the word for it in messages, e.g. 'pad'; ``name`` is the open device's own name,
+    e.g. 'Logitech Gamepad F710'; ``note`` is what the operator should know about it ('': nothing),
+    e.g. that it waits for something.
     """
 
     kind = 'device'
@@ -49,37 +49,37 @@ class Reader:
     def find(self):
         """Return the name of the device that :meth:`open` would open, without touching any.
 
-        It is asked every two seconds while the node is suspended, and has to cost next to nothing.
-        '' if it cannot be told.
+        The node asks every two seconds while it is suspended, so this must cost next to nothing.
+        '' if unknown.
 
         :raises DeviceAbsent: there is none
         """
         return ''
 
     def open(self):
-        """Open the device and return a text that describes it; the next reading is a whole one.
+        """Open the device and return a text that describes it; the next reading is complete.
 
         :raises DeviceAbsent: there is none, or it cannot be opened
         """
         raise NotImplementedError
 
     def read(self, timeout_s):
-        """Wait at most so long for a change.
+        """Wait for a change.
 
-        :param timeout_s: 0.0: only look
+        :param timeout_s: at most this long [s]; 0.0: only look
         :returns: a :class:`Reading`, or None if nothing changed, or the device's state is not
             known yet
-        :raises DeviceLost: it is gone; it has to be closed and opened again
+        :raises DeviceLost: it is gone; close and open it again
         """
         raise NotImplementedError
 
     def close(self):
-        """Give the device back; does nothing if none is open."""
+        """Release the device; does nothing if none is open."""
         raise NotImplementedError
 
 
 class Remembered:
-    """A function that is asked anew only when what it is asked about has changed.
+    """A function called again only when its argument has changed.
 
     :param function: may raise :class:`DeviceAbsent`, which is remembered, too
     """

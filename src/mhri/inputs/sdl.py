@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Joysticks as SDL shows them, through pygame 1.9.6 (SDL 1.2) and 2.x (SDL 2).
 
-pygame does not tell whether an axis has been heard of yet, nor whether a pad is still attached. So
-where it runs on SDL 2, that very library is asked as well, through ctypes. Where it does not, an
-axis is known from its first event on, and a pad is gone when its file in /dev/input is.
+pygame does not say whether an axis has reported yet, nor whether a pad is still attached. So if it
+runs on SDL 2, this module also asks that library, through ctypes. Otherwise an axis is known from
+its first event on, and a pad is gone when its file in /dev/input is.
 """
 import ctypes
 import os
@@ -15,7 +15,7 @@ import time
 from mhri.core.devices.pads import PadInfo
 from mhri.inputs.reader import DeviceAbsent, DeviceLost
 
-# A pad without a file that can be waited for (a virtual one) is looked at so often.
+# How often to look at a pad without a file to wait for (a virtual one) [s].
 POLL_S = 0.004
 _DEVICE_FILE = re.compile(r'/dev/(input/|hidraw)')
 # Not SDL2_image, _mixer, _ttf; Debian's is libSDL2-2.0.so.0, that of a wheel has a hash in between.
@@ -77,7 +77,7 @@ def device_files():
 class Joysticks:
     """The joysticks of this computer; all calls on one thread.
 
-    SDL is started at the first look and stays: closing a pad is enough for it to cost nothing.
+    SDL starts at the first look and stays: once a pad is closed it costs nothing.
     """
 
     def __init__(self):
@@ -115,7 +115,7 @@ class Joysticks:
         self._pygame = pygame
 
     def look(self):
-        """Return the :class:`PadInfo` of every joystick that is connected now.
+        """Return the :class:`PadInfo` of every connected joystick.
 
         :raises DeviceAbsent: SDL cannot be used at all
         """
@@ -158,7 +158,7 @@ class Joysticks:
 class Joystick:
     """One open joystick, by :meth:`Joysticks.open`.
 
-    A hat is given twice: as two axes behind the device's own (right +1, down +1, as the kernel has
+    A hat appears twice: as two axes behind the device's own (right +1, down +1, as the kernel has
     them) and as four buttons behind the device's own (up, right, down, left).
     """
 
@@ -208,7 +208,7 @@ class Joystick:
         return max(-1.0, min(1.0, self._joystick.get_axis(index)))
 
     def _is_known(self, index):
-        """Tell whether SDL has heard of an axis; without SDL 2 its first event tells."""
+        """Tell whether an axis has reported; without SDL 2 its first event tells."""
         value = ctypes.c_int16()
         return bool(self._pointer) and bool(self._library.SDL_JoystickGetAxisInitialState(
             self._pointer, index, ctypes.byref(value)))
@@ -236,7 +236,7 @@ class Joystick:
         return getattr(event, 'joy', self.info.index) == self.info.index
 
     def wait(self, timeout_s):
-        """Wait at most so long until there may be something new.
+        """Wait, at most this long [s], until there may be something new.
 
         :raises DeviceLost: it is gone
         """

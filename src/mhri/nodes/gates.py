@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The executable ``gates``: runs :class:`mhri.ros.driving.gates.Gates` as ``/mhri_gates``.
 
-``gates --stand-by`` does so in a process that another one, all loaded, takes the place of when it
-is killed (:mod:`mhri.ros.stand_by`).
+``gates --stand-by`` does so in a process that another one, already loaded, replaces if it is
+killed (:mod:`mhri.ros.stand_by`).
 """
 import gc
 import signal
@@ -22,9 +22,9 @@ from mhri.ros.stand_by import stand_by
 
 
 def main():
-    """Run until shut down; the last word to every robot is a zero.
+    """Run until shut down; the last command to every robot is a zero.
 
-    Ended by ``rosnode kill`` the exit status is 1, so that ``mhri.launch`` starts it again.
+    After ``rosnode kill`` the exit status is 1, so that ``mhri.launch`` restarts it.
     """
     types, errors = robot_types()
     if '--stand-by' in sys.argv:
@@ -33,7 +33,7 @@ def main():
     rospy.init_node('mhri_gates', disable_rostime=True)
     log.install()
     by_hand = ended_by_hand()
-    # A terminal that is closed must not end the gates without a zero.
+    # Closing the terminal must not end the gates without a zero.
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     gates = Gates(types)
     speaker = GatesSpeaker(gates.read, gates.mux_heard)
@@ -44,9 +44,9 @@ def main():
     speaker.start()
     for error in errors:
         rospy.logwarn('robot type left out: %s', error)
-    # What has been loaded by now stays: looking through it would hold up a command.
+    # What is loaded by now stays: searching it would delay a command.
     gc.freeze()
     rospy.spin()
     if by_hand():
-        # An error to who launched it: robots must not be left without gates.
+        # An error for the launcher: robots must not be left without gates.
         sys.exit('the gates were ended by rosnode kill')

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``mhri_doctor``: examines the ROS system and says what is wrong and what mends it.
+"""The executable ``mhri_doctor``: examines the ROS system, says what is wrong and how to fix it.
 
 ``rosrun mhri mhri_doctor [robot ...] [--json] [--watchdog [--yes]]``; exit status 0: nothing
-wrong, 1: findings, 2: wrong use. See :mod:`mhri.ros.doctor.examination`. It is no node, but for
-``--watchdog``
-(``mhri_doctor_*``, which publishes ``/<robot>/<command>``, ``geometry_msgs/Twist``, for a moment).
+wrong, 1: findings, 2: wrong use. See :mod:`mhri.ros.doctor.examination`. It is not a node, except
+with ``--watchdog`` (``mhri_doctor_*``, which publishes ``/<robot>/<command>``,
+``geometry_msgs/Twist``, for a moment).
 """
 import argparse
 import json
@@ -37,7 +37,7 @@ def _robot(text):
 
 
 def _parse(arguments):
-    """Read the command line; ends with 2 where it is wrong."""
+    """Read the command line; exit with 2 if it is wrong."""
     parser = argparse.ArgumentParser(
         prog='mhri_doctor', description='Examine the ROS system: variables, master, nodes, robots. '
         'Exit status: 0 nothing wrong, 1 findings, 2 wrong use.')
@@ -58,7 +58,7 @@ def _parse(arguments):
 
 
 def _agreed(options):
-    """Warn, and ask; tell whether the trial may begin."""
+    """Warn and ask; return whether the trial may begin."""
     names = ', '.join(options.robot)
     print(_WARNING.format(names), file=sys.stderr)
     if options.yes:
@@ -69,7 +69,7 @@ def _agreed(options):
 
 def _watchdogs(options):
     """Return the findings of the trials."""
-    # rospy and its messages take their time to import: only who drives needs them.
+    # Importing rospy and its messages takes time: only the trial needs them.
     import rospy
     from mhri.ros.doctor.watchdog import measure_watchdog
     # A signal must end the trial through its zeros, and rospy's own handlers would end the node.
@@ -90,8 +90,8 @@ def main():
         print('nothing was moved', file=sys.stderr)
         sys.exit(2)
     if options.watchdog:
-        begun = time.monotonic()  # the question may have stood there for long
-    # Wrong use and --help are answered without what this takes to import.
+        begun = time.monotonic()  # the question may have waited a long time
+    # Answer wrong use and --help without the time these imports take.
     from mhri.core.doctor.judgement import as_dict, as_lines, exit_status
     from mhri.ros.doctor.examination import examine
     findings = examine(options.robot, begun=begun)

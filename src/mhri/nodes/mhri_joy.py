@@ -8,7 +8,7 @@ Publishes ``/mux_in/ps3joy`` (``sensor_msgs/Joy``), serves ``/mhri_joy/set_suspe
 of the pad's name, its GUID or its index; '' is any pad) takes effect within a second while the node
 is resumed.
 
-``mhri_joy --calibrate`` writes a profile for the pad at hand instead: see
+``mhri_joy --calibrate`` writes a profile for the connected pad instead: see
 :mod:`mhri.inputs.pad_calibration`.
 """
 import signal
@@ -34,7 +34,7 @@ def main():
     limit_handshakes()
     rospy.init_node('mhri_joy')
     log.install()
-    # A terminal that is closed must not end the node without a neutral stick.
+    # Closing the terminal must not end the node without a neutral stick.
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     reader = PadReader(pad_profiles)
     node = InputNode(reader, '/mux_in/ps3joy', '~set_suspended')

@@ -6,9 +6,9 @@ Publishes ``/mux_in/pedal`` (``sensor_msgs/Joy``; see :mod:`mhri.core.devices.pe
 ``/mhri_pedal/set_suspended`` (``mhri/SetSuspended``). Parameters:
 
 - ``~device``: ``vendor:product``, path or part of the name of the pedal; '' (default) is the one
-  that a profile is for
+  with a profile
 - ``~profile``: name of a file in ``$ROS_HOME/mhri/pedals`` or ``resource/pedals``, without its
-  ending; '' (default) is the one that is for the device
+  ending; '' (default) is the one for the device
 - ``~role``: ``drive`` (default), or ``enable``: the pedal only allows the active source to drive,
   see :mod:`mhri.ros.devices.enabling_node`
 
@@ -31,15 +31,15 @@ from mhri.ros.devices.pedal_profiles import PedalProfiles
 
 
 def main():
-    """Run until shut down; exit with 1 where the role is none."""
+    """Run until shut down; exit with 1 if the role is invalid."""
     limit_handshakes()
     rospy.init_node('mhri_pedal')
     log.install()
-    # A terminal that is closed must not end the node without a neutral pedal.
+    # Closing the terminal must not end the node without a neutral pedal.
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     role = rospy.get_param('~role', DRIVE)
     if role not in ROLES:
-        # Guessing could make a pedal drive that was meant to stop.
+        # A guess could make a pedal drive that was meant to stop.
         sys.exit('mhri_pedal cannot start: ~role is {}, expected {}'.format(
             shown(role), ' or '.join(ROLES)))
     reader = PedalReader(PedalProfiles(), role)

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``mhri_types``: every robot type that there is, and each that was left out.
+"""The executable ``mhri_types``: lists every robot type, and each that was left out.
 
-It needs no master. The exit status is 1 where a type was left out.
+It needs no master. The exit status is 1 if a type was left out.
 """
 import sys
 

@@ -29,11 +29,11 @@ from mhri.ros.voice.voice import VoiceLink
 
 
 def main():
-    """Run until shut down; exit with 1 where the language's file cannot be used."""
+    """Run until shut down; exit with 1 if the language's file cannot be used."""
     limit_handshakes()
     rospy.init_node('mhri_voice')
     log.install()
-    # A terminal that is closed must not end the node without a neutral Joy.
+    # Closing the terminal must not end the node without a neutral Joy.
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     try:
         name = parameters.text('~language', 'english')

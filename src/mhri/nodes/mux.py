@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The executable ``mux``: reads its parameters and runs :class:`mhri.ros.driving.mux.Mux`.
 
-``mux --stand-by`` does so in a process that another one, all loaded, takes the place of when it is
+``mux --stand-by`` does so in a process that another one, already loaded, replaces if it is
 killed (:mod:`mhri.ros.stand_by`).
 """
 from dataclasses import replace
@@ -28,7 +28,7 @@ from mhri.ros.stand_by import stand_by
 def config_path(argv):
     """Return ``~config`` of a node that does not exist yet, or ''.
 
-    The file is read before the node takes its name: a slip in it must not end the mux that runs.
+    The file is read before the node takes its name: a mistake in it must not end the running mux.
 
     :raises MasterError: no master answers
     """
@@ -42,7 +42,7 @@ def config_path(argv):
 
 
 def adjusted(config):
-    """Return the configuration with what the node's parameters say instead of the file.
+    """Return the configuration with the node's parameters in place of the file's values.
 
     :raises ConfigError: a parameter that cannot be used
     """
@@ -56,7 +56,7 @@ def adjusted(config):
 
 
 def main():
-    """Run until shut down; exit with 1 where the sources' file cannot be used."""
+    """Run until shut down; exit with 1 if the sources' file cannot be used."""
     if '--stand-by' in sys.argv:
         stand_by('the mux')
     try:
@@ -67,7 +67,7 @@ def main():
     limit_handshakes()
     rospy.init_node('mux')
     log.install()
-    # A terminal that is closed must not end the mux without a zero.
+    # Closing the terminal must not end the mux without a zero.
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     stopped = bool(rospy.get_param(STOP_PARAMETER, False))
     try:
@@ -78,6 +78,6 @@ def main():
     Mux(config).start(stopped)
     if stopped:
         rospy.logwarn('stop-all was in force when the last mux ended: it still is')
-    # What has been loaded by now stays: looking through it would hold up a command.
+    # What is loaded by now stays: searching it would delay a command.
     gc.freeze()
     rospy.spin()

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``panel``: in rqt where rqt is installed, else in a window of its own."""
+"""The executable ``panel``: in rqt if that is installed, else in a window of its own."""
 import argparse
 import os
 import shutil
@@ -36,7 +36,7 @@ def parse(argv):
 
 
 def main():
-    """Run the panel until it is closed; the exit status is that of the demo, else 0."""
+    """Run the panel until it is closed; the exit status is the demo's, else 0."""
     options = parse(rospy.myargv(sys.argv)[1:])
     in_rqt = options.gui == 'rqt' or options.gui == 'auto' and shutil.which('rqt')
     if in_rqt and not options.demo:
@@ -62,7 +62,7 @@ def main():
 
 
 def start_demo(program, options):
-    """Begin the scripted drive in a program that is running."""
+    """Start the scripted drive in a running program."""
     from mhri.presenters.demo import Demo
     demo = Demo(program, options.screenshot, options.demo_result)
     demo.start()

@@ -3,10 +3,10 @@
 """The executable ``sim_robot``: a simulated robot in the namespace it is started in.
 
 Parameters: ``robot_type`` and ``robot_model`` of the robot's namespace (its template), ``~plan``
-(path, default ``resource/sim/plan.yaml``), ``~x``, ``~y`` [m], ``~yaw`` [rad] (default: the start
-place of the plan that the number at the end of the name says), ``~depth_format`` (``png`` or
-``rvl``, of compressedDepth), ``~mocap`` (true: a motion capture system tells its pose), ``~seed``
-(whole number; default: chance).
+(path, default ``resource/sim/plan.yaml``), ``~x``, ``~y`` [m], ``~yaw`` [rad] (default: the plan's
+start place for the number at the end of the name), ``~depth_format`` (``png`` or
+``rvl``, of compressedDepth), ``~mocap`` (true: a motion capture system reports its pose), ``~seed``
+(whole number; default: random).
 """
 import random
 import re
@@ -34,12 +34,12 @@ from mhri.sim.sensors import ImuSensor, Laser
 from mhri.sim.world import World, WorldFull, world_path
 
 
-# No building is as far away [m], and no heading turned as often [rad]; NaN is none either.
+# No building is this far away [m], and no heading has this many turns [rad]; NaN is refused, too.
 FARTHEST = 1000.0
 
 
 def start_pose(plan, name, radius_m):
-    """Return (x, y, yaw): the parameters where they are given, else a start place of the plan.
+    """Return (x, y, yaw) [m, m, rad]: the given parameters, else a start place of the plan.
 
     :raises ConfigError: one is not a number, or the body would stand in a wall or a landmark
     """
@@ -61,7 +61,7 @@ def start_pose(plan, name, radius_m):
 
 
 def building_key(plan):
-    """Return what robots in one building have in common: the master and the plan.
+    """Return what identifies a building to its robots: the master and the plan.
 
     One master has several addresses (``localhost``, the host's name, each of its interfaces).
     """
@@ -86,7 +86,7 @@ def body_type(name, template):
 def seed_of():
     """Return the parameter ``~seed``, a whole number from 0 up; None if there is none.
 
-    :raises ConfigError: it is no such number
+    :raises ConfigError: it is not such a number
     """
     seed = rospy.get_param('~seed', None)
     if seed is not None and (type(seed) is not int or seed < 0):
@@ -98,7 +98,7 @@ def seed_of():
 def depth_format():
     """Return the parameter ``~depth_format``.
 
-    :raises ConfigError: it is none of those that there are
+    :raises ConfigError: it is not a known format
     """
     value = parameters.text('~depth_format', DEPTH_FORMATS[0])
     if value not in DEPTH_FORMATS:
@@ -134,7 +134,7 @@ def build(name, of_robot):
 
 
 def main():
-    """Run until shut down; exit with 1 and a reason where the robot cannot be built."""
+    """Run until shut down; exit with 1 and a reason if the robot cannot be built."""
     limit_handshakes()
     rospy.init_node('base')
     log.install()
