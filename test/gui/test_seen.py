@@ -210,6 +210,8 @@ def test_the_distance_under_the_cursor_is_that_of_the_plan(session, lens, sight)
     from mhri.gui.screen import theme
     window = session.open('bot1')
     picture = session.picture(window, 'depth')
+    # As the key H does: the numbers of the robot lie where a distance has to be read.
+    session.host.screen.stage.show_numbers(False)
     reader = DistanceReader(theme.number_font(theme.larger(picture.font(), 1.1, bold=True)))
     room = picture.target()
     sheet = Sheet(picture, lens[1])

@@ -20,7 +20,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 from support.panel_session import PanelSession  # noqa: E402
 
 TOGGLES = 1000
-WARM_UP = 100
+WARM_UP = 300
 # One turn of the switches, every step another set of views; it ends as it began.
 STEPS = (('view_imu', False), ('camera_depth', True), ('view_scan', True), ('camera_off', True),
          ('view_imu', True), ('camera_rgb', True), ('view_scan', False), ('camera_off', True),

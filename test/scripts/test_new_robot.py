@@ -206,6 +206,22 @@ for views in ((), ('rgb',), ('rgb', 'scan', 'imu')):
 END''')
 
 
+def hold_until_moved(newcomer, heard):
+    """Hold a key; again where a busy machine made it stale, so that it has to be let go once."""
+    start = heard[-1]
+    for tries_left in reversed(range(5)):
+        newcomer.xdotool('keydown', 'Up')
+        try:
+            wait_for(lambda: math.dist(start[:2], heard[-1][:2]) > 0.1, PATIENCE_S / 4,
+                     'the robot to move')
+            break
+        except AssertionError:
+            if not tries_left:
+                raise
+        finally:
+            newcomer.xdotool('keyup', 'Up')
+
+
 def drive(newcomer, panel_terminal, launch_robot):
     """Look, check, drive and let go, with mouse and keyboard."""
     import rospy
@@ -232,10 +248,7 @@ def drive(newcomer, panel_terminal, launch_robot):
     newcomer.xdotool('key', '1')
     wait_for(lambda: obeyed and obeyed[-1] == [('crawler1', 'operator', '')], PATIENCE_S,
              'the robot to be ready')
-    start = heard[-1]
-    newcomer.xdotool('keydown', 'Up')
-    wait_for(lambda: math.dist(start[:2], heard[-1][:2]) > 0.1, PATIENCE_S, 'the robot to move')
-    newcomer.xdotool('keyup', 'Up')
+    hold_until_moved(newcomer, heard)
     wait_for(lambda: abs(heard[-1][2]) < 0.005, PATIENCE_S, 'the robot to stand still')
     assert max(speed for _, _, speed in heard) <= 0.2 * 1.05, 'its own limit'
     assert max(speed for _, _, speed in heard) > 0.1

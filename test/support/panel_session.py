@@ -44,7 +44,7 @@ class PanelSession:
         self.app = QApplication.instance() or QApplication(['panel'])
         self.host = ScreenHost(ScreenBackend(['panel']))
         self.operator = self.host.operator
-        self.host.screen.resize(1280, 900)
+        self.host.screen.resize(1500, 1050)
         self.host.screen.show()
         self.hands = Hands(self.host.screen)
         self.host.start(robots)
