@@ -123,6 +123,8 @@ def cameras(prefix, with_depth):
         found.update({image: 'sensor_msgs/Image', prefix + base + 'camera_info':
                       'sensor_msgs/CameraInfo', image + '/' + transport:
                       'sensor_msgs/CompressedImage'})
+    if with_depth:
+        found[prefix + 'camera/depth_registered/points'] = 'sensor_msgs/PointCloud2'
     return found
 
 
