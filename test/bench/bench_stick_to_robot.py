@@ -14,6 +14,7 @@ play, C++), which comes near to robots with computers of their own. "machine" is
 processes: near its limit even the C++ chain is late.
 """
 import argparse
+import json
 import os
 import sys
 import threading
@@ -92,7 +93,11 @@ class Mhri:
             robots = system.launch('sim.launch', 'n:={}'.format(len(names)), 'types:=turtlebot2')
         for name in names:
             rospy.set_param('/{}/robot_type'.format(name), 'turtlebot2' if streaming else 'generic')
-        panel = system.node('panel', '--fresh', '--select', ' '.join(names))
+        settings = os.path.join(system.home, 'screen.json')
+        with open(settings, 'w', encoding='utf-8') as stream:
+            json.dump({'state': {'looks': {name: {'views': ['imu', 'rgb']} for name in names}}},
+                      stream)
+        panel = system.node('panel', '--settings', settings, '--select', ' '.join(names))
         self.receiver = Receiver(['/{}/{}'.format(
             name, 'teleop/input' if streaming else 'cmd_vel') for name in names])
         self._joy = rospy.Publisher('/mux_in/pedal', Joy, queue_size=1, tcp_nodelay=True)

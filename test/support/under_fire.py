@@ -11,6 +11,7 @@ import sys
 import time
 
 import psutil
+import rosgraph
 
 from support.ros_system import System, wait_for
 
@@ -159,6 +160,11 @@ class UnderFire:
         self.start('screen', self.system.node(
             'panel', '--settings', os.path.join(self.system.home, 'screen.json'), '--robots',
             ' '.join(self.names), '__name:=onlooker'))
+        master = rosgraph.Master('/under_fire')
+        # Until then its connections are still being made, which is no growth.
+        wait_for(lambda: all('/onlooker' in dict(master.getSystemState()[1]).get(topic, ())
+                             for topic in ('/mux/dead_man', '/{}/odom'.format(self.names[-1]))),
+                 60, 'the second screen', poll_s=0.2)
 
     def order(self, *words):
         """Tell the operator's backend to do something."""
