@@ -71,9 +71,12 @@ class Bench:
                 time.sleep(0.01)
             return False
 
-        wait_for(through, 40, 'the robots to be driven')
-        time.sleep(0.3)
-        assert all(witness.moving() for witness in self.witnesses)
+        def steadily():
+            if not through():
+                return False
+            time.sleep(0.3)
+            return all(witness.moving() for witness in self.witnesses)
+        wait_for(steadily, 60, 'the robots to be driven')
 
     def close(self):
         import rospy
