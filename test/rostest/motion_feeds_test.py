@@ -149,7 +149,7 @@ class MotionFeedsTest(unittest.TestCase):
                 feed.open()
             if number % 10 == 0:
                 wait_for(lambda: feeds[1].take() is not None, what='a scan')
-                wait_for(lambda: feeds[0].series().latest('gyro_z') is not None, what='the gyro')
+                wait_for(lambda: feeds[0].take().latest('gyro_z') is not None, what='the gyro')
             for feed in feeds:
                 feed.close()
             if number in (49, TOGGLES + 49):
