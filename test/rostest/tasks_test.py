@@ -191,6 +191,20 @@ class Tasks(unittest.TestCase):
         self.rests_for_good('bot1', checked)
         self.assertEqual(self.ends(self.start('bot1', 'hold', ''))[0][0], TaskState.TAKEN_OVER)
 
+    def test_an_operator_who_falls_silent_or_goes_leaves_no_robot_moving(self):
+        """The lease holds for tasks, too: nobody at the screen could stop them."""
+        for way, limit_s in (('silent', 2.0), ('gone', 1.0)):
+            goal, _ = self.on_its_way()
+            lost = self.operator.fall_silent()
+            if way == 'gone':
+                self.operator.leave()
+            took = measured('operator {} during a task, first zero'.format(way),
+                            self.rests_for_good('bot1', lost))
+            self.assertLess(took, limit_s)
+            self.assertEqual(self.ends(goal)[0][0], TaskState.LOST)
+            type(self).operator = FakeOperator() if way == 'gone' else self.operator
+            self.operator.check()
+
     def test_another_task_takes_the_place_of_the_last_one(self):
         goal, _ = self.on_its_way()
         other = self.start('bot1', 'hold', '{seconds: 1.0}')

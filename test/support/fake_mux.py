@@ -65,6 +65,11 @@ class FakeOperator:
         self._names = None
         return time.monotonic()
 
+    def leave(self):
+        """Give the topic back, as a program that ends does."""
+        self._names = None
+        self._publisher.unregister()
+
     def _run(self):
         while not rospy.is_shutdown():
             self._changed.wait(0.5)

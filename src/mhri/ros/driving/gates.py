@@ -209,8 +209,11 @@ class Gates:
 
     def _on_operator_gone(self, caller):
         with self._lock:
+            lost = caller == self._seat.operator
             self._seat.on_gone(caller)
             self._check()
+            if lost:
+                self._everybody_joins()
 
     def _on_take(self, request):
         """Put the caller in control; every robot gets a zero and waits for neutral."""
@@ -315,10 +318,12 @@ class Gates:
                 self._wake.wait(max(0.0, due - self._clock()))
 
     def _tick(self, now):
-        before = self._seat.checked
+        before = self._seat.state
         self._seat.tick(now)
-        if self._seat.checked != before:
+        if self._seat.state != before:
             self._check()
+            # A robot on a task is not checked, and nobody is there who could stop it.
+            self._everybody_joins()
         self._each(lambda gate: gate.tick(now))
         if self._slow_with_link:
             self._keep_together()
