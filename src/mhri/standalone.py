@@ -5,7 +5,7 @@ import signal
 import socket
 import threading
 
-from python_qt_binding.QtCore import QSocketNotifier, QTimer, Signal
+from python_qt_binding.QtCore import QEvent, QSocketNotifier, QTimer, Signal
 from python_qt_binding.QtWidgets import QApplication, QMainWindow
 import rospy
 
@@ -156,6 +156,13 @@ class Standalone:
             self._settings.write(settings)
         except SettingsError as error:
             rospy.logwarn('the settings are not kept: %s', error)
+
+    def run(self, app):
+        """Work until the window is closed; nothing of it may be used after that."""
+        app.exec_()
+        # The widgets go before the application: Python would end them in any order, and may crash.
+        self.window.deleteLater()
+        app.sendPostedEvents(None, QEvent.DeferredDelete)
 
     def close(self):
         """Stop the robots, save the settings, end."""

@@ -18,10 +18,10 @@ def bare():
     window = QMainWindow()
     window.setCentralWidget(QPushButton('STOP ALL'))
     window.show()
-    return window, lambda: window.isVisible()
+    return window, QApplication.exec_, window.isVisible
 
 
-def screen(robots):
+def screen(app, robots):
     """Show the screen as its executable does."""
     from mhri.standalone import Standalone
     program = Standalone(['panel'], remember=False)
@@ -32,13 +32,13 @@ def screen(robots):
     def usable():
         view = program.host.operator.view()
         return view.mode is not None and view.control.ours
-    return program, usable
+    return program.window, lambda: program.run(app), usable
 
 
 def main():
     """Run until it can be used."""
     app = QApplication(sys.argv[:1])
-    window, usable = bare() if sys.argv[1] == 'bare' else screen(sys.argv[2:])
+    window, run, usable = bare() if sys.argv[1] == 'bare' else screen(app, sys.argv[2:])
 
     def look():
         if usable():
@@ -48,7 +48,7 @@ def main():
     timer = QTimer()
     timer.timeout.connect(look)
     timer.start(5)
-    app.exec_()
+    run()
 
 
 if __name__ == '__main__':

@@ -6,7 +6,6 @@ import os
 import shutil
 import sys
 
-from python_qt_binding.QtCore import QEvent
 from python_qt_binding.QtWidgets import QApplication
 import rospy
 
@@ -54,10 +53,7 @@ def main():
     if options.fresh and not options.demo:
         program.begin_afresh()
     demo = start_demo(program, options) if options.demo else None
-    app.exec_()
-    # The widgets go before the application: Python would end them in any order, and may crash.
-    program.window.deleteLater()
-    app.sendPostedEvents(None, QEvent.DeferredDelete)
+    program.run(app)
     sys.exit(demo.exit_status if demo else 0)
 
 
