@@ -12,7 +12,7 @@ from mhri.core.screen import views
 from mhri.core.screen.views import ProofView, RobotView
 from mhri.gui.screen import theme
 from mhri.gui.screen.bot_window import BotWindow
-from mhri.gui.screen.hud import hud_lines
+from mhri.gui.look.hud import hud_lines
 from mhri.gui.screen.torn_off import TornOff
 from mhri.gui.screen.windows import TurtleBotWindow, window_class
 

@@ -14,7 +14,7 @@ from mhri.gui.look.tile_layers import EDGE_PX, TileLayers, wants_inset
 from mhri.gui.recording.recording_row import RecordingRow
 from mhri.gui.screen import theme, words
 from mhri.gui.screen.forms import load_form
-from mhri.gui.screen.hud import Hud
+from mhri.gui.look.hud import Hud
 from mhri.gui.screen.labels import TextLine
 from mhri.gui.screen.pending import Pace
 from mhri.gui.screen.state_line import StateLine
