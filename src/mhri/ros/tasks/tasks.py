@@ -9,12 +9,13 @@ Interfaces (global names; SI units):
   0.6 s after it) and ``/mhri_tasks/list`` (``mhri/TaskList``, latched, on change)
 - subscribes ``/gates/state`` (``mhri/GatesState``) and ``/robot_controller/stop_all``
   (``std_msgs/Bool``), each from the node in force alone; of every robot that the gates know its
-  odometry; of robots on a task laser and battery as well; and ``/vrpn_client_node/<robot>/pose``
-  where motion capture runs
+  odometry and ``/vrpn_client_node/<robot>/pose``; of robots on a task laser and battery as well
+- knows where robots are placed: :mod:`mhri.ros.map.place_keeper`
 
 The action server has a lock of its own, held while it calls :meth:`Tasks._on_goal`: nothing of it
 is called while this object's lock is held.
 """
+import math
 import threading
 import time
 
@@ -34,6 +35,9 @@ from mhri.ros.convert import to_twist
 from mhri.ros.driving.in_force import InForce, STOP_SERVICE, TAKE_SERVICE
 from mhri.ros.graph.master_api import MasterError
 from mhri.ros.graph.rospy_inside import PromptPublisher
+from mhri.ros.map.map_source import MapSource
+from mhri.ros.map.place_keeper import PlaceKeeper
+from mhri.ros.map.place_services import PlaceServices
 from mhri.ros.tasks.seen_robots import SeenRobots
 from mhri.ros.tasks.words import kind_message, state_message
 from mhri.ros.worker import Worker
@@ -45,6 +49,8 @@ ZEROS_S = 0.6
 # The gates speak at 2 Hz: a word late by this much is a word that does not come [s].
 SILENT_S = 0.9
 MOST_ROBOTS = 64
+# A robot that is known for so long and not placed will not be by itself [s].
+PLACED_WITHIN_S = 2.0
 
 
 class _Goal:
@@ -75,15 +81,18 @@ class Tasks:
     """The tasks of all robots.
 
     :param types: {name: RobotType}
+    :param grid: of a map that is to be published; None: whatever map there is
     :param clock: seconds, monotonic
     """
 
-    def __init__(self, types, clock=time.monotonic):
+    def __init__(self, types, grid=None, clock=time.monotonic):
         self._clock = clock
         self._lock = threading.RLock()
         self._wake = threading.Event()
         self._done = threading.Event()
         self._seen = SeenRobots(types, clock)
+        self._map = MapSource(grid)
+        self.places = PlaceKeeper(self._seen, self._map, clock)
         self._goals = {}
         # {robot: its newest RobotRun}: a robot has one task.
         self._runs = {}
@@ -91,7 +100,7 @@ class Tasks:
         self._heard_at = None
         self._gates_stop = self._mux_stop = False
         self._told = None
-        self._worker = Worker('tasks_calls')
+        self._worker = Worker('tasks_calls', self.places.keep)
         self._gates_force = InForce(TAKE_SERVICE)
         self._mux_force = InForce(STOP_SERVICE)
         self._server = None
@@ -104,6 +113,9 @@ class Tasks:
                                     tcp_nodelay=True)
         self._mux_force.subscribe('/robot_controller/stop_all', Bool, self._on_stop, queue_size=10,
                                   tcp_nodelay=True)
+        self._map.start()
+        self.places.start()
+        PlaceServices(self._seen, self.places, self._map, self.is_busy, self._worker).start()
         self._gates_force.start()
         self._mux_force.start()
         self._worker.start()
@@ -124,6 +136,11 @@ class Tasks:
         self._finish()
         self._done.set()
         self._worker.stop()
+
+    def is_busy(self, name):
+        """Tell whether a robot is on a task."""
+        with self._lock:
+            return name in self._runs and self._runs[name].phase != ENDED
 
     def summary(self):
         """Return {robot: (task state, sentence)} of the robots on a task."""
@@ -208,15 +225,17 @@ class Tasks:
         if not problem and robot is None:
             state = LOST
             problem = 'the drive service does not know it: add it to the list of robots'
-        if not problem and kind.key == 'follow' and not robot.tracked:
-            problem = 'nobody knows where it is: motion capture does not see it'
+        placed = kind.placed(goal.values)
+        if not problem and placed and robot.known_s() > PLACED_WITHIN_S \
+                and not self.places.place(name).is_fresh:
+            problem = self.places.place(name).text
         if not problem:
             body = robot.body
             try:
                 task = kind.make(goal.values, Start(name, goal.team, body, robot.trail.places()))
             except ValueError as error:
                 problem = str(error)
-        run = RobotRun(name, task, body, goal.values.number('timeout'), now)
+        run = RobotRun(name, task, body, goal.values.number('timeout'), now, placed)
         if problem:
             run.end(state, problem, now)
         return run
@@ -242,6 +261,7 @@ class Tasks:
 
     def _tick(self, number):
         self._seen.look()
+        self.places.look()
         with self._lock:
             self._publish(self._clock())
         self._finish()
@@ -257,15 +277,16 @@ class Tasks:
                     message.robots.append(name)
                     message.twists.append(Twist())
                 continue
-            velocity = run.tick(self._facts(name, now, busy))
+            velocity = run.tick(self._facts(run, now, busy))
             message.robots.append(name)
             message.twists.append(to_twist(velocity.linear_mps, velocity.angular_rad_s))
         if message.robots:
             message.header.stamp = rospy.Time.now()
             self._task.publish(message)
 
-    def _facts(self, name, now, busy):
+    def _facts(self, run, now, busy):
         """Return the :class:`Facts` of a robot."""
+        name = run.robot
         gate, robot = self._gates.get(name), self._seen.get(name)
         known = dict(stop_all=self._mux_stop or self._gates_stop, known=gate is not None,
                      answers=self._heard_at is not None and now - self._heard_at <= SILENT_S)
@@ -273,7 +294,12 @@ class Tasks:
             known.update(obeys=gate.obeys, stands=gate.stands)
         if robot is not None:
             known.update(robot.ages(), has_laser=robot.has_laser, battery=robot.charge,
-                         senses=self._seen.senses(robot, now, busy))
+                         senses=self._seen.senses(robot, now, busy, self.places.place))
+        if run.placed:
+            place = self.places.place(name)
+            age_s = 0.0 if math.isnan(place.age_s) else place.age_s
+            known.update(place_age_s=None if place.odometry is None else age_s,
+                         place_text=place.text, settling=self.places.settling(name))
         return Facts(now, **known)
 
     def _finish(self):
