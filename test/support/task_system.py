@@ -126,6 +126,7 @@ class TaskSystem:
         rospy.set_param('/{}/robot_type'.format(name), kind)
         if model:
             rospy.set_param('/{}/robot_model'.format(name), model)
+        rospy.set_param('/{}/mhri_guard/command'.format(name), topics[0])
         env = {'ROS_NAMESPACE': '/' + name}
         computer = self.computers.get(name)
         if computer is not None:
