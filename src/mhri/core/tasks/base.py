@@ -7,7 +7,7 @@ keeps it from obstacles, ends it when it has to, and brings its robot to rest.
 """
 from dataclasses import dataclass, field
 import math
-from typing import Callable, Dict, Iterable, Mapping, Optional, Sequence, Tuple, Union
+from typing import Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -253,13 +253,22 @@ def discs(pose: Pose, others: Iterable[Other], more_m: float) -> np.ndarray:
     """
     rows = [NOWHERE]
     turns = np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False) - pose.heading_rad
-    for other in others:
-        gap_x, gap_y = other.pose.x_m - pose.x_m, other.pose.y_m - pose.y_m
-        cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
-        middle = (cos * gap_x + sin * gap_y, cos * gap_y - sin * gap_x)
-        rows.append((other.radius_m + more_m) * np.column_stack((np.cos(turns), np.sin(turns)))
-                    + middle)
+    for x_m, y_m, radius_m in circles(pose, others):
+        rows.append((radius_m + more_m) * np.column_stack((np.cos(turns), np.sin(turns)))
+                    + (x_m, y_m))
     return np.vstack(rows)
+
+
+def within(pose: Pose, other: Pose) -> Tuple[float, float]:
+    """Return where another pose lies in the frame of a pose: (ahead, to the left) [m]."""
+    gap_x, gap_y = other.x_m - pose.x_m, other.y_m - pose.y_m
+    cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
+    return cos * gap_x + sin * gap_y, cos * gap_y - sin * gap_x
+
+
+def circles(pose: Pose, others: Iterable[Other]) -> List[Tuple[float, float, float]]:
+    """Return (ahead, to the left, radius) [m] of other robots in the frame of a pose."""
+    return [within(pose, other.pose) + (other.radius_m,) for other in others]
 
 
 def wrapped(angle_rad: float) -> float:
