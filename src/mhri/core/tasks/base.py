@@ -56,8 +56,8 @@ class Senses:
     ``odometry`` is the latter in any case, ``captured`` the place by motion capture or None.
     ``points`` is an array (n, 2) of what its laser has met, in its own frame [m]: x ahead, y to the
     left. ``others`` are the other robots that are placed, by their names; none where it is not.
-    ``fence`` is an array (n, 2) of the corners of what no task leaves, in the frame of ``pose`` [m];
-    empty where there is none.
+    ``fence`` is an array (n, 2) of the corners of what no task leaves, in the frame of ``pose``
+    [m], empty where there is none.
     """
 
     now_s: float

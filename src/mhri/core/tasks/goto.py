@@ -6,8 +6,8 @@ from typing import Optional, Tuple
 
 from mhri.core.robots.mocap import Pose
 from mhri.core.tasks.base import (
-    beside, BLOCKED, DONE, FAILED, Field, FRAME, REQUIRED, Senses, Start, Step, Task, TaskKind, Values, WAITING,
-    way)
+    beside, BLOCKED, DONE, FAILED, Field, FRAME, REQUIRED, Senses, Start, Step, Task, TaskKind,
+    Values, WAITING, way)
 from mhri.core.tasks.fence import is_inside
 from mhri.core.tasks.pilot import Pilot
 
