@@ -17,13 +17,13 @@ from typing import List, Optional, Tuple
 
 import numpy as np
 
+from mhri.core.driving.brake import braked, SCAN_OLD_S
 from mhri.core.driving.gate import HELD, OPERATOR, TASK
 from mhri.core.driving.limits import Velocity, ZERO
 from mhri.core.screen.battery import FLAT_AT
 from mhri.core.tasks.base import (
     BLOCKED, Body, discs, ENDS, FAILED, LOST, RUNNING, Senses, Step, STOPPED, TAKEN_OVER, Task,
     TIMEOUT, turn_to, WAITING, way)
-from mhri.core.tasks.brake import braked, SCAN_OLD_S
 
 READYING, JOINING, UNDER_WAY, ENDED = 'readying', 'joining', 'under_way', 'ended'
 # Odometry or place that is older is lost [s]; what is new has so long to be heard.
@@ -165,7 +165,7 @@ class RobotRun:
         if step.state in ENDS:
             self.end(step.state, step.text, facts.now_s)
             return ZERO
-        velocity = braked(step.velocity, senses.points, self._body, facts.scan_age_s) \
+        velocity = braked(step.velocity, senses.points, self._body.radius_m, facts.scan_age_s) \
             if facts.has_laser else step.velocity
         held = self._held(step, velocity, facts)
         self._mark(held, facts.now_s)
