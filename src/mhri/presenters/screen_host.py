@@ -99,6 +99,7 @@ class ScreenHost(QObject):
         panel.stick_moved.connect(operator.send_stick)
         panel.limits_requested.connect(operator.request_limits)
         panel.together_requested.connect(operator.keep_together)
+        panel.speed_limits.brake_requested.connect(operator.brake)
         panel.talk_requested.connect(operator.talk)
         panel.stop_requested.connect(operator.stop_all)
         panel.release_requested.connect(operator.release)
@@ -260,7 +261,8 @@ class ScreenHost(QObject):
         state = {'robots': list(selection.robots), 'numbers': selection.numbers.kept(),
                  'mode': self._mode,
                  'limits': list(self.operator.view().limits), 'windows': places, 'torn_off': torn,
-                 'together': self.operator.view().together, 'looks': looks,
+                 'together': self.operator.view().together,
+                 'brake': self.operator.view().brake, 'looks': looks,
                  'panel': self.screen.save_settings(), 'events': self.events.save_settings()}
         return usable_state(state)[0]
 
@@ -280,6 +282,7 @@ class ScreenHost(QObject):
         if state.get('limits'):
             self.operator.request_limits(*state['limits'])
         self.operator.keep_together(state.get('together') is True)
+        self.operator.brake(state.get('brake') is True)
         self.tiles.restore_state(state.get('windows', {}), state.get('looks', {}),
                                  state.get('torn_off', ()))
         self.screen.restore_settings(state.get('panel', {}))
