@@ -24,6 +24,7 @@ from mhri.presenters.pad_host import PadHost
 from mhri.presenters.requests_host import RequestsHost
 from mhri.presenters.stop_watch import StopWatch
 from mhri.presenters.tiles_host import TilesHost
+from mhri.ros.devices.device_client import choose_device
 from mhri.ros.resources import resource_path
 
 DRAW_MS = 50
@@ -96,6 +97,7 @@ class ScreenHost(QObject):
         self.tiles.drive_requested.connect(self._drive)
         self.tiles.closed.connect(self._leave)
         panel.mode_requested.connect(self._request_mode)
+        panel.mode_combo.device_requested.connect(self._request_device)
         panel.stick_moved.connect(operator.send_stick)
         panel.limits_requested.connect(operator.request_limits)
         panel.together_requested.connect(operator.keep_together)
@@ -243,6 +245,11 @@ class ScreenHost(QObject):
     def _request_mode(self, name):
         self._mode = name
         self.operator.request_mode(name)
+
+    def _request_device(self, source, name):
+        """Have another pad drive; the mode is asked for on its own."""
+        if self.operator.drives():
+            self.operator.do(choose_device, source, name)
 
     def _drive(self, name):
         """Drive this robot and no other, and look at it."""

@@ -152,13 +152,14 @@ class DeviceView:
 
     ``name`` is the name of the connected device, '' if there is none; ``note`` says why there is
     none and what to do, or what the device waits for; both are '' if the node cannot tell.
-    ``kind`` is e.g. 'pad'.
+    ``kind`` is e.g. 'pad'; ``there`` are the names of all that could be chosen.
     """
 
     source: str
     name: str = ''
     note: str = ''
     kind: str = ''
+    there: Tuple[str, ...] = ()
 
     @property
     def absent(self) -> bool:
