@@ -3,14 +3,17 @@
 """One robot in the list: who it is, how its link is, what it does."""
 from python_qt_binding.QtCore import QRectF, QSize, Qt, Signal
 from python_qt_binding.QtGui import QPainter, QPalette, QPen
-from python_qt_binding.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QSizePolicy, QWidget
+from python_qt_binding.QtWidgets import (
+    QCheckBox, QGridLayout, QHBoxLayout, QPushButton, QSizePolicy, QWidget)
 
 from mhri.core.robots.numbers import LAST_KEY
 from mhri.core.screen import views
+from mhri.core.screen.task_words import task_line
 from mhri.gui.screen import theme, words
-from mhri.gui.screen.labels import BatteryLine, Pill, Sign, TextLine
+from mhri.gui.screen.labels import BatteryLine, Pill, plain_tip, Sign, TextLine
 
-DRIVING = 'DRIVING'
+DRIVING, ON_TASK = 'DRIVING', 'ON TASK'
+CARRY_ON = 'Continue'
 MOVING = 'moving'
 RECORDING = 'rec'
 # What a name asks for before it gives way, in average characters; longer ones end in "...".
@@ -69,11 +72,13 @@ class RobotRow(QWidget):
     clicked = Signal(str)
     #: the row was double-clicked
     opened = Signal(str)
+    #: it shall go on with the task that it was taken from
+    carry_on_requested = Signal(str)
 
     def __init__(self, name, parent=None):
         super().__init__(parent)
         self.name = name
-        self._driven = False
+        self._tone = None
         self._current = False
         self._link = None
         self._trouble_shown = None
@@ -122,7 +127,12 @@ class RobotRow(QWidget):
         self.filler = TextLine(self)
         self.filler.setMinimumWidth(1)
         self.pill = Pill(self)
-        self.pill.set_words((DRIVING, MOVING))
+        self.pill.set_words((DRIVING, MOVING, ON_TASK))
+        self.carry_on_button = QPushButton(CARRY_ON, self)
+        self.carry_on_button.setObjectName('carry_on_' + self.name)
+        self.carry_on_button.setFocusPolicy(Qt.TabFocus)
+        self.carry_on_button.setMinimumHeight(theme.touch_size(self))
+        self.carry_on_button.hide()
         self.battery = self._fixed_line(numbers, '100 %', Qt.AlignRight, BatteryLine)
         self._lay_out()
 
@@ -155,6 +165,7 @@ class RobotRow(QWidget):
         grid.addWidget(self.box, 0, 1, 2, 1)
         grid.addLayout(first, 0, 2)
         grid.addLayout(second, 1, 2)
+        grid.addWidget(self.carry_on_button, 0, 3, 2, 1)
         grid.setColumnStretch(2, 1)
         self._show_trouble(None, '')
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
@@ -163,6 +174,7 @@ class RobotRow(QWidget):
     def _connect(self):
         """Wire the check box; only clicks count, not what the view sets."""
         self.box.clicked.connect(self._on_box)
+        self.carry_on_button.clicked.connect(lambda: self.carry_on_requested.emit(self.name))
 
     def _on_box(self, on):
         """Tell of a click on the box."""
@@ -187,9 +199,19 @@ class RobotRow(QWidget):
         self._show_second_line(view)
         self.recording.say(RECORDING if view.recording else '', filled=False)
         self.recording.setVisible(view.recording)
-        if view.driven != self._driven:
-            self._driven = view.driven
+        self._offer_to_carry_on(view.carry_on)
+        tone = theme.TASK if view.on_task else theme.DRIVE if view.driven else None
+        if tone != self._tone:
+            self._tone = tone
             self.update()
+
+    def _offer_to_carry_on(self, label):
+        """Offer to continue a task, '' for none."""
+        self.carry_on_button.setVisible(bool(label))
+        if label:
+            text = '{} {} of {}'.format(CARRY_ON, label.lower(), self.name)
+            self.carry_on_button.setAccessibleName(text)
+            self.carry_on_button.setToolTip(plain_tip(text))
 
     def _show_numbers(self, view):
         """Show what changes all the time."""
@@ -205,7 +227,9 @@ class RobotRow(QWidget):
 
     def _show_second_line(self, view):
         """Show the proof of a stop, or what is wrong with the link, or how the robot moves."""
-        if view.driven:
+        if view.on_task:
+            self.pill.say(ON_TASK, theme.TASK)
+        elif view.driven:
             self.pill.say(DRIVING)
         else:
             self.pill.say(MOVING if view.moving else '', theme.ATTENTION, filled=False)
@@ -214,6 +238,9 @@ class RobotRow(QWidget):
                                view.proof.state == views.PROOF_NOT_CONFIRMED)
         elif view.link != views.LIVE:
             self._show_trouble(None, view.note or words.LINK_WORDS[view.link])
+        elif view.task is not None:
+            self._show_trouble(theme.TASK_WAITS if view.task.waits else theme.ON_TASK,
+                               task_line(view.task), with_state=True)
         else:
             sign = (theme.TRIANGLE, theme.ATTENTION) if view.slow else None
             self._show_trouble(sign, view.note, with_state=True)
@@ -271,11 +298,11 @@ class RobotRow(QWidget):
         palette = self.palette()
         rect = self.rect()
         base = palette.color(QPalette.Base)
-        drive = theme.colour(theme.DRIVE, palette)
         if self._current:
             painter.fillRect(rect, theme.blend(base, palette.color(QPalette.WindowText), 0.12))
-        if self._driven:
-            painter.fillRect(rect, theme.blend(base, drive, 0.30 if self._current else 0.16))
-            painter.fillRect(0, 0, _EDGE_PX, rect.height(), drive)
+        if self._tone:
+            ink = theme.colour(self._tone, palette)
+            painter.fillRect(rect, theme.blend(base, ink, 0.30 if self._current else 0.16))
+            painter.fillRect(0, 0, _EDGE_PX, rect.height(), ink)
         painter.setPen(theme.line_colour(palette))
         painter.drawLine(rect.bottomLeft(), rect.bottomRight())
