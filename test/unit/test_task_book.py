@@ -44,7 +44,8 @@ def test_a_run_that_is_listed_has_begun_and_is_shown(book):
 
 def test_feedback_renews_it_and_says_each_line_once(book):
     book.take_news()
-    said = replace(ON, state='waiting', text='something is in its way', said=('corner 1: x 1.00 m',))
+    said = replace(ON, state='waiting', text='something is in its way',
+                   said=('corner 1: x 1.00 m',))
     for _ in range(2):
         book.hear_feedback('a', (said,))
     assert book.take_news() == [('task.said', 'bot1', 'square: corner 1: x 1.00 m')]

@@ -142,7 +142,7 @@ class TaskBook:
     def _end(self, run_id: str) -> None:
         """Forget a run, and that it was."""
         for kept in (self._runs, self._asked, self._goals, self._leaving, self._cancelled):
-            kept.pop(run_id, None)  # type: ignore[attr-defined]
+            kept.pop(run_id, None)
         self._ended[run_id] = None
         while len(self._ended) > _MOST_ENDED:
             del self._ended[next(iter(self._ended))]

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import math
 from typing import Optional, Tuple
 
+import yaml
+
 
 @dataclass(frozen=True)
 class TaskView:
@@ -39,6 +41,28 @@ class FieldView:
     def is_number(self) -> bool:
         """Whether its value is a number."""
         return not math.isnan(self.least)
+
+    @property
+    def default_value(self) -> object:
+        """What the default says, None for none and where it cannot be read."""
+        try:
+            return yaml.safe_load(self.default)
+        except yaml.YAMLError:
+            return None
+
+
+def typed_value(text: str) -> object:
+    """Return what was typed: a list if it begins with a bracket, else the text; None of nothing.
+
+    :raises ValueError: its brackets and commas do not fit
+    """
+    text = text.strip()
+    if not text.startswith('['):
+        return text or None
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError:
+        raise ValueError('its brackets do not fit; write e.g. [[1, 0], [1, 2]]') from None
 
 
 @dataclass(frozen=True)

@@ -174,7 +174,11 @@ class RobotRow(QWidget):
     def _connect(self):
         """Wire the check box; only clicks count, not what the view sets."""
         self.box.clicked.connect(self._on_box)
-        self.carry_on_button.clicked.connect(lambda: self.carry_on_requested.emit(self.name))
+        self.carry_on_button.clicked.connect(self._on_carry_on)
+
+    def _on_carry_on(self):
+        """Tell of a click on "Continue"."""
+        self.carry_on_requested.emit(self.name)
 
     def _on_box(self, on):
         """Tell of a click on the box."""

@@ -6,8 +6,8 @@ import math
 from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtWidgets import (
     QComboBox, QDoubleSpinBox, QGridLayout, QLabel, QLineEdit, QWidget)
-import yaml
 
+from mhri.core.screen.task_views import typed_value
 from mhri.gui.screen import theme
 
 LEFT_OUT, MISSING = 'left out', 'to be given'
@@ -20,14 +20,6 @@ _SHOWN = {'rad': ('\u00b0', 180.0 / math.pi, 0, 15.0), 's': (' s', 1.0, 0, 10.0)
 _MOST_TEXT = 10000
 
 
-def _yaml(text):
-    """Return what a default says, None where it cannot be read."""
-    try:
-        return yaml.safe_load(text)
-    except yaml.YAMLError:
-        return None
-
-
 class NumberField(QDoubleSpinBox):
     """A number with its unit, within its limits; the lowest step stands for "not given".
 
@@ -38,7 +30,7 @@ class NumberField(QDoubleSpinBox):
         super().__init__(parent)
         unit, self._factor, decimals, step = _SHOWN.get(
             field.unit, (' ' + field.unit, 1.0, 2, 0.1))
-        default = _yaml(field.default)
+        default = field.default_value
         least, greatest = field.least * self._factor, field.greatest * self._factor
         if isinstance(default, float) and not default.is_integer() and not decimals:
             decimals = 2
@@ -82,7 +74,7 @@ class TextField(QLineEdit):
     def __init__(self, field, parent=None):
         super().__init__(parent)
         self.may_be_left_out = bool(field.default)
-        default = _yaml(field.default)
+        default = field.default_value
         self.setMaxLength(_MOST_TEXT)
         self.setText('' if default is None else str(default))
         self.setPlaceholderText(field.text)
@@ -91,13 +83,7 @@ class TextField(QLineEdit):
 
     def given(self):
         """Return the text or list, None where there is none; raises ValueError of a broken list."""
-        text = self.text().strip()
-        if not text.startswith('['):
-            return text or None
-        try:
-            return yaml.safe_load(text)
-        except yaml.YAMLError:
-            raise ValueError('its brackets and commas do not fit; write [[1, 0], [1, 2]]') from None
+        return typed_value(self.text())
 
 
 class RobotField(QComboBox):

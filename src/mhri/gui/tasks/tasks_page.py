@@ -61,7 +61,11 @@ class RunRow(QFrame):
 
     def _connect(self):
         """Wire the button."""
-        self.stop_button.clicked.connect(lambda: self.stop_requested.emit(list(self._robots)))
+        self.stop_button.clicked.connect(self._stop)
+
+    def _stop(self):
+        """Ask for the end of it."""
+        self.stop_requested.emit(list(self._robots))
 
     def show_run(self, run, label):
         """Show a :class:`mhri.core.screen.task_views.RunView`."""
