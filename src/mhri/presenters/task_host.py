@@ -88,6 +88,11 @@ class TaskHost:
 
     # What there is to see.
 
+    @property
+    def view(self):
+        """The newest :class:`PanelView`, with the task of each robot."""
+        return self._view
+
     def tell(self, view):
         """Return a :class:`PanelView` with the task of each robot; call it with each drawing."""
         if not self._started and view.ros == ROS_CONNECTED:

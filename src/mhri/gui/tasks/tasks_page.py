@@ -172,6 +172,11 @@ class TasksPage(QScrollArea):
         self._on_kind()
 
     @property
+    def keys(self):
+        """The keys of the tasks on offer, in order."""
+        return [kind.key for kind in self._kinds]
+
+    @property
     def kind(self):
         """The :class:`mhri.core.screen.task_views.KindView` that is chosen, None for none."""
         place = self.combo.currentIndex()
