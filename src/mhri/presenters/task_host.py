@@ -61,7 +61,7 @@ class TaskHost:
         self._was_there = None
         self._told_s = -STRANGER_S
         self.page = TasksPage()
-        screen.arrangement.add_page(TITLE, self.page)
+        screen.arrangement.add_page(TITLE, self.page, second=True)
         self._connect()
 
     def _connect(self):
@@ -115,7 +115,9 @@ class TaskHost:
         if task and before and (task.label, task.waits) == (before.label, before.waits):
             task = before
         self._shown[robot.name] = task
-        left = self._client.left(robot.name) if task is None and not robot.selected else None
+        # Its gate lets go of it a moment after its task has.
+        free = task is None and not robot.selected and robot.obeys != 'task'
+        left = self._client.left(robot.name) if free else None
         if task is None and left is None:
             return robot
         return replace(robot, task=task, carry_on=self._tasks.label(left.key) if left else '')

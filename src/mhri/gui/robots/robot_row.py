@@ -212,6 +212,8 @@ class RobotRow(QWidget):
     def _offer_to_carry_on(self, label):
         """Offer to continue a task, '' for none."""
         self.carry_on_button.setVisible(bool(label))
+        # It stands, and there is not the room for both.
+        self.linear.setVisible(not label)
         if label:
             text = '{} {} of {}'.format(CARRY_ON, label.lower(), self.name)
             self.carry_on_button.setAccessibleName(text)

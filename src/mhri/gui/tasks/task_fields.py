@@ -5,7 +5,8 @@ import math
 
 from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtWidgets import (
-    QComboBox, QDoubleSpinBox, QGridLayout, QLabel, QLineEdit, QWidget)
+    QAbstractSpinBox, QComboBox, QDoubleSpinBox, QGridLayout, QLabel, QLineEdit, QPushButton,
+    QWidget)
 
 from mhri.core.screen.task_views import typed_value
 from mhri.gui.screen import theme
@@ -45,6 +46,8 @@ class NumberField(QDoubleSpinBox):
         self.setValue(default * self._factor if isinstance(default, (int, float))
                       else self.minimum())
         self.setFocusPolicy(Qt.StrongFocus)
+        # Its own are too small for a finger.
+        self.setButtonSymbols(QAbstractSpinBox.NoButtons)
 
     def stepBy(self, steps):  # noqa: N802
         """Begin at nothing, or where the limits allow it, not at the lowest there is."""
@@ -172,9 +175,23 @@ class TaskFields(QWidget):
             name.setToolTip(field.text)
             name.setBuddy(widget)
             grid.addWidget(name, row, 0)
-            grid.addWidget(widget, row, 1)
+            grid.addWidget(widget, row, 1, 1, 1 if field.is_number else 3)
+            if field.is_number:
+                for place, (sign, step) in enumerate((('\u2212', widget.stepDown),
+                                                      ('+', widget.stepUp)), 2):
+                    grid.addWidget(self._step_button(field, sign, step), row, place)
         self._grid.addWidget(inside, 0, 0)
         return inside, fields
+
+    def _step_button(self, field, sign, step):
+        """Make a button that makes a number larger or smaller."""
+        button, side = QPushButton(sign, self), theme.touch_size(self)
+        button.setFixedSize(side, side)
+        button.setFocusPolicy(Qt.NoFocus)
+        button.setAutoRepeat(True)
+        button.setAccessibleName('{} {}'.format(field.name, sign))
+        button.clicked.connect(step)
+        return button
 
     def show_names(self, names):
         """Offer robots where a field takes one."""

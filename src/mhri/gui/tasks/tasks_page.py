@@ -3,7 +3,8 @@
 """The page of the drawer for tasks: those under way, and one to start."""
 from python_qt_binding.QtCore import Qt, Signal
 from python_qt_binding.QtWidgets import (
-    QComboBox, QFrame, QGridLayout, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget)
+    QComboBox, QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QScrollArea, QVBoxLayout,
+    QWidget)
 
 from mhri.core.screen.task_views import TaskView
 from mhri.core.screen.task_words import for_whom, task_line
@@ -57,7 +58,7 @@ class RunRow(QFrame):
         self.stop_button.setMinimumHeight(theme.touch_size(self))
         self._grid = QGridLayout(self)
         self._grid.setColumnStretch(1, 1)
-        self._grid.addWidget(self.stop_button, 0, 2, Qt.AlignTop)
+        self._grid.addWidget(self.stop_button, 0, 2, -1, 1, Qt.AlignTop)
 
     def _connect(self):
         """Wire the button."""
@@ -78,7 +79,7 @@ class RunRow(QFrame):
             line.setTextFormat(Qt.PlainText)
             line.setWordWrap(True)
             self._grid.addWidget(sign, row, 0, Qt.AlignTop)
-            self._grid.addWidget(line, row, 1)
+            self._grid.addWidget(line, row, 1, Qt.AlignTop)
             self._lines.append((sign, line))
         for (text, waits), (sign, line) in zip(lines, self._lines):
             sign.show_sign(theme.TASK_WAITS if waits else theme.ON_TASK)
@@ -86,7 +87,7 @@ class RunRow(QFrame):
                 line.setText(text)
 
 
-class TasksPage(QScrollArea):
+class TasksPage(QWidget):
     """Values in (:meth:`show_tasks`, :meth:`show_problem`), signals out.
 
     Child widgets: ``task_combo``, a ``task_field_<name>`` for each field, ``task_start_button``,
@@ -110,14 +111,6 @@ class TasksPage(QScrollArea):
         """Make and place the parts."""
         self.setObjectName('tasks_page')
         self.setFont(theme.base_font(self.font()))
-        self.setFrameShape(QFrame.NoFrame)
-        self.setFocusPolicy(Qt.NoFocus)
-        self.setWidgetResizable(True)
-        self.setHorizontalScrollBarPolicy(Qt.ScrollBarAlwaysOff)
-        self.setVerticalScrollBar(WideScrollBar(self))
-        self.setWidget(QWidget(self))
-        self._column = QVBoxLayout(self.widget())
-        self._column.setContentsMargins(0, 0, 0, 0)
         self.problem_sign, self.problem_label = Sign(self), self._text()
         self.under_way_label = self._text()
         self.combo = QComboBox(self)
@@ -132,21 +125,39 @@ class TasksPage(QScrollArea):
         self.start_button.setFocusPolicy(Qt.TabFocus)
         for part in (self.combo, self.start_button):
             part.setMinimumHeight(theme.touch_size(self))
+        self.start_button.setMinimumWidth(3 * theme.touch_size(self))
         self._under_way = QVBoxLayout()
-        problem = QGridLayout()
-        problem.setColumnStretch(1, 1)
-        problem.addWidget(self.problem_sign, 0, 0, Qt.AlignTop)
-        problem.addWidget(self.problem_label, 0, 1)
-        self._column.addWidget(self._heading('Under way'))
-        self._column.addWidget(self.under_way_label)
-        self._column.addLayout(self._under_way)
-        self._column.addSpacing(self.fontMetrics().height() // 2)
-        self._column.addWidget(self._heading('Start'))
-        for part in (self.combo, self.about_label, self.fields, self.who_label):
-            self._column.addWidget(part)
-        self._column.addWidget(self.start_button)
-        self._column.addLayout(problem)
-        self._column.addStretch(1)
+        self._lay_out()
+
+    def _lay_out(self):
+        """Place the parts: "Start" and what is wrong are always in sight, the rest scrolls."""
+        area = QScrollArea(self)
+        area.setFrameShape(QFrame.NoFrame)
+        area.setFocusPolicy(Qt.NoFocus)
+        area.setWidgetResizable(True)
+        area.setHorizontalScrollBarPolicy(Qt.ScrollBarAlwaysOff)
+        area.setVerticalScrollBar(WideScrollBar(area))
+        area.setWidget(QWidget(area))
+        inside = QVBoxLayout(area.widget())
+        inside.setContentsMargins(0, 0, 0, 0)
+        inside.addWidget(self._heading('Under way'))
+        inside.addWidget(self.under_way_label)
+        inside.addLayout(self._under_way)
+        inside.addSpacing(self.fontMetrics().height() // 2)
+        inside.addWidget(self._heading('A new task'))
+        for part in (self.combo, self.about_label, self.fields):
+            inside.addWidget(part)
+        inside.addStretch(1)
+        start, problem = QHBoxLayout(), QHBoxLayout()
+        start.addWidget(self.start_button)
+        start.addWidget(self.who_label, 1)
+        problem.addWidget(self.problem_sign, 0, Qt.AlignTop)
+        problem.addWidget(self.problem_label, 1)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(area, 1)
+        column.addLayout(start)
+        column.addLayout(problem)
 
     def _heading(self, text):
         label = QLabel(text, self)
@@ -257,3 +268,5 @@ class TasksPage(QScrollArea):
         if text != self.problem_label.text():
             self.problem_label.setText(words.kept_together(text))
         self.problem_sign.show_sign((theme.TRIANGLE, theme.ATTENTION) if text else None)
+        for part in (self.problem_sign, self.problem_label):
+            part.setVisible(bool(text))
