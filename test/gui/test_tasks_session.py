@@ -51,7 +51,7 @@ def under_way(session, robot):
     row, tile = session.host.screen.robot_list.row(robot), session.host.windows[robot]
     session.until(lambda: view(session, robot).obeys == 'task' and view(session, robot).driven,
                   PATIENCE_S, robot + ' on its task')
-    session.until(lambda: row.pill.word == tile.pill.word == 'ON TASK'
+    session.until(lambda: row.task_pill.isVisibleTo(row) and tile.pill.word == 'ON TASK'
                   and row.trouble.text().startswith('square'), PATIENCE_S, 'row and tile to say so')
 
 

@@ -9,7 +9,8 @@ from mhri.core.events.events import KINDS
 from mhri.core.screen.task_book import ANSWER_S, Goal, RESULT_S, TaskBook
 from mhri.core.screen.task_views import KindView, Progress, RunView, TasksView, TaskView
 from mhri.core.screen.task_words import (
-    carry_on_line, ended_line, for_whom, NOT_RUNNING, start_problem, task_line)
+    carry_on_line, ended_line, for_whom, interrupted_line, NOT_RUNNING, start_problem, task_line,
+    task_lines)
 from mhri.core.screen.views import ControlView, PanelView, RobotView
 from mhri.core.tasks.base import ENDS
 from mhri.core.tasks.rows import TASKS
@@ -180,10 +181,21 @@ def test_when_who_runs_the_tasks_goes_every_run_is_lost_and_may_come_back(book):
      'square waits: something is in its way'),
     (TaskView('Square', 'waits for its odometry', True), 'square waits for its odometry')])
 def test_how_it_is_getting_on(task, words):
-    assert task_line(task) == words
+    assert task_line(task) == words == task_lines(task)[0]
+    assert [len(line) for line in task_lines(task)] == sorted(
+        (len(line) for line in task_lines(task)), reverse=True)
+
+
+def test_where_there_is_little_room_what_is_left_or_why_it_waits_is_said():
+    assert task_lines(TaskView('Square', 'corner 2 of 4: 1.3 m to go'))[1:] == (
+        'square, 1.3 m to go', '1.3 m to go')
+    assert task_lines(TaskView('Square', 'something is in its way', True))[1:] == (
+        'waits: something is in its way', 'something is in its way')
 
 
 def test_the_words_of_an_end_and_of_going_on():
+    assert interrupted_line('Go to') == 'go to interrupted'
+    assert interrupted_line('Go to', 'C') == 'go to interrupted: press C to continue it'
     assert ended_line('Go to', 'taken_over', 'it is checked') == 'go to taken over: it is checked'
     assert carry_on_line('square') == carry_on_line('a task of a lab') \
         == 'begins anew from where it stands'

@@ -33,6 +33,25 @@ def task_line(task: TaskView) -> str:
     return '{}: {}'.format(label, text) if text else label
 
 
+def task_lines(task: TaskView) -> Tuple[str, ...]:
+    """Return :func:`task_line` in fewer and fewer words: what is left, or why it waits."""
+    line, label = task_line(task), task.label.lower()
+    if task.waits:
+        waits = line[len(label) + 1:]
+        return line, waits, waits.partition(': ')[2] or waits
+    last = line.partition(': ')[2].rpartition(', ')[2]
+    return (line, '{}, {}'.format(label, last), last) if last else (line,)
+
+
+def interrupted_line(label: str, key: str = '') -> str:
+    """Return what is said of a robot that could continue a task.
+
+    :param key: the key that continues it
+    """
+    return '{} interrupted{}'.format(
+        label.lower(), ': press {} to continue it'.format(key) if key else '')
+
+
 def ended_line(label: str, state: str, text: str) -> str:
     """Return how a task ended, e.g. "square blocked: for 5 s: something is in its way"."""
     return '{} {}: {}'.format(label.lower(), _ENDED.get(state, state), text)

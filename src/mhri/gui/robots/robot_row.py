@@ -8,7 +8,7 @@ from python_qt_binding.QtWidgets import (
 
 from mhri.core.robots.numbers import LAST_KEY
 from mhri.core.screen import views
-from mhri.core.screen.task_words import task_line
+from mhri.core.screen.task_words import interrupted_line, task_lines
 from mhri.gui.screen import theme, words
 from mhri.gui.screen.labels import BatteryLine, Pill, plain_tip, Sign, TextLine
 
@@ -127,7 +127,11 @@ class RobotRow(QWidget):
         self.filler = TextLine(self)
         self.filler.setMinimumWidth(1)
         self.pill = Pill(self)
-        self.pill.set_words((DRIVING, MOVING, ON_TASK))
+        self.pill.set_words((DRIVING, MOVING))
+        self.task_pill = Pill(self)
+        self.task_pill.set_words((ON_TASK,))
+        self.task_pill.say(ON_TASK, theme.TASK)
+        self.task_pill.hide()
         self.carry_on_button = QPushButton(CARRY_ON, self)
         self.carry_on_button.setObjectName('carry_on_' + self.name)
         self.carry_on_button.setFocusPolicy(Qt.TabFocus)
@@ -152,7 +156,8 @@ class RobotRow(QWidget):
         grid.setHorizontalSpacing(unit // 3)
         grid.setVerticalSpacing(0)
         first, second = QHBoxLayout(), QHBoxLayout()
-        for widget, stretch in ((self.title, 0), (self.kind, 1), (self.recording, 0),
+        for widget, stretch in ((self.title, 0), (self.task_pill, 0), (self.kind, 1),
+                                (self.recording, 0),
                                 (self.sign, 0), (self.link, 0), (self.age, 0)):
             first.addWidget(widget, stretch)
         for widget, stretch in ((self.linear, 0), (self.trouble_sign, 0), (self.trouble, 1),
@@ -233,20 +238,22 @@ class RobotRow(QWidget):
 
     def _show_second_line(self, view):
         """Show the proof of a stop, or what is wrong with the link, or how the robot moves."""
-        if view.on_task:
-            self.pill.say(ON_TASK, theme.TASK)
-        elif view.driven:
+        self.task_pill.setVisible(view.on_task)
+        if view.driven and not view.on_task:
             self.pill.say(DRIVING)
         else:
-            self.pill.say(MOVING if view.moving else '', theme.ATTENTION, filled=False)
+            self.pill.say(MOVING if view.moving and not view.on_task else '', theme.ATTENTION,
+                          filled=False)
         if view.proof is not None:
             self._show_trouble(theme.PROOF_SIGNS[view.proof.state], view.proof.text,
-                               view.proof.state == views.PROOF_NOT_CONFIRMED)
+                               loud=view.proof.state == views.PROOF_NOT_CONFIRMED)
         elif view.link != views.LIVE:
             self._show_trouble(None, view.note or words.LINK_WORDS[view.link])
         elif view.task is not None:
             self._show_trouble(theme.TASK_WAITS if view.task.waits else theme.ON_TASK,
-                               task_line(view.task), with_state=True)
+                               *task_lines(view.task))
+        elif view.carry_on and not view.note:
+            self._show_trouble(None, interrupted_line(view.carry_on))
         else:
             sign = (theme.TRIANGLE, theme.ATTENTION) if view.slow else None
             self._show_trouble(sign, view.note, with_state=True)
@@ -258,9 +265,10 @@ class RobotRow(QWidget):
             self.number.fix_width('8' * len(text))
         self.number.show_text(text, theme.TEXT if number <= LAST_KEY else theme.MUTED)
 
-    def _show_trouble(self, sign, text, loud=False, with_state=False):
+    def _show_trouble(self, sign, text, *shorter, loud=False, with_state=False):
         """Show a sentence in place of the turn; '' brings the turn back.
 
+        :param shorter: the same in fewer and fewer words, by default its beginnings
         :param with_state: leave the robot's state beside the sentence
         """
         speaking = bool(text)
@@ -270,7 +278,7 @@ class RobotRow(QWidget):
         if font.bold() != loud:
             font.setBold(loud)
             self.trouble.setFont(font)
-        self.trouble.show_text(text, shorter=words.beginnings(text, most=3))
+        self.trouble.show_text(text, shorter=shorter or words.beginnings(text, most=3))
         # A sentence takes the room of a state that there is none of.
         state = state and bool(self.pill.word or not speaking)
         if (speaking, state, sign is None) == self._trouble_shown:

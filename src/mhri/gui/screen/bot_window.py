@@ -7,7 +7,7 @@ from python_qt_binding.QtWidgets import QLayout, QWidget
 
 from mhri.core.screen import views
 from mhri.core.screen.arrangement import USUAL_SHAPE
-from mhri.core.screen.task_words import task_line
+from mhri.core.screen.task_words import interrupted_line, task_line
 from mhri.core.screen.view_rows import KEYS, load, PICTURES, RECORD, RGB, SCAN, VIEW_ROWS
 from mhri.gui.driving.drive_keys import mark_drive_area
 from mhri.gui.driving.stop_button import StopButton
@@ -307,6 +307,8 @@ class BotWindow(QWidget):
         elif view.task is not None:
             sign, text = theme.TASK_WAITS if view.task.waits else theme.ON_TASK, \
                 task_line(view.task)
+        elif view.carry_on and not view.note:
+            sign, text = None, interrupted_line(view.carry_on, 'C' if self._looked_at else '')
         else:
             sign, text = None, view.note
         before = self.hud.sentence
