@@ -10,7 +10,7 @@ from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.robot_types import Limits
 from mhri.core.tasks.base import (
-    Body as TaskBody, ENDS, Other, Senses, Start, Step, Task)
+    Body as TaskBody, circles, ENDS, Other, Senses, Start, Step, Task)
 from mhri.core.tasks.brake import Scan, Surroundings
 from mhri.core.tasks.rows import BY_KEY
 from mhri.core.tasks.run import Facts, RobotRun
@@ -89,12 +89,13 @@ class Robot:
             self.scan_at = now_s
 
     def senses(self, now_s):
+        others = {other.name: Other(other.pose(), other.name < self.name
+                                    and other.run is not None
+                                    and other.run.state not in ENDS, other.kind.radius_m)
+                  for other in self._world.robots if other is not self}
+        self.seen.forget(self.odometry(), circles(self.pose(), others.values()))
         return Senses(now_s, self.pose(), self.odometry(), self.pose(),
-                      self.seen.around(self.odometry()),
-                      {other.name: Other(other.pose(), other.name < self.name
-                                         and other.run is not None
-                                         and other.run.state not in ENDS, other.kind.radius_m)
-                       for other in self._world.robots if other is not self})
+                      self.seen.around(self.odometry()), others)
 
     def command(self, velocity):
         """Give the body what was said some ticks ago."""

@@ -48,6 +48,7 @@ class ScreenHost(QObject):
         self.operator = operator
         self._to_add = []
         self._lost = set()
+        self._over_budget = False
         self._why = WhyStill()
         self._mode = None
         self._closed = False
@@ -154,6 +155,7 @@ class ScreenHost(QObject):
         self._feel_losses(view)
         self.tiles.show_view(view)
         self.events.show(view)
+        self._tell_budget()
         self.pad.show_view(view)
         for kind, value in self.operator.take_events():
             if kind == 'found':
@@ -171,6 +173,13 @@ class ScreenHost(QObject):
         refused = self.requests.carry_out(action, names)
         if refused:
             self.events.note('request.refused', refused)
+
+    def _tell_budget(self):
+        """Say once that the camera budget cannot be kept."""
+        note = self.tiles.budget_note
+        if note and not self._over_budget:
+            self.events.note('camera.budget', note)
+        self._over_budget = bool(note)
 
     def _feel_losses(self, view):
         """Shake the pad when a selected robot is lost."""

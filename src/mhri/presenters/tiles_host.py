@@ -80,8 +80,13 @@ class TilesHost(QObject):
                            key=lambda robot: self._pressing(robot.name, now))
         self._stopped = view.stop_all
         self._timer.start()
-        wishes = [self.hosts[robot.name].camera_wish(robot.selected) for robot in self._due]
-        self._cameras.settle(filter(None, wishes))
+        self._cameras.settle(wish for robot in self._due
+                             for wish in self.hosts[robot.name].wishes(robot.selected))
+
+    @property
+    def budget_note(self):
+        """A sentence while the camera budget cannot be kept, else ''."""
+        return self._cameras.note
 
     def _pressing(self, name, now):
         """Return a number that is the larger the longer a tile was not drawn: none starves."""

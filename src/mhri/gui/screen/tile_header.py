@@ -14,9 +14,11 @@ from mhri.gui.screen.labels import BatteryLine, Pill, Sign, TextLine
 VIEWS, VIEWS_IN_SHORT = 'Views', '…'
 TEAR_OFF, PUT_BACK = 'Tear off', 'Put back'
 TYPE, AGE, LINK, PILL, BATTERY = 'type', 'age', 'link', 'pill', 'battery'
+GAPS, SIGN = 'gaps', 'sign'
 # What is left out where there is no room, in this order; small tiles never have the first ones.
-_LEFT_OUT = (TYPE, AGE, TEAR_OFF, VIEWS, LINK, PILL, BATTERY)
-_OF_SMALL = 6
+# The last ones stay for as long as a shorter name makes room.
+_LEFT_OUT = (TYPE, AGE, TEAR_OFF, VIEWS, LINK, PILL, BATTERY, GAPS, SIGN)
+_OF_SMALL, _BEFORE_NAME = 6, 7
 
 DRIVING = 'DRIVING'
 ON_TASK = 'ON TASK'
@@ -133,7 +135,6 @@ class TileHeader(QWidget):
         base = theme.base_font(self.window().font() if self.window() else self.font())
         unit = self.fontMetrics().height()
         self._row.setContentsMargins(unit // 2, 2, 2 if large else unit // 3, 2)
-        self._row.setSpacing(unit // 2 if large else unit // 4)
         bold = theme.larger(base, 1.4 if large else 1.05, bold=True)
         numbers = theme.number_font(base)
         for part, font in ((self.name_label, bold), (self.number_label, bold),
@@ -167,12 +168,14 @@ class TileHeader(QWidget):
         self.number_label.fix_width(self.number_label.text() or '0')
         for count in range(0 if self.large else _OF_SMALL, len(_LEFT_OUT) + 1):
             self._leave_out(_LEFT_OUT[:count])
-            if self._needed(natural) <= self.width():
+            if self._needed(natural if count < _BEFORE_NAME else 1) <= self.width():
                 break
 
     def _leave_out(self, parts):
         """Show everything but some parts of :data:`_LEFT_OUT`."""
         self._with_age = AGE not in parts
+        self._row.setSpacing(self.fontMetrics().height() // (
+            2 if self.large and GAPS not in parts else 4))
         self.link_label.fix_width('waiting 000 ms' if self._with_age else 'waiting')
         self._show_link()
         self.views_button.setText(VIEWS if VIEWS not in parts else VIEWS_IN_SHORT)
@@ -182,7 +185,8 @@ class TileHeader(QWidget):
         self.pill.set_words((self.pill.word,) if PILL in parts else tuple(LOOKS))
         self.type_label.fix_width(self.type_label.text())
         for part, key in ((self.type_label, TYPE), (self.link_label, LINK),
-                          (self.tear_button, TEAR_OFF), (self.battery_label, BATTERY)):
+                          (self.tear_button, TEAR_OFF), (self.battery_label, BATTERY),
+                          (self.link_sign, SIGN)):
             part.setVisible(key not in parts)
         self.views_button.setVisible(self.large)
         self.carry_on_button.setVisible(self.large and bool(self.carry_on_button.text()))

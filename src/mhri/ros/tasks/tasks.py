@@ -208,7 +208,7 @@ class Tasks:
         if not problem and robot is None:
             state = LOST
             problem = 'the drive service does not know it: add it to the list of robots'
-        if not problem and kind.needs_others and not robot.tracked:
+        if not problem and kind.key == 'follow' and not robot.tracked:
             problem = 'nobody knows where it is: motion capture does not see it'
         if not problem:
             body = robot.body
