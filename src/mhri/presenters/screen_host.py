@@ -23,6 +23,7 @@ from mhri.gui.screen.screen import ScreenWidget
 from mhri.presenters.pad_host import PadHost
 from mhri.presenters.requests_host import RequestsHost
 from mhri.presenters.stop_watch import StopWatch
+from mhri.presenters.task_host import TaskHost
 from mhri.presenters.tiles_host import TilesHost
 from mhri.ros.devices.device_client import choose_device
 from mhri.ros.resources import resource_path
@@ -58,6 +59,7 @@ class ScreenHost(QObject):
         self.events = EventHost(operator.recordings.status, self.screen)
         self.doctor = DoctorHost(operator, self.screen)
         self.pad = PadHost(operator, self.screen, parent=self)
+        self.tasks = TaskHost(operator, self.screen, self._select, self.events.note)
         self._connect()
 
     @property
@@ -96,6 +98,7 @@ class ScreenHost(QObject):
         self.tiles.clicked.connect(panel.look_at)
         self.tiles.drive_requested.connect(self._drive)
         self.tiles.closed.connect(self._leave)
+        self.tiles.carry_on_requested.connect(self.tasks.carry_on)
         panel.mode_requested.connect(self._request_mode)
         panel.mode_combo.device_requested.connect(self._request_device)
         panel.stick_moved.connect(operator.send_stick)
@@ -148,7 +151,8 @@ class ScreenHost(QObject):
         for name, parameters in self._to_add[:ADD_AT_ONCE]:
             self.operator.add(name, parameters)
         del self._to_add[:ADD_AT_ONCE]
-        view = self._why.tell(self.operator.view(), self.screen.stick(), time.monotonic())
+        view = self._why.tell(self.tasks.tell(self.operator.view()), self.screen.stick(),
+                              time.monotonic())
         self._mode = view.mode or self._mode
         self.screen.show_view(view)
         self._feel_losses(view)
@@ -312,3 +316,4 @@ class ScreenHost(QObject):
         self.tiles.close()
         self._stop_watch.close()
         self.pad.close()
+        self.tasks.close(forget)

@@ -10,6 +10,7 @@ from typing import Optional, Tuple
 
 from mhri.core.robots.mocap import Drift, Pose
 from mhri.core.screen.brake_view import BrakeView
+from mhri.core.screen.task_views import TaskView
 
 # Link states of a robot.
 WAITING = 'waiting'   # added, nothing heard yet
@@ -79,7 +80,8 @@ class RobotView:
 
     What the screen makes of it: ``asked`` is the operator's command [m/s, rad/s] where the robot
     has done something else for a moment, else None; ``why`` says in a sentence why it stands though
-    the stick is held, '' for nothing.
+    the stick is held, '' for nothing. ``task`` is what it does by itself, None for nothing,
+    ``carry_on`` the name of the task that it could continue, '' for none.
     """
 
     name: str
@@ -118,6 +120,13 @@ class RobotView:
     reached: bool = True
     asked: Optional[Tuple[float, float]] = None
     why: str = ''
+    task: Optional[TaskView] = None
+    carry_on: str = ''
+
+    @property
+    def on_task(self) -> bool:
+        """Whether it drives by itself, or is about to."""
+        return not self.selected and (self.obeys == 'task' or self.task is not None)
 
 
 @dataclass(frozen=True)

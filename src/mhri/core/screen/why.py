@@ -70,8 +70,10 @@ def _nobody_decides(view: PanelView, _: RobotView, __: _Stick) -> str:
 def _not_selected(_: PanelView, robot: RobotView, __: _Stick) -> str:
     if robot.selected:
         return ''
-    what = 'on a task: {} to take it over' if robot.obeys == 'task' else \
-        'not selected: {} to drive it'
+    what = 'not selected: {} to drive it'
+    if robot.on_task:
+        name = robot.task.label.lower() if robot.task else ''
+        what = ' '.join(filter(None, ('on a task:', name and name + ';', '{} to take it over')))
     return what.format('press {}'.format(robot.number) if 0 < robot.number <= LAST_KEY
                        else 'check it in the list')
 
