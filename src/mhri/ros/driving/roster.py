@@ -75,7 +75,7 @@ class Roster:
                 self._look()
                 self._announce(time.monotonic())
             except (MasterError, OSError) as error:
-                rospy.logdebug('the robots cannot be looked at now: %s', error)
+                rospy.logdebug('cannot look at the robots now: %s', error)
             except Exception as error:  # without this thread no robot would ever be added
                 rospy.logerr_throttle(
                     10.0, 'the robots could not be looked at: {}'.format(repr(error)[:300]))

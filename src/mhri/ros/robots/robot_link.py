@@ -28,7 +28,7 @@ from mhri.ros.sensors.refusals import Refusals
 ODOMETRY_READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
                     'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
 
-# Below a robot's namespace: the late commands that its guard dropped.
+# Topic in a robot's namespace: the late commands that its guard dropped.
 DROPPED = 'mhri_guard/dropped'
 DROPPED_SHOWN_S = 1.0
 # A robot that has taken commands for this long without odometry has none.
