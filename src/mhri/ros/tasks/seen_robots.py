@@ -7,7 +7,7 @@ import threading
 import rospy
 
 from mhri.core.robots.robot_types import resolve_robot_type
-from mhri.core.tasks.base import Other, Senses
+from mhri.core.tasks.base import circles, Other, Senses
 from mhri.ros.graph.look import robot_facts
 from mhri.ros.graph.master_api import MasterApi
 from mhri.ros.tasks.robot_senses import RobotSenses
@@ -97,9 +97,10 @@ class SeenRobots:
         if odometry is None:
             return None
         placed = place.is_fresh
-        return Senses(now_s, place.pose(odometry) if placed else odometry, odometry,
-                      robot.captured(), robot.points(),
-                      self._others(robot, busy, place_of) if placed else {})
+        pose = place.pose(odometry) if placed else odometry
+        others = self._others(robot, busy, place_of) if placed else {}
+        return Senses(now_s, pose, odometry, robot.captured(),
+                      robot.points(circles(pose, others.values())), others)
 
     def _others(self, robot, busy, place_of):
         """Return the other robots that are placed."""
