@@ -93,6 +93,11 @@ class RobotRun:
         self._held_since: Optional[float] = None
         self._held_last = 0.0
 
+    @property
+    def drives(self) -> bool:
+        """Whether the robot shall have the velocities of :meth:`tick`."""
+        return True
+
     def end(self, state: str, text: str, now_s: float) -> None:
         """End it, unless it has ended."""
         if self.phase != ENDED:
@@ -151,7 +156,7 @@ class RobotRun:
         return None
 
     def _get_ready(self, facts: Facts) -> None:
-        missing = _unheard(facts)
+        missing = missing_senses(facts)
         if missing:
             self.text = 'waits for ' + missing
             return
@@ -220,17 +225,17 @@ class RobotRun:
 _LETS_PASS = 'it lets pass '
 
 
-def _unplaced(facts: Facts) -> bool:
-    return facts.place_age_s is None or facts.place_age_s > OLD_S
-
-
 def _at_fence(free: Velocity, velocity: Velocity) -> str:
     """Return that the fence holds it, in words; '' where it does not."""
     held = abs(velocity.linear_mps) <= _STANDS_MPS < abs(free.linear_mps)
     return 'it is at the fence' if held else ''
 
 
-def _unheard(facts: Facts) -> str:
+def _unplaced(facts: Facts) -> bool:
+    return facts.place_age_s is None or facts.place_age_s > OLD_S
+
+
+def missing_senses(facts: Facts) -> str:
     """Return what has not been heard yet, in words; '' where all is there."""
     for missing, words in (
             (not facts.known, 'the drive service to know it'),

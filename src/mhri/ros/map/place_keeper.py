@@ -156,6 +156,10 @@ class PlaceKeeper:
         """Return the corners (x, y) [m] of the fence, () for none."""
         return self._drawn.fence
 
+    def marks(self):
+        """Return {name: :class:`Pose`} of the marks."""
+        return dict(self._drawn.marks)
+
     def mark(self, name):
         """Return the :class:`Pose` of a mark, None where there is none."""
         return self._drawn.marks.get(name)

@@ -93,7 +93,7 @@ class RobotSenses:
             rospy.logwarn('%s: cannot read its odometry, %s is not installed here', self.name,
                           self.robot_type.odometry_type)
             return None
-        return _Newest(self._topics('odometry'), message_class, self._clock)
+        return _Newest(self.odometry_topics, message_class, self._clock)
 
     def _topics(self, key):
         return [topic_of(self.name, topic) for topic in getattr(self.robot_type, key)]
@@ -108,6 +108,11 @@ class RobotSenses:
             self._scan = _Newest(self._topics('scan'), LaserScan, self._clock, buff_size=1 << 20)
         if self._battery is None and self.robot_type.battery:
             self._battery = _Newest(self._topics('battery'), BatteryState, self._clock)
+
+    @property
+    def odometry_topics(self):
+        """The topics that its odometry may have."""
+        return self._topics('odometry')
 
     @property
     def has_laser(self):
@@ -136,7 +141,7 @@ class RobotSenses:
         if header is not None:
             self.odometry_frame = frame_name(message.header.frame_id)
         self.odometry = Odometry(self.pose, self._odometry.heard_at, header and header[0])
-        self.trail.add(self.pose)
+        self.trail.add(self.pose, self._clock())
 
     def _see(self, message):
         try:

@@ -4,6 +4,7 @@
 import re
 import threading
 
+import numpy as np
 import rospy
 
 from mhri.core.robots.robot_types import resolve_robot_type
@@ -86,12 +87,13 @@ class SeenRobots:
         with self._lock:
             return self._robots.get(name)
 
-    def senses(self, robot, now_s, busy, place_of):
+    def senses(self, robot, now_s, busy, place_of, fence=()):
         """Return the :class:`Senses` of a robot, None before it is heard.
 
         :param robot: a :class:`RobotSenses`
         :param busy: names of the robots that are on a task
         :param place_of: function from a name to its :class:`mhri.core.map.places.Place`
+        :param fence: corners (x, y) [m] in the frame of the map
         """
         odometry, place = robot.pose, place_of(robot.name)
         if odometry is None:
@@ -100,7 +102,8 @@ class SeenRobots:
         pose = place.pose(odometry) if placed else odometry
         others = self._others(robot, busy, place_of) if placed else {}
         return Senses(now_s, pose, odometry, robot.captured(),
-                      robot.points(circles(pose, others.values())), others)
+                      robot.points(circles(pose, others.values())), others,
+                      np.array(fence if placed else ()).reshape(-1, 2))
 
     def _others(self, robot, busy, place_of):
         """Return the other robots that are placed."""

@@ -26,10 +26,9 @@ from std_msgs.msg import Bool
 
 from mhri.core.config import ConfigError, short
 from mhri.core.driving.limits import ZERO
-from mhri.core.robots.names import name_problem
-from mhri.core.tasks.base import DONE, FAILED, LOST, Start, STOPPED, TAKEN_OVER
+from mhri.core.tasks.base import DONE, FAILED, STOPPED, TAKEN_OVER
 from mhri.core.tasks.rows import BY_KEY
-from mhri.core.tasks.run import ENDED, Facts, RobotRun
+from mhri.core.tasks.run import ENDED, Facts
 from mhri.msg import (
     GatesState, RunTaskAction, RunTaskFeedback, RunTaskResult, TaskList, TaskRun, TeamTwist)
 from mhri.ros.convert import to_twist
@@ -40,6 +39,7 @@ from mhri.ros.map.map_source import MapSource
 from mhri.ros.map.place_keeper import PlaceKeeper
 from mhri.ros.map.place_services import PlaceServices
 from mhri.ros.tasks.seen_robots import SeenRobots
+from mhri.ros.tasks.starter import Starter
 from mhri.ros.tasks.words import kind_message, state_message
 from mhri.ros.worker import Worker
 
@@ -49,9 +49,6 @@ FEEDBACK_EVERY = 4
 ZEROS_S = 0.6
 # The gates speak at 2 Hz: a word late by this much is a word that does not come [s].
 SILENT_S = 0.9
-MOST_ROBOTS = 64
-# A robot that is known for so long and not placed will not be by itself [s].
-PLACED_WITHIN_S = 2.0
 
 
 class _Goal:
@@ -96,6 +93,7 @@ class Tasks:
         self._seen = SeenRobots(types, clock)
         self._map = MapSource(grid)
         self.places = PlaceKeeper(self._seen, self._map, clock)
+        self._starter = Starter(kinds, self._seen, self.places, clock)
         self._goals = {}
         # {robot: its newest RobotRun}: a robot has one task.
         self._runs = {}
@@ -170,7 +168,7 @@ class Tasks:
     def _know(self):
         """See the robots that the gates know; tried again where the master does not answer."""
         try:
-            self._seen.know(list(self._gates))
+            self._starter.know(list(self._gates))
         except (MasterError, OSError) as error:
             rospy.logwarn_throttle(5.0, 'the robots cannot be looked at: {}'.format(error))
             if not self._done.wait(1.0):
@@ -180,7 +178,7 @@ class Tasks:
         """Accept a goal that can be understood, and begin it on the worker."""
         goal = handle.get_goal()
         try:
-            values = _values_of(goal, self._kinds)
+            values = self._starter.values_of(goal)
         except ConfigError as error:
             handle.set_rejected(RunTaskResult(), short(error))
             return
@@ -201,17 +199,12 @@ class Tasks:
 
     def _begin(self, goal):
         """Open what the robots of a goal need, and begin their runs (on the worker)."""
-        try:
-            known = [name for name in goal.team if name in self._gates]
-            self._seen.know(list(self._gates))
-            self._seen.open(known)
-            problem = ''
-        except (MasterError, OSError) as error:
-            problem = 'the ROS master does not answer: {}'.format(error)
+        drives, problem = self._starter.prepare(goal.key, goal.values, goal.team,
+                                                list(self._gates))
         with self._lock:
             now = self._clock()
             for name in goal.team:
-                run = self._new_run(goal, name, problem, now)
+                run = self._starter.run(goal, name, drives, problem, now)
                 before = self._runs.get(name)
                 if before is not None:
                     before.end(TAKEN_OVER, 'it got another task: {}'.format(goal.key), now)
@@ -220,30 +213,6 @@ class Tasks:
                 if goal.cancelled:
                     run.end(STOPPED, 'it was cancelled', now)
             goal.ready = True
-
-    def _new_run(self, goal, name, problem, now):
-        """Return the run of one robot; one that cannot be begun has ended."""
-        robot, kind, state = self._seen.get(name), self._kinds[goal.key], FAILED
-        task = body = None
-        if not problem and robot is None:
-            state = LOST
-            problem = 'the drive service does not know it: add it to the list of robots'
-        placed = kind.placed(goal.values)
-        if not problem and placed and robot.known_s() > PLACED_WITHIN_S \
-                and not self.places.place(name).is_fresh:
-            problem = self.places.place(name).text
-        if not problem:
-            body = robot.body
-            try:
-                task = kind.make(goal.values, Start(name, goal.team, body, robot.trail.places()))
-            except ValueError as error:
-                problem = str(error)
-            except Exception as error:  # a task may be a lab's own
-                problem = 'its task cannot be begun: {!r}'.format(error)[:200]
-        run = RobotRun(name, task, body, goal.values.number('timeout'), now, placed)
-        if problem:
-            run.end(state, problem, now)
-        return run
 
     def _run(self):
         number = 0
@@ -283,6 +252,8 @@ class Tasks:
                     message.twists.append(Twist())
                 continue
             velocity = self._ticked(run, now, busy)
+            if not run.drives:
+                continue
             message.robots.append(name)
             message.twists.append(to_twist(velocity.linear_mps, velocity.angular_rad_s))
         if message.robots:
@@ -308,8 +279,9 @@ class Tasks:
             known.update(obeys=gate.obeys, stands=gate.stands)
         if robot is not None:
             known.update(robot.ages(), has_laser=robot.has_laser, battery=robot.charge,
-                         senses=self._seen.senses(robot, now, busy, self.places.place))
-        if run.placed:
+                         senses=self._seen.senses(robot, now, busy, self.places.place,
+                                                  self.places.fence()))
+        if run.placed or self.places.fence():
             place = self.places.place(name)
             age_s = 0.0 if math.isnan(place.age_s) else place.age_s
             known.update(place_age_s=None if place.odometry is None else age_s,
@@ -349,23 +321,3 @@ class Tasks:
                                runs=runs)
             message.header.stamp = rospy.Time.now()
             self._list.publish(message)
-
-
-def _values_of(goal, kinds):
-    """Return the parameters of a ``mhri/RunTaskGoal``.
-
-    :raises ConfigError: something of it cannot be used
-    """
-    kind = kinds.get(goal.task)
-    if kind is None:
-        raise ConfigError('task', '', 'no task {!r}; there are {}'.format(
-            goal.task[:60], ', '.join(kinds)))
-    origin = 'task ' + goal.task
-    if not 0 < len(goal.robots) <= MOST_ROBOTS or len(set(goal.robots)) < len(goal.robots):
-        raise ConfigError(origin, 'robots', 'expected 1 to {} robots, each once'.format(
-            MOST_ROBOTS))
-    for name in goal.robots:
-        problem = name_problem(name)
-        if problem:
-            raise ConfigError(origin, 'robots', '{!r}: {}'.format(name[:64], problem))
-    return kind.read(goal.parameters)
