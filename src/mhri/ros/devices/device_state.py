@@ -3,10 +3,10 @@
 """Which device an input node has, for the screen: ``device_state`` beside its ``set_suspended``.
 
 ``diagnostic_msgs/DiagnosticStatus``, latched, on change: ``name`` is what the device is, e.g.
-'pad'; ``hardware_id`` the name of the one that is open, or would be if the node were resumed, ''
-where there is none; ``message`` why there is none and what to do, or what has to be done to the one
-there is; OK where there is one, WARN where there is none, STALE where the node cannot tell without
-opening it. ``values`` has a ``there`` for each device that could be opened instead.
+'pad'; ``hardware_id`` the name of the open device, or of the one that would open if the node were
+resumed, '' if there is none; ``message`` why there is none and the remedy, or what the present one
+needs; OK if there is a device, WARN if there is none, STALE if the node cannot tell without opening
+it. ``values`` has a ``there`` for each device that could be opened instead.
 """
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 import rospy
@@ -19,7 +19,7 @@ MOST_DEVICES = 20
 
 
 def state_topic(service):
-    """Return the name of the topic that belongs to a service ``set_suspended``."""
+    """Return the name of the topic beside a service ``set_suspended``."""
     return service.rpartition('/')[0] + '/device_state'
 
 
@@ -37,7 +37,7 @@ class DeviceState:
                                       latch=True)
 
     def tell(self, device, note, there=()):
-        """Say what is there; the same again costs nothing."""
+        """Say which device there is; repeating the same costs nothing."""
         if (device, note, there) != self._told:
             self._told = device, note, there
             level = DiagnosticStatus.OK if device else \
@@ -47,14 +47,14 @@ class DeviceState:
 
 
 class DeviceStates:
-    """The panel's side: what the input nodes say, for as long as they are there."""
+    """The panel's side: what the input nodes say, for as long as they live."""
 
     def __init__(self):
         self._subscribers = {}
         self._said = {}
 
     def follow(self, services):
-        """Hear the nodes of the sources there are now (blocking: it asks the master).
+        """Listen to the nodes of the present sources (blocking: it asks the master).
 
         :param services: {source: name of its ``set_suspended``}
         """
@@ -72,7 +72,7 @@ class DeviceStates:
                 if pair.key == THERE and pair.value))
 
     def views(self):
-        """Return a :class:`mhri.core.screen.views.DeviceView` of each that is known now."""
+        """Return a :class:`mhri.core.screen.views.DeviceView` of each device known now."""
         return tuple(self._said[source] for (source, _), subscriber in
                      sorted(list(self._subscribers.items()))
                      if source in self._said and subscriber.get_num_connections())
