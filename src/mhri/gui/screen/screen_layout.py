@@ -50,6 +50,8 @@ class ScreenLayout(QObject):
         # It becomes as small as it is made: the parts give way before the screen does.
         screen.layout().setSizeConstraint(QLayout.SetNoConstraint)
         theme.apply(screen, self._theme)
+        # Within rqt it lies on a ground that has the colours of the desktop.
+        screen.setAutoFillBackground(True)
         screen.tabs.addTab(ROBOTS)
         screen.tabs.setExpanding(False)
         # Hidden at first, it would think that it has no tabs.
