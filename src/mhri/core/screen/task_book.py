@@ -12,6 +12,7 @@ import yaml
 
 from mhri.core.screen.task_views import KindView, Progress, RunView, TasksView, TaskView
 from mhri.core.screen.task_words import ended_line
+from mhri.core.screen.text import tidy_text
 from mhri.core.tasks.base import (
     BLOCKED, ENDS, LOST, STOPPED, TAKEN_OVER, TEAM, TIMEOUT, WAITING)
 
@@ -115,8 +116,9 @@ class TaskBook:
             self._left.pop(robot.robot, None)
             self._news.append(News('task.begun', robot.robot, label.lower() + ' started'))
         said = robot.said[len(old.said) if old else 0:]
-        self._news += [News('task.said', robot.robot, '{}: {}'.format(label.lower(), line))
-                       for line in said if line != robot.text or robot.state not in ENDS]
+        self._news += [
+            News('task.said', robot.robot, '{}: {}'.format(label.lower(), tidy_text(line)))
+            for line in said if line != robot.text or robot.state not in ENDS]
         if robot.state in ENDS and (old is None or old.state not in ENDS):
             self._news.append(News('task.' + robot.state, robot.robot,
                                    ended_line(label, robot.state, robot.text)))
