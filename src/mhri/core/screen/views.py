@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Optional, Tuple
 
 from mhri.core.robots.mocap import Drift, Pose
+from mhri.core.screen.brake_view import BrakeView
 from mhri.core.screen.task_views import TaskView
 
 # Link states of a robot.
@@ -71,7 +72,7 @@ class RobotView:
     ``guarded`` while its commands go through a guard on the robot, ``obeys`` is whom it obeys ('',
     'operator', 'task'), ``stands`` why it is kept still ('', 'stopped', 'not_heard', 'joining'),
     ``waits`` is true while it waits for a centred stick, ``stop_latched`` once its guard has
-    confirmed the stop. ``hardware_stop`` is true while the robot's own emergency stop holds it,
+    confirmed the stop. ``brake`` is what its obstacle brake does. ``hardware_stop`` is true while the robot's own emergency stop holds it,
     None if nothing reports it. ``power`` says in words what was done to its motor power
     (:mod:`mhri.core.driving.motor_power`), '' for nothing, ``offers_power`` whether it can be cut.
     ``sent_mps`` and ``sent_rad_s`` are the velocity last sent to it (None: not known), ``reached``
@@ -108,6 +109,7 @@ class RobotView:
     waits: bool = False
     obeys: str = ''
     stands: str = ''
+    brake: BrakeView = BrakeView()
     stop_latched: bool = False
     power: str = ''
     offers_power: bool = False
@@ -159,13 +161,14 @@ class DeviceView:
 
     ``name`` is the name of the connected device, '' if there is none; ``note`` says why there is
     none and what to do, or what the device waits for; both are '' if the node cannot tell.
-    ``kind`` is e.g. 'pad'.
+    ``kind`` is e.g. 'pad'; ``there`` are the names of all that could be chosen.
     """
 
     source: str
     name: str = ''
     note: str = ''
     kind: str = ''
+    there: Tuple[str, ...] = ()
 
     @property
     def absent(self) -> bool:
@@ -191,7 +194,7 @@ class PanelView:
     is stopped. ``limits`` are the operator's speed limits in force [m/s, rad/s]. ``status`` is the
     one line at the bottom, never empty; ``status_level`` one of 'calm', 'attention', 'stopped'.
     ``together`` is true while all selected robots are held to the pace of the slowest, ``pace``
-    says in words what that is, ``slowed`` is true while a slow link holds them back.
+    says in words what that is, ``brake`` while the obstacle brake is on, ``slowed`` is true while a slow link holds them back.
     ``camera_bits_per_s`` is what all pictures on show take of the network. ``heard`` is what the
     voice node heard last, None before that. ``control`` is who drives, ``answers`` is false while
     the gates are not heard, ``stop_taken`` true once they have said that the stop is in force.
@@ -208,6 +211,7 @@ class PanelView:
     stop_note: str = ''
     limits: Tuple[float, float] = (0.5, 1.5)
     together: bool = False
+    brake: bool = False
     pace: str = ''
     slowed: bool = False
     status: str = 'starting'

@@ -58,6 +58,8 @@ class Senses:
     ``odometry`` is the latter in any case, ``captured`` the place by motion capture or None.
     ``points`` is an array (n, 2) of what its laser has met, in its own frame [m]: x ahead, y to the
     left. ``others`` are the other robots that are placed, by their names; none where it is not.
+    ``fence`` is an array (n, 2) of the corners of what no task leaves, in the frame of ``pose``
+    [m], empty where there is none.
     """
 
     now_s: float
@@ -66,6 +68,7 @@ class Senses:
     captured: Optional[Pose] = None
     points: np.ndarray = field(default_factory=lambda: NOWHERE)
     others: Mapping[str, Other] = field(default_factory=dict)
+    fence: np.ndarray = field(default_factory=lambda: NOWHERE)
 
 
 @dataclass(frozen=True)
@@ -85,12 +88,19 @@ class Step:
 
 @dataclass(frozen=True)
 class Start:
-    """Who is started: the robot, its place in the team, its body, and its trail (odometry)."""
+    """Who is started: the robot, its place in the team, its body, and its trail (odometry).
+
+    ``trail_ages_s`` is the age of each place of the trail [s], ``marks`` are named places in the
+    frame of the map, and ``drive`` is what a recording says of where it was (odometry).
+    """
 
     robot: str
     team: Tuple[str, ...]
     body: Body
     trail: Tuple[Pose, ...] = ()
+    trail_ages_s: Tuple[float, ...] = ()
+    marks: Mapping[str, Pose] = field(default_factory=dict)
+    drive: Tuple[Pose, ...] = ()
 
     @property
     def place(self) -> int:
@@ -123,6 +133,7 @@ class Field:
     :param default: None: may be left out; REQUIRED: has to be given
     :param kind: NUMBER in [least, greatest], TEXT, or ROUTE: a list of [x, y] [m]
     :param choices: what a TEXT may be; empty: anything
+    :param needs_place: where this is given, the robot has to be placed
     """
 
     name: str
@@ -133,6 +144,7 @@ class Field:
     greatest: float = math.nan
     kind: str = NUMBER
     choices: Tuple[str, ...] = ()
+    needs_place: bool = False
 
 
 REQUIRED = '\0required'
@@ -172,6 +184,10 @@ class Values:
         assert isinstance(value, tuple)
         return value
 
+    def is_given(self, row: Field) -> bool:
+        """Tell whether a parameter is something else than its default."""
+        return self._values.get(row.name, row.default) != row.default
+
     def by_odometry(self) -> bool:
         """Tell whether places are meant in the frame of the robot's own odometry."""
         return self._values.get(FRAME.name) == ODOM
@@ -195,7 +211,8 @@ class TaskKind:
 
     def placed(self, values: Values) -> bool:
         """Tell whether a robot has to be placed for it, with these parameters."""
-        return self.needs_place and not values.by_odometry()
+        return (self.needs_place and not values.by_odometry()) or any(
+            values.is_given(row) for row in self.fields if row.needs_place)
 
     def read(self, parameters: str) -> Values:
         """Return the parameters of a YAML text.
