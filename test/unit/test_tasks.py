@@ -41,6 +41,25 @@ def test_goto_ends_where_it_was_sent(x, y, heading):
     assert robot.contacts == 0
 
 
+@pytest.mark.parametrize('task, parameters, placed', [
+    ('goto', '{x: 1, y: 0}', True), ('goto', '{x: 1, y: 0, frame: odom}', False),
+    ('patrol', '{route: [[1, 0]]}', True), ('patrol', '{route: [[1, 0]], frame: odom}', False),
+    ('follow', '{leader: bot2}', True), ('square', '{side: 1}', False), ('hold', '', False),
+    ('return', '', False)])
+def test_which_tasks_need_a_place(task, parameters, placed):
+    kind = BY_KEY[task]
+    assert kind.placed(kind.read(parameters)) == placed
+
+
+@pytest.mark.parametrize('task, parameters', [
+    ('goto', '{x: 1.0, y: 0.5, frame: odom}'),
+    ('patrol', '{route: [[1.0, 0.5]], rounds: 1, frame: odom}')])
+def test_by_odometry_the_place_counts_from_where_odometry_begins(task, parameters):
+    robot = alone(task, parameters, x=-1.0, y=1.0, yaw=1.57)
+    assert robot.run.state == DONE
+    assert math.hypot(robot.body.odom_x - 1.0, robot.body.odom_y - 0.5) < 0.12
+
+
 @pytest.mark.parametrize('discs', [
     [(1.0, 0.0, 0.15)], [(1.0, 0.1, 0.3)], [(1.2, -0.2, 0.4)], [(0.8, 0.0, 0.05)]])
 def test_goto_goes_around_a_single_thing(discs):
@@ -238,7 +257,8 @@ PARAMETERS = [
     ('square', '{side: 0.0}', 'side: expected a number from 0.2'),
     ('patrol', '{route: 3}', 'route: expected a list of [x, y]'),
     ('patrol', '{route: [[1, .nan]]}', 'route: expected a list of [x, y]'),
-    ('follow', '{}', 'leader: is missing')]
+    ('follow', '{}', 'leader: is missing'),
+    ('goto', '{x: 1, y: 2, frame: base}', 'frame: expected nothing or odom')]
 
 
 @pytest.mark.parametrize('task, parameters, words', PARAMETERS)

@@ -12,9 +12,9 @@ import rospkg
 from mhri.core.config import ConfigError, MAX_BYTES, too_large
 from mhri.core.robots.robot_types import Export, load_robot_types
 
-# The element of a package.xml that exports a robot type, and its attributes.
+# The element of a package.xml that exports a robot type or a task, and its attributes.
 EXPORT_TAG = 'mhri'
-TYPE_ATTRIBUTE, WINDOW_ATTRIBUTE = 'robot_type', 'window'
+TYPE_ATTRIBUTE, WINDOW_ATTRIBUTE, TASK_ATTRIBUTE = 'robot_type', 'window', 'task'
 
 
 def resource_path(*parts):
@@ -83,16 +83,49 @@ def exported_types(rospack=None):
     :param rospack: where to look for packages, default ``rospkg.RosPack()``
     :returns: ([:class:`Export`], [ConfigError]), in the order of the packages' names
     """
-    rospack = rospack or rospkg.RosPack()
     exports, errors = [], []
+    for package, manifest, attributes in _elements(rospack, errors):
+        if TASK_ATTRIBUTE in attributes:
+            continue
+        try:
+            exports.append(_read_export(package, manifest, attributes))
+        except ConfigError as error:
+            errors.append(error)
+    return exports, errors
+
+
+def exported_tasks(rospack=None):
+    """Return the modules of tasks that packages export.
+
+    A package exports one in its package.xml; the module has the task's row as ``ROW``::
+
+        <export>
+          <mhri task="lab_tasks.look_around"/>
+        </export>
+
+    :param rospack: where to look for packages, default ``rospkg.RosPack()``
+    :returns: ([(package, module)], [ConfigError]), in the order of the packages' names
+    """
+    modules, errors = [], []
+    for package, manifest, attributes in _elements(rospack, []):
+        if TASK_ATTRIBUTE not in attributes:
+            continue
+        if set(attributes) == {TASK_ATTRIBUTE} and attributes[TASK_ATTRIBUTE].strip():
+            modules.append((package, attributes[TASK_ATTRIBUTE].strip()))
+        else:
+            errors.append(Export(package, manifest, '').error('<{}>'.format(EXPORT_TAG), (
+                'a task is exported by itself; write <{} {}="package.module"/>').format(
+                    EXPORT_TAG, TASK_ATTRIBUTE)))
+    return modules, errors
+
+
+def _elements(rospack, errors):
+    """Yield (package, manifest, attributes) of everything that packages export for mhri."""
+    rospack = rospack or rospkg.RosPack()
     for package in sorted(rospack.list()):
         manifest = os.path.join(rospack.get_path(package), 'package.xml')
         for attributes in _exports_of(package, manifest, errors):
-            try:
-                exports.append(_read_export(package, manifest, attributes))
-            except ConfigError as error:
-                errors.append(error)
-    return exports, errors
+            yield package, manifest, attributes
 
 
 def _exports_of(package, manifest, errors):

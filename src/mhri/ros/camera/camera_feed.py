@@ -95,6 +95,11 @@ class CameraFeed:
         """Return the class of a subscription to an offer, and its arguments."""
         return Subscription, offer.topic, session.hear
 
+    def samples_of(self, session, offer, grant, native_hz):
+        """Return the same of single pictures of an offer, one at a time."""
+        return (Samples, offer.topic, session.hear, session.explain, grant.rate_hz, native_hz,
+                self._clock)
+
     def close(self, wait_s=0.0):
         """Decode nothing more and unregister the topic, the latter on the feed's own thread.
 
@@ -253,8 +258,7 @@ class CameraFeed:
             if not (line and line.topic == offer.topic
                     and getattr(line, 'rate_hz', None) == grant.rate_hz):
                 native_hz = self._known.get(offer.topic, (None, None))[1]
-                self._hold(Samples, offer.topic, session.hear, session.explain, grant.rate_hz,
-                           native_hz, self._clock)
+                self._hold(*self.samples_of(session, offer, grant, native_hz))
         elif not (isinstance(line, Subscription) and line.topic == offer.topic):
             self._subscribe(session, offer)
 

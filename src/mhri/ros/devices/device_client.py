@@ -21,6 +21,15 @@ from mhri.ros.devices.device_state import DeviceStates
 TALK_PERIOD_S = 0.2
 
 
+def choose_device(source, name):
+    """Have the node of a source open the device of this name (blocking: it asks the master).
+
+    It does so within a second of being resumed, by its parameter ``~device``.
+    """
+    service = suspend_services(rospy.get_param('/mux/sources', []))[source]
+    rospy.set_param(service.rpartition('/')[0] + '/device', name)
+
+
 class DeviceClient:
     """The panel's words to the input nodes, and theirs to it; every method returns at once."""
 

@@ -6,13 +6,16 @@
 'pad'; ``hardware_id`` the name of the open device, or of the one that would open if the node were
 resumed, '' if there is none; ``message`` why there is none and the remedy, or what the present one
 needs; OK if there is a device, WARN if there is none, STALE if the node cannot tell without opening
-it.
+it. ``values`` has a ``there`` for each device that could be opened instead.
 """
-from diagnostic_msgs.msg import DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 import rospy
 
 from mhri.core.screen.text import tidy_text
 from mhri.core.screen.views import DeviceView
+
+THERE = 'there'
+MOST_DEVICES = 20
 
 
 def state_topic(service):
@@ -33,13 +36,14 @@ class DeviceState:
         self._topic = rospy.Publisher(state_topic(service), DiagnosticStatus, queue_size=1,
                                       latch=True)
 
-    def tell(self, device, note):
+    def tell(self, device, note, there=()):
         """Say which device there is; repeating the same costs nothing."""
-        if (device, note) != self._told:
-            self._told = device, note
+        if (device, note, there) != self._told:
+            self._told = device, note, there
             level = DiagnosticStatus.OK if device else \
                 DiagnosticStatus.WARN if note else DiagnosticStatus.STALE
-            self._topic.publish(level=level, name=self._kind, message=note, hardware_id=device)
+            self._topic.publish(level=level, name=self._kind, message=note, hardware_id=device,
+                                values=[KeyValue(THERE, name) for name in there])
 
 
 class DeviceStates:
@@ -63,7 +67,9 @@ class DeviceStates:
 
     def _hear(self, message, source):
         self._said[source] = DeviceView(source, *map(tidy_text, (
-            message.hardware_id, message.message, message.name)))
+            message.hardware_id, message.message, message.name)), tuple(
+                tidy_text(pair.value) for pair in message.values[:MOST_DEVICES]
+                if pair.key == THERE and pair.value))
 
     def views(self):
         """Return a :class:`mhri.core.screen.views.DeviceView` of each device known now."""

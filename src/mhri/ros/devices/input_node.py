@@ -191,7 +191,7 @@ class InputNode:
             with self._changed:
                 if self._state != SUSPENDED:
                     return
-            self._there.tell(*self._find())
+            self._there.tell(*self._find(), self._reader.there())
             with self._changed:
                 if self._state == SUSPENDED:
                     self._changed.wait(FIND_PERIOD_S)
@@ -260,7 +260,7 @@ class InputNode:
             if session != self._session:
                 return
             self._state, self._device, self._words = READING, device, ''
-        self._there.tell(self._reader.name or device, '')
+        self._there.tell(self._reader.name or device, '', self._reader.there())
         rospy.loginfo('reading %s', device)
 
     def _step(self, session):
@@ -281,7 +281,8 @@ class InputNode:
             if due is not None:
                 self._publish(due)
                 self._last = due
-        self._there.tell(self._reader.name or self._device, self._reader.note)
+        self._there.tell(self._reader.name or self._device, self._reader.note,
+                         self._reader.there())
 
     def _lose(self, session, reason):
         """Send the neutral Joy, and say once why."""
@@ -292,7 +293,7 @@ class InputNode:
             lost, new = self._state == READING, self._words != reason
             self._losses += lost
             self._state, self._words, self._device = LOOKING, reason, ''
-        self._there.tell('', reason)
+        self._there.tell('', reason, self._reader.there())
         if lost:
             rospy.logwarn('the %s is lost: %s', self._kind, reason)
         elif new:

@@ -56,6 +56,8 @@ class Roster:
 
     def start(self):
         """Begin; returns at once."""
+        # The first look is now: robots on a task, which nobody checks, wait for their zero, too.
+        self._changed.set()
         threading.Thread(target=self._run, name='roster', daemon=True).start()
         return self
 

@@ -13,6 +13,7 @@ from mhri.core.sensors.point_cloud import (
     CLOUD_TYPE, CloudError, from_depth, Lens, parse_cloud, read_cloud)
 from mhri.ros.camera.camera_decoder import Decoder
 from mhri.ros.camera.camera_feed import CameraFeed
+from mhri.ros.camera.samples import Samples
 from mhri.ros.graph.subscription import Subscription
 from mhri.ros.sensors.refusals import Refusals
 
@@ -63,11 +64,11 @@ class CloudDecoder(Decoder):
             raise FrameError(str(error))
 
 
-class _WithLens(Subscription):
-    """A subscription to a depth picture, and to its lens as well."""
+class _WithLens:
+    """Beside a line to a depth picture, a subscription to its lens."""
 
-    def __init__(self, topic, on_bytes, lens_topic, on_lens):
-        super().__init__(topic, on_bytes)
+    def __init__(self, lens_topic, on_lens, *line):
+        super().__init__(*line)
         self._lens = Subscription(lens_topic, on_lens)
 
     def close(self):
@@ -75,6 +76,14 @@ class _WithLens(Subscription):
             super().close()
         finally:
             self._lens.close()
+
+
+class _Depths(_WithLens, Subscription):
+    """All pictures, and their lens."""
+
+
+class _DepthSamples(_WithLens, Samples):
+    """Single pictures, and their lens."""
 
 
 class _CloudStream(CameraFeed):
@@ -97,10 +106,17 @@ class _CloudStream(CameraFeed):
         return offers + find_offers(DEPTH, depths, published)
 
     def line_of(self, session, offer):
+        return self._with_lens(_Depths, session, offer, super().line_of(session, offer))
+
+    def samples_of(self, session, offer, grant, native_hz):
+        return self._with_lens(_DepthSamples, session, offer,
+                               super().samples_of(session, offer, grant, native_hz))
+
+    def _with_lens(self, line_class, session, offer, line):
         if offer.transport == 'cloud':
-            return super().line_of(session, offer)
+            return line
         depth = next(topic for topic in self._depths if offer.topic.startswith(topic))
-        return (_WithLens, offer.topic, session.hear, info_topic(depth), session.hear_lens)
+        return (line_class, info_topic(depth), session.hear_lens, *line[1:])
 
 
 class CloudFeed:
@@ -139,6 +155,14 @@ class CloudFeed:
     def take(self):
         """Return the newest :class:`Cloud`, None if there is no new one since the last call."""
         return self._stream.take()
+
+    def grant(self, grant):
+        """Let through what a :class:`mhri.core.camera.budget.Grant` says, from now on."""
+        self._stream.grant(grant)
+
+    def figures(self):
+        """Return the :class:`mhri.core.camera.budget.Figures` of what it takes of the network."""
+        return self._stream.figures()
 
     def status(self):
         """Return the :class:`mhri.core.camera.images.StreamStatus` of this moment."""
