@@ -16,7 +16,7 @@ Interfaces (all global names; units SI):
   (``std_msgs/String``, latched: '' or one of release, source, neutral, enabling, dead_man),
   ``/mux/pushed`` (``std_msgs/Bool``, latched: whether the active source's stick is held),
   ``/mux/advice`` (``std_msgs/String``, latched: a sentence, or ''), ``/mux/dead_man``
-  (``std_msgs/Bool``, latched: whether dead-man buttons have to be held) and ``/panel_in/request``
+  (``std_msgs/Bool``, latched: whether dead-man buttons must be held) and ``/panel_in/request``
   (``mhri/PanelRequest``: what the pad's buttons ask of the panel)
 - serves ``/mux/set_stop_all`` (``std_srvs/SetBool``)
 - parameters: ``~config`` (path of the sources' YAML, default ``resource/mux.yaml``), ``~enabling``,
@@ -53,8 +53,8 @@ from mhri.ros.driving.task_mux import TaskMux
 from mhri.ros.graph.rospy_inside import caller_of, PromptPublisher
 from mhri.ros.worker import Worker
 
-# The mux repeats its stop-all so often, and asks the master so often [s]; a master that hangs is
-# lost after no more than the second and the third together.
+# How often the mux repeats its stop-all and asks the master, and how long it waits for an answer
+# [s]; a hanging master is lost after at most the second and the third together.
 BEAT_S = 0.5
 MASTER_PERIOD_S = 0.25
 MASTER_PATIENCE_S = 1.1
@@ -218,7 +218,7 @@ class Mux:
     def _read(self, source, message, device, frame):
         """Return (function of the time that gives a message to the arbiter, pressed actions).
 
-        :raises JoyRefused: its profile cannot be used
+        :raises JoyRefused: its profile is unusable
         """
         if source.kind == TWIST:
             vectors = [(vector.x, vector.y, vector.z)
