@@ -19,6 +19,7 @@ from mhri.core.screen.why import WhyStill
 from mhri.presenters.doctor_host import DoctorHost
 from mhri.presenters.draw_guard import DrawGuard
 from mhri.presenters.event_host import EventHost
+from mhri.presenters.map_host import MapHost
 from mhri.gui.screen.screen import ScreenWidget
 from mhri.presenters.pad_host import PadHost
 from mhri.presenters.requests_host import RequestsHost
@@ -56,6 +57,7 @@ class ScreenHost(QObject):
         self.events = EventHost(operator.recordings.status, self.screen)
         self.doctor = DoctorHost(operator, self.screen)
         self.pad = PadHost(operator, self.screen, parent=self)
+        self.map = MapHost(operator, self.screen)
         self._connect()
 
     @property
@@ -151,6 +153,7 @@ class ScreenHost(QObject):
         self.tiles.show_view(view)
         self.events.show(view)
         self.pad.show_view(view)
+        self.map.show_view(view)
         for kind, value in self.operator.take_events():
             if kind == 'found':
                 self._show_found(value)
@@ -252,7 +255,8 @@ class ScreenHost(QObject):
                  'mode': self._mode,
                  'limits': list(self.operator.view().limits), 'windows': places, 'torn_off': torn,
                  'together': self.operator.view().together, 'looks': looks,
-                 'panel': self.screen.save_settings(), 'events': self.events.save_settings()}
+                 'panel': self.screen.save_settings(), 'events': self.events.save_settings(),
+                 'map': self.map.save_settings()}
         return usable_state(state)[0]
 
     def restore_state(self, state):
@@ -275,6 +279,7 @@ class ScreenHost(QObject):
                                  state.get('torn_off', ()))
         self.screen.restore_settings(state.get('panel', {}))
         self.events.restore_settings(state.get('events', {}))
+        self.map.restore_settings(state.get('map', {}))
         return problems
 
     def close(self, forget=False):
@@ -293,3 +298,4 @@ class ScreenHost(QObject):
         self.tiles.close()
         self._stop_watch.close()
         self.pad.close()
+        self.map.close()
