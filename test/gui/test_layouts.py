@@ -97,9 +97,13 @@ class Scene:
             for robot in self.robots:
                 tile = self.tiles[robot.name]
                 tile.show_view(robot, self.stop)
-                tile.view('rgb').show_frame(frame_of(MAGENTA))
+                tile.view('rgb').show_frame(self.frame(robot.number))
         self.application.processEvents()
         return self.screen
+
+    def frame(self, number):
+        """Return what a robot's camera sees."""
+        return frame_of(MAGENTA)
 
     def pixels(self):
         """Return what is to be seen as an array (row, column, RGB)."""

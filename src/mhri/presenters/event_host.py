@@ -68,7 +68,7 @@ class EventHost(QObject):
         self.page.show_robots(self._names)
         events = self.log.feed(view, self._clock(), self._wall())
         while not self._problems.empty():
-            events.append(self._note('screen.trouble', 'no sound: ' + self._problems.get()))
+            events.append(self._note('screen.note', 'no sound: ' + self._problems.get()))
         self._tell(events)
 
     def note(self, kind, text, robot=''):

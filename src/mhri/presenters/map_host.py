@@ -12,6 +12,7 @@ import time
 import numpy as np
 from python_qt_binding.QtCore import QObject, QTimer
 
+from mhri.core.events.events import CALM, KINDS
 from mhri.core.map.scene import goals_of, in_frame, map_robot, Scene
 from mhri.core.map.spread import spread
 from mhri.core.map.trail import link_grade, Trail
@@ -188,10 +189,17 @@ class MapHost(QObject):
         if self._tasks is None:
             self.pane.show_answer('not started: ' + NO_TASKS, False)
             return
-        self._tasks.start(key, robots, parameters)
         before = self.pane.line.text() if more else ''
         self.pane.show_answer('; '.join(filter(None, (
             before if 'asked to go' in before else '', text))))
+        self._tasks.start(key, robots, parameters)
+
+    def hear(self, kind, text):
+        """Show what has become of a task.
+
+        :param kind: a key of :data:`mhri.core.events.events.KINDS`
+        """
+        self.pane.show_answer(text, KINDS[kind][0] == CALM)
 
     def _end(self, robots):
         """End the tasks of robots."""

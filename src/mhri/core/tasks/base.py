@@ -7,7 +7,7 @@ keeps it from obstacles, ends it when it has to, and brings its robot to rest.
 """
 from dataclasses import dataclass, field
 import math
-from typing import Callable, Dict, Iterable, Mapping, Optional, Sequence, Tuple, Union
+from typing import Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -56,6 +56,8 @@ class Senses:
     ``odometry`` is the latter in any case, ``captured`` the place by motion capture or None.
     ``points`` is an array (n, 2) of what its laser has met, in its own frame [m]: x ahead, y to the
     left. ``others`` are the other robots that are placed, by their names; none where it is not.
+    ``fence`` is an array (n, 2) of the corners of what no task leaves, in the frame of ``pose``
+    [m], empty where there is none.
     """
 
     now_s: float
@@ -64,6 +66,7 @@ class Senses:
     captured: Optional[Pose] = None
     points: np.ndarray = field(default_factory=lambda: NOWHERE)
     others: Mapping[str, Other] = field(default_factory=dict)
+    fence: np.ndarray = field(default_factory=lambda: NOWHERE)
 
 
 @dataclass(frozen=True)
@@ -83,12 +86,19 @@ class Step:
 
 @dataclass(frozen=True)
 class Start:
-    """Who is started: the robot, its place in the team, its body, and its trail (odometry)."""
+    """Who is started: the robot, its place in the team, its body, and its trail (odometry).
+
+    ``trail_ages_s`` is the age of each place of the trail [s], ``marks`` are named places in the
+    frame of the map, and ``drive`` is what a recording says of where it was (odometry).
+    """
 
     robot: str
     team: Tuple[str, ...]
     body: Body
     trail: Tuple[Pose, ...] = ()
+    trail_ages_s: Tuple[float, ...] = ()
+    marks: Mapping[str, Pose] = field(default_factory=dict)
+    drive: Tuple[Pose, ...] = ()
 
     @property
     def place(self) -> int:
@@ -121,6 +131,7 @@ class Field:
     :param default: None: may be left out; REQUIRED: has to be given
     :param kind: NUMBER in [least, greatest], TEXT, or ROUTE: a list of [x, y] [m]
     :param choices: what a TEXT may be; empty: anything
+    :param needs_place: where this is given, the robot has to be placed
     """
 
     name: str
@@ -131,6 +142,7 @@ class Field:
     greatest: float = math.nan
     kind: str = NUMBER
     choices: Tuple[str, ...] = ()
+    needs_place: bool = False
 
 
 REQUIRED = '\0required'
@@ -168,6 +180,10 @@ class Values:
         assert isinstance(value, tuple)
         return value
 
+    def is_given(self, row: Field) -> bool:
+        """Tell whether a parameter is something else than its default."""
+        return self._values.get(row.name, row.default) != row.default
+
     def by_odometry(self) -> bool:
         """Tell whether places are meant in the frame of the robot's own odometry."""
         return self._values.get(FRAME.name) == ODOM
@@ -191,7 +207,8 @@ class TaskKind:
 
     def placed(self, values: Values) -> bool:
         """Tell whether a robot has to be placed for it, with these parameters."""
-        return self.needs_place and not values.by_odometry()
+        return (self.needs_place and not values.by_odometry()) or any(
+            values.is_given(row) for row in self.fields if row.needs_place)
 
     def read(self, parameters: str) -> Values:
         """Return the parameters of a YAML text.
@@ -253,13 +270,22 @@ def discs(pose: Pose, others: Iterable[Other], more_m: float) -> np.ndarray:
     """
     rows = [NOWHERE]
     turns = np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False) - pose.heading_rad
-    for other in others:
-        gap_x, gap_y = other.pose.x_m - pose.x_m, other.pose.y_m - pose.y_m
-        cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
-        middle = (cos * gap_x + sin * gap_y, cos * gap_y - sin * gap_x)
-        rows.append((other.radius_m + more_m) * np.column_stack((np.cos(turns), np.sin(turns)))
-                    + middle)
+    for x_m, y_m, radius_m in circles(pose, others):
+        rows.append((radius_m + more_m) * np.column_stack((np.cos(turns), np.sin(turns)))
+                    + (x_m, y_m))
     return np.vstack(rows)
+
+
+def within(pose: Pose, other: Pose) -> Tuple[float, float]:
+    """Return where another pose lies in the frame of a pose: (ahead, to the left) [m]."""
+    gap_x, gap_y = other.x_m - pose.x_m, other.y_m - pose.y_m
+    cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
+    return cos * gap_x + sin * gap_y, cos * gap_y - sin * gap_x
+
+
+def circles(pose: Pose, others: Iterable[Other]) -> List[Tuple[float, float, float]]:
+    """Return (ahead, to the left, radius) [m] of other robots in the frame of a pose."""
+    return [within(pose, other.pose) + (other.radius_m,) for other in others]
 
 
 def wrapped(angle_rad: float) -> float:

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The task goto: drive to a place, and turn to a heading there."""
 import math
-from typing import Optional
+from typing import Optional, Tuple
 
 from mhri.core.robots.mocap import Pose
 from mhri.core.tasks.base import (
-    BLOCKED, DONE, Field, FRAME, REQUIRED, Senses, Start, Step, Task, TaskKind, Values, WAITING,
-    way)
+    beside, BLOCKED, DONE, FAILED, Field, FRAME, REQUIRED, Senses, Start, Step, Task, TaskKind,
+    Values, WAITING, way)
+from mhri.core.tasks.fence import is_inside
 from mhri.core.tasks.pilot import Pilot
 
 SPEED = Field('speed', 'm/s', 'the most it drives', 0.2, 0.02, 2.0)
@@ -43,6 +44,8 @@ class Goto(Task):
 
     def step(self, senses: Senses) -> Step:
         """Return what leads there from the pose."""
+        if not self._by_odometry and not is_inside(senses.fence, *self._place):
+            return Step(state=FAILED, text='its goal lies outside of the fence')
         return self.from_pose(senses, senses.odometry if self._by_odometry else senses.pose)
 
     def from_pose(self, senses: Senses, pose: Pose) -> Step:
@@ -70,14 +73,18 @@ class Goto(Task):
         return Step(velocity, left_m=left_m, text='turns to its heading')
 
 
+def spread(place: Pose, start: Start) -> Tuple[float, float]:
+    """Return where in a team that stands side by side across its heading a robot stands [m]."""
+    # 0, 1, -1, 2, -2 ... to the left and right of the place.
+    aside = SPREAD_M * ((start.place + 1) // 2) * (1.0 if start.place % 2 else -1.0)
+    return beside(place, 0.0, aside)
+
+
 def make(values: Values, start: Start) -> Goto:
     """Begin; a team stands side by side across its heading, the first one on the place."""
     heading = values.maybe('heading')
-    x, y = values.number('x'), values.number('y')
-    # 0, 1, -1, 2, -2 ... to the left and right of the place.
-    aside = SPREAD_M * ((start.place + 1) // 2) * (1.0 if start.place % 2 else -1.0)
-    across = (heading or 0.0) + 0.5 * math.pi
-    return Goto(start, x + aside * math.cos(across), y + aside * math.sin(across), heading,
+    place = spread(Pose(values.number('x'), values.number('y'), heading or 0.0), start)
+    return Goto(start, *place, heading,
                 values.number('speed'), by_odometry=values.by_odometry())
 
 
