@@ -13,6 +13,7 @@ from mhri.core.map.grid import Grid
 from mhri.core.map.scene import (
     goals_of, in_frame, map_robot, MapMark, MapRobot, own_pose, Placing, Scene, TaskView)
 from mhri.core.map.spread import spread, SPACING_RADII
+from mhri.core.map.track import Track
 from mhri.core.map.trail import GOOD, link_grade, LOST, SLOW, Trail
 from mhri.core.robots.mocap import Pose
 from mhri.core.screen.views import GONE, LinkFigures, LIVE, RobotView
@@ -138,6 +139,17 @@ def test_a_robot_that_is_placed_anew_does_not_drive_there():
     assert [places[:, 0].round(1).tolist() for _, places in trail.pieces(True, 0.0)] == [
         [0.0, 0.2], [5.0, 5.2]]
     assert trail.tail(-1.0)[:, 0].round(1).tolist() == [5.0, 5.2]
+
+
+def test_where_it_was_a_moment_ago():
+    track = Track()
+    assert track.at(0.0) is None
+    for at_s, heading in ((1.0, 3.0), (2.0, -3.0), (2.0, 9.0)):
+        track.add(at_s, Pose(at_s, 0.0, heading))
+    assert track.at(0.5).x_m == 1.0 and track.at(9.0).x_m == 2.0
+    middle = track.at(1.5)
+    # The short way round.
+    assert middle.x_m == 1.5 and abs(middle.heading_rad) == pytest.approx(math.pi, abs=1e-6)
 
 
 # Several to one place.

@@ -13,8 +13,9 @@ import numpy as np
 from python_qt_binding.QtCore import QObject, QTimer
 
 from mhri.core.events.events import CALM, KINDS
-from mhri.core.map.scene import goals_of, in_frame, map_robot, Scene
+from mhri.core.map.scene import composed, goals_of, in_frame, map_robot, own_pose, Scene
 from mhri.core.map.spread import spread
+from mhri.core.map.track import Track
 from mhri.core.map.trail import link_grade, Trail
 from mhri.core.robots.mocap import Pose
 from mhri.core.screen.views import LIVE, PanelView
@@ -55,6 +56,7 @@ class MapHost(QObject):
         self._view = PanelView()
         self._trails = {}
         self._points = {}
+        self._tracks = {}
         self._answers = queue.Queue()
         self._map = MapFeed()
         self._scans = MapScans(operator.do)
@@ -102,6 +104,12 @@ class MapHost(QObject):
     def show_view(self, view):
         """Take note of the newest :class:`PanelView`; :meth:`draw` draws it."""
         self._view = view
+        if self._watched:
+            now = self._clock()
+            for robot in view.robots:
+                pose = own_pose(robot)
+                if pose is not None and robot.age_s is not None:
+                    self._tracks.setdefault(robot.name, Track()).add(now - robot.age_s, pose)
 
     def draw(self):
         """Draw the map, if anybody can see it."""
@@ -112,6 +120,7 @@ class MapHost(QObject):
         if not watched:
             self._scans.want({})
             self._points.clear()
+            self._tracks.clear()
             return
         now = self._clock()
         places, looked_at = self._places.view(), self._looked_at()
@@ -152,14 +161,22 @@ class MapHost(QObject):
         if view.link == LIVE:
             trail.add(robot.pose, link_grade(view.figures, True), now)
         return map_robot(view, places.robots.get(view.name), robot.radius_m, robot.looked_at,
-                         trail, self._met(view.name, robot.pose, now))
+                         trail, self._met(view.name, robot.pose,
+                                          places.robots[view.name].origin, now))
 
-    def _met(self, name, pose, now):
-        """Return what a robot's laser has met (n, 2) [m]: where it was when that was new."""
-        scan = self._scans.take(name)
-        if scan is not None:
+    def _met(self, name, pose, origin, now):
+        """Return what a robot's laser has met (n, 2) [m], from where it was then.
+
+        :param pose: where it is now, like ``origin`` of its odometry in the frame
+        """
+        news = self._scans.take(name)
+        if news is not None:
+            scan, age_s = news
             ahead, left, _ = scan_points(*scan[:3])
-            self._points[name] = now, in_frame(pose, np.column_stack((ahead, left)))
+            track = self._tracks.get(name)
+            then = track.at(now - age_s) if track is not None else None
+            self._points[name] = now, in_frame(
+                pose if then is None else composed(origin, then), np.column_stack((ahead, left)))
         at, points = self._points.get(name, (-math.inf, None))
         return points if now - at <= OLD_SCAN_S else None
 

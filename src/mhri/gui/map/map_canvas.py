@@ -40,6 +40,8 @@ class MapCanvas(QWidget):
     menu_requested = Signal(float, float, QPoint)
     #: another tool is in the hand, or a corner more
     tool_changed = Signal()
+    #: it was painted
+    painted = Signal()
     #: zoomed, dragged, following or turning
     view_changed = Signal()
 
@@ -355,6 +357,8 @@ class MapCanvas(QWidget):
         map_marks.paint_drawn(painter, self.canvas, palette, self.gesture, cursor)
         map_marks.paint_margin(painter, self.canvas, palette, self.font(),
                                cursor if self._large else None)
+        painter.end()
+        self.painted.emit()
 
     def _paint_ground(self, painter):
         """Paint what seldom changes."""

@@ -110,9 +110,10 @@ class MapScans:
         return tuple(self._open)
 
     def take(self, name):
-        """Return a robot's scan as :meth:`ScanFeed.take` does, None if nothing is new."""
+        """Return (a robot's scan as :meth:`ScanFeed.take` does, its age [s]), or None."""
         row = self._open.get(name)
-        return row[1].take() if row else None
+        scan = row[1].take() if row else None
+        return None if scan is None else (scan, row[1].age_s() or 0.0)
 
     def close(self):
         """Stop listening (blocking: it asks the master)."""
