@@ -108,6 +108,10 @@ def test_robots_on_tasks_stand_in_time_and_stay(system):
                                              else ('told',)))
             took = float('inf') if since is None else since - begun
             taken[words].append(took)
+            if took > LIMITS[words]:
+                print('{} is late; from the moment on it was told {}'.format(name, [
+                    ('{:.3f}'.format(row[0] - begun),) + row[1:] for row in log.rows('told')
+                    if -0.1 < row[0] - begun < took + 0.1]))
             if took > LIMITS[words] + slack_s:
                 late.append((number, words, name, took, slack_s))
         print('{} {}: {}, well again after {:.1f} s'.format(number, kind, ', '.join(

@@ -19,6 +19,13 @@ class Broken:
         self.round_trip_s = float('nan')
         self.fails = name == 'bot1'
 
+    def ask_brake(self, asked):
+        """Have no brake."""
+
+    def leave(self):
+        """Fail, or not."""
+        self.send(None)
+
     def send(self, velocity):
         """Take note, or fail."""
         if self.fails and velocity is not None:

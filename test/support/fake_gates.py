@@ -22,7 +22,7 @@ def moving(linear_mps=0.1):
 class FakeGates:
     """Says a ``mhri/GatesState`` and keeps what it is asked, by caller id.
 
-    ``selections`` are (caller, robots), ``groups`` (together, slow_with_link), ``takers`` and
+    ``selections`` are (caller, robots), ``groups`` (together, slow_with_link, brake), ``takers`` and
     ``power`` what the services were called with.
     """
 
@@ -48,7 +48,7 @@ class FakeGates:
             self.say(operator=caller)
 
     def _hear_group(self, message):
-        self.groups.append((message.together, message.slow_with_link))
+        self.groups.append((message.together, message.slow_with_link, message.brake))
 
     def _take(self, request):
         caller = request._connection_header['callerid']

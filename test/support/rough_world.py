@@ -11,10 +11,10 @@ import random
 
 import numpy as np
 
+from mhri.core.driving.brake import braked, Scan
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
 from mhri.core.tasks.base import ENDS, RUNNING, Step, Task, way, wrapped
-from mhri.core.tasks.brake import braked, Scan
 from mhri.core.tasks.rows import BY_KEY
 from mhri.core.tasks.run import RobotRun
 from mhri.sim.plan import disc_distance
@@ -148,7 +148,7 @@ class Stick:
     def tick(self, facts):
         """Return the velocity that the robot is given."""
         wanted = self._wander.step(None).velocity
-        return braked(wanted, facts.senses.points, self._robot.task_body, facts.scan_age_s) \
+        return braked(wanted, facts.senses.points, self._robot.task_body.radius_m, facts.scan_age_s) \
             if facts.has_laser else wanted
 
 

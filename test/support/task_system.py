@@ -5,6 +5,7 @@
 With a :class:`support.machines.Lan` each robot has a computer of its own, whose link can be cut;
 without one all of it is on this computer.
 """
+import contextlib
 import os
 import signal
 import subprocess
@@ -93,7 +94,9 @@ class TaskSystem:
         rospy.set_param('/mhri/robots', list(ROBOTS))
         for key in NODES:
             self._start(key, ['bash', str(self._restarter), sys.executable, '-c',
-                              'from mhri.nodes.{} import main; main()'.format(key)])
+                              'from mhri.nodes.{} import main; main()'.format(key)]
+                        # As mhri.launch starts them.
+                        + (['--stand-by'] if key in ('mux', 'gates') else []))
         for name in ROBOTS:
             self._start_robot(name)
         self.start_operator()
@@ -107,7 +110,8 @@ class TaskSystem:
         rospy.signal_shutdown('done')
         for process in self.processes.values():
             for one in self._family(process):
-                one.kill()
+                with contextlib.suppress(psutil.NoSuchProcess):
+                    one.kill()
         self.system.close()
         for computer in self.computers.values():
             computer.close()
@@ -159,12 +163,11 @@ class TaskSystem:
 
     def kill(self, key):
         """Send SIGKILL to a node, which is started again, or to the operator, who is not."""
-        process = self.processes[key]
-        number = process.pid if key == 'operator' else wait_for(
-            lambda: next((child.pid for child in psutil.Process(process.pid).children()
-                          if 'python' in child.name()
-                          and child.status() != psutil.STATUS_ZOMBIE), None), 30.0, key)
-        os.kill(number, signal.SIGKILL)
+        # The youngest one works: those before it start it again.
+        os.kill(wait_for(lambda: [one.pid for one in self._family(self.processes[key])
+                                  if 'python' in one.name()
+                                  and one.status() != psutil.STATUS_ZOMBIE], 30.0, key)[-1],
+                signal.SIGKILL)
 
     def cut(self, name, down):
         """Cut the link of a robot, or mend it."""

@@ -6,12 +6,12 @@ import random
 
 import numpy as np
 
+from mhri.core.driving.brake import Scan, Surroundings
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.robot_types import Limits
 from mhri.core.tasks.base import (
     Body as TaskBody, circles, ENDS, Other, Senses, Start, Step, Task)
-from mhri.core.tasks.brake import Scan, Surroundings
 from mhri.core.tasks.rows import BY_KEY
 from mhri.core.tasks.run import Facts, RobotRun
 from mhri.sim.body import Body, BodyType, Bumper

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from mhri.core.screen.task_views import TaskView
 from mhri.core.screen.views import (
     ControlView, DeviceView, GONE, LIVE, PanelView, ROS_CONNECTED, ROS_CUT_OFF, ROS_NO_MASTER,
     RobotView, SILENT, WAITING)
@@ -32,6 +33,8 @@ SAID = {
     'not selected': ({}, {'selected': False}, AHEAD, 'not selected: press 3 to drive it'),
     'no key': ({}, {'selected': False, 'number': 10}, AHEAD, 'not selected: check it in the list'),
     'on a task': ({}, {'selected': False, 'obeys': 'task'}, AHEAD, 'on a task: press 3 to take it'),
+    'on a known task': ({}, {'selected': False, 'task': TaskView('Square')}, AHEAD,
+                        'on a task: square; press 3 to take it over'),
     'another mode': (PAD, {}, AHEAD,
                      'PS3 Controller drives, not this stick: choose "Virtual joystick" first'),
     'no pad': ({**PUSHED, 'devices': (DeviceView('ps3joy', note='not connected: plug it in'),)}, {},

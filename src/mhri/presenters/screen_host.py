@@ -23,7 +23,9 @@ from mhri.gui.screen.screen import ScreenWidget
 from mhri.presenters.pad_host import PadHost
 from mhri.presenters.requests_host import RequestsHost
 from mhri.presenters.stop_watch import StopWatch
+from mhri.presenters.task_host import TaskHost
 from mhri.presenters.tiles_host import TilesHost
+from mhri.ros.devices.device_client import choose_device
 from mhri.ros.resources import resource_path
 
 DRAW_MS = 50
@@ -57,6 +59,7 @@ class ScreenHost(QObject):
         self.events = EventHost(operator.recordings.status, self.screen)
         self.doctor = DoctorHost(operator, self.screen)
         self.pad = PadHost(operator, self.screen, parent=self)
+        self.tasks = TaskHost(operator, self.screen, self._select, self.events.note)
         self._connect()
 
     @property
@@ -95,10 +98,13 @@ class ScreenHost(QObject):
         self.tiles.clicked.connect(panel.look_at)
         self.tiles.drive_requested.connect(self._drive)
         self.tiles.closed.connect(self._leave)
+        self.tiles.carry_on_requested.connect(self.tasks.carry_on)
         panel.mode_requested.connect(self._request_mode)
+        panel.mode_combo.device_requested.connect(self._request_device)
         panel.stick_moved.connect(operator.send_stick)
         panel.limits_requested.connect(operator.request_limits)
         panel.together_requested.connect(operator.keep_together)
+        panel.speed_limits.brake_requested.connect(operator.brake)
         panel.talk_requested.connect(operator.talk)
         panel.stop_requested.connect(operator.stop_all)
         panel.release_requested.connect(operator.release)
@@ -145,7 +151,8 @@ class ScreenHost(QObject):
         for name, parameters in self._to_add[:ADD_AT_ONCE]:
             self.operator.add(name, parameters)
         del self._to_add[:ADD_AT_ONCE]
-        view = self._why.tell(self.operator.view(), self.screen.stick(), time.monotonic())
+        view = self._why.tell(self.tasks.tell(self.operator.view()), self.screen.stick(),
+                              time.monotonic())
         self._mode = view.mode or self._mode
         self.screen.show_view(view)
         self._feel_losses(view)
@@ -243,6 +250,11 @@ class ScreenHost(QObject):
         self._mode = name
         self.operator.request_mode(name)
 
+    def _request_device(self, source, name):
+        """Have another pad drive; the mode is asked for on its own."""
+        if self.operator.drives():
+            self.operator.do(choose_device, source, name)
+
     def _drive(self, name):
         """Drive this robot and no other, and look at it."""
         if self.operator.drives():
@@ -260,7 +272,8 @@ class ScreenHost(QObject):
         state = {'robots': list(selection.robots), 'numbers': selection.numbers.kept(),
                  'mode': self._mode,
                  'limits': list(self.operator.view().limits), 'windows': places, 'torn_off': torn,
-                 'together': self.operator.view().together, 'looks': looks,
+                 'together': self.operator.view().together,
+                 'brake': self.operator.view().brake, 'looks': looks,
                  'panel': self.screen.save_settings(), 'events': self.events.save_settings()}
         return usable_state(state)[0]
 
@@ -280,6 +293,7 @@ class ScreenHost(QObject):
         if state.get('limits'):
             self.operator.request_limits(*state['limits'])
         self.operator.keep_together(state.get('together') is True)
+        self.operator.brake(state.get('brake') is True)
         self.tiles.restore_state(state.get('windows', {}), state.get('looks', {}),
                                  state.get('torn_off', ()))
         self.screen.restore_settings(state.get('panel', {}))
@@ -302,3 +316,4 @@ class ScreenHost(QObject):
         self.tiles.close()
         self._stop_watch.close()
         self.pad.close()
+        self.tasks.close(forget)

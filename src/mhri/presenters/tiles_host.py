@@ -36,6 +36,8 @@ class TilesHost(QObject):
     clicked = Signal(str)
     #: drive this robot and no other
     drive_requested = Signal(str)
+    #: this robot is to go on with the task that it was taken from
+    carry_on_requested = Signal(str)
     #: a torn-off tile's window was closed by its frame
     closed = Signal(str)
 
@@ -119,6 +121,7 @@ class TilesHost(QObject):
         tile.clicked.connect(self.clicked)
         tile.drive_requested.connect(self.drive_requested)
         tile.tear_requested.connect(self.toggle_torn)
+        tile.carry_on_requested.connect(self.carry_on_requested)
         self.windows[name] = tile
         self._keys[name] = view.window
         self.hosts[name] = TileHost(tile, self._operator)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the shipped data files are, in the devel space and in the install space alike."""
+"""Finds the shipped data files, in the devel space and in the install space alike."""
 from dataclasses import replace
 import glob
 import os
@@ -12,7 +12,7 @@ import rospkg
 from mhri.core.config import ConfigError, MAX_BYTES, too_large
 from mhri.core.robots.robot_types import Export, load_robot_types
 
-# The element of a package.xml with which a package exports a robot type or a task; its attributes.
+# The element of a package.xml that exports a robot type or a task, and its attributes.
 EXPORT_TAG = 'mhri'
 TYPE_ATTRIBUTE, WINDOW_ATTRIBUTE, TASK_ATTRIBUTE = 'robot_type', 'window', 'task'
 
@@ -29,11 +29,11 @@ def read_text(path):
     """Return the UTF-8 text of a configuration file.
 
     :raises OSError: it cannot be read
-    :raises ConfigError: it is not UTF-8, too large, or a pipe or device, which might never end
+    :raises ConfigError: it is not UTF-8, or too large, or a pipe or device, which might never end
     """
     mode = os.stat(path).st_mode
     if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
-        raise ConfigError(path, '', 'is no regular file')
+        raise ConfigError(path, '', 'is not a regular file')
     with open(path, 'rb') as stream:
         data = stream.read(MAX_BYTES + 1)
     if len(data) > MAX_BYTES:
@@ -53,10 +53,10 @@ def read_resource(*parts):
 
 
 def robot_types():
-    """Load every template of ``resource/robots``, and those that other packages export.
+    """Load every template in ``resource/robots``, and those that other packages export.
 
-    A package exports one in its package.xml, as rqt plugins are exported (``window``, the class of
-    its window, may be left out)::
+    A package exports one in its package.xml, as it does an rqt plugin (``window``, the class of its
+    window, is optional)::
 
         <export>
           <mhri robot_type="${prefix}/resource/crawler.yaml" window="crawler_robot.window.Crawler"/>
@@ -137,7 +137,7 @@ def _exports_of(package, manifest, errors):
         return [export.attributes for export in parse_package(manifest, warnings=[]).exports
                 if export.tagname == EXPORT_TAG]
     except OSError:
-        # A rosbuild package without a package.xml, or one that went while it was looked at.
+        # A rosbuild package without a package.xml, or one that vanished meanwhile.
         return []
     except InvalidPackage as error:
         errors.append(Export(package, manifest, '').error('', 'cannot be understood: {}'.format(
@@ -148,7 +148,7 @@ def _exports_of(package, manifest, errors):
 def _read_export(package, manifest, attributes):
     """Return the :class:`Export` of one element of a package.xml.
 
-    :raises ConfigError: an attribute is missing or unknown, or the template cannot be read
+    :raises ConfigError: an attribute is missing or unknown, or the template is unreadable
     """
     element = Export(package, manifest, '')
     odd = sorted(set(attributes) - {TYPE_ATTRIBUTE, WINDOW_ATTRIBUTE})
@@ -172,10 +172,10 @@ def _read_export(package, manifest, attributes):
 def profile_reader(beside):
     """Return a function from the name of a pad profile to (origin, text).
 
-    A name is ``resource/pads/<name>.yaml``; something with a slash or ``.yaml`` is a path, relative
-    ones seen from the folder of the file that names it.
+    A name means ``resource/pads/<name>.yaml``; anything with a slash or ``.yaml`` is a path,
+    relative to the folder of the file that names it.
 
-    :param beside: the path of the file in which the names stand
+    :param beside: the path of the file that contains the names
     """
     def read(name):
         path = resource_path('pads', name + '.yaml')

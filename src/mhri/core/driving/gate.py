@@ -20,7 +20,7 @@ sends one to every robot, checked or not. A robot that joins while anything is d
 neutral; something is driving if the last command heard was not zero.
 """
 import math
-from typing import Optional, Sequence
+from typing import Callable, Optional, Sequence
 
 from mhri.core.driving.limits import Velocity, ZERO, clamp_keeping_curvature
 from mhri.core.robots.robot_types import Limits
@@ -31,6 +31,9 @@ STATES = (IDLE, JOINING, OPERATOR, TASK, HELD, STOPPED, CLOSED)
 
 # A command or a task older than this is no longer obeyed [s].
 STALE_S = 0.5
+
+# What is left of a velocity at a time [s].
+Brake = Callable[[Velocity, float], Velocity]
 
 
 def common_limits(limits: Sequence[Limits]) -> Limits:
@@ -51,10 +54,14 @@ class GateRule:
     :param limits: :class:`mhri.core.robots.robot_types.Limits` of the robot
     :param command: the operator's last command, None before the first; then something may be
         driving, and the robot waits for neutral
+    :param brake: applied to what the operator commands, and again as time passes; what tasks
+        command has been braked where they are run
     """
 
-    def __init__(self, limits: Limits, command: Optional[Velocity] = None) -> None:
+    def __init__(self, limits: Limits, command: Optional[Velocity] = None,
+                 brake: Brake = lambda velocity, _: velocity) -> None:
         self.limits = limits
+        self._brake = brake
         self._group = limits
         self._share = 1.0
         self._state = IDLE
@@ -67,7 +74,8 @@ class GateRule:
         self._centre = self._driven()
         self._task_rests = False
         self._command_at = self._task_at = -math.inf
-        self._last = ZERO
+        # What was sent last, and what that was before the brake.
+        self._last = self._wanted = ZERO
 
     @property
     def state(self) -> str:
@@ -114,8 +122,10 @@ class GateRule:
             return None
         share = self._share
         wanted = Velocity(share * velocity.linear_mps, share * velocity.angular_rad_s)
-        return self._say(clamp_keeping_curvature(
-            clamp_keeping_curvature(wanted, self._group), self.limits))
+        wanted = clamp_keeping_curvature(clamp_keeping_curvature(wanted, self._group), self.limits)
+        said = self._say(self._brake(wanted, now))
+        self._wanted = wanted
+        return said
 
     def on_task(self, velocity: Velocity, now: float) -> Optional[Velocity]:
         """Take in the command of the robot's task; return what to send the robot, or None.
@@ -180,20 +190,30 @@ class GateRule:
         return self._say(ZERO)
 
     def tick(self, now: float) -> Optional[Velocity]:
-        """Let time pass: one zero ends commands that went stale."""
-        if self._state == OPERATOR and not self._last.is_zero() \
-                and now - self._command_at >= STALE_S:
-            self._centre = True
-            return self._settle(now)
+        """Let time pass: one zero ends commands that went stale, and the brake looks again."""
+        if self._state == OPERATOR and not self._wanted.is_zero():
+            if now - self._command_at >= STALE_S:
+                self._centre = True
+                return self._settle(now)
+            return self._brake_again(now)
         if self._state == TASK and now - self._task_at >= STALE_S:
             return self._settle(now, changed=True)
         return None
 
     def next_tick(self) -> Optional[float]:
         """Return when to call :meth:`tick` next [s], or None for not before a command."""
-        if self._state == OPERATOR and not self._last.is_zero():
+        if self._state == OPERATOR and not self._wanted.is_zero():
             return self._command_at + STALE_S
         return self._task_at + STALE_S if self._state == TASK else None
+
+    def _brake_again(self, now: float) -> Optional[Velocity]:
+        """Slow down for what has come into the way; only a new command makes it faster."""
+        wanted, allowed = self._wanted, self._brake(self._wanted, now)
+        if abs(allowed.linear_mps) >= abs(self._last.linear_mps):
+            return None
+        said = self._say(allowed)
+        self._wanted = wanted
+        return said
 
     def _driven(self) -> bool:
         """Tell whether anything may drive: the last command was not zero, or there was none."""
@@ -227,5 +247,5 @@ class GateRule:
         return self._say(ZERO) if zero else None
 
     def _say(self, velocity: Velocity) -> Velocity:
-        self._last = velocity
+        self._last = self._wanted = velocity
         return velocity

@@ -11,12 +11,17 @@ stop is latched on the robot the token of an echo does.
 A zero without ``!`` that answers an echo sent after the stop releases it; until then the guard
 drops everything else. So a gate sends zeros until :attr:`GuardLink.stop_confirmed` is false.
 """
+from dataclasses import dataclass
+import math
 import re
 from typing import Optional, Tuple
+
+from mhri.core.driving.stick_brake import NO_SCAN, ON, SLOWS
 
 # An echo comes every 0.1 s; three in a row may be lost.
 ECHO_S = 0.35
 _ID = re.compile(r'([A-Za-z0-9_-]{1,32})(!?):([0-9]{1,15}):([A-Za-z0-9_-]{0,32})(!?)\Z')
+_STATE = re.compile(r'(brake|way|back_after):([a-z0-9_.]{1,12})\Z')
 _SESSION = re.compile(r'[A-Za-z0-9_-]{1,32}\Z')
 # The session of an echo before any command was obeyed.
 _NOBODY = '-'
@@ -37,6 +42,38 @@ def parse_id(text: str) -> Optional[Tuple[str, int, str, bool]]:
         return None
     session, stop, number, token, latched = found.groups()
     return session, int(number), token, bool(stop or latched)
+
+
+@dataclass(frozen=True)
+class GuardState:
+    """What a guard says that it does by itself.
+
+    ``brake`` is '' without a brake, else a word of :mod:`mhri.core.driving.stick_brake`;
+    ``free_way_m`` the way to what slows the robot down [m], NaN while nothing does;
+    ``back_after_s`` after how long without a link it drives the robot back [s], 0 for never.
+    """
+
+    brake: str = ''
+    free_way_m: float = math.nan
+    back_after_s: float = 0.0
+
+
+def read_state(text: str) -> GuardState:
+    """Return what a guard says of itself, e.g. "brake:slows way:0.60 back_after:10".
+
+    What cannot be read counts as not said, but for a brake of which nobody knows what it does.
+    """
+    found = dict(part.groups() for part in map(_STATE.match, text[:200].split()) if part)
+    brake = found.get('brake', '')
+    return GuardState(brake if brake in ('', ON, SLOWS) else NO_SCAN,
+                      _number(found.get('way'), math.nan), _number(found.get('back_after'), 0.0))
+
+
+def _number(text: Optional[str], otherwise: float) -> float:
+    try:
+        return float(text) if text else otherwise
+    except ValueError:
+        return otherwise
 
 
 class GuardLink:
@@ -75,6 +112,11 @@ class GuardLink:
     def alive(self, now: float) -> bool:
         """Tell whether an echo came within the last 0.35 s."""
         return self._echo_at is not None and now - self._echo_at <= ECHO_S
+
+    @property
+    def token(self) -> str:
+        """That of the newest echo, '' before the first."""
+        return self._token
 
     def next_id(self, stop: bool) -> str:
         """Return the frame_id for the next command, which must then be sent.

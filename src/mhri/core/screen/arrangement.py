@@ -129,7 +129,8 @@ def _best_columns(box: Box, shapes: Sequence[float], gap: int) -> Tuple[float, i
                       for columns in range(1, len(shapes) + 1))
     if len(shapes) == 3 and min(box.width, box.height) > 2 * gap:
         other = sum(one.picture(shape) for one, shape in zip(_beside(box, shapes, gap), shapes))
-        if other > area:
+        # Alike, they are compared at a glance: it has to be worth it.
+        if other > WORTH_MOVING * area:
             return other, _BESIDE
     return area, -fewer
 

@@ -3,10 +3,10 @@
 """What the screen kept from its last run, checked: anybody may have edited it.
 
 A state is a dict of JSON values: ``robots`` (names), ``numbers`` ({robot: its own number}),
-``mode`` (a source), ``limits`` [m/s, rad/s], ``together``, ``windows`` ({robot: geometry}: where
-its tile was when it was torn off), ``torn_off`` (robots), ``looks`` ({robot: what its tile shows})
-``panel`` (``splitter``, ``drawer``, ``geometry``, ``layout``, ``theme``, ``numbers``) and
-``events`` (``sounds``). A geometry is [x, y, width, height, maximised] in pixels: a text that can
+``mode`` (a source), ``limits`` [m/s, rad/s], ``together``, ``brake``, ``windows`` ({robot:
+geometry}: where its tile was when it was torn off), ``torn_off`` (robots), ``looks`` ({robot: what
+its tile shows}) ``panel`` (``splitter``, ``drawer``, ``geometry``, ``layout``, ``theme``,
+``numbers``) and ``events`` (``sounds``). A geometry is [x, y, width, height, maximised] in pixels: a text that can
 be read, and no blob that Qt would have to trust.
 """
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
@@ -217,6 +217,7 @@ _PANEL: Dict[str, _PartReader] = {
 _STATE: Dict[str, _PartReader] = {
     'robots': _plain(_read_robots), 'numbers': _plain(_read_numbers), 'mode': _plain(_read_mode),
     'limits': _plain(read_limits), 'together': _plain(_read_flag),
+    'brake': _plain(_read_flag),
     'windows': _by_robot(read_geometry), 'torn_off': _plain(_read_torn),
     'looks': _by_robot(_read_look), 'panel': _read_panel, 'events': _read_events}
 

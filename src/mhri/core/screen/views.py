@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from typing import Optional, Tuple
 
 from mhri.core.robots.mocap import Drift, Pose
+from mhri.core.screen.brake_view import BrakeView
+from mhri.core.screen.task_views import TaskView
 
 # Link states of a robot.
 WAITING = 'waiting'   # added, nothing heard yet
@@ -70,7 +72,7 @@ class RobotView:
     ``guarded`` while its commands go through a guard on the robot, ``obeys`` is whom it obeys ('',
     'operator', 'task'), ``stands`` why it is kept still ('', 'stopped', 'not_heard', 'joining'),
     ``waits`` is true while it waits for a centred stick, ``stop_latched`` once its guard has
-    confirmed the stop. ``hardware_stop`` is true while the robot's own emergency stop holds it,
+    confirmed the stop. ``brake`` is what its obstacle brake does. ``hardware_stop`` is true while the robot's own emergency stop holds it,
     None if nothing reports it. ``power`` says in words what was done to its motor power
     (:mod:`mhri.core.driving.motor_power`), '' for nothing, ``offers_power`` whether it can be cut.
     ``sent_mps`` and ``sent_rad_s`` are the velocity last sent to it (None: not known), ``reached``
@@ -78,7 +80,8 @@ class RobotView:
 
     What the screen makes of it: ``asked`` is the operator's command [m/s, rad/s] where the robot
     has done something else for a moment, else None; ``why`` says in a sentence why it stands though
-    the stick is held, '' for nothing.
+    the stick is held, '' for nothing. ``task`` is what it does by itself, None for nothing,
+    ``carry_on`` the name of the task that it could continue, '' for none.
     """
 
     name: str
@@ -106,6 +109,7 @@ class RobotView:
     waits: bool = False
     obeys: str = ''
     stands: str = ''
+    brake: BrakeView = BrakeView()
     stop_latched: bool = False
     power: str = ''
     offers_power: bool = False
@@ -116,6 +120,13 @@ class RobotView:
     reached: bool = True
     asked: Optional[Tuple[float, float]] = None
     why: str = ''
+    task: Optional[TaskView] = None
+    carry_on: str = ''
+
+    @property
+    def on_task(self) -> bool:
+        """Whether it drives by itself, or is about to."""
+        return not self.selected and (self.obeys == 'task' or self.task is not None)
 
 
 @dataclass(frozen=True)
@@ -150,13 +161,14 @@ class DeviceView:
 
     ``name`` is the name of the connected device, '' if there is none; ``note`` says why there is
     none and what to do, or what the device waits for; both are '' if the node cannot tell.
-    ``kind`` is e.g. 'pad'.
+    ``kind`` is e.g. 'pad'; ``there`` are the names of all that could be chosen.
     """
 
     source: str
     name: str = ''
     note: str = ''
     kind: str = ''
+    there: Tuple[str, ...] = ()
 
     @property
     def absent(self) -> bool:
@@ -182,7 +194,7 @@ class PanelView:
     is stopped. ``limits`` are the operator's speed limits in force [m/s, rad/s]. ``status`` is the
     one line at the bottom, never empty; ``status_level`` one of 'calm', 'attention', 'stopped'.
     ``together`` is true while all selected robots are held to the pace of the slowest, ``pace``
-    says in words what that is, ``slowed`` is true while a slow link holds them back.
+    says in words what that is, ``brake`` while the obstacle brake is on, ``slowed`` is true while a slow link holds them back.
     ``camera_bits_per_s`` is what all pictures on show take of the network. ``heard`` is what the
     voice node heard last, None before that. ``control`` is who drives, ``answers`` is false while
     the gates are not heard, ``stop_taken`` true once they have said that the stop is in force.
@@ -199,6 +211,7 @@ class PanelView:
     stop_note: str = ''
     limits: Tuple[float, float] = (0.5, 1.5)
     together: bool = False
+    brake: bool = False
     pace: str = ''
     slowed: bool = False
     status: str = 'starting'

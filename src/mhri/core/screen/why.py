@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Callable, Dict, Tuple
 
 from mhri.core.robots.numbers import LAST_KEY
+from mhri.core.screen.brake_view import standing_words
 from mhri.core.screen.views import (
     GONE, LIVE, PanelView, ROS_CONNECTED, RobotView, SILENT, UNANSWERED, WAITING)
 
@@ -69,8 +70,10 @@ def _nobody_decides(view: PanelView, _: RobotView, __: _Stick) -> str:
 def _not_selected(_: PanelView, robot: RobotView, __: _Stick) -> str:
     if robot.selected:
         return ''
-    what = 'on a task: {} to take it over' if robot.obeys == 'task' else \
-        'not selected: {} to drive it'
+    what = 'not selected: {} to drive it'
+    if robot.on_task:
+        name = robot.task.label.lower() if robot.task else ''
+        what = ' '.join(filter(None, ('on a task:', name and name + ';', '{} to take it over')))
     return what.format('press {}'.format(robot.number) if 0 < robot.number <= LAST_KEY
                        else 'check it in the list')
 
@@ -131,6 +134,10 @@ def _no_speed(view: PanelView, _: RobotView, stick: _Stick) -> str:
     return 'the speed limit is 0: raise it'
 
 
+def _braked(_: PanelView, robot: RobotView, __: _Stick) -> str:
+    return standing_words(robot.brake)
+
+
 def _kept_standing(_: PanelView, robot: RobotView, __: _Stick) -> str:
     return '' if robot.stands in _TOLD else robot.stands
 
@@ -143,8 +150,8 @@ def _no_answer(_: PanelView, robot: RobotView, __: _Stick) -> str:
 
 _RULES: Tuple[Callable[[PanelView, RobotView, _Stick], str], ...] = (
     _not_connected, _stopped, _not_in_control, _nobody_decides, _not_selected, _another_mode,
-    _device, _waits, _not_heard, _unreachable, _own_stop, _joins, _no_speed, _kept_standing,
-    _no_answer)
+    _device, _waits, _not_heard, _unreachable, _own_stop, _joins, _no_speed, _braked,
+    _kept_standing, _no_answer)
 
 
 class WhyStill:

@@ -9,10 +9,10 @@ import math
 
 import numpy as np
 
+from mhri.core.driving.brake import BRAKES_MPS2, MARGIN_M, REACTION_S, stopping_speed
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
 from mhri.core.tasks.base import Body
-from mhri.core.tasks.brake import BRAKES_MPS2, MARGIN_M, REACTION_S, stopping_speed
 
 _STEP_M = 0.04
 

@@ -10,12 +10,12 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from mhri.core.driving.brake import MARGIN_M
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
 from mhri.core.tasks.base import (
     beside, DONE, Field, Senses, Start, Step, Task, TaskKind, TEXT, Values, WAITING, way, within,
     wrapped)
-from mhri.core.tasks.brake import MARGIN_M
 from mhri.core.tasks.goto import Goto, SPEED, TIMEOUT_S
 from mhri.core.tasks.pilot import Pilot
 

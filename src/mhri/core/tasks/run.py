@@ -17,13 +17,13 @@ from typing import List, Optional, Tuple
 
 import numpy as np
 
+from mhri.core.driving.brake import braked, SCAN_OLD_S
 from mhri.core.driving.gate import HELD, OPERATOR, TASK
 from mhri.core.driving.limits import Velocity, ZERO
 from mhri.core.screen.battery import FLAT_AT
 from mhri.core.tasks.base import (
     BLOCKED, Body, discs, ENDS, FAILED, LOST, RUNNING, Senses, Step, STOPPED, TAKEN_OVER, Task,
     TIMEOUT, turn_to, WAITING, way)
-from mhri.core.tasks.brake import braked, SCAN_OLD_S
 from mhri.core.tasks.fence import kept_inside
 
 READYING, JOINING, UNDER_WAY, ENDED = 'readying', 'joining', 'under_way', 'ended'
@@ -181,8 +181,8 @@ class RobotRun:
         if not all(map(math.isfinite, (step.velocity.linear_mps, step.velocity.angular_rad_s))):
             self.end(FAILED, 'its task asked for a velocity that is no number', facts.now_s)
             return ZERO
-        free = braked(step.velocity, senses.points, self._body, facts.scan_age_s) \
-            if facts.has_laser else braked(step.velocity, robots, self._body, 0.0)
+        free = braked(step.velocity, senses.points, self._body.radius_m, facts.scan_age_s) \
+            if facts.has_laser else braked(step.velocity, robots, self._body.radius_m, 0.0)
         velocity = kept_inside(free, senses.pose, senses.fence, self._body)
         held = facts.settling or self._held(step, free, facts) or _at_fence(free, velocity)
         self._mark(held, facts.now_s)

@@ -32,7 +32,8 @@ _TABS = {int(Qt.Key_Tab): 1, int(Qt.Key_Backtab): -1}
 # Keys of the screen, and what they are for.
 COMMANDS = {int(Qt.Key_F1): 'keys', int(Qt.Key_F2): 'drawer', int(Qt.Key_F6): 'focus',
             int(Qt.Key_F11): 'full_screen',
-            int(Qt.Key_H): 'numbers', int(Qt.Key_P): 'stills', int(Qt.Key_R): 'record'}
+            int(Qt.Key_C): 'carry_on', int(Qt.Key_H): 'numbers',
+            int(Qt.Key_P): 'stills', int(Qt.Key_R): 'record'}
 
 _KEYS = frozenset((QEvent.KeyPress, QEvent.KeyRelease, QEvent.ShortcutOverride))
 # After one of these the releases of held keys may go to somebody else.

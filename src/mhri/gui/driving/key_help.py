@@ -16,6 +16,7 @@ COMMAND_WORDS = {
     'full_screen': 'fill the whole screen, or be a window again',
     'numbers': 'show or hide the numbers over the pictures',
     'stills': 'save a still of every picture',
+    'carry_on': 'continue the task that the robot you look at was taken from',
     'record': 'record the selected robots, or stop all recordings',
 }
 # (keys, what they do), in the order on show.

@@ -108,6 +108,8 @@ class SpeedLimits(QWidget):
     limits_requested = Signal(float, float)
     #: whether all selected robots are to keep to the slowest
     together_requested = Signal(bool)
+    #: whether what is driven by hand is to slow down for obstacles
+    brake_requested = Signal(bool)
 
     def __init__(self, parent=None):
         super().__init__(parent)
@@ -144,6 +146,11 @@ class SpeedLimits(QWidget):
         self.together_box.setObjectName('together_box')
         self.together_box.setToolTip(
             'All selected robots keep to what the slowest of them can do, on the same curve')
+        self.brake_box = SwitchBox('obstacle brake', self)
+        self.brake_box.setObjectName('brake_box')
+        self.brake_box.setToolTip(
+            'Robots in hand slow down for what their laser sees in the way, to a stop before it.\n'
+            'Backing away and turning stay possible; what the laser does not see is not avoided.')
         self.pace_label = TextLine(self)
         self.pace_label.setObjectName('pace_label')
         group = QHBoxLayout()
@@ -152,6 +159,7 @@ class SpeedLimits(QWidget):
         group.addWidget(self.pace_label, 1)
         grid.addWidget(QLabel('Group', self), len(rows), 0)
         grid.addLayout(group, len(rows), 1, 1, 3)
+        grid.addWidget(self.brake_box, len(rows) + 1, 1, 1, 3)
         grid.setColumnStretch(2, 1)
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
@@ -173,6 +181,7 @@ class SpeedLimits(QWidget):
             slider.sliderReleased.connect(self._send)
         self._timer.timeout.connect(self._send)
         self.together_box.clicked.connect(self.together_requested)
+        self.brake_box.clicked.connect(self.brake_requested)
 
     def show_limits(self, limits):
         """Show the limits in force [m/s, rad/s], unless the operator is just changing them."""
@@ -180,9 +189,10 @@ class SpeedLimits(QWidget):
             self._limits = limits
             self._show()
 
-    def show_pace(self, together, pace, slowed=False):
+    def show_pace(self, together, pace, slowed=False, brake=False):
         """Show how the robots keep to each other, in words; ``slowed`` by a link points at it."""
         self.together_box.setChecked(together)
+        self.brake_box.setChecked(brake)
         head, _, tail = pace.partition(': ')
         # The speed is what matters: by how much it is less, or how much it is at most.
         shorter = (head,) if slowed else (tail, tail.replace('at most ', '')) if tail else ()

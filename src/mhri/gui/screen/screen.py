@@ -186,7 +186,7 @@ class ScreenWidget(QWidget):
         self.control_bar.show_control(view.control)
         self.mode_combo.show_mode(view.sources, view.mode, view.devices)
         self.speed_limits.show_limits(view.limits)
-        self.speed_limits.show_pace(view.together, view.pace, view.slowed)
+        self.speed_limits.show_pace(view.together, view.pace, view.slowed, view.brake)
         self.stop_bar.show_cut_off(view.ros == ROS_CUT_OFF)
         self.stop_bar.show_power(any(robot.offers_power for robot in view.robots))
         self.stop_bar.show_stop(view.stop_all, view.stop_note, stop_words(

@@ -123,10 +123,12 @@ class ScreenLayout(QObject):
         self._begins_closed = not self._drawer_chosen
         self.arrange()
 
-    def add_page(self, title, page):
-        """Give the drawer a further page."""
-        self._screen.tabs.addTab(title)
-        self._screen.pages.addWidget(page)
+    def add_page(self, title, page, second=False):
+        """Give the drawer a further page; ``second``: right behind those for driving."""
+        screen = self._screen
+        place = screen.pages.indexOf(screen.drive_page) + 1 if second else screen.pages.count()
+        screen.pages.insertWidget(place, page)
+        screen.tabs.insertTab(self._pages().index(page), title)
 
     def show_page(self, page):
         """Open the drawer at a page."""

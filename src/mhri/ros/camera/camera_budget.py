@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The camera budget applied to the feeds of a screen: who sees what says what, the rest follows."""
+"""Applies the camera budget to the feeds of a screen."""
 import time
 from typing import NamedTuple, Union
 
@@ -12,11 +12,11 @@ PERIOD_S = 1.0
 
 
 class Wish(NamedTuple):
-    """A picture or a point cloud that the screen has a place for.
+    """A picture or a point cloud with a place on the screen.
 
-    ``robot``: its name, of a cloud with a word more; ``importance``: one of
-    :data:`mhri.core.camera.budget.IMPORTANCES`, the picture of a checked robot is DRIVEN;
-    ``visible``: false where nobody can see it (tile closed, minimised, on another page).
+    ``robot``: its name, for a cloud with a word added; ``importance``: one of
+    :data:`mhri.core.camera.budget.IMPORTANCES`, a checked robot's picture is DRIVEN;
+    ``visible``: false if nobody can see it (tile closed, minimised, on another page).
     """
 
     robot: str
@@ -26,7 +26,7 @@ class Wish(NamedTuple):
 
 
 class CameraBudget:
-    """Shares the network among the pictures of one screen; for one thread.
+    """Shares the network among the pictures of one screen; use it on one thread.
 
     :param settings: function that returns the :class:`mhri.core.screen.settings.PanelSettings`
     """
@@ -44,8 +44,8 @@ class CameraBudget:
     def settle(self, wishes):
         """Hand every feed its grant; return them, {robot: Grant}.
 
-        Call it with every drawing: it plans once a second, and at once where a picture is opened or
-        another one matters. That takes about a millisecond for a dozen and asks nobody.
+        Call it at every redraw: it plans once a second, and at once when a picture opens or the
+        importance changes. That takes about a millisecond for a dozen pictures and asks nobody.
 
         :param wishes: a :class:`Wish` for every feed that is open, each name once
         """

@@ -59,7 +59,7 @@ class Gates:
         self._stop = None
         self._stop_links = []
         self._command = None
-        self._together = self._slow_with_link = False
+        self._together = self._slow_with_link = self._brake = False
         self._share = 1.0
         self._closed = False
         self._session = '{:x}'.format(time.time_ns())
@@ -101,6 +101,7 @@ class Gates:
             return dict(operator=self._seat.operator, since=self._seat.since,
                         leased=self._seat.state == 'leased', mux=self._mux.caller,
                         stop_all=bool(self._stop), together=self._together, share=self._share,
+                        brake=self._brake,
                         refused=refused, robots=[gate.message() for gate in self._gates.values()])
 
     def mux_heard(self):
@@ -257,11 +258,12 @@ class Gates:
                 self._refuse(caller, 'group_speed')
                 return
             self._together, self._slow_with_link = message.together, message.slow_with_link
+            self._brake = message.brake
             self._keep_together()
             self.on_change()
 
     def _keep_together(self):
-        """Give every gate the limits and the share it must keep to."""
+        """Give every gate the limits, the share and the brake it must keep to."""
         group = [gate for gate in self._gates.values() if gate.rule.checked]
         common = common_limits([gate.rule.limits for gate in group]) \
             if self._together and group else None
@@ -269,6 +271,7 @@ class Gates:
         self._share = link_share(max(trips, default=None)) if self._slow_with_link else 1.0
         for gate in self._gates.values():
             gate.rule.hold_to(common or gate.rule.limits, self._share)
+            gate.ask_brake(self._brake)
 
     def _open(self, name, robot_type):
         """Open the gate of a robot, replacing the one it had (on the roster's thread)."""
@@ -327,7 +330,7 @@ class Gates:
         self._each(lambda gate: gate.tick(now))
         if self._slow_with_link:
             self._keep_together()
-        states = [(gate.rule.obeys, gate.rule.stands) for gate in self._gates.values()]
+        states = [(gate.rule.obeys, gate.rule.stands, gate.brake()[0]) for gate in self._gates.values()]
         if states != self._states:
             self._states = states
             self.on_change()
@@ -337,4 +340,5 @@ class Gates:
         with self._lock:
             self._closed = True
             self._each(lambda gate: gate.send(gate.rule.close(self._clock())))
+            self._each(lambda gate: gate.leave())
             self._wake.notify()

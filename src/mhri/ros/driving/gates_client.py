@@ -92,11 +92,11 @@ class GatesClient:
         return who_drives(state.operator, state.computer,
                           time.strftime('%H:%M', time.localtime(since)) if since else '')
 
-    def keep_together(self, together, slow_with_link):
-        """Tell the gates how the selected robots stay together, if that has changed."""
-        if self._group is not None and (together, slow_with_link) != self._told:
-            self._told = (together, slow_with_link)
-            self._group.publish(together=together, slow_with_link=slow_with_link)
+    def keep_together(self, together, slow_with_link, brake):
+        """Tell the gates how the selected robots stay together and off obstacles, if it is news."""
+        if self._group is not None and (together, slow_with_link, brake) != self._told:
+            self._told = (together, slow_with_link, brake)
+            self._group.publish(together=together, slow_with_link=slow_with_link, brake=brake)
 
     def leave_group(self):
         """Forget what the gates were told, to tell them again when this screen drives again."""

@@ -6,9 +6,10 @@ import time
 
 from geometry_msgs.msg import Twist, TwistStamped
 import rospy
+from std_msgs.msg import String
 
 from mhri.core.driving.gate import GateRule, STOPPED
-from mhri.core.driving.guard_link import GuardLink, parse_id
+from mhri.core.driving.guard_link import GuardLink, GuardState, parse_id, read_state
 from mhri.core.driving.limits import ZERO
 from mhri.core.driving.listeners import obeying
 from mhri.core.robots.link import link_state
@@ -16,6 +17,7 @@ from mhri.core.robots.names import topic_of
 from mhri.core.screen.views import GONE, SILENT
 from mhri.msg import RobotGate as RobotGateMessage
 from mhri.ros.convert import to_twist
+from mhri.ros.driving.brake_eye import BrakeEye
 from mhri.ros.driving.motor_power import MotorPower
 from mhri.ros.graph.rospy_inside import (
     listeners, PromptPublisher, publisher_uri, unsubscribe)
@@ -28,6 +30,8 @@ LOST_S = 0.33
 LIVE_S = 1.0
 # Most velocity topics of a robot: each costs connections and a registration.
 MOST_TOPICS = 8
+# How often a guard that would go back alone is told that it is heard [s].
+BEAT_S = 0.5
 
 
 class RobotGate:
@@ -37,7 +41,11 @@ class RobotGate:
     ``/<robot>/mhri_guard/command`` (``geometry_msgs/TwistStamped``); a zero goes to all of them, a
     command to one: the guard's while its echo is alive, else the first that the robot listens to.
     Subscribes ``/<robot>/mhri_guard/echo`` (``geometry_msgs/TwistStamped``) and the odometry, of
-    which only the time counts. Apart from its callbacks it is not thread-safe: hold ``lock``.
+    which only the time counts; of a guard that does something by itself also
+    ``/<robot>/mhri_guard/state`` (``std_msgs/String``), which it answers by
+    ``/<robot>/mhri_guard/heard`` (``std_msgs/String``). While the brake is asked for, see
+    :class:`mhri.ros.driving.brake_eye.BrakeEye`. Apart from its callbacks it is not thread-safe:
+    hold ``lock``.
 
     :param name: the robot
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
@@ -52,8 +60,12 @@ class RobotGate:
                  clock=time.monotonic):
         self.name = name
         self.robot_type = robot_type
-        self.rule = GateRule(robot_type.limits, command)
+        self._eye = BrakeEye(name, robot_type, clock)
+        self.rule = GateRule(robot_type.limits, command, self._eye.brake.allow)
         self._clock = clock
+        self._brake_asked = False
+        self._guard_state = GuardState()
+        self._beat_at = -math.inf
         self._lock = lock
         self._session = session
         self._on_foreign_stop = on_foreign_stop
@@ -73,6 +85,9 @@ class RobotGate:
                              tcp_nodelay=True) for topic in robot_type.odometry]
         self._echo = rospy.Subscriber('/{}/mhri_guard/echo'.format(name), TwistStamped,
                                       self._on_echo, queue_size=1, tcp_nodelay=True)
+        self._state = rospy.Subscriber('/{}/mhri_guard/state'.format(name), String,
+                                       self._on_guard_state, queue_size=1, tcp_nodelay=True)
+        self._heard = PromptPublisher('/{}/mhri_guard/heard'.format(name), String)
         self.power = MotorPower(name, robot_type)
         self._probe = LinkProbe(name, self._node_uri, self._on_round_trip)
         if len(robot_type.command) > MOST_TOPICS:
@@ -91,11 +106,29 @@ class RobotGate:
         """Round-trip time to a node of the robot [s], NaN if unknown."""
         return self._round_trip_s
 
-    def _on_odometry(self, _message):
+    def _on_odometry(self, message):
         first, self._heard_at = self._heard_at is None, self._clock()
+        self._eye.on_odometry(message, self._heard_at)
         if first:
             with self._lock:
                 self.send(self.rule.join(self._heard_at))
+
+    def _on_guard_state(self, message):
+        self._guard_state = read_state(message.data)
+
+    def ask_brake(self, asked):
+        """Switch the brake for the stick on or off; that of a guard on the robot replaces it."""
+        self._brake_asked = asked
+        self._eye.want(asked and self.rule.checked and not self._guard_brakes())
+
+    def _guard_brakes(self):
+        return self._guarded and bool(self._guard_state.brake)
+
+    def brake(self):
+        """Return (what the brake does, way to what slows it down [m], whether the guard has it)."""
+        if not self._guard_brakes():
+            return self._eye.brake.state(self._clock()) + (False,)
+        return self._guard_state.brake, self._guard_state.free_way_m, True
 
     def _on_echo(self, message):
         """Take in an echo; repeat a stop or a release that the guard has missed."""
@@ -159,7 +192,19 @@ class RobotGate:
         self.send(self.rule.tick(now))
         self._look_at_links(now)
         self._look_at_guard(now)
+        self.ask_brake(self._brake_asked)
         self.send(self.rule.hold(self._lost(now), now))
+        self._beat(now)
+
+    def _beat(self, now):
+        """Let a guard that would go back alone know that it is heard."""
+        if self._guarded and self._guard_state.back_after_s and now - self._beat_at >= BEAT_S:
+            self._beat_at = now
+            self._heard.publish(self._guard.token)
+
+    def leave(self):
+        """Tell the guard that this is the end: who is left on purpose does not go back alone."""
+        self._heard.publish_urgent('')
 
     def _lost(self, now):
         """Tell whether the robot is not heard or its link confirms nothing."""
@@ -214,19 +259,24 @@ class RobotGate:
     def message(self):
         """Return the ``mhri/RobotGate`` of this moment."""
         rule, chosen, sent = self.rule, self._chosen(), self.rule.sent
+        brake, way_m, on_robot = self.brake()
         return RobotGateMessage(
             name=self.name, obeys=rule.obeys,
             stands='not_heard' if rule.stands == 'held' else rule.stands,
             topic=chosen.resolved_name if chosen else '', guarded=self._guarded,
             stop_confirmed=self._guarded and self._guard.stop_confirmed,
             sent=to_twist(sent.linear_mps, sent.angular_rad_s), power=self.power.state,
-            round_trip_s=self._round_trip_s)
+            round_trip_s=self._round_trip_s, brake=brake, free_way_m=way_m,
+            brake_on_robot=on_robot,
+            back_after_s=self._guard_state.back_after_s if self._guarded else 0.0)
 
     def close(self):
         """Unregister everything (blocking: it asks the master); send the last zero before."""
+        self.leave()
         self._probe.close()
         self.power.close()
-        for publisher in self._publishers:
+        self._eye.close()
+        for publisher in self._publishers + [self._heard]:
             publisher.unregister()
-        for subscriber in self._odometry + [self._echo]:
+        for subscriber in self._odometry + [self._echo, self._state]:
             unsubscribe(subscriber)

@@ -56,6 +56,8 @@ class Roster:
 
     def start(self):
         """Begin; returns at once."""
+        # The first look is now: robots on a task, which nobody checks, wait for their zero, too.
+        self._changed.set()
         threading.Thread(target=self._run, name='roster', daemon=True).start()
         return self
 
@@ -73,7 +75,7 @@ class Roster:
                 self._look()
                 self._announce(time.monotonic())
             except (MasterError, OSError) as error:
-                rospy.logdebug('the robots cannot be looked at now: %s', error)
+                rospy.logdebug('cannot look at the robots now: %s', error)
             except Exception as error:  # without this thread no robot would ever be added
                 rospy.logerr_throttle(
                     10.0, 'the robots could not be looked at: {}'.format(repr(error)[:300]))

@@ -14,7 +14,7 @@ from mhri.core.map.fit import fit, FitError, NO_POINTS
 from mhri.core.map.grid import GridError
 from mhri.core.map.places import HAND
 from mhri.core.robots.mocap import Pose
-from mhri.core.tasks.brake import SCAN_OLD_S
+from mhri.core.driving.brake import SCAN_OLD_S
 from mhri.ros.graph.master_api import MasterError
 from mhri.srv import (
     FitPlace, FitPlaceResponse, SetFence, SetFenceResponse, SetMark, SetMarkResponse, SetPlace,

@@ -61,7 +61,7 @@ class ScreenBackend:
         self._feeder = Worker('feeds')
         self._fleet = Fleet(self._types, self._gates, self._feeder)
         self._jobs = PanelJobs(self._types, self._events)
-        self._together = False
+        self._together = self._brake = False
         self._asked = AskedAndDone()
         self._mux = self._watch = self._requests = self._diagnostics = self._devices = None
         self._first_limits = self._first_mode = None
@@ -181,6 +181,11 @@ class ScreenBackend:
         self._together = together
         self.repeat_selection()
 
+    def brake(self, on):
+        """Let what is driven by hand slow down for obstacles, or not."""
+        self._brake = on
+        self.repeat_selection()
+
     def select(self, names):
         """Drive exactly these robots; does nothing while somebody else is in control."""
         if self.drives():
@@ -202,7 +207,7 @@ class ScreenBackend:
             return
         if self.drives():
             self._mux.select(self.selection.selected)
-            self._gates.keep_together(self._together, self.settings.slow_with_link)
+            self._gates.keep_together(self._together, self.settings.slow_with_link, self._brake)
         else:
             self.selection.check(())
             self._gates.leave_group()
@@ -342,15 +347,13 @@ class ScreenBackend:
                                       for name in self.selection.robots), asked, time.monotonic())
         answers = self._mux is None or self._gates.answers()
         gates = self._gates.state() if answers else None
-        together = self._together if gates is None else gates.together
-        share = 1.0 if gates is None else gates.share
+        together, share = (gates.together, gates.share) if gates else (self._together, 1.0)
         view = PanelView(
-            ros=self._state_of_ros(), mode=mode,
+            ros=self._state_of_ros(), mode=mode, brake=gates.brake if gates else self._brake,
             stop_all=self._stopped_by_gates or (self._mux.stopped if self._mux else self._pressed),
             stop_note=self._stop_note,
-            limits=limits or self._first_limits or (0.5, 1.5),
-            robots=robots, together=together, pace=pace_words(robots, together, share),
-            slowed=share < 1.0,
+            limits=limits or self._first_limits or (0.5, 1.5), robots=robots, together=together,
+            pace=pace_words(robots, together, share), slowed=share < 1.0,
             camera_bits_per_s=self._fleet.camera_bits_per_s(),
             **(self._devices.view() if self._devices else {}),
             control=self._control(), answers=answers,

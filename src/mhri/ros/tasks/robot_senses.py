@@ -8,22 +8,19 @@ import time
 import rospy
 from sensor_msgs.msg import BatteryState, LaserScan
 
+from mhri.core.driving.brake import Surroundings
 from mhri.core.map.places import Odometry, OLD_S
 from mhri.core.map.tf_tree import frame_name
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.names import topic_of
-from mhri.core.sensors.plausible import beams_problem, measured_ranges, thinned
 from mhri.core.tasks.base import Body
-from mhri.core.tasks.brake import Scan, Surroundings
 from mhri.core.tasks.retrace import Trail
 from mhri.ros.convert import header_of
 from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.robots.robot_link import battery_fraction, ODOMETRY_READERS
+from mhri.ros.sensors.beams import read_beams
 from mhri.ros.sensors.mocap_feed import MocapFeed
 from mhri.ros.sensors.refusals import Refusals
-
-# A finer scan is thinned: its nearest beams count.
-MOST_BEAMS = 400
 
 
 class _Newest:
@@ -147,19 +144,10 @@ class RobotSenses:
         self.trail.add(self.pose, self._clock())
 
     def _see(self, message):
-        problem = beams_problem(len(message.ranges), message.angle_min, message.angle_increment)
-        if problem:
-            self._scan.note(problem)
-            return
-        ranges, together = thinned(measured_ranges(
-            message.ranges, message.range_min, message.range_max), MOST_BEAMS)
-        step = message.angle_increment
-        first, step = message.angle_min + 0.5 * (together - 1) * step, together * step
-        if step < 0.0:
-            # Mounted upside down it counts to the right.
-            ranges, first, step = ranges[::-1], first + (len(ranges) - 1) * step, -step
-        self._surroundings.see(Scan(ranges, first, step, message.range_min, message.range_max),
-                               self.pose)
+        try:
+            self._surroundings.see(read_beams(message), self.pose)
+        except ValueError as error:
+            self._scan.note(error)
 
     def points(self, robots=()):
         """Return what its laser has met, in its frame, were it where it was heard last.

@@ -60,8 +60,9 @@ class Starter:
 
         :raises MasterError: the master cannot be asked now
         """
-        self._seen.know(names)
+        # Goals that nobody wants any more first: robots drive to them.
         self._move_bases.know(names)
+        self._seen.know(names)
 
     def prepare(self, key, values, team, names):
         """Open what a goal needs (blocking: it asks the master and reads files).

@@ -13,7 +13,6 @@ import numpy as np
 
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
-from mhri.core.tasks.base import Body, NOWHERE
 
 # A scan that is older is trusted by nobody [s].
 SCAN_OLD_S = 0.3
@@ -30,6 +29,7 @@ _GRID_M = 0.03
 _EDGE_M = 0.05
 # What was met no further off a robot than this was that robot [m].
 _BESIDE_M = 0.15
+_NOTHING = np.zeros((0, 2))
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Surroundings:
     """
 
     def __init__(self) -> None:
-        self._met = NOWHERE
+        self._met = _NOTHING
         self._fresh = 0
 
     def see(self, scan: Scan, odometry: Pose) -> None:
@@ -142,12 +142,13 @@ def stopping_speed(way_m: float, delay_s: float) -> float:
     return math.sqrt(lag * lag + 2.0 * BRAKES_MPS2 * max(0.0, way_m)) - lag
 
 
-def braked(velocity: Velocity, points: np.ndarray, body: Body,
+def braked(velocity: Velocity, points: np.ndarray, radius_m: float,
            age_s: Optional[float]) -> Velocity:
     """Return the velocity that a robot may have; turning on the spot is always allowed.
 
     :param velocity: what is wanted
     :param points: what its laser has met, in its frame [m]
+    :param radius_m: of the disc around all of the robot [m]
     :param age_s: of the newest scan [s], None before the first: no way forward then, and a crawl
         backward
     """
@@ -156,7 +157,7 @@ def braked(velocity: Velocity, points: np.ndarray, body: Body,
         return Velocity(min(0.0, max(wanted, -CRAWL_MPS)), turn)
     # Slower with the same turn is another arc: looked at once more.
     for _ in range(2):
-        way_m = free_way(points, body.radius_m + MARGIN_M, Velocity(wanted, turn))
+        way_m = free_way(points, radius_m + MARGIN_M, Velocity(wanted, turn))
         most = stopping_speed(way_m, REACTION_S + age_s)
         wanted = max(-most, min(most, wanted))
     return Velocity(0.0 if abs(wanted) < 1e-3 else wanted, turn)

@@ -8,18 +8,16 @@ import sys
 import numpy as np
 import pytest
 
+from mhri.core.driving.brake import (
+    braked, BRAKES_MPS2, CRAWL_MPS, free_way, Scan, stopping_speed, Surroundings)
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
-from mhri.core.robots.robot_types import Limits
-from mhri.core.tasks.base import Body
-from mhri.core.tasks.brake import (
-    braked, BRAKES_MPS2, CRAWL_MPS, free_way, Scan, stopping_speed, Surroundings)
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from support.task_world import random_drive  # noqa: E402
 
-BODY = Body(0.2, Limits(1.0, 3.0))
+RADIUS_M = 0.2
 AHEAD, ASIDE, BEHIND = (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0)
 
 
@@ -60,12 +58,12 @@ def test_the_speed_is_lost_within_the_way(way, delay):
     ((0.0, 1.0), 0.1, (0.0, 1.0)),
     ((0.05, 0.0), 0.1, (0.05, 0.0))])
 def test_what_is_allowed(wanted, age, allowed):
-    found = braked(Velocity(*wanted), np.array([[0.6, 0.0]]), BODY, age)
+    found = braked(Velocity(*wanted), np.array([[0.6, 0.0]]), RADIUS_M, age)
     assert (found.linear_mps, found.angular_rad_s) == pytest.approx(allowed)
 
 
 def test_the_speed_falls_with_the_distance_to_zero_before_contact():
-    speeds = [braked(Velocity(1.0, 0.0), np.array([[x, 0.0]]), BODY, 0.1).linear_mps
+    speeds = [braked(Velocity(1.0, 0.0), np.array([[x, 0.0]]), RADIUS_M, 0.1).linear_mps
               for x in np.arange(0.2, 3.0, 0.05)]
     assert speeds == sorted(speeds)
     assert speeds[0] == 0.0 and speeds[1] == 0.0 and speeds[-1] == 1.0

@@ -1,0 +1,104 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The obstacle brake of a robot that is driven by hand, while the operator asks for it."""
+import math
+from typing import Optional, Tuple
+
+import numpy as np
+
+from mhri.core.driving.brake import braked, free_way, MARGIN_M, Scan, SCAN_OLD_S, Surroundings
+from mhri.core.driving.limits import Velocity, ZERO
+from mhri.core.robots.mocap import Pose
+
+# What it does. NO_SCAN: nothing fresh from the laser, so no way forward; CANNOT: robots of this
+# type have no laser, it is driven without a brake.
+OFF, ON, SLOWS, NO_SCAN, CANNOT = '', 'on', 'slows', 'no_scan', 'cannot'
+WORDS = (OFF, ON, SLOWS, NO_SCAN, CANNOT)
+_SLOWER_MPS = 0.005
+# A gate asks at least so often while its robot is driven [s].
+_ASKS_S = 0.3
+
+
+class StickBrake:
+    """What a robot's laser meets, and what is left of a command.
+
+    A scan may be taken in on one thread while another asks what is allowed; each is brief. Times
+    are seconds of a clock that never goes back.
+
+    :param radius_m: of the disc around all of the robot
+    :param has_laser: whether robots of its type have one
+    """
+
+    def __init__(self, radius_m: float, has_laser: bool) -> None:
+        self._radius_m = radius_m
+        self._has_laser = has_laser
+        self._asked = False
+        self._seen = Surroundings()
+        self._pose: Optional[Pose] = None
+        self._scan_at: Optional[float] = None
+        self._wanted = ZERO
+        self._slowed_at = -math.inf
+
+    @property
+    def asked(self) -> bool:
+        """Whether it is asked for."""
+        return self._asked
+
+    @property
+    def reads(self) -> bool:
+        """Whether it is asked for and needs the laser to be read."""
+        return self._asked and self._has_laser
+
+    def ask(self, asked: bool) -> None:
+        """Switch it on or off; what was seen before does not count after."""
+        if asked and not self._asked:
+            self._seen, self._pose, self._scan_at = Surroundings(), None, None
+        self._asked, self._slowed_at = asked, -math.inf
+
+    def move(self, pose: Pose) -> None:
+        """Take in where the robot is by its odometry."""
+        if self._pose is None:
+            self._seen, self._scan_at = Surroundings(), None
+        self._pose = pose
+
+    def see(self, scan: Scan, now: float) -> None:
+        """Take in a scan of this moment."""
+        pose = self._pose
+        if pose is None:
+            # Without odometry nothing can be remembered: it would move along with the robot.
+            self._seen = Surroundings()
+        self._seen.see(scan, pose or _HERE)
+        self._scan_at = now
+
+    def allow(self, velocity: Velocity, now: float) -> Velocity:
+        """Return what is left of a command; turning on the spot always is."""
+        self._wanted, self._slowed_at = velocity, -math.inf
+        if not self.reads or velocity.linear_mps == 0.0:
+            return velocity
+        allowed = braked(velocity, self._points(), self._radius_m, self._age(now))
+        if abs(velocity.linear_mps) - abs(allowed.linear_mps) > _SLOWER_MPS:
+            self._slowed_at = now
+        return allowed
+
+    def state(self, now: float) -> Tuple[str, float]:
+        """Return (one of :data:`WORDS`, way to what slows it down [m], NaN while nothing does)."""
+        if not self._asked:
+            return OFF, math.nan
+        if not self._has_laser:
+            return CANNOT, math.nan
+        age_s = self._age(now)
+        if age_s is None or age_s > SCAN_OLD_S:
+            return NO_SCAN, math.nan
+        if now - self._slowed_at > _ASKS_S:
+            return ON, math.nan
+        # From the robot itself: the brake keeps a margin around it.
+        return SLOWS, free_way(self._points(), self._radius_m + MARGIN_M, self._wanted) + MARGIN_M
+
+    def _points(self) -> np.ndarray:
+        return self._seen.around(self._pose or _HERE)
+
+    def _age(self, now: float) -> Optional[float]:
+        return None if self._scan_at is None else now - self._scan_at
+
+
+_HERE = Pose(0.0, 0.0, 0.0)

@@ -1,0 +1,55 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a robot's obstacle brake does, for its row and its tile, and in words."""
+import math
+from dataclasses import dataclass
+
+from mhri.core.driving.stick_brake import CANNOT, NO_SCAN, SLOWS
+
+
+@dataclass(frozen=True)
+class BrakeView:
+    """What the brake does: a word of :mod:`mhri.core.driving.stick_brake`.
+
+    ``free_way_m`` is the way to what slows the robot down [m], NaN while nothing does. ``on_robot``
+    is true where the brake is that of its guard. ``back_after_s`` is after how long without a link
+    the robot goes back by itself [s], 0 for never.
+    """
+
+    word: str = ''
+    free_way_m: float = math.nan
+    on_robot: bool = False
+    back_after_s: float = 0.0
+
+    @property
+    def holds(self) -> bool:
+        """Whether it may keep the robot still though the stick is held."""
+        return self.word in (SLOWS, NO_SCAN)
+
+
+def brake_words(brake: BrakeView) -> str:
+    """Return what an operator has to know of the brake, '' for nothing."""
+    if brake.word == SLOWS:
+        if not math.isfinite(brake.free_way_m):
+            return 'brake: slows for something ahead'
+        return 'brake: slows for something {:.1f} m ahead'.format(brake.free_way_m)
+    if brake.word == NO_SCAN:
+        return 'brake: no laser data, no way forward'
+    return 'no brake: it has no laser' if brake.word == CANNOT else ''
+
+
+def standing_words(brake: BrakeView) -> str:
+    """Return why the brake keeps a robot still, and what to do; '' where it does not."""
+    if not brake.holds:
+        return ''
+    if brake.word == NO_SCAN:
+        return 'brake: no laser data: back away, or switch the brake off'
+    return 'brake: something is in the way: back away or turn'
+
+
+def guard_words(brake: BrakeView) -> str:
+    """Return what the guard on a robot does by itself, '' for nothing."""
+    words = ['brakes by itself'] if brake.on_robot else []
+    if brake.back_after_s > 0.0:
+        words.append('goes back alone after {:g} s'.format(brake.back_after_s))
+    return ', '.join(words)

@@ -1,0 +1,90 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the obstacle brake of the gates sees of a robot: its laser, and where it is."""
+import importlib
+import threading
+import time
+
+import rospy
+from sensor_msgs.msg import LaserScan
+
+from mhri.core.driving.stick_brake import StickBrake
+from mhri.core.robots.mocap import Pose
+from mhri.core.robots.names import topic_of
+from mhri.ros.graph.rospy_inside import unsubscribe
+from mhri.ros.robots.robot_link import ODOMETRY_READERS
+from mhri.ros.sensors.beams import read_beams
+from mhri.ros.sensors.refusals import Refusals
+
+# A robot is no further from where it was read last than a few centimetres [s].
+POSE_EVERY_S = 0.04
+
+
+class BrakeEye:
+    """Reads a robot's laser (``sensor_msgs/LaserScan``) for its brake, while that is asked for.
+
+    Everything is read on the threads of the sensors; ``brake`` is
+    :class:`mhri.core.driving.stick_brake.StickBrake`, for the gate to ask.
+
+    :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
+    """
+
+    def __init__(self, name, robot_type, clock=time.monotonic):
+        self.brake = StickBrake(robot_type.radius_m, bool(robot_type.scan))
+        self._clock = clock
+        self._topics = [topic_of(name, topic) for topic in robot_type.scan]
+        module, class_name, self._read = ODOMETRY_READERS[robot_type.odometry_type]
+        try:
+            self._odometry = getattr(importlib.import_module(module), class_name)
+        except ImportError:
+            self._odometry = None
+        self._refusals = Refusals(', '.join(self._topics), clock)
+        self._subscribers = []
+        self._settling = threading.Lock()
+        self._pose_at = 0.0
+
+    def want(self, wanted):
+        """Begin or stop to look; returns at once."""
+        if wanted == self.brake.asked:
+            return
+        self.brake.ask(wanted)
+        if self._topics:
+            # Asking the master may take a while, and must not hold up a command.
+            threading.Thread(target=self._settle, name='brake_eye', daemon=True).start()
+
+    def _settle(self):
+        with self._settling:
+            if self.brake.asked and not self._subscribers:
+                self._subscribers = [
+                    rospy.Subscriber(topic, LaserScan, self._on_scan, queue_size=1,
+                                     buff_size=1 << 20, tcp_nodelay=True)
+                    for topic in self._topics]
+            elif not self.brake.asked:
+                subscribers, self._subscribers = self._subscribers, []
+                for subscriber in subscribers:
+                    unsubscribe(subscriber)
+
+    def on_odometry(self, message, now):
+        """Take in the bytes of an odometry message (``rospy.AnyMsg``)."""
+        if not self.brake.reads or self._odometry is None or now - self._pose_at < POSE_EVERY_S:
+            return
+        self._pose_at = now
+        message = self._refusals.read(message, self._odometry)
+        motion = None if message is None else self._read(message)
+        if motion is not None and motion.is_possible():
+            self.brake.move(Pose(motion.x_m, motion.y_m, motion.heading_rad))
+
+    def _on_scan(self, message):
+        now = self._clock()
+        message = self._refusals.read(message, LaserScan)
+        if message is None:
+            return
+        try:
+            self.brake.see(read_beams(message), now)
+        except ValueError as error:
+            self._refusals.note(error)
+
+    def close(self):
+        """Stop looking (blocking: it asks the master)."""
+        self.brake.ask(False)
+        self._settle()

@@ -1,0 +1,26 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A laser scan as the obstacle brake takes it."""
+from mhri.core.driving.brake import Scan
+from mhri.core.sensors.plausible import beams_problem, measured_ranges, thinned
+
+# A finer scan is thinned: its nearest beams count.
+MOST_BEAMS = 400
+
+
+def read_beams(message):
+    """Return a ``sensor_msgs/LaserScan`` as :class:`mhri.core.driving.brake.Scan`.
+
+    :raises ValueError: says what of it cannot be
+    """
+    problem = beams_problem(len(message.ranges), message.angle_min, message.angle_increment)
+    if problem:
+        raise ValueError(problem)
+    ranges, together = thinned(measured_ranges(
+        message.ranges, message.range_min, message.range_max), MOST_BEAMS)
+    step = message.angle_increment
+    first, step = message.angle_min + 0.5 * (together - 1) * step, together * step
+    if step < 0.0:
+        # Mounted upside down it counts to the right.
+        ranges, first, step = ranges[::-1], first + (len(ranges) - 1) * step, -step
+    return Scan(ranges, first, step, message.range_min, message.range_max)

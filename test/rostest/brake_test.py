@@ -1,0 +1,202 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The obstacle brake for the stick: a simulated robot driven at a wall, and scans played here."""
+import math
+import os
+import sys
+import threading
+import time
+import unittest
+
+from geometry_msgs.msg import PoseStamped
+import rospy
+import rostest
+from sensor_msgs.msg import LaserScan
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
+
+from gates_case import GatesCase, ZERO  # noqa: E402
+from mhri.core.driving.brake import CRAWL_MPS  # noqa: E402
+from mhri.msg import GroupSpeed, RobotGate  # noqa: E402
+from rostest_tools import Recorder  # noqa: E402
+from support.ros_system import wait_for  # noqa: E402
+from support.velocity import VelocityEnd  # noqa: E402
+
+# The wall to the east of the hall, and the body of bot1 [m].
+WALL_M, RADIUS_M = 12.0, 0.177
+SPEED_MPS = 0.6
+STANDS_S = 1.5
+PATIENCE_S = 60.0
+
+
+class Hand:
+    """Holds the stick: says the same 20 times a second, as the mux does."""
+
+    def __init__(self, mux, linear, angular=0.0):
+        self._done = threading.Event()
+        self._thread = threading.Thread(target=self._run, args=(mux, linear, angular), daemon=True)
+        self._thread.start()
+
+    def _run(self, mux, linear, angular):
+        while not self._done.wait(0.05):
+            mux.say(linear, angular)
+
+    def let_go(self):
+        """Say nothing any more."""
+        self._done.set()
+        self._thread.join()
+
+
+class Brake(GatesCase):
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.group = rospy.Publisher('/gates_in/group_speed', GroupSpeed, queue_size=1, latch=True)
+        cls.places = Recorder('/vrpn_client_node/bot1/pose', PoseStamped,
+                              lambda message: message.pose.position.x)
+        cls.places.wait(lambda where: True, patience_s=PATIENCE_S)
+
+    def tearDown(self):
+        self.ask(False)
+
+    def ask(self, brake):
+        """Switch the brake on or off."""
+        self.group.publish(brake=brake)
+        self.state.wait(lambda state: state.brake == brake, 'the brake to be {}'.format(brake))
+
+    def hold(self, linear, angular=0.0):
+        """Hold the stick until the test lets it go."""
+        hand = Hand(self.mux, linear, angular)
+        self.addCleanup(hand.let_go)
+        return hand
+
+    def rests(self):
+        """Wait until bot1 has stood still for a while; return its gap to the wall [m]."""
+        def still():
+            lately = [item.value for item in self.places.since(time.monotonic() - STANDS_S)]
+            return len(lately) > 10 and max(lately) - min(lately) < 0.002
+        wait_for(still, PATIENCE_S, 'the robot to stand', poll_s=0.1)
+        return WALL_M - self.places.last() - RADIUS_M
+
+    def bot1(self):
+        """Check the simulated robot and centre the stick."""
+        end = VelocityEnd('/bot1/teleop/input')
+        self.operator.check('bot1')
+        self.state.wait_robot('bot1', lambda gate: gate.topic and gate.obeys == 'operator',
+                              'the gate of bot1', PATIENCE_S)
+        self.centre('bot1', end)
+
+    def drive_to(self, x):
+        """Drive bot1 back to a place, whatever the brake."""
+        hand = self.hold(-0.4)
+        wait_for(lambda: self.places.last() < x, PATIENCE_S, 'the way back', poll_s=0.02)
+        hand.let_go()
+        self.mux.say(0.0)
+        self.rests()
+
+    def test_a_wall_is_met_without_the_brake_and_not_with_it(self):
+        self.bot1()
+        self.ask(False)
+        hand = self.hold(SPEED_MPS)
+        self.places.wait(lambda x: x > 11.0, patience_s=PATIENCE_S)
+        without = self.rests()
+        hand.let_go()
+        self.mux.say(0.0)
+        self.drive_to(9.5)
+        self.ask(True)
+        begun = time.monotonic()
+        self.state.wait_robot('bot1', lambda gate: gate.brake == RobotGate.BRAKE_ON, 'its laser')
+        hand = self.hold(SPEED_MPS)
+        slows = self.state.wait_robot('bot1', lambda gate: gate.brake == RobotGate.BRAKE_SLOWS,
+                                      'the brake to act', PATIENCE_S)
+        self.assertGreater(slows.free_way_m, 0.0)
+        within = self.rests()
+        nearest = WALL_M - RADIUS_M - max(item.value for item in self.places.since(begun))
+        hand.let_go()
+        print('MEASURED gap to the wall at {} m/s: {:.3f} m without the brake, {:.3f} m with it, '
+              'never less than {:.3f} m'.format(SPEED_MPS, without, within, nearest))
+        self.assertLess(without, 0.03, 'it should have met the wall')
+        self.assertGreater(nearest, 0.03)
+        self.assertLess(within, 0.3)
+        self.mux.say(0.0)
+        # Backing away is always possible.
+        self.drive_to(11.0)
+
+    def test_who_stands_before_a_wall_can_turn(self):
+        (name, end), _ = self.scanned(0.25)
+        self.ask(True)
+        self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_ON, 'its laser')
+        self.centre(name, end)
+        self.hold(0.2, 0.4)
+        wait_for(lambda: end.values()[-1] == (0.0, 0.4), PATIENCE_S, 'it to turn on the spot')
+
+    def scanned(self, way_m):
+        """Return ((name, receiving end) of a robot, whoever plays its scans)."""
+        (name, end), = self.robots(1, 'turtlebot3')
+        scans = Scans('/{}/scan'.format(name), way_m)
+        self.addCleanup(scans.let_go)
+        return (name, end), scans
+
+    def test_without_scans_there_is_no_way_forward_and_it_says_so(self):
+        (name, end), scans = self.scanned(9.0)
+        self.ask(True)
+        self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_ON, 'its laser')
+        self.centre(name, end)
+        hand = self.hold(0.2)
+        wait_for(lambda: end.values()[-1] == (0.2, 0.0), PATIENCE_S, 'it to drive')
+        scans.let_go()
+        wait_for(lambda: end.values()[-1] == ZERO, PATIENCE_S, 'the zero')
+        self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_NO_SCAN, 'the word')
+        self.assertFalse(self.state.robot(name).stands)
+        hand.let_go()
+        self.hold(-0.2)
+        wait_for(lambda: end.values()[-1] == (-CRAWL_MPS, 0.0), PATIENCE_S, 'the crawl back')
+
+    def test_a_scan_brakes_a_stick_that_says_nothing_new(self):
+        (name, end), scans = self.scanned(9.0)
+        self.ask(True)
+        self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_ON, 'its laser')
+        self.centre(name, end)
+        self.drive(end, 0.2)
+        scans.way_m = 0.1
+        when = time.monotonic()
+        # One command has been said: a lower one comes by itself, before the zero of staleness.
+        wait_for(lambda: end.after(when), PATIENCE_S, 'the brake')
+        self.assertLess(end.after(when)[0][1], 0.2)
+
+    def test_a_type_without_a_laser_drives_and_says_so(self):
+        (name, end), = self.robots(1, 'turtlesim', 'turtle1/cmd_vel')
+        self.ask(True)
+        self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_CANNOT, 'the word')
+        self.assertEqual(self.drive(end, 0.2), (0.2, 0.0))
+
+
+class Scans:
+    """Plays the scans of one robot, 20 times a second: something ahead, nothing elsewhere."""
+
+    def __init__(self, topic, way_m):
+        self.way_m = way_m
+        self._done = threading.Event()
+        self._publisher = rospy.Publisher(topic, LaserScan, queue_size=1)
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _run(self):
+        message = LaserScan(angle_increment=2.0 * math.pi / 360.0, angle_max=2.0 * math.pi,
+                            range_min=0.05, range_max=20.0)
+        while not self._done.wait(0.05):
+            message.ranges = [self.way_m] + [float('inf')] * 359
+            self._publisher.publish(message)
+
+    def let_go(self):
+        """Say nothing any more."""
+        self._done.set()
+        self._thread.join()
+        self._publisher.unregister()
+
+
+if __name__ == '__main__':
+    rospy.init_node('brake_test')
+    rostest.rosrun('mhri', 'brake', Brake)

@@ -1,0 +1,144 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The brake for the stick: what it allows, what it says of itself, and what a gate makes of it."""
+import math
+
+import numpy as np
+import pytest
+
+from mhri.core.driving.brake import braked, CRAWL_MPS, Scan
+from mhri.core.driving.gate import GateRule, JOINING, OPERATOR, TASK
+from mhri.core.driving.limits import Velocity, ZERO
+from mhri.core.driving.stick_brake import CANNOT, NO_SCAN, OFF, ON, SLOWS, StickBrake
+from mhri.core.robots.mocap import Pose
+from mhri.core.robots.robot_types import Limits
+
+RADIUS_M = 0.2
+FAST = Velocity(0.5, 0.2)
+
+
+def ahead(way_m):
+    """Return a scan that meets something ahead, at that way from the middle of the robot."""
+    return Scan(np.array([way_m] + [math.nan] * 359), 0.0, 2 * math.pi / 360, 0.12, 10.0)
+
+
+@pytest.fixture
+def brake():
+    """Return one that is asked for and has been moved nowhere."""
+    made = StickBrake(RADIUS_M, True)
+    made.ask(True)
+    made.move(Pose(0.0, 0.0, 0.0))
+    return made
+
+
+def test_it_does_nothing_unless_it_is_asked_for():
+    brake = StickBrake(RADIUS_M, True)
+    assert brake.allow(FAST, 0.0) == FAST and brake.state(0.0)[0] == OFF and not brake.reads
+
+
+def test_a_type_without_a_laser_drives_as_ever_and_says_so():
+    brake = StickBrake(RADIUS_M, False)
+    brake.ask(True)
+    assert brake.allow(FAST, 0.0) == FAST and brake.state(0.0)[0] == CANNOT and not brake.reads
+
+
+@pytest.mark.parametrize('age', [None, 0.31, 60.0])
+def test_without_a_fresh_scan_there_is_no_way_forward(brake, age):
+    if age is not None:
+        brake.see(ahead(9.0), 1.0 - age)
+    assert brake.allow(FAST, 1.0) == Velocity(0.0, 0.2)
+    assert brake.allow(Velocity(-0.5, 0.0), 1.0) == Velocity(-CRAWL_MPS, 0.0)
+    assert brake.allow(Velocity(0.0, 1.0), 1.0) == Velocity(0.0, 1.0)
+    assert brake.state(1.0)[0] == NO_SCAN
+
+
+def test_it_slows_down_as_the_rule_says_and_tells_the_way(brake):
+    brake.see(ahead(0.6), 0.9)
+    assert brake.allow(FAST, 1.0) == braked(FAST, np.array([[0.6, 0.0]]), RADIUS_M, 0.1)
+    word, way_m = brake.state(1.0)
+    assert word == SLOWS and way_m == pytest.approx(0.4, abs=0.03)
+    assert brake.allow(Velocity(-0.5, 0.0), 1.0) == Velocity(-0.5, 0.0)
+    assert brake.state(1.0)[0] == ON
+
+
+def test_nothing_is_said_to_slow_what_nobody_drives(brake):
+    brake.see(ahead(0.6), 1.0)
+    brake.allow(FAST, 1.0)
+    brake.see(ahead(0.6), 1.4)
+    assert brake.state(1.4)[0] == ON
+
+
+def test_the_way_it_has_driven_since_the_scan_counts(brake):
+    brake.see(ahead(1.0), 1.0)
+    first = brake.allow(FAST, 1.0)
+    brake.move(Pose(0.5, 0.0, 0.0))
+    assert brake.allow(FAST, 1.0).linear_mps < first.linear_mps
+
+
+def test_without_odometry_nothing_is_remembered():
+    brake = StickBrake(RADIUS_M, True)
+    brake.ask(True)
+    brake.see(ahead(0.6), 1.0)
+    assert brake.allow(FAST, 1.0).linear_mps < FAST.linear_mps
+    brake.see(ahead(9.0), 1.1)
+    assert brake.allow(FAST, 1.1) == FAST
+
+
+def test_what_was_seen_before_it_was_switched_off_is_not_trusted_after(brake):
+    brake.see(ahead(9.0), 1.0)
+    brake.ask(False)
+    brake.ask(True)
+    assert brake.allow(FAST, 1.0).linear_mps == 0.0
+
+
+@pytest.fixture
+def gate():
+    """Return (gate of a robot in hand, [share of each command that its brake leaves])."""
+    share = [1.0]
+    rule = GateRule(Limits(1.0, 1.0), ZERO,
+                    lambda velocity, _: Velocity(share[0] * velocity.linear_mps,
+                                                 velocity.angular_rad_s))
+    rule.check(True, 0.0)
+    rule.on_command(ZERO, 0.0)
+    return rule, share
+
+
+def test_a_held_stick_is_braked_anew_and_only_a_command_makes_it_faster(gate):
+    rule, share = gate
+    assert rule.on_command(FAST, 1.0) == FAST
+    assert rule.tick(1.05) is None
+    share[0] = 0.5
+    assert rule.tick(1.1) == Velocity(0.25, 0.2) == rule.sent
+    assert rule.tick(1.15) is None
+    share[0] = 1.0
+    assert rule.tick(1.2) is None
+    assert rule.on_command(FAST, 1.25) == FAST
+
+
+def test_what_the_brake_holds_still_goes_stale_and_has_to_be_centred(gate):
+    rule, share = gate
+    share[0] = 0.0
+    straight = Velocity(0.5, 0.0)
+    assert rule.on_command(straight, 1.0) == ZERO and rule.next_tick() == 1.5
+    share[0] = 1.0
+    assert rule.tick(1.5) is None and rule.state == JOINING
+    assert rule.on_command(straight, 1.6) is None
+    assert rule.on_command(ZERO, 1.7) == ZERO and rule.state == OPERATOR
+    assert rule.on_command(straight, 1.8) == straight
+
+
+def test_a_task_is_not_braked_twice(gate):
+    rule, share = gate
+    share[0] = 0.0
+    rule.check(False, 1.0)
+    rule.on_task(ZERO, 1.1)
+    assert rule.on_task(FAST, 1.2) == FAST and rule.state == TASK
+    assert rule.tick(1.3) is None and rule.sent == FAST
+
+
+def test_the_brake_never_speaks_after_the_end(gate):
+    rule, share = gate
+    rule.on_command(FAST, 1.0)
+    rule.close(1.1)
+    share[0] = 0.0
+    assert rule.tick(1.2) is None and rule.next_tick() is None
