@@ -5,9 +5,9 @@
 Parameters: ``robot_type`` and ``robot_model`` of the robot's namespace (its template), ``~plan``
 (path, default ``resource/sim/plan.yaml``), ``~x``, ``~y`` [m], ``~yaw`` [rad] (default: the plan's
 start place for the number at the end of the name), ``~depth_format`` (``png`` or
-``rvl``, of compressedDepth), ``~mocap`` (true: a motion capture system reports its pose), ``~placed``
-(true: tf has its odometry's place in the frame ``map``), ``~map`` (true: it publishes the plan as
-``/map``; one robot does), ``~seed`` (whole number; default: random).
+``rvl``, of compressedDepth), ``~mocap`` (true: a motion capture system reports its pose),
+``~placed`` (true: tf has the place of its odometry in the frame ``map``), ``~map`` (true: it
+publishes the plan as ``/map``; one robot does), ``~seed`` (whole number; default: random).
 """
 import random
 import re

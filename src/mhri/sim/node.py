@@ -4,9 +4,9 @@
 
 Publishes odometry at 50 Hz, IMU at 100 Hz, laser scan at 10 Hz, ``/tf`` at 50 Hz and, where the
 template has one, the battery at 1 Hz; on request also the true pose at 50 Hz as a motion capture
-system would report it (``/vrpn_client_node/<robot>/pose``, frame ``world``), and its place as a
-perfect localisation would (``/tf``, ``map`` to ``<robot>/odom``). Reads every velocity topic of the
-template, and the switch of its motor power. Frames are ``<robot>/odom``,
+system would tell it (``/vrpn_client_node/<robot>/pose``, frame ``world``), and where its odometry
+begins as a perfect localisation would (``/tf``, ``map`` to ``<robot>/odom``). Reads every velocity
+topic of the template, and what takes the power from its motors. Frames are ``<robot>/odom``,
 ``<robot>/base_link``, ``<robot>/imu_link`` and ``<robot>/laser`` (REP-105).
 """
 import math

@@ -27,6 +27,8 @@ _LOOSE_M, _TIGHT_M = 0.12, 0.04
 _MET_M, LEAST_MET = 0.1, 0.6
 # Of what another robot sees it sees less.
 LEAST_SHARED = 0.45
+# Points of another robot that are further apart stand alone [m].
+_GAP_M = 0.15
 LEAST_POINTS = 30
 # Poses this far apart are two; if the other is this nearly as good, nobody knows which it is.
 _APART_M, _APART_RAD = 0.2, math.radians(8.0)
@@ -79,7 +81,7 @@ def fit(points: np.ndarray, rough: Pose, grid: Optional[Grid] = None,
     seen = _thinned(points)
     if len(seen) < LEAST_POINTS:
         raise FitError(NO_POINTS)
-    targets = turned(*around) if around is not None else np.zeros((0, 2)) if grid is None \
+    targets = _shape(*around) if around is not None else np.zeros((0, 2)) if grid is None \
         else grid.taken()
     field = _Field(targets, rough)
     fits = [field.refined(seen, start) for start in field.candidates(seen)]
@@ -108,6 +110,18 @@ def _thinned(points: np.ndarray) -> np.ndarray:
     near = near[np.hypot(near[:, 0], near[:, 1]) < FAR_M]
     cells = np.unique(np.floor(near / (2.0 * _CELL_M)), axis=0, return_index=True)[1]
     found: np.ndarray = near[cells]
+    return found
+
+
+def _shape(points: np.ndarray, pose: Pose) -> np.ndarray:
+    """Return what another robot sees in the frame of its pose, without what stands alone.
+
+    Beams that graze a wall meet it far apart: such points are none of its features.
+    """
+    seen = turned(_thinned(points), pose)
+    gaps = np.hypot(*(seen[:, None] - seen).T)
+    np.fill_diagonal(gaps, np.inf)
+    found: np.ndarray = seen[(gaps < _GAP_M).any(axis=1)] if len(seen) else seen
     return found
 
 

@@ -9,12 +9,12 @@ import threading
 
 import rospy
 
+from mhri.core.driving.brake import SCAN_OLD_S
 from mhri.core.map.drawn import pose_problem
 from mhri.core.map.fit import fit, FitError, NO_POINTS
 from mhri.core.map.grid import GridError
 from mhri.core.map.places import HAND
 from mhri.core.robots.mocap import Pose
-from mhri.core.driving.brake import SCAN_OLD_S
 from mhri.ros.graph.master_api import MasterError
 from mhri.srv import (
     FitPlace, FitPlaceResponse, SetFence, SetFenceResponse, SetMark, SetMarkResponse, SetPlace,
