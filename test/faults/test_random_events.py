@@ -17,7 +17,6 @@ import random
 import signal
 import statistics
 import sys
-import threading
 import time
 
 import pytest
@@ -25,6 +24,7 @@ import pytest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from support import machines  # noqa: E402
+from support.lag import LagMeter  # noqa: E402
 from support.random_world import JOY, OPERATORS, PAD, ROBOTS, World  # noqa: E402
 from support.reference_model import DRIVE, ReferenceModel, STAND  # noqa: E402
 
@@ -42,35 +42,6 @@ NODES = ['mux', 'gates', 'pad', ('operator', OPERATORS[0])] + [
 WEIGHTS = {'drive': 22, 'key': 8, 'pad': 8, 'dead-man': 4, 'mode': 5, 'check': 8, 'stop-all': 6,
            'release': 8, 'kill -9': 10, 'stop': 5, 'SIGSTOP': 10, 'cut': 7, 'second operator': 6,
            'restart of master': 2}
-
-
-class LagMeter:
-    """How late this computer is: a thread that wants to wake up every 10 ms."""
-
-    def __init__(self):
-        self._times, self._lags = [], []
-        self._done = threading.Event()
-        threading.Thread(target=self._run, daemon=True).start()
-
-    def _run(self):
-        due = time.monotonic()
-        while not self._done.is_set():
-            due += 0.01
-            time.sleep(max(0.0, due - time.monotonic()))
-            now = time.monotonic()
-            if now - due > 0.02:
-                self._times.append(now)
-                self._lags.append(now - due)
-                due = now
-
-    def stop(self):
-        self._done.set()
-
-    def slack_s(self, now):
-        """Return what to allow for lateness: twice the worst of the last 3 s more than usual."""
-        low = bisect.bisect_left(self._times, now - 3.0)
-        high = bisect.bisect_right(self._times, now + 0.1)
-        return SLACK_S + 2.0 * max(self._lags[low:high], default=0.0)
 
 
 class Events:
@@ -338,7 +309,7 @@ def world(tmp_path):
 def test_no_robot_moves_that_must_stand_nor_stands_that_must_drive(world):
     print('\nseed {}: repeat with MHRI_SEED={} MHRI_EVENTS={}'.format(SEED, SEED, EVENTS),
           flush=True)
-    events, lag = Events(world, random.Random(SEED)), LagMeter()
+    events, lag = Events(world, random.Random(SEED)), LagMeter(SLACK_S)
     begin, calm_at = time.monotonic(), CALM_EVERY
     events.calm()
     while len(events.done) < EVENTS and time.monotonic() - begin < LIMIT_S:

@@ -55,6 +55,33 @@ def shown(session, text):
                   what='{!r} in the mode list'.format(text))
 
 
+def test_with_two_pads_plugged_in_the_operator_chooses(session, joy, tmp_path):
+    from python_qt_binding.QtCore import Qt
+    from python_qt_binding.QtTest import QTest
+    import rospy
+    operator, combo = session.operator, session.host.screen.mode_combo
+    first = joy.do('attach', name=PS3)
+    joy.do('attach', name=F710[0], axes=6, buttons=12)
+    session.host._request_mode('ps3joy')
+    shown(session, PS3)
+    shown(session, F710[0])
+    combo.showPopup()
+    session.until(combo.view().isVisible, what='the list')
+    row = next(row for row in range(combo.count()) if combo.itemText(row) == F710[0])
+    place = combo.view().visualRect(combo.model().index(row, 0)).center()
+    # The list lets clicks pass for a moment after it was opened.
+    session.until(lambda: QTest.mouseClick(combo.view().viewport(), Qt.LeftButton,
+                                           Qt.NoModifier, place) or not combo.view().isVisible(),
+                  what='the click')
+    session.until(lambda: combo.shown_text == F710[0], what='the other pad')
+    assert operator.view().mode == 'ps3joy'
+    shown(session, PS3)
+    joy.do('set', number=first, axes={1: -1.0}, buttons={L1: 1})
+    session.until(lambda: operator.view().status, what='the status')
+    assert not operator.robot_view('bot1').moving, 'the pad that was not chosen is pushed'
+    rospy.set_param('/mhri_joy/device', '')
+
+
 def test_a_pad_by_its_name_from_the_list_to_the_robot_and_the_page(session, joy, socket, tmp_path):
     operator = session.operator
     shown(session, 'PS3 Controller (not connected)')
@@ -66,6 +93,14 @@ def test_a_pad_by_its_name_from_the_list_to_the_robot_and_the_page(session, joy,
     session.until(lambda: 'plug one in' in operator.view().status, what='the remedy')
     pad = joy.do('attach', name=PS3)
     shown(session, PS3)
+    joy.do('set', number=pad, axes={0: 0.0, 1: 0.0}, buttons={L1: 1})
+    session.until(lambda: operator.view().status.endswith('ready'), what='the pad to be centred')
+    says = session.host.windows['bot1'].hud
+    joy.do('set', number=pad, axes={0: 0.0, 1: 0.0}, buttons={L1: 0})
+    session.until(lambda: 'hold the dead-man button' in operator.view().status, what='the line')
+    assert says.sentence == '', 'nobody has pushed the stick'
+    joy.do('set', number=pad, axes={1: -1.0}, buttons={L1: 0})
+    session.until(lambda: says.sentence == 'hold the dead-man button to drive', what='the tile')
     joy.do('set', number=pad, axes={0: 0.0, 1: 0.0}, buttons={L1: 1})
     session.until(lambda: operator.view().status.endswith('ready'), what='the pad to be centred')
     joy.do('set', number=pad, axes={1: -1.0})

@@ -94,6 +94,26 @@ def test_a_device_that_comes_while_the_list_is_open(combo, operator):
     assert combo.toolTip() == 'plug one in'
 
 
+def test_one_of_two_pads_is_chosen_by_its_name(combo, operator, heard):
+    """The list has both; the choice goes to the node, and the mode is asked for where needed."""
+    f710, ps3 = 'Logitech F710', 'PLAYSTATION(R)3 Controller'
+    sources = SOURCES[:1] + (('ps3joy', f710),) + SOURCES[2:]
+    pads = [DeviceView('ps3joy', f710, '', 'pad', (f710, ps3))]
+    modes, devices = heard(combo.mode_requested), []
+    combo.device_requested.connect(lambda *names: devices.append(names))
+    combo.show_mode(sources, 'joy', pads)
+    assert [combo.itemText(row) for row in range(combo.count())] == [
+        'Virtual joystick', f710, ps3, 'Voice']
+    choose(combo, 2, operator)
+    assert devices == [('ps3joy', ps3)] and modes == ['ps3joy']
+    assert combo.shown_text == 'switching to {} ...'.format(ps3)
+    sources = SOURCES[:1] + (('ps3joy', ps3),) + SOURCES[2:]
+    combo.show_mode(sources, 'ps3joy', [DeviceView('ps3joy', ps3, '', 'pad', (f710, ps3))])
+    assert combo.shown_text == ps3 and combo.currentIndex() == 1
+    choose(combo, 2, operator)
+    assert devices[1:] == [('ps3joy', f710)] and modes == ['ps3joy']
+
+
 def scroll(widget):
     """Turn the wheel over a widget."""
     QApplication.sendEvent(widget, QWheelEvent(

@@ -12,7 +12,7 @@ from python_qt_binding.QtWidgets import QAbstractButton, QComboBox, QLabel, QLin
 
 from mhri.core.screen import views
 from mhri.core.screen.brake_view import BrakeView
-from mhri.gui.screen import theme, words
+from mhri.gui.screen import theme
 from mhri.gui.screen.screen import ScreenWidget
 
 
@@ -360,7 +360,6 @@ def test_a_row_says_what_the_guard_does_by_itself(panel, four_robots):
     panel.show_view(replace(four_robots, robots=(guarded, *others)))
     row = panel.robot_list.row(first.name)
     assert 'brakes by itself, goes back alone after 10 s' in row.toolTip()
-    assert 'goes back alone after 10 s' in words.type_text(guarded)
 
 
 def test_a_row_warns_of_its_link_and_tells_the_figures(panel, operator, four_robots):

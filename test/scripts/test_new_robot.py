@@ -17,27 +17,15 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from support.ros_system import System, wait_for  # noqa: E402
+from support.newcomer import blocks, last_words, Newcomer, PATIENCE_S  # noqa: E402
+from support.ros_system import wait_for  # noqa: E402
 
 REPO = Path(__file__).resolve().parents[2]
 GUIDE = REPO / 'doc' / 'new_robot.md'
 EXAMPLE = REPO / 'test' / 'example_robot_package'
-PATIENCE_S = 60.0
 POLL_S = 0.1
 # Where "Look for Connected Bots" is in the window [px]: in the drawer, at the left.
 LOOK = (100, 62)
-
-
-def blocks(text):
-    """Return (what it is, its text) of each block of the guide: 'sh', 'sh terminal' or a file."""
-    found = []
-    for match in re.finditer(r'^```(\S[^\n]*)\n(.*?)^```$', text, re.M | re.S):
-        kind = match.group(1)
-        if not kind.startswith('sh'):
-            paragraph = text[:match.start()].rstrip().rpartition('\n\n')[2]
-            kind = re.match(r'`([^`]+)`', paragraph).group(1)
-        found.append((kind, match.group(2)))
-    return found
 
 
 def test_the_guide_shows_the_example_package():
@@ -105,60 +93,11 @@ def test_mhri_types_names_an_export_that_is_left_out(tmp_path, files, said):
         'generic', 'turtlebot2', 'turtlebot3', 'turtlesim']
 
 
-class Newcomer:
-    """Somebody with the guide, an empty workspace and a screen."""
-
-    def __init__(self, home):
-        self.home = home
-        self.system = System()
-        self.package = None
-        self.workspace = home / 'catkin_ws'
-        self.system.env.update(HOME=str(home), PATH='/usr/bin:/bin:' + os.environ['PATH'],
-                               QT_QPA_PLATFORM='xcb')
-        self.system.screen('1600x1000x24')
-
-    def run(self, commands):
-        """Type commands; return what they said."""
-        done = subprocess.run(['bash', '-e', '-c', commands + '\npwd'], env=self.system.env,
-                              cwd=str(self.home), stdin=subprocess.DEVNULL,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                              universal_newlines=True)
-        assert done.returncode == 0, done.stdout
-        return done.stdout
-
-    def follow(self, kind, text):
-        """Do what one block asks for."""
-        if kind == 'sh terminal':
-            return self.system.start('bash', '-c', 'source ~/catkin_ws/devel/setup.bash; exec '
-                                     + text)
-        if kind == 'sh':
-            said = self.run(text)
-            self.package = self.package or Path(said.splitlines()[-1])
-            return said
-        (self.package / kind).write_text(text)
-        return None
-
-    def xdotool(self, *words):
-        """Use mouse, keyboard or eyes; return what there is to see, '' where it is nothing."""
-        return subprocess.run(('xdotool',) + words, env=self.system.env, timeout=PATIENCE_S,
-                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                              universal_newlines=True).stdout.strip()
-
-    def window(self, title):
-        """Return the X window of a title (regular expression), '' where there is none."""
-        return self.xdotool('search', '--onlyvisible', '--name', title).partition('\n')[0]
-
-
 @pytest.fixture
 def newcomer(tmp_path):
     made = Newcomer(tmp_path)
     yield made
     made.system.close()
-
-
-def last_words(process):
-    with open(process.log, errors='replace') as log:
-        return log.read()
 
 
 def test_the_guide_word_by_word(newcomer):

@@ -105,7 +105,7 @@ def test_wrong_addresses_are_refused(run, address):
     ('0010.0.00.1', '10.0.0.1'), ('192.168.0.0103', '192.168.0.103')])
 def test_addresses_with_leading_zeros_are_refused_with_the_right_ones(run, address, right):
     """To one program 010.1.1.1 is 10.1.1.1, to another it is 8.1.1.1."""
-    said = "'{}' has leading zeros, which not every program reads alike: write {} ".format(
+    said = "'{}' has leading zeros, which programs read differently: write {} ".format(
         address, right)
     is_refused(run, 'remote', with_one('remote', 0, address), 'HOST_IP: ' + said)
     is_refused(run, 'remote', RIGHT['remote'] + ['--ip', address], '--ip: ' + said)

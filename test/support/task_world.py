@@ -11,7 +11,7 @@ from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.robot_types import Limits
 from mhri.core.tasks.base import (
-    Body as TaskBody, ENDS, Other, Senses, Start, Step, Task)
+    Body as TaskBody, circles, ENDS, Other, Senses, Start, Step, Task)
 from mhri.core.tasks.rows import BY_KEY
 from mhri.core.tasks.run import Facts, RobotRun
 from mhri.sim.body import Body, BodyType, Bumper
@@ -73,11 +73,11 @@ class Robot:
     def pose(self):
         return Pose(self.body.x, self.body.y, self.body.yaw)
 
-    def begin(self, kind, parameters, now_s, team=None, trail=()):
+    def begin(self, kind, parameters, now_s, team=None, **start):
         """Begin a task."""
         values = kind.read(parameters)
         self.run = RobotRun(self.name, kind.make(values, Start(
-            self.name, team or (self.name,), self.task_body, trail)), self.task_body,
+            self.name, team or (self.name,), self.task_body, **start)), self.task_body,
             values.number('timeout'), now_s)
 
     def sense(self, now_s, tick):
@@ -89,12 +89,13 @@ class Robot:
             self.scan_at = now_s
 
     def senses(self, now_s):
+        others = {other.name: Other(other.pose(), other.name < self.name
+                                    and other.run is not None
+                                    and other.run.state not in ENDS, other.kind.radius_m)
+                  for other in self._world.robots if other is not self}
+        self.seen.forget(self.odometry(), circles(self.pose(), others.values()))
         return Senses(now_s, self.pose(), self.odometry(), self.pose(),
-                      self.seen.around(self.odometry()),
-                      {other.name: Other(other.pose(), other.name < self.name
-                                         and other.run is not None
-                                         and other.run.state not in ENDS, other.kind.radius_m)
-                       for other in self._world.robots if other is not self})
+                      self.seen.around(self.odometry()), others, self._world.fence)
 
     def command(self, velocity):
         """Give the body what was said some ticks ago."""
@@ -105,8 +106,9 @@ class Robot:
 class World:
     """Walls, discs and robots; time goes on by :meth:`step`."""
 
-    def __init__(self, walls=NO_WALLS, discs=()):
+    def __init__(self, walls=NO_WALLS, discs=(), fence=()):
         self.walls = walls
+        self.fence = np.array(fence, dtype=float).reshape(-1, 2)
         self.discs = np.array(discs, dtype=float).reshape(-1, 3)
         self.robots = []
         self.now_s = 0.0

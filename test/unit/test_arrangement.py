@@ -5,7 +5,8 @@ import itertools
 
 import pytest
 
-from mhri.core.screen.arrangement import ALIKE, arrange, AUTO, choose_large, ONE
+from mhri.core.screen.arrangement import (
+    ALIKE, arrange, AUTO, Box, choose_large, ONE)
 
 SIZES = ((1024, 490), (794, 500), (900, 720), (1440, 1080), (1920, 1010), (3840, 2060))
 NAMES = tuple('bot{}'.format(number) for number in range(1, 7))
@@ -18,7 +19,7 @@ def overlap(one, other):
 
 @pytest.mark.parametrize('size', SIZES)
 @pytest.mark.parametrize('large, small', [(0, 0), (1, 0), (0, 3), (1, 2), (2, 1), (4, 8), (1, 11),
-                                          (1, 23), (12, 0)])
+                                          (1, 23), (12, 0), (3, 0), (3, 3), (3, 9)])
 @pytest.mark.parametrize('shape', [4 / 3, 16 / 9, 0.7])
 def test_every_tile_is_in_the_room_and_over_no_other(size, large, small, shape):
     found = arrange(*size, [shape] * large, [shape] * small, (150, 60), 4)
@@ -36,6 +37,22 @@ def test_every_tile_is_in_the_room_and_over_no_other(size, large, small, shape):
 def test_most_of_it_is_picture(size, large, small, share):
     found = arrange(*size, [4 / 3] * large, [4 / 3] * small, (150, 60), 4)
     assert found.picture_px >= share * size[0] * size[1]
+
+
+@pytest.mark.parametrize('size', SIZES)
+def test_a_group_of_three_leaves_no_cell_empty(size):
+    first, second, third = arrange(*size, [4 / 3] * 3, [], (150, 60), 4).large
+    if first.height == size[1]:  # One beside two, or three beside each other.
+        assert first.picture(4 / 3) >= second.picture(4 / 3)
+    elif first.width < size[0]:  # Two, and the third in the middle below.
+        assert abs(third.x - (size[0] - third.x - third.width)) <= 1
+
+
+def test_the_picture_of_a_group_of_three_is_larger_than_in_a_square_of_four():
+    found = arrange(1440, 1080, [4 / 3] * 3, [], (150, 60), 4)
+    assert found.picture_px == pytest.approx(sum(box.picture(4 / 3) for box in found.large), rel=1e-3)
+    assert arrange(1500, 1000, [4 / 3] * 3, [], (150, 60), 4).picture_px > 3 * (
+        Box(0, 0, 748, 498).picture(4 / 3))
 
 
 def test_the_one_looked_at_is_much_larger_than_a_thumbnail():

@@ -15,7 +15,7 @@ def bot(number, **values):
     ({}, ''), ({'moving': True}, ''),
     ({'selected': True}, 'bot1 is selected: remove it?'),
     ({'selected': True, 'driven': True}, 'bot1 is driven: remove it?'),
-    ({'driven': True, 'obeys': 'task'}, 'bot1 is driven: remove it?'),
+    ({'driven': True, 'obeys': 'task'}, 'bot1 is on a task: remove it?'),
     ({'recording': True}, 'bot1 is being recorded: remove it?'),
     ({'selected': True, 'recording': True}, 'bot1 is selected and being recorded: remove it?')])
 def test_remove(values, question):
@@ -29,6 +29,8 @@ def test_remove(values, question):
     ([bot(n, driven=True) for n in (1, 2, 3)], 'bot1, bot2 and bot3 are driven: close anyway?'),
     ([bot(n, driven=True) for n in (1, 2, 3, 4)], '4 robots are driven: close anyway?'),
     ([bot(1, driven=True), bot(2, recording=True)],
-     'bot1 is driven, bot2 is being recorded: close anyway?')])
+     'bot1 is driven, bot2 is being recorded: close anyway?'),
+    ([bot(1, driven=True), bot(2, driven=True, obeys='task')],
+     'bot1 is driven, bot2 is on a task: close anyway?')])
 def test_close(robots, question):
     assert close_question(robots) == question

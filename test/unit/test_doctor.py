@@ -225,7 +225,7 @@ def test_simulated_time_is_not_called_a_clock_that_is_behind(stamp_s):
         (1.76e9 + number, stamp_s + number) for number in range(20)))(world)
     finding, = world.wrong()
     assert (finding.check, finding.severity) == ('clock_offset', WARNING)
-    assert 'no real time' in finding.problem and 'behind' not in finding.problem
+    assert 'not real time' in finding.problem and 'behind' not in finding.problem
 
 
 def test_few_stamps_prove_little():

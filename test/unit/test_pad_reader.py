@@ -61,6 +61,8 @@ class Joysticks:
     def look(self):
         return [joystick.info for joystick in self.plugged]
 
+    connected = look
+
     def open(self, info):
         return self.plugged[info.index]
 
@@ -313,3 +315,15 @@ def test_the_library_is_told_from_its_relatives(line, good):
     found = sdl._LIBRARY.search('first line\n' + line + '\nlast line\n')
     assert bool(found) == good
     assert not good or line.endswith(found.group(0))
+
+
+def test_all_pads_are_named_and_the_chosen_one_is_opened():
+    reader, _ = make('PS3 Pad', 'Pad', 'Pad Motion Sensors')
+    reader.open()
+    assert reader.there() == ('PS3 Pad', 'Pad')
+    # A part of the other's name, and the name of one that is there.
+    reader.want('Pad')
+    with pytest.raises(DeviceLost):
+        reader.read(0.0)
+    reader.close()
+    assert reader.open().startswith('Pad with profile')

@@ -157,11 +157,19 @@ def test_without_a_known_pad_the_first():
 
 @pytest.mark.parametrize('wanted, pads, said', [
     ('', [], 'plug one in'), ('x', LIST[1:2], 'none is connected'),
-    ('wii', LIST, "no 'wii' among 0: ThinkPad tablet stick, 2: Sony"), ('7', LIST, "no '7' among"),
-    ('1', LIST, "no '1' among"), ('030000004c0500006802000011810001', LIST, 'set ~device')])
+    ('wii', LIST, "'wii' is not connected: plug it in, or choose another pad; connected: 0: "
+     'ThinkPad tablet stick, 2: Sony'), ('7', LIST, "'7' is not connected"),
+    ('1', LIST, "'1' is not connected"),
+    ('030000004c0500006802000011810001', LIST, "01' is not connected")])
 def test_a_pad_that_is_not_there(wanted, pads, said):
     with pytest.raises(LookupError, match=re.escape(said)):
         choose_pad(wanted, pads, PROFILES)
+
+
+def test_a_name_that_is_part_of_another():
+    pads = [PadInfo(0, 'PS3 Pad'), PadInfo(1, 'Pad')]
+    assert choose_pad('Pad', pads, PROFILES).index == 1
+    assert choose_pad('pad', pads, PROFILES).index == 0
 
 
 def test_small_helpers():

@@ -113,8 +113,8 @@ def test_manifest_that_cannot_be_read(workspace, monkeypatch):
 
 WRONG = {
     'too_large': ('is larger than 1 MB', lambda path: path.write_bytes(b'#' * 10000000)),
-    'endless': ('is no regular file', lambda path: path.symlink_to('/dev/zero')),
-    'pipe': ('is no regular file', os.mkfifo),
+    'endless': ('is not a regular file', lambda path: path.symlink_to('/dev/zero')),
+    'pipe': ('is not a regular file', os.mkfifo),
     'tag': ("line 1: 'maybe' is no bool", lambda path: path.write_text('name: !!bool maybe')),
     'bytes': ('is not UTF-8', lambda path: path.write_bytes(b'name: \xff')),
 }

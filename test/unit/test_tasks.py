@@ -41,6 +41,25 @@ def test_goto_ends_where_it_was_sent(x, y, heading):
     assert robot.contacts == 0
 
 
+@pytest.mark.parametrize('task, parameters, placed', [
+    ('goto', '{x: 1, y: 0}', True), ('goto', '{x: 1, y: 0, frame: odom}', False),
+    ('patrol', '{route: [[1, 0]]}', True), ('patrol', '{route: [[1, 0]], frame: odom}', False),
+    ('follow', '{leader: bot2}', True), ('square', '{side: 1}', False), ('hold', '', False),
+    ('return', '', False)])
+def test_which_tasks_need_a_place(task, parameters, placed):
+    kind = BY_KEY[task]
+    assert kind.placed(kind.read(parameters)) == placed
+
+
+@pytest.mark.parametrize('task, parameters', [
+    ('goto', '{x: 1.0, y: 0.5, frame: odom}'),
+    ('patrol', '{route: [[1.0, 0.5]], rounds: 1, frame: odom}')])
+def test_by_odometry_the_place_counts_from_where_odometry_begins(task, parameters):
+    robot = alone(task, parameters, x=-1.0, y=1.0, yaw=1.57)
+    assert robot.run.state == DONE
+    assert math.hypot(robot.body.odom_x - 1.0, robot.body.odom_y - 0.5) < 0.12
+
+
 @pytest.mark.parametrize('discs', [
     [(1.0, 0.0, 0.15)], [(1.0, 0.1, 0.3)], [(1.2, -0.2, 0.4)], [(0.8, 0.0, 0.05)]])
 def test_goto_goes_around_a_single_thing(discs):
@@ -238,7 +257,11 @@ PARAMETERS = [
     ('square', '{side: 0.0}', 'side: expected a number from 0.2'),
     ('patrol', '{route: 3}', 'route: expected a list of [x, y]'),
     ('patrol', '{route: [[1, .nan]]}', 'route: expected a list of [x, y]'),
-    ('follow', '{}', 'leader: is missing')]
+    ('follow', '{}', 'leader: is missing'),
+    ('goto', '{x: 1, y: 2, frame: base}', 'frame: expected nothing or odom'),
+    ('hold', '{team: bot1}', 'team: expected a list of robots, each once'),
+    ('hold', '{team: [bot1, bot1]}', 'team: expected a list of robots, each once'),
+    ('hold', '{team: [1, 2]}', 'team: expected a list of robots, each once')]
 
 
 @pytest.mark.parametrize('task, parameters, words', PARAMETERS)
@@ -246,6 +269,15 @@ def test_parameters_that_cannot_be_used_are_refused_by_name(task, parameters, wo
     with pytest.raises(ConfigError) as refused:
         BY_KEY[task].read(parameters)
     assert words in str(refused.value)
+
+
+def test_every_task_takes_the_team_among_which_places_are_counted():
+    for kind in TASKS:
+        with pytest.raises(ConfigError) as refused:
+            kind.read('{team: 3}')
+        assert 'team' in str(refused.value) or 'is missing' in str(refused.value)
+    assert BY_KEY['hold'].read('{team: [bot1, bot2]}').team == ('bot1', 'bot2')
+    assert BY_KEY['hold'].read('').team == ()
 
 
 def test_every_task_has_a_timeout_and_words():

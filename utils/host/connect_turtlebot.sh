@@ -57,7 +57,7 @@ BRAKE=false
 BACK_AFTER=
 PASSED_ON=()
 
-# What runs on the robot, as sh. $0 is USER@IP, $1 the folder in the home.
+# Runs on the robot, as sh. $0 is USER@IP, $1 the folder in the home.
 # shellcheck disable=SC2016 # the dollars are the robot's
 START='if [ ! -f "$1/turtle_remote.sh" ]; then
 echo "mhri: this robot has no ~/$1/turtle_remote.sh: run turtlebot_deploy.sh $0 on the host" >&2
@@ -104,8 +104,8 @@ check_arguments() {
   [ -z "$HOST_IP" ] || check_ip --host-ip "$HOST_IP" 192.168.0.103
   check_ssh_port "$SSH_PORT"
   check_folder "$FOLDER"
-  # The robot checks them again, but after the login. Nothing that a shell could read as more than a
-  # word gets there.
+  # The robot checks them again, but only after the login. Nothing that a shell could read as more
+  # than one word may get there.
   check_robot
   check_guard
   for text in "${PASSED_ON[@]}"; do
@@ -113,7 +113,7 @@ check_arguments() {
   done
 }
 
-# choose_address: HOST_IP, by the rule that the robot has for its own.
+# choose_address: sets HOST_IP, by the rule that the robot uses for its own.
 choose_address() {
   local all=() address v4=()
   [ -z "$HOST_IP" ] || return 0
@@ -130,11 +130,11 @@ main() {
   parse_arguments "$@"
   check_arguments
   choose_address
-  # Plain words and one text in single quotes: every login shell reads that alike.
+  # Plain words and one text in single quotes: every login shell reads those alike.
   command="exec sh -c '$START' $ROBOT_USER@$ROBOT_IP $FOLDER $HOST_IP $NAME ${PASSED_ON[*]}"
   say "starting $NAME on $ROBOT_IP; this computer is $HOST_IP. Ctrl-C ends it"
-  # -tt: the robot sees the end of this terminal. Two minutes without an answer: an outage shorter
-  # than that ends nothing.
+  # -tt: the robot notices when this terminal closes. Two minutes without an answer: a shorter
+  # outage ends nothing.
   exec ssh -tt -o ConnectTimeout=10 -o ServerAliveInterval=15 -o ServerAliveCountMax=8 \
     ${SSH_PORT:+-p "$SSH_PORT"} -l "$ROBOT_USER" -- "$ROBOT_IP" "$command"
 }

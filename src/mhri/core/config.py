@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Configuration text turned into checked values: unknown keys are refused by name."""
+"""Turns configuration text into checked values; refuses unknown keys by name."""
 import reprlib
 from typing import Dict, List, NoReturn, Optional, Tuple, TypeVar, Union, overload
 
@@ -8,7 +8,7 @@ import yaml
 
 Default = TypeVar('Default')
 
-# What a configuration may be at most. Those that are shipped have 2 kB, 300 values, 6 levels.
+# Limits for a configuration. The shipped ones have at most 2 kB, 300 values and 6 levels.
 MAX_BYTES = 1000 * 1000
 MAX_VALUES, MAX_DEPTH = 10 * 1000, 40
 # Words of one text without quotes, each of which costs PyYAML a search; digits of a number or date.
@@ -22,19 +22,19 @@ _SHORT.maxlevel = 2
 
 
 def shown(value: object) -> str:
-    """Return any value as it is written in an error: like ``repr``, but of 600 characters at most.
+    """Return any value as text for an error: like ``repr``, but at most 600 characters.
 
-    Lists and mappings are cut after a few items, texts and numbers in their middle.
+    Cut lists and mappings after a few items, texts and numbers in the middle.
     """
     try:
         return _SHORT.repr(value)
-    except ValueError:  # Python writes no numbers of more than 4,300 digits
+    except ValueError:  # Python writes no number of more than 4,300 digits
         return 'a number of too many digits'
 
 
 def _cut(text: str, most: int, tail: int) -> str:
     """Return a printable text of ``most`` characters at most, its last ``tail`` kept."""
-    if len(text) > 2 * most:  # before it is looked at character by character
+    if len(text) > 2 * most:  # before the look at each character
         text = text[:most] + text[-most:]
     text = ''.join(char if char.isprintable() else char.encode('unicode_escape').decode('ascii')
                    for char in text)
@@ -44,13 +44,13 @@ def _cut(text: str, most: int, tail: int) -> str:
 
 
 class ConfigError(ValueError):
-    """A configuration value that cannot be used; names the file, the key and the remedy.
+    """An unusable configuration value; the text names the file, the key and the remedy.
 
     :param origin: the file (or parameter namespace) the value came from
     :param key: dotted key inside it, or '' for the whole file
     :param problem: what is wrong and what would be right, as a sentence without a full stop
 
-    The message is one printable line of :data:`MAX_ERROR` characters at most.
+    The message is one printable line of at most :data:`MAX_ERROR` characters.
     """
 
     def __init__(self, origin: str, key: str, problem: str) -> None:
@@ -75,7 +75,7 @@ class Section:
         self._left = dict(mapping)
 
     def key(self, name: object) -> str:
-        """Return the dotted name of a key, as it is written in error messages."""
+        """Return the dotted name of a key, as error messages write it."""
         return '{}.{}'.format(self._path, name) if self._path else str(name)
 
     def error(self, name: object, problem: str) -> ConfigError:
@@ -86,7 +86,7 @@ class Section:
         return self._left.get(name) is not None
 
     def take(self, name: str, default: object = _REQUIRED) -> object:
-        """Return the raw value of a key; a missing one is an error unless there is a default."""
+        """Return the raw value of a key; a missing key is an error unless there is a default."""
         value = self._left.pop(name, None)
         if value is not None:
             return value
@@ -177,14 +177,14 @@ class Section:
     def section(self, name: str, default: Default) -> Union['Section', Default]: ...
 
     def section(self, name: str, default: object = _REQUIRED) -> object:
-        """Return a sub-section, or the default where the key is missing."""
+        """Return a sub-section, or the default if the key is missing."""
         value = self.take(name, default)
         if value is default:
             return value
         return self.sub_section(name, value)
 
     def sub_section(self, name: str, value: object) -> 'Section':
-        """Return a value that was taken from a key as a sub-section."""
+        """Return a value taken from a key as a sub-section."""
         return Section(value, self.origin, self.key(name))
 
     def sections(self, name: str) -> List['Section']:
@@ -204,7 +204,7 @@ class Section:
                 for key, item in value.items()}
 
     def close(self) -> None:
-        """Raise for the keys that nothing asked for: most often a spelling mistake."""
+        """Raise for keys that nothing asked for: most often a spelling mistake."""
         if self._left:
             name = sorted(self._left, key=str)[0]
             raise self.error(name, 'unknown key')
@@ -213,8 +213,8 @@ class Section:
 class _Loader(yaml.SafeLoader):  # type: ignore[misc]  # mypy does not look into yaml
     """Reads YAML as ``SafeLoader`` does, but gives up before a text costs much time or memory.
 
-    An alias counts as all the values that it stands for: nine lists of nine aliases each, one in
-    the other, are 387 million values in 200 bytes.
+    An alias counts as all the values it stands for: nine nested lists of nine aliases each are 387
+    million values in 200 bytes.
     """
 
     def __init__(self, stream: str) -> None:
@@ -223,7 +223,7 @@ class _Loader(yaml.SafeLoader):  # type: ignore[misc]  # mypy does not look into
         self._sizes: Dict[str, int] = {}
 
     def compose_node(self, parent: Optional[yaml.Node], index: object) -> yaml.Node:
-        """Count the value that comes next, and those in it."""
+        """Count the next value and those in it."""
         event = self.peek_event()
         alias = isinstance(event, yaml.AliasEvent)
         if alias and event.anchor in self.anchors and event.anchor not in self._sizes:
@@ -242,7 +242,7 @@ class _Loader(yaml.SafeLoader):  # type: ignore[misc]  # mypy does not look into
         return node
 
     def construct_object(self, node: yaml.Node, deep: bool = False) -> object:
-        """Return the value of a node; what its tag cannot mean is an error of the file."""
+        """Return the value of a node; an impossible tag is an error in the file."""
         scalar = isinstance(node, yaml.ScalarNode)
         if scalar and len(node.value) > MAX_DIGITS and node.tag in _MEASURED:
             self._refuse('a number or date of {} characters'.format(len(node.value)), node)
@@ -288,7 +288,7 @@ def parse_yaml(text: str, origin: str) -> Section:
 
 
 def short(error: Exception) -> str:
-    """Return what an error says as one printable line of :data:`MAX_ERROR` characters at most."""
+    """Return the text of an error as one printable line of at most :data:`MAX_ERROR` characters."""
     return _cut(str(error), MAX_ERROR, MAX_ERROR // 2)
 
 

@@ -9,7 +9,7 @@ import logging
 import threading
 import time
 
-from mhri.core.devices.pads import choose_pad, choose_profile, is_wanted
+from mhri.core.devices.pads import choose_pad, choose_profile, is_wanted, only_pads
 from mhri.inputs.event_nodes import find_pads
 from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader, Reading, Remembered
 from mhri.inputs.sdl import Joysticks
@@ -18,6 +18,8 @@ _LOG = logging.getLogger(__name__)
 
 RUMBLE_STRENGTH = 0.8
 RUMBLE_S = 0.5
+# How often to see which other pads there are.
+LOOK_S = 2.0
 
 
 class PadReader(Reader):
@@ -44,6 +46,7 @@ class PadReader(Reader):
         self._rest = ()
         self._last = None
         self._choice = ''
+        self._there, self._look_at = (), 0.0
         self.note = ''
         self.name = ''
         self._find = Remembered(self._found)
@@ -70,6 +73,15 @@ class PadReader(Reader):
         except LookupError as problem:
             raise DeviceAbsent(str(problem))
 
+    def there(self):
+        """Name all connected pads; see :class:`mhri.inputs.reader.Reader`."""
+        now = self._clock()
+        if now >= self._look_at:
+            self._look_at = now + LOOK_S
+            pads = find_pads() if self._pad is None else self._joysticks.connected()
+            self._there = tuple(dict.fromkeys(pad.name for pad in only_pads(pads)))
+        return self._there
+
     def open(self):
         """Open the pad; see :class:`mhri.inputs.reader.Reader`."""
         self.note = ''
@@ -84,8 +96,8 @@ class PadReader(Reader):
         self._profile = profile
         self._driving = (profile.forward.index, profile.turn.index)
         if max(self._driving) >= self._pad.axis_count:
-            raise DeviceAbsent('{} has {} axes, and profile {} needs {}: run mhri_joy --calibrate, '
-                               'or set ~device to another one'.format(
+            raise DeviceAbsent('{} has {} axes, and profile {} needs {}: calibrate it on '
+                               'the page Pad, or choose another one'.format(
                                    info.name, self._pad.axis_count, profile.name,
                                    max(self._driving) + 1))
         self._rest = rest_of(profile, self._pad.axis_count)
@@ -93,6 +105,7 @@ class PadReader(Reader):
         self._rumble.clear()
         self._choice = self.note = note
         self.name = info.name
+        self._look_at = 0.0
         return '{} with profile {}'.format(info.name, profile.name)
 
     def read(self, timeout_s):
@@ -116,7 +129,8 @@ class PadReader(Reader):
         :raises DeviceLost: another pad is wanted
         """
         if self._wanted != self._opened_for:
-            if self._wanted.isdigit() or not is_wanted(self._wanted, self._pad.info):
+            if (self._wanted.isdigit() or not is_wanted(self._wanted, self._pad.info)
+                    or self._wanted != self.name and self._wanted in self.there()):
                 raise DeviceLost('another pad was chosen: {}'.format(self._wanted))
             self._opened_for = self._wanted
         if self._rumble.is_set():
@@ -134,6 +148,7 @@ class PadReader(Reader):
     def close(self):
         """Close the pad; see :class:`mhri.inputs.reader.Reader`."""
         pad, self._pad, self.note, self.name = self._pad, None, '', ''
+        self._look_at = 0.0
         if pad is not None:
             pad.close()
 

@@ -56,6 +56,13 @@ class Reader:
         """
         return ''
 
+    def there(self):
+        """Return the names of all devices that could be opened, () if unknown.
+
+        Asked as often as :meth:`find`, and with each reading.
+        """
+        return ()
+
     def open(self):
         """Open the device and return a text that describes it; the next reading is complete.
 

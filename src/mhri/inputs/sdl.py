@@ -130,6 +130,12 @@ class Joysticks:
         pygame.event.get()
         return [self._info(index) for index in range(pygame.joystick.get_count())]
 
+    def connected(self):
+        """Return what :meth:`look` would, without touching anything; [] where SDL is too old."""
+        if self._library is None:
+            return []
+        return [self._info(index) for index in range(self._pygame.joystick.get_count())]
+
     def _info(self, index):
         if self._library is not None:
             name = self._library.SDL_JoystickNameForIndex(index) or b''

@@ -3,7 +3,8 @@
 """The executable ``mhri_task``: starts a task from a terminal and says how it is getting on.
 
 ``rosrun mhri mhri_task bot1 goto 2.0 1.5``; ``--help`` says the rest. The exit status is 0 where
-every robot is done, 1 where one is not, 2 where the words cannot be understood.
+every robot is done, 1 where one is not (with ``--help``: where a lab's task was left out), 2 where
+the words cannot be understood.
 """
 import sys
 
@@ -11,10 +12,10 @@ import actionlib
 import rospy
 import yaml
 
-from mhri.core.tasks.rows import BY_KEY, TASKS
 from mhri.core.tasks.words import parameters_of, TaskWordsError, usage
 from mhri.msg import RunTaskAction, RunTaskGoal, TaskState
 from mhri.ros.graph.master_api import MasterApi, MasterError
+from mhri.ros.tasks.exported import task_kinds
 
 NODE_S = 5.0
 CANCEL_S = 3.0
@@ -89,11 +90,14 @@ def run(robots, key, parameters):
 def main():
     """Read the words, run the task, and exit."""
     words = rospy.myargv(sys.argv)[1:]
+    kinds, errors = task_kinds()
+    for error in errors:
+        print('left out: {}'.format(error), file=sys.stderr)
     if not words or words[0] in ('-h', '--help'):
-        print(usage(TASKS))
-        sys.exit(0 if words else 2)
+        print(usage(list(kinds.values())))
+        sys.exit((1 if errors else 0) if words else 2)
     try:
-        robots, key, parameters = parameters_of(words, BY_KEY)
+        robots, key, parameters = parameters_of(words, kinds)
         MasterApi('/mhri_task', timeout_s=2.0).call('getPid')
     except (TaskWordsError, MasterError) as error:
         sys.exit('mhri_task: {}'.format(error))

@@ -13,6 +13,7 @@ from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.graph.rospy_inside import ended_by_hand
 from mhri.ros.resources import robot_types
+from mhri.ros.tasks.exported import task_kinds
 from mhri.ros.tasks.tasks import Tasks
 
 
@@ -22,12 +23,15 @@ def main():
     Ended by ``rosnode kill`` the exit status is 1, so that ``mhri.launch`` starts it again.
     """
     types, _ = robot_types()
+    kinds, errors = task_kinds()
     limit_handshakes()
     rospy.init_node('mhri_tasks', disable_rostime=True)
     log.install()
     by_hand = ended_by_hand()
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
-    tasks = Tasks(types)
+    for error in errors:
+        rospy.logwarn('a task is left out: %s', error)
+    tasks = Tasks(types, kinds)
     rospy.on_shutdown(tasks.close)
     MasterWatch().start()
     tasks.start()

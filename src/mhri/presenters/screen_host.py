@@ -19,11 +19,14 @@ from mhri.core.screen.why import WhyStill
 from mhri.presenters.doctor_host import DoctorHost
 from mhri.presenters.draw_guard import DrawGuard
 from mhri.presenters.event_host import EventHost
+from mhri.presenters.map_host import MapHost
 from mhri.gui.screen.screen import ScreenWidget
 from mhri.presenters.pad_host import PadHost
 from mhri.presenters.requests_host import RequestsHost
 from mhri.presenters.stop_watch import StopWatch
+from mhri.presenters.task_host import TaskHost
 from mhri.presenters.tiles_host import TilesHost
+from mhri.ros.devices.device_client import choose_device
 from mhri.ros.resources import resource_path
 
 DRAW_MS = 50
@@ -47,6 +50,7 @@ class ScreenHost(QObject):
         self.operator = operator
         self._to_add = []
         self._lost = set()
+        self._over_budget = False
         self._why = WhyStill()
         self._mode = None
         self._closed = False
@@ -56,6 +60,8 @@ class ScreenHost(QObject):
         self.events = EventHost(operator.recordings.status, self.screen)
         self.doctor = DoctorHost(operator, self.screen)
         self.pad = PadHost(operator, self.screen, parent=self)
+        self.tasks = TaskHost(operator, self.screen, self._select, self._note_task)
+        self.map = MapHost(operator, self.screen, self.tasks)
         self._connect()
 
     @property
@@ -94,7 +100,9 @@ class ScreenHost(QObject):
         self.tiles.clicked.connect(panel.look_at)
         self.tiles.drive_requested.connect(self._drive)
         self.tiles.closed.connect(self._leave)
+        self.tiles.carry_on_requested.connect(self.tasks.carry_on)
         panel.mode_requested.connect(self._request_mode)
+        panel.mode_combo.device_requested.connect(self._request_device)
         panel.stick_moved.connect(operator.send_stick)
         panel.limits_requested.connect(operator.request_limits)
         panel.together_requested.connect(operator.keep_together)
@@ -145,13 +153,16 @@ class ScreenHost(QObject):
         for name, parameters in self._to_add[:ADD_AT_ONCE]:
             self.operator.add(name, parameters)
         del self._to_add[:ADD_AT_ONCE]
-        view = self._why.tell(self.operator.view(), self.screen.stick(), time.monotonic())
+        view = self._why.tell(self.tasks.tell(self.operator.view()), self.screen.stick(),
+                              time.monotonic())
         self._mode = view.mode or self._mode
         self.screen.show_view(view)
         self._feel_losses(view)
         self.tiles.show_view(view)
         self.events.show(view)
+        self._tell_budget()
         self.pad.show_view(view)
+        self.map.show_view(view)
         for kind, value in self.operator.take_events():
             if kind == 'found':
                 self._show_found(value)
@@ -168,6 +179,18 @@ class ScreenHost(QObject):
         refused = self.requests.carry_out(action, names)
         if refused:
             self.events.note('request.refused', refused)
+
+    def _tell_budget(self):
+        """Say once that the camera budget cannot be kept."""
+        note = self.tiles.budget_note
+        if note and not self._over_budget:
+            self.events.note('camera.budget', note)
+        self._over_budget = bool(note)
+
+    def _note_task(self, kind, text, robot):
+        """Take in what has become of a task: an event, and the answer to what the map asked."""
+        self.events.note(kind, text, robot)
+        self.map.hear(kind, text)
 
     def _feel_losses(self, view):
         """Shake the pad when a selected robot is lost."""
@@ -235,6 +258,11 @@ class ScreenHost(QObject):
         self._mode = name
         self.operator.request_mode(name)
 
+    def _request_device(self, source, name):
+        """Have another pad drive; the mode is asked for on its own."""
+        if self.operator.drives():
+            self.operator.do(choose_device, source, name)
+
     def _drive(self, name):
         """Drive this robot and no other, and look at it."""
         if self.operator.drives():
@@ -254,7 +282,8 @@ class ScreenHost(QObject):
                  'limits': list(self.operator.view().limits), 'windows': places, 'torn_off': torn,
                  'together': self.operator.view().together,
                  'brake': self.operator.view().brake, 'looks': looks,
-                 'panel': self.screen.save_settings(), 'events': self.events.save_settings()}
+                 'panel': self.screen.save_settings(), 'events': self.events.save_settings(),
+                 'map': self.map.save_settings()}
         return usable_state(state)[0]
 
     def restore_state(self, state):
@@ -278,6 +307,7 @@ class ScreenHost(QObject):
                                  state.get('torn_off', ()))
         self.screen.restore_settings(state.get('panel', {}))
         self.events.restore_settings(state.get('events', {}))
+        self.map.restore_settings(state.get('map', {}))
         return problems
 
     def close(self, forget=False):
@@ -296,3 +326,5 @@ class ScreenHost(QObject):
         self.tiles.close()
         self._stop_watch.close()
         self.pad.close()
+        self.tasks.close(forget)
+        self.map.close()

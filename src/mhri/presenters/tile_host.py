@@ -113,7 +113,10 @@ class TileHost:
             widget.show_value(value)
         widget.show_age(feed.age_s())
         if hasattr(feed, 'status'):
-            widget.show_status(feed.status())
+            status = feed.status()
+            widget.show_status(status)
+            if status.thinned:
+                self._held_back = self._held_back or 'point cloud ' + status.thinned
 
     def _draw_scan(self, feed):
         """Take note of the nearest thing, and show the scan where its view is on show."""
@@ -158,12 +161,14 @@ class TileHost:
     def _draw_camera(self, camera, feed):
         """Ask for pictures of the size and rate this tile needs, and show the newest."""
         width, height = self.window.camera_size()
-        large = self.window.header.large
-        thumbnail_hz = self._operator.settings.thumbnail_hz
+        # A picture that gave its place to the map is still driven by.
+        large = self.window.header.large or self.window.full_rate
+        settings = self._operator.settings
+        thumbnail_hz = settings.thumbnail_hz
         if large:
             feed.set_view(width, height)
         else:
-            feed.set_view(width, height, thumbnail_hz)
+            feed.set_view(min(width, settings.thumbnail_width_px), height, thumbnail_hz)
         frame = feed.take()
         if frame is not None:
             camera.show_frame(frame)
@@ -175,17 +180,23 @@ class TileHost:
             camera.show_placeholder(status.problem)
         camera.show_transports(feed.transports())
 
-    def camera_wish(self, selected):
-        """Return the :class:`Wish` of the picture on show, None without one.
+    def wishes(self, selected):
+        """Return a :class:`Wish` for the picture on show, and one for the point cloud.
+
+        Nobody drives by a cloud: it is never as important as the picture of a driven robot.
 
         :param selected: whether the robot is checked
         """
         feeds = self._operator.feeds(self._name)
-        feed = feeds.get(self._picture()) if feeds else None
-        if not hasattr(feed, 'grant'):
-            return None
         rest = LOOKED_AT if self.window.header.large else REST
-        return Wish(self._name, DRIVEN if selected else rest, feed, self.window.is_watched())
+        found = []
+        for key, name, importance in (
+                (self._picture(), self._name, DRIVEN if selected else rest),
+                (CLOUD, self._name + ' cloud', rest)):
+            feed = feeds.get(key) if feeds and key in self.window.wanted() else None
+            if hasattr(feed, 'grant'):
+                found.append(Wish(name, importance, feed, self.window.is_watched()))
+        return found
 
     def _choose_transport(self, name):
         feeds = self._operator.feeds(self._name)

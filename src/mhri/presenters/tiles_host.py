@@ -36,6 +36,8 @@ class TilesHost(QObject):
     clicked = Signal(str)
     #: drive this robot and no other
     drive_requested = Signal(str)
+    #: this robot is to go on with the task that it was taken from
+    carry_on_requested = Signal(str)
     #: a torn-off tile's window was closed by its frame
     closed = Signal(str)
 
@@ -78,8 +80,13 @@ class TilesHost(QObject):
                            key=lambda robot: self._pressing(robot.name, now))
         self._stopped = view.stop_all
         self._timer.start()
-        wishes = [self.hosts[robot.name].camera_wish(robot.selected) for robot in self._due]
-        self._cameras.settle(filter(None, wishes))
+        self._cameras.settle(wish for robot in self._due
+                             for wish in self.hosts[robot.name].wishes(robot.selected))
+
+    @property
+    def budget_note(self):
+        """A sentence while the camera budget cannot be kept, else ''."""
+        return self._cameras.note
 
     def _pressing(self, name, now):
         """Return a number that is the larger the longer a tile was not drawn: none starves."""
@@ -114,6 +121,7 @@ class TilesHost(QObject):
         tile.clicked.connect(self.clicked)
         tile.drive_requested.connect(self.drive_requested)
         tile.tear_requested.connect(self.toggle_torn)
+        tile.carry_on_requested.connect(self.carry_on_requested)
         self.windows[name] = tile
         self._keys[name] = view.window
         self.hosts[name] = TileHost(tile, self._operator)

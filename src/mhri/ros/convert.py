@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Messages to values and back."""
+"""Turns messages into values and back."""
 import math
 import struct
 

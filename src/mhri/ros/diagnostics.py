@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""``/diagnostics`` of a node: diagnostic_updater at 1 Hz on a thread that outlives the master."""
+"""A node's ``/diagnostics``: diagnostic_updater at 1 Hz, on a thread that outlives the master."""
 import threading
 
 import diagnostic_updater
@@ -13,9 +13,9 @@ def publish_diagnostics(tasks):
     """Publish ``diagnostic_msgs/DiagnosticArray`` on ``/diagnostics`` once a second until shutdown.
 
     :param tasks: {name: function that fills a ``DiagnosticStatusWrapper`` and returns it}
-    :returns: a ``threading.Event``; set, it ends them earlier
+    :returns: a ``threading.Event``; set it to end them earlier
     """
-    # Every node of mhri comes by here.
+    # Every node of mhri passes here.
     quiet_repeats()
     updater = diagnostic_updater.Updater()
     updater.setHardwareID('mhri')
@@ -27,8 +27,9 @@ def publish_diagnostics(tasks):
     def run():
         """Update until the node ends.
 
-        Not by update(), which subscribes to a parameter at the master each time: a node that is
-        just ending would thereby register its name anew, and end the one that has taken it over.
+        Do not call update(), which subscribes to a parameter at the master each time: a node that
+        is just ending would thereby register its name anew, and end the node that took the name
+        over.
         """
         while not done.wait(1.0):
             updater.force_update()

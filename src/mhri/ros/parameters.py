@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Parameters of a node, which anybody may have set to anything: of their type, or refused."""
+"""Reads parameters of a node, which anybody may have set to anything; refuses a wrong type."""
 import rospy
 
 from mhri.core.config import ConfigError, shown
@@ -9,7 +9,7 @@ from mhri.core.config import ConfigError, shown
 def text(name, default):
     """Return a parameter that is text.
 
-    :raises ConfigError: it is none
+    :raises ConfigError: it is not text
     """
     return _of_type(name, default, str, 'text')
 

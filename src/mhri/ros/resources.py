@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the shipped data files are, in the devel space and in the install space alike."""
+"""Finds the shipped data files, in the devel space and in the install space alike."""
 from dataclasses import replace
 import glob
 import os
@@ -12,9 +12,9 @@ import rospkg
 from mhri.core.config import ConfigError, MAX_BYTES, too_large
 from mhri.core.robots.robot_types import Export, load_robot_types
 
-# The element of a package.xml with which a package exports a robot type, and its attributes.
+# The element of a package.xml that exports a robot type or a task, and its attributes.
 EXPORT_TAG = 'mhri'
-TYPE_ATTRIBUTE, WINDOW_ATTRIBUTE = 'robot_type', 'window'
+TYPE_ATTRIBUTE, WINDOW_ATTRIBUTE, TASK_ATTRIBUTE = 'robot_type', 'window', 'task'
 
 
 def resource_path(*parts):
@@ -29,11 +29,11 @@ def read_text(path):
     """Return the UTF-8 text of a configuration file.
 
     :raises OSError: it cannot be read
-    :raises ConfigError: it is not UTF-8, too large, or a pipe or device, which might never end
+    :raises ConfigError: it is not UTF-8, or too large, or a pipe or device, which might never end
     """
     mode = os.stat(path).st_mode
     if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
-        raise ConfigError(path, '', 'is no regular file')
+        raise ConfigError(path, '', 'is not a regular file')
     with open(path, 'rb') as stream:
         data = stream.read(MAX_BYTES + 1)
     if len(data) > MAX_BYTES:
@@ -53,10 +53,10 @@ def read_resource(*parts):
 
 
 def robot_types():
-    """Load every template of ``resource/robots``, and those that other packages export.
+    """Load every template in ``resource/robots``, and those that other packages export.
 
-    A package exports one in its package.xml, as rqt plugins are exported (``window``, the class of
-    its window, may be left out)::
+    A package exports one in its package.xml, as it does an rqt plugin (``window``, the class of its
+    window, is optional)::
 
         <export>
           <mhri robot_type="${prefix}/resource/crawler.yaml" window="crawler_robot.window.Crawler"/>
@@ -83,16 +83,49 @@ def exported_types(rospack=None):
     :param rospack: where to look for packages, default ``rospkg.RosPack()``
     :returns: ([:class:`Export`], [ConfigError]), in the order of the packages' names
     """
-    rospack = rospack or rospkg.RosPack()
     exports, errors = [], []
+    for package, manifest, attributes in _elements(rospack, errors):
+        if TASK_ATTRIBUTE in attributes:
+            continue
+        try:
+            exports.append(_read_export(package, manifest, attributes))
+        except ConfigError as error:
+            errors.append(error)
+    return exports, errors
+
+
+def exported_tasks(rospack=None):
+    """Return the modules of tasks that packages export.
+
+    A package exports one in its package.xml; the module has the task's row as ``ROW``::
+
+        <export>
+          <mhri task="lab_tasks.look_around"/>
+        </export>
+
+    :param rospack: where to look for packages, default ``rospkg.RosPack()``
+    :returns: ([(package, module)], [ConfigError]), in the order of the packages' names
+    """
+    modules, errors = [], []
+    for package, manifest, attributes in _elements(rospack, []):
+        if TASK_ATTRIBUTE not in attributes:
+            continue
+        if set(attributes) == {TASK_ATTRIBUTE} and attributes[TASK_ATTRIBUTE].strip():
+            modules.append((package, attributes[TASK_ATTRIBUTE].strip()))
+        else:
+            errors.append(Export(package, manifest, '').error('<{}>'.format(EXPORT_TAG), (
+                'a task is exported by itself; write <{} {}="package.module"/>').format(
+                    EXPORT_TAG, TASK_ATTRIBUTE)))
+    return modules, errors
+
+
+def _elements(rospack, errors):
+    """Yield (package, manifest, attributes) of everything that packages export for mhri."""
+    rospack = rospack or rospkg.RosPack()
     for package in sorted(rospack.list()):
         manifest = os.path.join(rospack.get_path(package), 'package.xml')
         for attributes in _exports_of(package, manifest, errors):
-            try:
-                exports.append(_read_export(package, manifest, attributes))
-            except ConfigError as error:
-                errors.append(error)
-    return exports, errors
+            yield package, manifest, attributes
 
 
 def _exports_of(package, manifest, errors):
@@ -104,7 +137,7 @@ def _exports_of(package, manifest, errors):
         return [export.attributes for export in parse_package(manifest, warnings=[]).exports
                 if export.tagname == EXPORT_TAG]
     except OSError:
-        # A rosbuild package without a package.xml, or one that went while it was looked at.
+        # A rosbuild package without a package.xml, or one that vanished meanwhile.
         return []
     except InvalidPackage as error:
         errors.append(Export(package, manifest, '').error('', 'cannot be understood: {}'.format(
@@ -115,7 +148,7 @@ def _exports_of(package, manifest, errors):
 def _read_export(package, manifest, attributes):
     """Return the :class:`Export` of one element of a package.xml.
 
-    :raises ConfigError: an attribute is missing or unknown, or the template cannot be read
+    :raises ConfigError: an attribute is missing or unknown, or the template is unreadable
     """
     element = Export(package, manifest, '')
     odd = sorted(set(attributes) - {TYPE_ATTRIBUTE, WINDOW_ATTRIBUTE})
@@ -139,10 +172,10 @@ def _read_export(package, manifest, attributes):
 def profile_reader(beside):
     """Return a function from the name of a pad profile to (origin, text).
 
-    A name is ``resource/pads/<name>.yaml``; something with a slash or ``.yaml`` is a path, relative
-    ones seen from the folder of the file that names it.
+    A name means ``resource/pads/<name>.yaml``; anything with a slash or ``.yaml`` is a path,
+    relative to the folder of the file that names it.
 
-    :param beside: the path of the file in which the names stand
+    :param beside: the path of the file that contains the names
     """
     def read(name):
         path = resource_path('pads', name + '.yaml')

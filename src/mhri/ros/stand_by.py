@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A program whose next process is ready when this one is killed: nothing has to be loaded again.
+"""Keeps a program's next process ready for when this one is killed: nothing needs loading again.
 
-To load Python and rospy takes a third of a second of a processor that has nothing else to do, and
-seconds where others are busy; robots that were driven wait for their zero meanwhile.
+Loading Python and rospy takes a third of a second on an idle processor, and seconds on a busy one;
+driven robots wait for their zero meanwhile.
 """
 import ctypes
 import os
@@ -12,23 +12,24 @@ import sys
 import time
 
 _ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-# Of prctl(2): which signal this process gets when its parent has ended.
+# Of prctl(2): the signal that this process gets when its parent has ended.
 _PR_SET_PDEATHSIG = 1
-# One that is killed so soon after its start would be killed again [s].
+# A process killed so soon after its start would be killed again [s].
 LEAST_LIFE_S = 2.0
 
 
 def stand_by(label):
-    """Return in a child of this process and, whenever a signal has killed that, in another one.
+    """Return in a child of this process, and in another one whenever a signal kills that.
 
-    Call it when all is loaded, and before there are threads. The process that called it stays and
-    does nothing else: it hands on the signals to end, and ends as its child has ended. The child
-    is in a session of its own, so that it gets each of them once; it is told to end (SIGTERM)
-    where the parent is killed.
+    Call it when everything is loaded, and before there are threads. The calling process stays and
+    does nothing else: it passes on the signals to end, and ends as its child ended. The child has
+    its own session, so that it gets each signal once; it is told to end (SIGTERM) if the parent is
+    killed.
 
-    :param label: what runs here, in words, for the line that says it was killed
+    :param label: the name of the program, for the line that says it was killed
     """
-    # Waited for, not handled: a handler could miss one that comes just before the wait.
+    # Wait for signals, do not handle them: a handler could miss one that comes just before the
+    # wait.
     signal.pthread_sigmask(signal.SIG_BLOCK, _ENDS + (signal.SIGCHLD,))
     while True:
         sys.stdout.flush()
@@ -49,7 +50,7 @@ def stand_by(label):
 
 
 def _be_child(parent):
-    """Have the signals of an ordinary process, and no life without the parent."""
+    """Restore the signals of an ordinary process, and end with the parent."""
     os.setsid()
     ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, int(signal.SIGTERM), 0, 0, 0)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, _ENDS + (signal.SIGCHLD,))
@@ -58,7 +59,7 @@ def _be_child(parent):
 
 
 def _end_of(child):
-    """Hand on signals to end until the child has; return (its status, whether it was asked to)."""
+    """Pass on signals to end until the child ends; return (its status, whether it was asked to)."""
     asked = False
     while True:
         number = signal.sigwait(_ENDS + (signal.SIGCHLD,))

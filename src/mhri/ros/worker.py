@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A thread for the calls that may block, so that no other thread has to."""
+"""A thread for calls that may block, so that no other thread must."""
 import logging
 import queue
 import threading
@@ -11,7 +11,7 @@ _LOG = logging.getLogger(__name__)
 class Worker:
     """Runs jobs one after the other on a daemon thread.
 
-    :param idle: called about once in ``idle_s`` seconds between jobs
+    :param idle: called about every ``idle_s`` seconds between jobs
     """
 
     def __init__(self, name, idle=lambda: None, idle_s=2.0):
@@ -22,16 +22,16 @@ class Worker:
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
 
     def start(self):
-        """Begin to work."""
+        """Start working."""
         self._thread.start()
         return self
 
     def do(self, job, *args):
-        """Queue a call; returns at once."""
+        """Queue a call; return at once."""
         self._jobs.put((job, args))
 
     def stop(self):
-        """Take no more jobs; returns at once, a job under way ends in its own time."""
+        """Take no more jobs; return at once; a job under way ends in its own time."""
         self._done.set()
         self._jobs.put((lambda: None, ()))
 
@@ -43,5 +43,5 @@ class Worker:
                 job, args = self._idle, ()
             try:
                 job(*args)
-            except Exception:  # the guard of this thread: one line in the log, and on it goes
+            except Exception:  # the guard of this thread: one line in the log, then go on
                 _LOG.exception('a background job failed: %r', job)

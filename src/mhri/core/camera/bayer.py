@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures as a colour sensor takes them: one colour for each pixel, in a mosaic of two by two."""
+"""Pictures as a colour sensor takes them: one colour per pixel, in a mosaic of two by two."""
 from typing import Optional
 
 import cv2
@@ -8,7 +8,7 @@ import numpy as np
 
 
 # ROS names a Bayer pattern by its first two pixels, OpenCV by the second row's second and third:
-# each is the other's opposite (cv_bridge.cpp, "Deal with Bayer").
+# the two names are opposites (cv_bridge.cpp, "Deal with Bayer").
 _CONVERSIONS = {'bayer_rggb': cv2.COLOR_BayerBG2RGB, 'bayer_bggr': cv2.COLOR_BayerRG2RGB,
                 'bayer_gbrg': cv2.COLOR_BayerGR2RGB, 'bayer_grbg': cv2.COLOR_BayerGB2RGB}
 #: encoding of ``sensor_msgs/Image``: how cv2 makes RGB of it
@@ -17,11 +17,11 @@ BAYER = {name + bits: conversion for name, conversion in _CONVERSIONS.items()
 
 
 def bayer_encoding(fmt: str) -> Optional[str]:
-    """Return the Bayer pattern that was compressed, None for any other picture.
+    """Return the Bayer pattern of a compressed picture, None for any other picture.
 
     image_transport's ``compressed`` plugin compresses a mosaic as a grey picture and says so only
     in the format, e.g. 'bayer_rggb8; jpeg compressed ' (compressed_publisher.cpp: a pattern counts
-    as no colour); its subscriber hands the mosaic on for cv_bridge to make colours of.
+    as no colour); its subscriber passes the mosaic on, and cv_bridge makes colours of it.
 
     :param fmt: ``format`` of a ``sensor_msgs/CompressedImage``
     """

@@ -3,9 +3,9 @@
 """How much of the network each camera may have: driven robots first, thumbnails last.
 
 Within a limit [bit/s] a stream is unlimited, thinned (one picture at a time over a connection that
-is then closed, :mod:`mhri.ros.camera.samples`) or paused. What matters least is thinned first: the
-rest down to one picture in five seconds, then the one looked at down to
-:data:`LOOKED_AT_LEAST_HZ`; then the rest is paused, the most expensive first. The picture of a
+is then closed, :mod:`mhri.ros.camera.samples`) or paused. What matters least is thinned first:
+thumbnails down to one picture in five seconds, then the picture looked at down to
+:data:`LOOKED_AT_LEAST_HZ`; then thumbnails are paused, the most expensive first. The picture of a
 driven robot is never touched, even if it alone exceeds the limit.
 """
 from dataclasses import dataclass, replace
@@ -17,24 +17,24 @@ LOOKED_AT = 'looked at'
 REST = 'rest'
 IMPORTANCES = (DRIVEN, LOOKED_AT, REST)
 
-#: rates of a thinned picture [Hz]; more often, a connection for each is dearer than it saves
+#: rates of a thinned picture [Hz]; above them a connection for each costs more than it saves
 SAMPLED_HZ = (5.0, 2.0, 1.0, 0.5, 0.2)
 LOOKED_AT_LEAST_HZ = 5.0
-# What it takes to ask for one picture [bit] (measured: 3.7 to 5.3 kB), and what is sent of the next
-# before the publisher learns that nobody listens any more.
+# What asking for one picture costs [bit] (measured: 3.7 to 5.3 kB), including the part of the next
+# one sent before the publisher learns that nobody listens any more.
 _ASKING_BITS = 4e4
 _SENT_FOR_ONE = 1.1
-# Thinning has to save half at least.
+# Thinning must save at least half.
 _SAVES = 2.0
-# That rates do not flap: figures are rounded up to so many steps in each octave, those that fall by
-# less than a part of them are taken for what they were, and a better rate has to fit for this long.
+# So that rates do not flap: figures are rounded up to so many steps per octave, one that falls by
+# less than this part stays as it was, and a better rate must fit for this long.
 _IN_OCTAVE = 8
 _FALLS = 0.2
 _CALM_S = 5.0
-# Until a stream was measured: VGA as jpeg.
+# Until a stream has been measured: VGA as jpeg.
 _TYPICAL_BITS = 3.3e5
 _TYPICAL_HZ = 30.0
-# A raw picture is at least so many times larger than the same as jpeg.
+# A raw picture is at least so many times larger than the same picture as jpeg.
 _COMPRESSED = 8.0
 
 
@@ -42,10 +42,10 @@ _COMPRESSED = 8.0
 class Grant:
     """What the feed of one picture may do.
 
-    ``rate_hz``: pictures a second at most [Hz], None: as they come, 0: none, and no connection.
-    ``sampled``: the network is thinned, too: one picture at a time over a connection of its own;
+    ``rate_hz``: most pictures per second [Hz], None: as they come, 0: none, and no connection.
+    ``sampled``: thinned on the network, too: one picture at a time, each over its own connection;
     else all arrive and only this many are decoded. ``lighter``: the best transport available,
-    whatever was chosen. ``words``: what to tell the operator, '' if nothing is held back.
+    whatever the operator chose. ``words``: what to tell the operator, '' if nothing is held back.
     """
 
     rate_hz: Optional[float] = None
@@ -62,8 +62,8 @@ class Figures(NamedTuple):
     """What is known about a stream.
 
     ``bits``: size of a message [bit]; ``native_hz``: how often the camera sends [Hz]; None before
-    they were measured, 0 for a camera that is silent. ``heavy``: it comes raw, as was chosen, and
-    might come compressed.
+    they were measured, 0 for a silent camera. ``heavy``: it comes raw, by choice, though it could
+    come compressed.
     """
 
     bits: Optional[float] = None
@@ -73,10 +73,10 @@ class Figures(NamedTuple):
 
 @dataclass(frozen=True)
 class Picture:
-    """One picture that the screen has a place for, and the :class:`Figures` of its stream.
+    """One picture with a place on the screen, and the :class:`Figures` of its stream.
 
-    ``name``: the robot's; ``importance``: one of :data:`IMPORTANCES`; ``visible``: false where it
-    cannot be seen.
+    ``name``: the robot's; ``importance``: one of :data:`IMPORTANCES`; ``visible``: false if nobody
+    can see it.
     """
 
     name: str
@@ -87,14 +87,14 @@ class Picture:
     heavy: bool = False
 
     def cost(self, rate_hz: float) -> float:
-        """Return what it takes of the network at a rate [Hz, infinite: as it comes] [bit/s]."""
+        """Return the load on the network [bit/s] at a rate [Hz, infinite: as it comes]."""
         bits = _TYPICAL_BITS if self.bits is None else self.bits
         if math.isinf(rate_hz):
             return bits * (_TYPICAL_HZ if self.native_hz is None else self.native_hz)
         return (_SENT_FOR_ONE * bits + _ASKING_BITS) * rate_hz
 
     def steps(self, thumbnail_hz: float) -> List[float]:
-        """Return the rates that it may have, best first: as it comes, then what saves enough."""
+        """Return its possible rates, best first: as it comes, then those that save enough."""
         full = self.cost(math.inf)
         most = min(thumbnail_hz if self.importance == REST else math.inf, SAMPLED_HZ[0])
         rates = [rate for rate in sorted({most, *SAMPLED_HZ}, reverse=True) if rate <= most]
@@ -105,8 +105,8 @@ class Picture:
 class Plan:
     """What every picture may have.
 
-    ``grants``: {name: :class:`Grant`}; ``bits_per_s``: what they take together, as planned;
-    ``note``: a sentence if the limit cannot be kept, else ''.
+    ``grants``: {name: :class:`Grant`}; ``bits_per_s``: their planned load together; ``note``: a
+    sentence if the limit cannot be kept, else ''.
     """
 
     grants: Dict[str, Grant]
@@ -116,7 +116,7 @@ class Plan:
 
 @dataclass
 class _Held:
-    """What a picture has now [Hz]; since when it might have more [s], None: it might not."""
+    """A picture's rate now [Hz], and since when it could have more [s]; None: it could not."""
 
     importance: str
     rate_hz: float
@@ -124,7 +124,7 @@ class _Held:
 
 
 class BudgetPlanner:
-    """Plans repeatedly, so that rates drop at once and rise slowly."""
+    """Plans again and again, so that rates drop at once and rise slowly."""
 
     def __init__(self) -> None:
         self._held: Dict[str, _Held] = {}
@@ -136,15 +136,15 @@ class BudgetPlanner:
         """Return the :class:`Plan` of this moment; call it about once a second.
 
         :param pictures: each name once
-        :param limit_bits_per_s: what all together may take; 0: no limit
-        :param thumbnail_hz: the rate at most of what is neither driven nor looked at
+        :param limit_bits_per_s: load allowed for all together; 0: no limit
+        :param thumbnail_hz: greatest rate for robots neither driven nor looked at
         :param now: [s, monotonic]
         """
         pictures = list(pictures)
         seen = [self._steady(picture) for picture in pictures if picture.visible]
         if any(None in self._figures.get(picture.name, ())
                and None not in (picture.bits, picture.native_hz) for picture in seen):
-            # What was planned by a guess is planned anew, with nothing to wait for.
+            # A plan made on a guess is made anew at once.
             self._held = {}
         self._figures = {picture.name: (picture.bits, picture.native_hz) for picture in seen}
         if limit_bits_per_s <= 0.0:
@@ -160,15 +160,15 @@ class BudgetPlanner:
                     _note(seen, limit_bits_per_s))
 
     def _steady(self, picture: Picture) -> Picture:
-        """Return a picture with figures that rise at once and fall only by much."""
+        """Return a picture whose figures rise at once and fall only in large steps."""
         bits, native_hz = self._figures.get(picture.name, (None, None))
         return replace(picture, bits=_steady(picture.bits, bits),
                        native_hz=_steady(picture.native_hz, native_hz))
 
     def _lightened(self, seen: List[Picture], limit: float, thumbnail_hz: float) -> List[Picture]:
-        """Return the pictures as they will come: what is raw and would be thinned, compressed.
+        """Return the pictures as they will come: a raw one that would be thinned comes compressed.
 
-        It stays so until its robot is driven, or nothing is limited any more.
+        It stays compressed until its robot is driven, or nothing is limited any more.
         """
         rates = _targets(seen, limit, thumbnail_hz)
         self._light = {
@@ -201,7 +201,7 @@ class BudgetPlanner:
         return {name: one.rate_hz for name, one in held.items()}
 
     def _grant(self, picture: Picture, rate_hz: float, thumbnail_hz: float) -> Grant:
-        """Return a rate as what a feed is told."""
+        """Return a rate as the :class:`Grant` for a feed."""
         lighter = picture.name in self._light
         wished_hz = thumbnail_hz if picture.importance == REST else math.inf
         words = ''
@@ -217,7 +217,7 @@ class BudgetPlanner:
 
 
 def _steady(figure: Optional[float], before: Optional[float]) -> Optional[float]:
-    """Return a figure rounded up, and as it was before where it is only a little less."""
+    """Return a figure rounded up; it stays as before if it is only a little less."""
     if not figure:
         return figure
     if before is not None and (1.0 - _FALLS) * before <= figure <= before:
@@ -231,7 +231,7 @@ def _targets(seen: Sequence[Picture], limit: float, thumbnail_hz: float) -> Dict
                                for importance in IMPORTANCES)
     rates = {picture.name: math.inf for picture in driven}
     left = limit - sum(picture.cost(math.inf) for picture in driven)
-    # What keeps the rest alive comes before what the one looked at has beyond its least.
+    # Keeping thumbnails alive comes before giving the picture looked at more than its least.
     alive = sum(picture.cost(picture.steps(thumbnail_hz)[-1]) for picture in rest)
     enough = sum(min(picture.cost(rate) for rate in picture.steps(thumbnail_hz)
                      if rate >= LOOKED_AT_LEAST_HZ) for picture in looked_at)
@@ -243,9 +243,9 @@ def _targets(seen: Sequence[Picture], limit: float, thumbnail_hz: float) -> Dict
 
 def _share(pictures: Sequence[Picture], bits_per_s: float,
            thumbnail_hz: float) -> Dict[str, float]:
-    """Share out bits: cheap pictures get all they can use, expensive ones equal parts.
+    """Share out bits: cheap pictures get all they can use, expensive ones get equal parts.
 
-    If not even the least rate of all fits, pause the most expensive, the last first of equals.
+    If even the least rates do not fit, pause the most expensive; of equals the last.
     """
     steps = {picture.name: picture.steps(thumbnail_hz) for picture in pictures}
     least = {picture.name: picture.cost(steps[picture.name][-1]) for picture in pictures}
@@ -265,7 +265,7 @@ def _share(pictures: Sequence[Picture], bits_per_s: float,
 
 
 def _note(seen: Sequence[Picture], limit: float) -> str:
-    """Say that the driven robots' pictures alone pass the limit; '' if they do not."""
+    """Say that the driven robots' pictures alone exceed the limit; '' if they do not."""
     driven = sum(picture.cost(math.inf) for picture in seen if picture.importance == DRIVEN)
     if limit <= 0.0 or driven <= limit:
         return ''

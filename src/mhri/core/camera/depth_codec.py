@@ -53,9 +53,9 @@ def decode_depth(fmt: str, data: Data, view: Optional[Size] = None) -> Tuple[np.
 
 
 def parse_format(fmt: str) -> Tuple[str, str]:
-    """Return (encoding '16UC1', '32FC1' or '' if it is not told, codec 'png' or 'rvl').
+    """Return (encoding '16UC1', '32FC1' or '' if not given, codec 'png' or 'rvl').
 
-    :raises FrameError: the format is not one of compressed depth
+    :raises FrameError: the format is not compressed depth
     """
     encoding, _, rest = (part.strip() for part in fmt.partition(';'))
     if encoding == 'compressedDepth' or encoding.startswith('compressedDepth '):
@@ -71,13 +71,13 @@ def parse_format(fmt: str) -> Tuple[str, str]:
 
 
 def _is_quantised(a: float, b: float) -> bool:
-    """Tell whether A and B can be those of inverse depth: older writers left them unset."""
+    """Tell whether A and B can belong to inverse depth: older writers left them unset."""
     return math.isfinite(a) and math.isfinite(b) and 1e-6 < a < 1e9 and -1e9 < b <= 1.0
 
 
 @lru_cache(maxsize=1)
 def _depth_table(a: float, b: float) -> np.ndarray:
-    """Return the metres of each of the 65536 values; the last one asked for is kept."""
+    """Return the metres of each of the 65536 values; the last table is cached."""
     values = np.arange(65536, dtype=np.float32) - np.float32(b)
     with np.errstate(divide='ignore', invalid='ignore'):
         depth = np.float32(a) / values
@@ -109,11 +109,11 @@ def _decode_rvl(payload: memoryview) -> np.ndarray:
 
 def encode_depth(depth: np.ndarray, codec: str = 'png', depth_max_m: float = DEPTH_MAX_M,
                  quantization_m: float = QUANTIZATION_M) -> Tuple[str, bytes]:
-    """Return (format, data) of a ``sensor_msgs/CompressedImage`` as the plugin would write them.
+    """Return (format, data) of a ``sensor_msgs/CompressedImage`` as the plugin would write it.
 
     :param depth: (h, w) uint16 [mm], 0 invalid; or float32 [m], NaN, infinite or <= 0 invalid
     :param codec: 'png' or 'rvl'
-    :param depth_max_m: what is farther is written as invalid [m]
+    :param depth_max_m: anything farther is written as invalid [m]
     :param quantization_m: depth at which one step is 1 m [m]; float32 only
     """
     if depth.dtype == np.uint16:

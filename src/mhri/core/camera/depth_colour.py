@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Depth made visible: near is yellow, far is dark purple, invalid is a grey hatch.
 
-The map is viridis (matplotlib, S. van der Walt and N. Smith 2015): its lightness grows evenly, it
-can be read with any of the usual colour deficiencies, and unlike cividis it holds no grey. A hatch,
-because to some people any single grey is near some colour of the map.
+The map is viridis (matplotlib, S. van der Walt and N. Smith 2015): its lightness grows evenly,
+people with any of the usual colour deficiencies can read it, and unlike cividis it holds no grey.
+Invalid is a hatch because to some people any single grey is near some colour of the map.
 """
 import math
 from typing import Optional, Tuple
@@ -38,7 +38,7 @@ def colour_at(depth_m: float, depth_range_m: Range) -> Tuple[int, ...]:
 
 
 class DepthColour:
-    """Colours the pictures of one stream; the range follows the scene without flickering.
+    """Colours the pictures of one stream; the range follows the scene without flicker.
 
     :param fixed_range_m: (near, far) [m], near < far; None: from the 2nd to the 98th percentile of
         the valid pixels, smoothed over a second and never less than :data:`LEAST_SPAN_M` wide
@@ -61,14 +61,14 @@ class DepthColour:
         near, far = depth_range
         scale = 255.0 / (far - near)
         valid = cv2.compare(depth_m, depth_m, cv2.CMP_EQ)
-        # cv2 rounds and clips to 0..255 on its own; NaN comes out as 0 and is hatched over.
+        # cv2 itself rounds and clips to 0..255; NaN comes out as 0, and the hatch covers it.
         shade = cv2.addWeighted(depth_m, -scale, depth_m, 0.0, far * scale, dtype=cv2.CV_8U)
         rgb = cv2.applyColorMap(shade, _TABLE)
         cv2.copyTo(self._hatched(depth_m.shape), cv2.bitwise_not(valid), rgb)
         return rgb, depth_range
 
     def _follow(self, depth_m: np.ndarray, now: float) -> Optional[Range]:
-        """Return the range after one more picture."""
+        """Return the range after another picture."""
         step = max(1, math.isqrt(depth_m.size // _SAMPLES))
         return self._follower.follow(depth_m[::step, ::step], now)
 

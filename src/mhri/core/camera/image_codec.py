@@ -3,9 +3,8 @@
 """Compressed colour pictures (jpeg, png) turned into RGB of the size they are shown at.
 
 The formats are those of image_transport's ``compressed`` plugin: 'jpeg' or 'png' alone, as single
-cameras write it, or '<encoding>; jpeg compressed [bgr8]'. What the data begin with decides; the
-format only tells of a Bayer mosaic, and in which order a png's colours were written where that is
-not the usual one.
+cameras write it, or '<encoding>; jpeg compressed [bgr8]'. The first bytes of the data decide; the
+format only tells of a Bayer mosaic, and of an unusual order of a png's colours.
 """
 import struct
 from typing import Optional, Tuple
@@ -30,8 +29,8 @@ def decode_compressed(fmt: str, data: Data,
                       view: Optional[Size] = None) -> Tuple[np.ndarray, Size, str]:
     """Decode the data of a ``sensor_msgs/CompressedImage``.
 
-    A jpeg has no check sum: damage in the middle of it shows as a smear and is not an error; a
-    picture that ends early is.
+    A jpeg has no checksum: damage in its middle shows as a smear and is not an error; a picture
+    that ends early is.
 
     :param fmt: its ``format``
     :param data: its ``data``, bytes-like
@@ -50,9 +49,9 @@ def decode_compressed(fmt: str, data: Data,
 
 
 def _decode_mosaic(fmt: str, kind: str, data: Data) -> Optional[np.ndarray]:
-    """Return the RGB picture of a compressed Bayer mosaic; None if it is none.
+    """Return the RGB picture of a compressed Bayer mosaic; None if it is not one.
 
-    At its full size: reduced, the colours of its pixels would be one grey.
+    Decode it at full size: reduced, the colours of its pixels would mix into grey.
     """
     encoding = bayer_encoding(fmt)
     if encoding is None:
@@ -63,10 +62,10 @@ def _decode_mosaic(fmt: str, kind: str, data: Data) -> Optional[np.ndarray]:
 
 
 def _decode_colours(fmt: str, kind: str, data: Data, full: Size, factor: int) -> np.ndarray:
-    """Return the RGB picture of a coded picture, a jpeg so many times smaller."""
+    """Return the RGB picture of coded data, a jpeg ``factor`` times smaller."""
     rgb = decode_jpeg(data, full, factor) if kind == 'jpeg' else None
     if rgb is None:
-        # The data say how the picture lies (EXIF); a robot's camera is shown as it is mounted.
+        # Ignore the orientation in the data (EXIF): a robot's camera is shown as it is mounted.
         rgb = decode_with_opencv(kind, data, _REDUCED[factor] | cv2.IMREAD_IGNORE_ORIENTATION)
         if kind == 'jpeg' or not _is_rgb_order(fmt):
             # In place: a fresh array of this size costs ten times as much, in page faults.
@@ -77,15 +76,15 @@ def _decode_colours(fmt: str, kind: str, data: Data, full: Size, factor: int) ->
 def _is_rgb_order(fmt: str) -> bool:
     """Tell whether the writer of a png handed over RGB where the coder takes BGR.
 
-    The plugin reads a png of 'rgb8' so that does not say 'compressed bgr8'; a jpeg it takes at its
-    own word, whatever the format says.
+    The plugin reads a png of 'rgb8' so if it does not say 'compressed bgr8'; it trusts a jpeg's own
+    header, whatever the format says.
     """
     encoding, _, rest = fmt.partition(';')
     return encoding.startswith('rgb') and 'compressed' in rest and 'bgr' not in rest
 
 
 def _factor(full: Size, target: Size) -> int:
-    """Return how many times smaller a jpeg may be decoded: 1, 2, 4 or 8."""
+    """Return how many times smaller a jpeg can be decoded: 1, 2, 4 or 8."""
     return next(factor for factor in sorted(_REDUCED, reverse=True)
                 if factor == 1 or (target[0] * factor <= full[0] and target[1] * factor <= full[1]))
 
@@ -99,7 +98,7 @@ def interpolation(picture: np.ndarray, target: Size) -> int:
 def decode_with_opencv(what: str, data: Data, flags: int) -> np.ndarray:
     """Call ``cv2.imdecode``; return its array.
 
-    :raises FrameError: it could not make a picture of the data
+    :raises FrameError: OpenCV could make no picture of the data
     """
     try:
         picture = cv2.imdecode(np.frombuffer(data, np.uint8), flags)
@@ -129,7 +128,7 @@ def read_size(data: Data, fmt: str = '') -> Tuple[str, Size]:
 
 
 def _png_size(data: Data) -> Size:
-    """Return (width, height) of a png that is whole at both ends."""
+    """Return (width, height) of a png; check both of its ends."""
     if len(data) < 33 or b'IEND' not in bytes(data[-64:]):
         raise FrameError('png: truncated at {} bytes'.format(len(data)))
     size = struct.unpack_from('>II', data, 16)
@@ -138,7 +137,7 @@ def _png_size(data: Data) -> Size:
 
 
 def _jpeg_size(data: Data) -> Size:
-    """Return (width, height) of a jpeg that is whole at both ends."""
+    """Return (width, height) of a jpeg; check both of its ends."""
     size: Optional[Size] = None
     place = 2
     try:
@@ -160,8 +159,8 @@ def _jpeg_size(data: Data) -> Size:
     if size is None:
         raise FrameError('jpeg: corrupted, it does not say its size')
     check_size('jpeg', *size)
-    # Within the picture data an 0xff is always followed by 0 or a restart marker, so that the end
-    # marker is found only where it is one; some cameras fill up behind it.
+    # Within the picture data 0 or a restart marker always follows an 0xff, so the end marker cannot
+    # be mistaken; some cameras pad behind it.
     if bytes(data).rfind(b'\xff\xd9', place) < 0:
         raise FrameError('jpeg: truncated at {} bytes'.format(len(data)))
     return size

@@ -4,7 +4,7 @@
 
 The wire is ROS's: little-endian; ``sensor_msgs/CompressedImage`` is (header, string format, uint8[]
 data), ``sensor_msgs/Image`` is (header, height, width, string encoding, is_bigendian, step, uint8[]
-data), the header (seq, stamp, string frame_id). It is read where it lies: no picture is copied.
+data), the header (seq, stamp, string frame_id). It is read in place: no picture is copied.
 """
 import struct
 from typing import Any, Optional, Tuple, Type
@@ -25,8 +25,8 @@ _LONGEST_NAME = 4096
 class Wire:
     """Reads the fields of a serialised message in order.
 
-    :param what: how the message calls itself, for the error's text
-    :param error: raised where it ends early
+    :param what: what the message calls itself, for the error's text
+    :param error: raised if it ends early
     """
 
     def __init__(self, what: str, data: Data, error: Type[ValueError] = FrameError) -> None:

@@ -20,7 +20,7 @@ Range = Tuple[float, float]
 # 8K video has 33 million pixels. A larger claim counts as a corrupted header, so that no frame can
 # make the program allocate gigabytes.
 MAX_PIXELS = 40_000_000
-# An older picture is not live [s].
+# A picture older than this is not live [s].
 OLD_AFTER_S = 1.0
 
 
@@ -30,7 +30,7 @@ class FrameError(ValueError):
 
 @dataclass(frozen=True)
 class Frame:
-    """One decoded picture, in the size it is shown at.
+    """One decoded picture, at the size it is shown at.
 
     ``kind`` is 'rgb' or 'depth'; ``rgb`` a C-contiguous uint8 array (h, w, 3) in RGB order, ready
     to show (depth: coloured already). ``depth_m``: float32 (h, w), distance along the optical axis
@@ -54,10 +54,10 @@ class StreamStatus:
     ``transport`` says what arrives: 'jpeg', 'png', 'raw', 'compressedDepth png' ...; '' before the
     first picture. ``rate_hz`` and ``bits_per_s`` are what the network brought in the last 2 s;
     ``age_s`` the age of the newest good picture [s], None before it. ``shown`` counts the pictures
-    that were taken, ``bad`` those that could not be decoded. ``problem`` says what was wrong with
-    the last bad one, or why there is none; '' while there is nothing to say. ``stale``: the newest
-    good picture is older than the newest bad one, or than ``old_after_s`` [s], which is longer for
-    a picture that is held back. ``thinned`` says that it is, and by what; '' if it is not.
+    taken, ``bad`` those that could not be decoded. ``problem`` says what was wrong with the last
+    bad one, or why no picture comes; '' if there is nothing to say. ``stale``: the newest good
+    picture is older than the newest bad one, or than ``old_after_s`` [s], which is longer for a
+    picture that is held back. ``thinned`` says that it is held back, and why; '' if it is not.
     """
 
     transport: str = ''
@@ -75,7 +75,7 @@ class StreamStatus:
 def check_size(what: str, width: int, height: int) -> None:
     """Refuse a picture without pixels, or with more than :data:`MAX_PIXELS`.
 
-    :param what: how the picture calls itself, for the error's text
+    :param what: what the picture calls itself, for the error's text
     :raises FrameError: the size is absurd
     """
     if width <= 0 or height <= 0 or width * height > MAX_PIXELS:

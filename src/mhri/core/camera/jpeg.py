@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Jpeg pictures read and written by libjpeg-turbo's own interface, where it is installed.
 
-The pixels are those of ``cv2.imdecode``, for which libjpeg-turbo works as well, in a third of the
-time (2.5 and 0.7 ms for 640 x 480 where this was written): OpenCV asks for them row by row. The
-library is called through ctypes, which lets other threads run meanwhile; every call has a
-handle of its own, so that any thread may call. Interface: turbojpeg.h, 1.5 and later.
+The pixels are those of ``cv2.imdecode``, which uses libjpeg-turbo as well, in a third of the time
+(2.5 and 0.7 ms for 640 x 480 where this was written): OpenCV asks for them row by row. Calls go
+through ctypes, which lets other threads run meanwhile; every call has its own handle, so any thread
+may call. Interface: turbojpeg.h, 1.5 and later.
 """
 import ctypes
 from typing import Optional
@@ -16,7 +16,7 @@ from mhri.core.camera.images import Data, Size
 
 _NAMES = ('libturbojpeg.so.0', 'libturbojpeg.so', 'libturbojpeg.dylib')
 _RGB = 0             # TJPF_RGB
-_FATAL = 1           # TJERR_FATAL; the other is a warning, and there is a picture
+_FATAL = 1           # TJERR_FATAL; the other is a warning: the picture is usable
 _HALF_BOTH_WAYS = 2  # TJSAMP_420: colour at half the size, as cv2 writes it
 _KEEP_BUFFER = 1024  # TJFLAG_NOREALLOC
 
@@ -51,7 +51,7 @@ _LIBRARY = _load()
 
 
 def available() -> bool:
-    """Tell whether the library is there."""
+    """Tell whether the library is installed."""
     return _LIBRARY is not None
 
 
@@ -61,10 +61,10 @@ def decode_jpeg(data: Data, full: Size, factor: int = 1) -> Optional[np.ndarray]
     As with any decoder, damage in the middle of the data shows as a smear.
 
     :param data: bytes-like, contiguous
-    :param full: (width, height) that its header says [pixels]
-    :param factor: 1, 2, 4 or 8: make it so many times smaller, rounded up, which is quicker
-    :returns: rgb uint8 (h, w, 3), or None: the library is not there, or does not take this one
-        (e.g. one in the colours of a printer)
+    :param full: (width, height) from its header [pixels]
+    :param factor: 1, 2, 4 or 8: make it so many times smaller, rounded up; larger is faster
+    :returns: rgb uint8 (h, w, 3), or None: the library is not installed, or cannot read this one
+        (e.g. in CMYK)
     """
     if _LIBRARY is None:
         return None
@@ -96,7 +96,7 @@ def encode_jpeg(rgb: np.ndarray, quality: int = 80) -> bytes:
 
 def _encode_by_cv2(rgb: np.ndarray, quality: int) -> bytes:
     """Return the bytes as OpenCV writes them."""
-    # Its import takes a second on a busy machine: not for whoever only asks for the library.
+    # Importing cv2 takes a second on a busy machine; who only asks for the library should not wait.
     import cv2
     coded: bytes = cv2.imencode('.jpg', cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR),
                                 [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
@@ -104,7 +104,7 @@ def _encode_by_cv2(rgb: np.ndarray, quality: int) -> bytes:
 
 
 def _encode_by_library(rgb: np.ndarray, quality: int) -> Optional[bytes]:
-    """Return the bytes, or None if the library is not there or cannot."""
+    """Return the bytes, or None if the library is not installed or fails."""
     if _LIBRARY is None:
         return None
     compressor = _LIBRARY.tjInitCompress()

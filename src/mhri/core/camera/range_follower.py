@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The range of a scale that follows what is measured, without flickering."""
+"""The range of a scale; it follows the measured values without flicker."""
 import math
 from typing import Optional
 
@@ -15,8 +15,8 @@ _PERCENT = (2, 98)
 class RangeFollower:
     """From the 2nd to the 98th percentile, smoothed over :data:`SMOOTH_S` seconds.
 
-    :param least_span: how wide the range is at least
-    :param least: where it begins at least
+    :param least_span: least width of the range
+    :param least: lower end of the range, at least
     """
 
     def __init__(self, least_span: float, least: float = -math.inf) -> None:
@@ -28,14 +28,14 @@ class RangeFollower:
     def follow(self, values: np.ndarray, now: float) -> Optional[Range]:
         """Return the range after some more values; None before the first.
 
-        :param values: any number of them, NaN for what is not valid
+        :param values: any number of them, NaN if invalid
         :param now: time of receipt [s], for the smoothing
         """
         values = values[values == values]
         if len(values) == 0:
             return self._range
         low, high = (float(value) for value in np.percentile(values, _PERCENT))
-        # What is large has no digits for a narrow range.
+        # Large values have no digits left for a narrow range.
         span = max(self._least_span, 1e-6 * max(abs(low), abs(high)))
         if high - low < span:
             half = span / 2

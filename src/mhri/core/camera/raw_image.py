@@ -47,7 +47,7 @@ def decode_raw(image: RawImage, view: Optional[Size] = None) -> Tuple[np.ndarray
 
     :param image: :class:`RawImage`-like: height, width, encoding, is_bigendian, step, data
     :param view: room for the picture (width, height) [pixels], None for the full size
-    :raises FrameError: an encoding that is not known, an absurd size, or too little data
+    :raises FrameError: an unknown encoding, an absurd size, or too little data
     """
     if image.encoding not in _COLOUR:
         raise FrameError('raw image: encoding {!r} is none of {}'.format(
@@ -74,7 +74,7 @@ def decode_raw_depth(image: RawImage, view: Optional[Size] = None) -> Tuple[np.n
     16UC1 is in millimetres, 0 invalid; 32FC1 in metres, NaN, infinite or <= 0 invalid (REP-118).
 
     :param view: room for the picture (width, height) [pixels], None for the full size
-    :raises FrameError: an encoding that is not known, an absurd size, or too little data
+    :raises FrameError: an unknown encoding, an absurd size, or too little data
     """
     if image.encoding not in _DEPTH:
         raise FrameError('raw depth: encoding {!r} is none of {}'.format(

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """RVL, the lossless depth code of A. D. Wilson, "Fast Lossless Depth Image Compression" (2017).
 
-The pixels are runs of zeros and of others in turn: (count of zeros, count of others, the others),
-the others as the zigzag difference to the one before. Every number is written three bits to a
+The pixels are alternating runs of zeros and of others: (count of zeros, count of others, the
+others), the others as the zigzag difference to the one before. Every number takes three bits per
 nibble, the lowest first, with 8 added while more follow; nibbles fill 32-bit little-endian words
-from the top. All numbers are read and written at once here, with numpy; only the heads of the runs
-are followed one by one.
+from the top. This module reads and writes all numbers at once, with numpy; it only follows the
+heads of the runs one by one.
 """
 from typing import Tuple
 
@@ -16,13 +16,13 @@ import numpy as np
 from mhri.core.camera.images import Data, FrameError
 
 _LONGEST = 10  # nibbles of a number below 2^30
-_PART = 65_536  # nibbles read at once: what is worked on stays in the cache
+_PART = 65_536  # nibbles read at once, few enough to stay in the cache
 
 
 def _pairs() -> np.ndarray:
-    """Return what the last nibble of a number makes with the one before it: [16 * last + before].
+    """Return the value of a number's last nibble with the one before it: [16 * last + before].
 
-    One below 8 before it ends another number.
+    A nibble below 8 before it is the end of another number.
     """
     last, before = np.divmod(np.arange(256, dtype=np.int32), 16)
     return np.where(before >= 8, (last << 3) | (before & 7), last).astype(np.int32)
@@ -32,7 +32,7 @@ _PAIRS = _pairs()
 
 
 def decode_rvl(payload: Data, pixels: int) -> np.ndarray:
-    """Return the uint16 array of so many pixels that an RVL stream holds.
+    """Return the pixels of an RVL stream as a uint16 array.
 
     :param payload: bytes of the stream, without any header
     :param pixels: number of pixels expected, > 0; the caller has checked that it is not absurd
@@ -45,7 +45,7 @@ def decode_rvl(payload: Data, pixels: int) -> np.ndarray:
             or end > len(numbers):
         raise FrameError('rvl: truncated or corrupted, its runs do not make {} pixels'.format(
             pixels))
-    # In place where it can be: fresh arrays of this size cost more than the sums.
+    # In place if possible: fresh arrays of this size cost more than the sums.
     values = numbers[:end]
     values[heads] = values[heads + 1] = 0
     signs = values & 1
@@ -65,11 +65,11 @@ def decode_rvl(payload: Data, pixels: int) -> np.ndarray:
 def _read_numbers(payload: Data) -> np.ndarray:
     """Return every number of a stream as int32, in order.
 
-    :raises FrameError: a number is longer than any that is written
+    :raises FrameError: a number is longer than any encoder writes
     """
     words = np.frombuffer(payload, '<u4', len(payload) // 4)
     packed = words.astype('>u4').view(np.uint8)
-    # What is before the first one ends no number.
+    # What comes before the first one ends no number.
     nibbles = np.zeros(_LONGEST + 2 * len(packed), np.uint8)
     np.right_shift(packed, 4, out=nibbles[_LONGEST::2])
     np.bitwise_and(packed, 15, out=nibbles[_LONGEST + 1::2])

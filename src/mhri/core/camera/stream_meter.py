@@ -23,7 +23,7 @@ class StreamMeter:
         self._prune(now)
 
     def look_back(self, window_s: float) -> None:
-        """Count over so many seconds from now on."""
+        """Use a window of so many seconds from now on."""
         self._window_s = window_s
 
     def _prune(self, now: float) -> None:
@@ -31,12 +31,12 @@ class StreamMeter:
             self._bytes -= self._came.popleft()[1]
 
     def read(self, now: float) -> Tuple[float, float]:
-        """Return (messages per second, bits per second); the rate is 0 with fewer than two."""
+        """Return (messages per second, bits per second); the rate is 0 below two messages."""
         self._prune(now)
         if not self._came:
             return 0.0, 0.0
         first, last = self._came[0][0], self._came[-1][0]
-        # From the first to the last, but an end of the stream shows at once: the rate falls.
+        # From the first to the last; but when the stream ends, the rate falls at once.
         span = max(last - first, now - first - 2.0 * (last - first) / max(1, len(self._came) - 1))
         if len(self._came) < 2 or span <= 0.0:
             return 0.0, 8.0 * self._came[0][1] / self._window_s

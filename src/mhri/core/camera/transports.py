@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which of a camera's topics to listen to: compressed first, raw where there is nothing else."""
+"""Which of a camera's topics to listen to: compressed first, raw if there is nothing else."""
 from typing import Iterable, List, Mapping, NamedTuple, Optional
 
 from mhri.core.camera.images import DEPTH, RGB
@@ -25,7 +25,7 @@ class Offer(NamedTuple):
 def find_offers(kind: str, topics: Iterable[str], published: Mapping[str, str]) -> List[Offer]:
     """Return the :class:`Offer` list of a camera, best first.
 
-    A topic of another type than its name promises is no offer.
+    A topic whose type is not the one its name promises is no offer.
 
     :param kind: 'rgb' or 'depth'
     :param topics: the camera's full topics in order of preference, without transport
@@ -42,7 +42,7 @@ def choose_offer(offers: Iterable[Offer], transport: str) -> Optional[Offer]:
 
 
 def may_carry(kind: str, transport: str, topic: str) -> bool:
-    """Tell whether a full topic is one of a transport ('auto': of any)."""
+    """Tell whether a full topic belongs to a transport ('auto': to any)."""
     if transport == AUTO:
         return True
     endings = {name: ending for name, ending, _ in _TRANSPORTS[kind]}

@@ -83,7 +83,7 @@ def choose_profile(profiles: Sequence[Profile], name: str, guid: str = '') -> Tu
     for profile in profiles:
         if profile.name == GENERIC:
             return profile, ('no profile knows this pad: the generic one is used; if it does not '
-                             'fit, run mhri_joy --calibrate')
+                             'fit, calibrate it on the page Pad')
     raise LookupError('no profile knows {!r}, and there is no profile {!r}'.format(name, GENERIC))
 
 
@@ -95,6 +95,11 @@ def is_known(profiles: Sequence[Profile], pad: PadInfo) -> bool:
         return False
 
 
+def only_pads(devices: Iterable[PadInfo]) -> List[PadInfo]:
+    """Return those that are no part of another pad, and nothing for the feet."""
+    return [pad for pad in devices if not any(part in pad.name.lower() for part in _NO_PADS)]
+
+
 def choose_pad(wanted: object, pads: Iterable[PadInfo], profiles: Sequence[Profile]) -> PadInfo:
     """Return the :class:`PadInfo` to open.
 
@@ -103,16 +108,17 @@ def choose_pad(wanted: object, pads: Iterable[PadInfo], profiles: Sequence[Profi
     :raises LookupError: there is none; the text says what was wanted and the remedy
     """
     word = str(wanted).strip()
-    pads = [pad for pad in pads if not any(part in pad.name.lower() for part in _NO_PADS)]
+    pads = only_pads(pads)
     if not pads:
         raise LookupError('none is connected; plug one in, or press its PS button')
     if not word:
         return next((pad for pad in pads if is_known(profiles, pad)), pads[0])
-    for pad in pads:
+    # One name may be a part of another.
+    for pad in sorted(pads, key=lambda pad: pad.name != word):
         if is_wanted(word, pad):
             return pad
-    raise LookupError('no {!r} among {}; set ~device to the name, GUID or index of one of them, '
-                      'or to nothing'.format(word, describe(pads)))
+    raise LookupError('{!r} is not connected: plug it in, or choose another pad; connected: '
+                      '{}'.format(word, describe(pads)))
 
 
 def is_wanted(wanted: object, pad: PadInfo) -> bool:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the doctor sees and what it says: plain values between the looking and the judging."""
+"""What the doctor sees and what it says: plain values between examination and judgement."""
 from dataclasses import dataclass, field, replace
 from typing import Any, Collection, Dict, Iterable, List, Optional, Tuple
 
@@ -19,11 +19,11 @@ SYSTEM = 'system'
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that was looked at.
+    """One thing that the doctor looked at.
 
-    ``check`` is its stable name for scripts; ``about`` the robot, node, computer or part that has
-    it; ``problem`` what is wrong (or, for FINE, what is right); ``shows`` how the operator notices;
-    ``remedy`` the command that mends it; ``sure`` how far this can be relied on, '' for "fully".
+    ``check`` is its stable name for scripts; ``about`` the robot, node, computer or part concerned;
+    ``problem`` what is wrong (or, for FINE, what is right); ``shows`` how the operator notices;
+    ``remedy`` the command that mends it; ``sure`` how certain this is, '' for "fully".
     """
 
     severity: str
@@ -37,10 +37,10 @@ class Finding:
 
 @dataclass(frozen=True)
 class Folder:
-    """A folder that is written to.
+    """A folder that mhri writes to.
 
-    ``what`` it is for ('recordings', 'logs'), ``problem`` why it cannot be written to, '' if it
-    can; ``device`` is the same for two on one disk.
+    ``what`` it is for ('recordings', 'logs'), ``problem`` why mhri cannot write to it, '' if it
+    can; ``device`` is the same for two folders on one disk.
     """
 
     what: str
@@ -54,10 +54,10 @@ class Folder:
 class Computer:
     """The computer the doctor runs on.
 
-    ``variables`` are those of its environment that begin with ``ROS_``; ``resolved`` are names and
-    their IPv4 addresses, None if a name is unknown; ``route_ip`` is the own address that
-    packets to the master leave from, None if there is no way or the master is on this computer;
-    ``packages`` maps what mhri depends on to the reason why it cannot be used, '' if it can.
+    ``variables`` are its environment variables that begin with ``ROS_``; ``resolved`` maps names to
+    their IPv4 addresses, None if a name is unknown; ``route_ip`` is the local address from which
+    packets to the master leave, None if there is no route or the master is on this computer;
+    ``packages`` maps each dependency of mhri to the reason why it is unusable, '' if it is usable.
     """
 
     name: str = 'host'
@@ -71,7 +71,7 @@ class Computer:
     packages: Dict[str, str] = field(default_factory=dict)
 
     def addresses_of(self, host: str) -> Tuple[str, ...]:
-        """Return the IPv4 addresses of a host name or address, () where it is unknown."""
+        """Return the IPv4 addresses of a host name or address, () if it is unknown."""
         if is_ipv4(host):
             return (host,)
         return self.resolved.get(host) or ()
@@ -82,7 +82,7 @@ class Computer:
                    for address in self.addresses_of(host))
 
     def good_ip(self) -> Optional[str]:
-        """Return the address that robots should be told, None if there is only loopback."""
+        """Return the address to give to robots, None if there is only loopback."""
         outward = [address for address in self.addresses if not is_loopback(address)]
         return self.route_ip or (outward[0] if outward else None)
 
@@ -96,10 +96,10 @@ class Computer:
 
 @dataclass(frozen=True)
 class Master:
-    """The master: its URI as configured, how it answered, in words where not, in how long [s].
+    """The master: its configured URI, how it answered, in words if it did not, and how fast [s].
 
-    ``elsewhere`` are the URIs of other masters: where this one does not answer those that do, where
-    it has no mux those that have one.
+    ``elsewhere`` are the URIs of other masters: if this one does not answer, those that do; if it
+    has no mux, those that have one.
     """
 
     uri: str = 'http://localhost:11311'
@@ -128,7 +128,7 @@ class Graph:
                        for nodes in group.values() for node in nodes})
 
     def of(self, names: Collection[str]) -> 'Graph':
-        """Return the part of it that some nodes have."""
+        """Return the part of it that concerns some nodes."""
         def part(group: Dict[str, Tuple[str, ...]]) -> Dict[str, Tuple[str, ...]]:
             return {topic: kept for topic, nodes in group.items()
                     for kept in [tuple(node for node in nodes if node in names)] if kept}
@@ -149,10 +149,10 @@ class Graph:
 
 @dataclass(frozen=True)
 class Connection:
-    """A connection as a node tells of it: ``out`` or not, its topic, who is at the other end.
+    """A connection as a node reports it: ``out`` or not, its topic, who is at the other end.
 
-    ``peer`` is the other node's name of an outgoing, its URI of an incoming one; ``address`` the
-    IPv4 address that the other end really has, '' if it is not told.
+    ``peer`` is the other node's name if outgoing, its URI if incoming; ``address`` the real IPv4
+    address of the other end, '' if not reported.
     """
 
     out: bool
@@ -184,12 +184,11 @@ class Node:
 
 @dataclass(frozen=True)
 class Stream:
-    """What a publisher said of a topic when it was asked for it, and the stamps that came.
+    """What a publisher said when asked for a topic, and the stamps that came.
 
-    ``problem`` says why it was not connected; ``listened_s`` is for how long messages were waited
-    for [s], 0 if they were not; ``samples`` are (received, stamp) pairs by the clock here and
-    the sender's [s]; ``refused`` what the gates refused, in their own words: '/node: twist, 3
-    times'.
+    ``problem`` says why there was no connection; ``listened_s`` is how long the doctor waited for
+    messages [s], 0 if it did not; ``samples`` are (received, stamp) pairs by the clock here and the
+    sender's [s]; ``refused`` what the gates refused, in their own words: '/node: twist, 3 times'.
     """
 
     topic: str
@@ -206,11 +205,12 @@ class Stream:
 
 @dataclass(frozen=True)
 class Facts:
-    """Everything that was seen.
+    """Everything that the doctor saw.
 
-    ``later`` is the graph, ``later_nodes`` the nodes asked once more at the end, where something
-    looked odd: only what is odd both times is told. ``known`` maps message types to the md5 sum
-    that this computer has, None if it has none. ``wanted`` are the robots asked for, () for all.
+    ``later`` is the graph, ``later_nodes`` the nodes asked once more at the end, if something
+    looked odd: the doctor only reports what is odd both times. ``known`` maps message types to
+    their md5 sum on this computer, None if it has none. ``wanted`` are the robots asked for, () for
+    all.
     """
 
     computer: Computer = Computer()
@@ -226,7 +226,7 @@ class Facts:
     caller_id: str = '/mhri_doctor'
 
     def with_later(self, graph: Graph, nodes: Dict[str, Node]) -> 'Facts':
-        """Return these facts with the second look."""
+        """Return these facts plus the second look."""
         return replace(self, later=graph, later_nodes=nodes)
 
     def answering(self, name: str) -> Optional[Node]:
@@ -239,7 +239,7 @@ class Facts:
         return bool(node.host) and not self.computer.is_own(node.host)
 
     def several_computers(self) -> bool:
-        """Tell whether more than this computer takes part."""
+        """Tell whether other computers take part, too."""
         if self.master.state != STRANGER and not self.computer.is_own(self.master.host) \
                 and self.computer.addresses_of(self.master.host):
             return True

@@ -8,7 +8,7 @@ from mhri.core.doctor.facts import (
     Master, MASTER, REFUSED, STRANGER, UNRESOLVED, WARNING)
 
 MB = 1000 * 1000
-# As the recorder has them: it warns below the first and stops at the second.
+# The recorder's limits: it warns below the first and stops at the second.
 LOW_BYTES, FULL_BYTES = 1000 * MB, 256 * MB
 _NO_DATA = 'robots and topics are listed, but no data arrives, or in one direction only'
 
@@ -17,7 +17,7 @@ def find_on_host(facts: Facts) -> List[Finding]:
     """Return the findings about this computer."""
     found = (_variables(facts) + _folders(facts.computer) + _workspace(facts.computer)
              + _packages(facts.computer) + [
-                 Finding(FAULT, 'template_bad', HOST, 'a robot type cannot be used: ' + text,
+                 Finding(FAULT, 'template_bad', HOST, 'a robot type is unusable: ' + text,
                          'robots of that type are driven as generic, or not offered',
                          'mend the file named above, or take it away')
                  for text in facts.template_errors])
@@ -25,7 +25,7 @@ def find_on_host(facts: Facts) -> List[Finding]:
 
 
 def _fine_if_none(found: List[Finding], check: str, about: str, words: str) -> List[Finding]:
-    """Return findings, or that there are none in words."""
+    """Return findings; if there are none, one that says so in words."""
     return found or [Finding(FINE, check, about, words)]
 
 
@@ -61,7 +61,7 @@ def _variables(facts: Facts) -> List[Finding]:
 
 
 def _known_uri(facts: Facts) -> str:
-    """Return the URI of a master that answers, or a place for it."""
+    """Return the URI of a master that answers, or a placeholder."""
     if facts.master.state == ANSWERS:
         return facts.master.uri
     return (facts.master.elsewhere or (
@@ -74,14 +74,14 @@ def _address_problem(facts: Facts, host: str, variable: str) -> Optional[Finding
     odd = '://' in host or ':' in host or host != host.strip() or (
         variable == 'ROS_IP' and not is_ipv4(host))
     if odd:
-        check, problem = 'address_bad', '{}={!r} is no address: write it without http://, port ' \
-            'and spaces{}'.format(variable, host,
-                                  ', as four numbers' if variable == 'ROS_IP' else '')
+        check, problem = 'address_bad', '{}={!r} is not an address: write it without http://, ' \
+            'port and spaces{}'.format(variable, host,
+                                       ', as four numbers' if variable == 'ROS_IP' else '')
     elif not computer.addresses_of(host):
         check, problem = 'address_unresolved', '{}={}, a name that this computer cannot ' \
             'resolve'.format(variable, host)
     elif not computer.is_own(host):
-        check, problem = 'address_foreign', '{}={} is no address of this computer (it has ' \
+        check, problem = 'address_foreign', '{}={} is not an address of this computer (it has ' \
             '{})'.format(variable, host, listed(computer.addresses))
     elif facts.several_computers() and all(map(is_loopback, computer.addresses_of(host))):
         check, problem = 'address_loopback', '{}={} is loopback, but other computers take ' \
@@ -97,7 +97,7 @@ def _address_problem(facts: Facts, host: str, variable: str) -> Optional[Finding
 
 
 def _both(facts: Facts) -> List[Finding]:
-    """Judge two variables that say different things."""
+    """Judge two variables that contradict each other."""
     name, address = (facts.computer.variables.get(key) for key in ('ROS_HOSTNAME', 'ROS_IP'))
     if not (name and address) or name == address \
             or address in facts.computer.addresses_of(name):
@@ -107,7 +107,7 @@ def _both(facts: Facts) -> List[Finding]:
 
 
 def _unset(facts: Facts) -> List[Finding]:
-    """Judge that neither variable is set: then the computer's name is told to everybody."""
+    """Judge that neither variable is set: programs then advertise the computer's name."""
     computer = facts.computer
     addresses = computer.addresses_of(computer.name)
     said = 'neither ROS_IP nor ROS_HOSTNAME is set, so programs here are known as "{}"'.format(
@@ -123,7 +123,7 @@ def _unset(facts: Facts) -> List[Finding]:
 
 
 def _folders(computer: Computer) -> List[Finding]:
-    """Judge the folders that are written to; two on one disk are one finding."""
+    """Judge the folders that mhri writes to; two on one disk are one finding."""
     found: Dict[Tuple[str, str], Finding] = {}
     for folder in computer.folders:
         problem = _folder_problem(folder)
@@ -190,14 +190,14 @@ def _packages(computer: Computer) -> List[Finding]:
         'packages', HOST, 'all {} packages that mhri needs are here'.format(len(computer.packages)))
 
 
-# What mhri goes on without, and how that shows.
+# What mhri can do without, and what the operator notices.
 SLOWER_WITHOUT = {'libturbojpeg': 'a jpeg picture takes three times as long'}
-# Keys of rosdep that are neither a ROS package nor the name of the system's package.
+# rosdep keys that are neither ROS packages nor names of system packages.
 _SYSTEM = {'libturbojpeg': 'libturbojpeg0-dev'}
 
 
 def package_of(name: str, computer: Computer) -> str:
-    """Return the package of the system that brings a ROS package."""
+    """Return the system's package that brings a ROS package."""
     if name.startswith('python3-'):
         return name
     if name in _SYSTEM:
@@ -208,7 +208,7 @@ def package_of(name: str, computer: Computer) -> str:
 
 
 def use_other(master: Master) -> str:
-    """Return the command that turns to another master, one for each there is."""
+    """Return the commands that turn to other masters, one for each."""
     return '   # or: '.join('export ROS_MASTER_URI={}'.format(uri) for uri in master.elsewhere[:4])
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The doctor's judgement: from what was seen (:mod:`mhri.core.doctor.facts`) to findings."""
+"""The doctor's judgement: from the facts (:mod:`mhri.core.doctor.facts`) to findings."""
 from typing import Any, Dict, Iterable, List, Mapping, Sequence, Set
 
 from mhri.core.doctor.facts import ANSWERS, Facts, FAULT, FINE, Finding, SEVERITIES, WARNING
@@ -30,7 +30,7 @@ def diagnose(facts: Facts, types: Mapping[str, RobotType], ignore: IgnoreList) -
 
 
 def _of_wanted(facts: Facts, found: List[Finding]) -> List[Finding]:
-    """Leave out what is about robots that were not asked for."""
+    """Leave out findings about robots that nobody asked for."""
     if not facts.wanted:
         return found
     others = {robot_of(node) for node in facts.nodes} - set(facts.wanted) - {''}
@@ -38,9 +38,9 @@ def _of_wanted(facts: Facts, found: List[Finding]) -> List[Finding]:
 
 
 def odd_ones(facts: Facts, robots: Iterable[Robot]) -> Set[str]:
-    """Return the names of the nodes to ask a second time, before anything is said about them.
+    """Return the names of the nodes to ask a second time before reporting anything about them.
 
-    What is just coming or going looks wrong for a moment.
+    A node that is just coming or going looks wrong for a moment.
 
     :param robots: list of :class:`mhri.core.doctor.robots.Robot`
     """
@@ -52,7 +52,7 @@ def odd_ones(facts: Facts, robots: Iterable[Robot]) -> Set[str]:
 
 
 def exit_status(findings: Sequence[Finding]) -> int:
-    """Return 1 where something is wrong, else 0."""
+    """Return 1 if something is wrong, else 0."""
     return int(any(item.severity != FINE for item in findings))
 
 
@@ -67,7 +67,7 @@ def as_lines(findings: Sequence[Finding], took_s: float) -> List[str]:
               for severity in SEVERITIES}
     lines.append('{} faults, {} warnings, {} fine; examined in {:.1f} s'.format(
         counts[FAULT], counts[WARNING], counts[FINE], took_s))
-    # Names come from whoever registers at the master: escape sequences would be obeyed.
+    # Names come from whoever registers at the master: the terminal would obey escape sequences.
     return [''.join(char if char.isprintable() else '?' for char in line) for line in lines]
 
 

@@ -14,7 +14,7 @@ _Link = Tuple[str, str, str]
 _Way = Tuple[str, str]
 
 ANY = '*'
-# The packages whose messages mhri itself reads; a robot may well have others of its own.
+# The packages whose messages mhri itself reads; a robot may have others of its own.
 _READ = ('diagnostic_msgs', 'geometry_msgs', 'mhri', 'nav_msgs', 'sensor_msgs', 'std_msgs',
          'tf2_msgs', 'turtlesim')
 _ONE_WAY = 'topics are listed, but no data arrives, or in one direction only'
@@ -50,7 +50,7 @@ def is_connected(topic: str, sender: Node, listener: Node) -> bool:
 
 
 def missing_links(facts: Facts, nodes: Mapping[str, Node], graph: Graph) -> Set[_Link]:
-    """Return the (topic, publisher name, subscriber name) that should be connected and are not."""
+    """Return the (topic, publisher name, subscriber name) that should be connected but are not."""
     alive = {name: node for name, node in nodes.items() if facts.answering(name)}
     return {(topic, sender.name, listener.name)
             for topic, sender, listener in expected_links(facts, alive, graph)
@@ -65,7 +65,7 @@ def _present_hosts(facts: Facts) -> Set[Tuple[str, str, str, str]]:
 
 
 def _connections(facts: Facts) -> List[Finding]:
-    """Say why those are not connected that were not in both looks."""
+    """Say why the links missing in both looks are not connected."""
     missing = missing_links(facts, facts.nodes, facts.graph)
     if facts.later is None:
         missing = set()
@@ -100,7 +100,7 @@ def _type_differs(topic: str, publisher: str, subscriber: str, said: Tuple[str, 
 
 
 def _not_connected(facts: Facts, topic: str, publisher: str, subscriber: str, kind: str) -> Finding:
-    """The way is open, the names of the types agree: the definitions do not."""
+    """Judge an open way between types of the same name: their definitions differ."""
     return Finding(
         FAULT, 'definition_differs', publisher, '{} does not get {} from {}, though others are '
         'connected the same way: their definitions of {} differ'.format(
@@ -110,7 +110,7 @@ def _not_connected(facts: Facts, topic: str, publisher: str, subscriber: str, ki
 
 
 def _no_way(facts: Facts, hosts: _Way, links: List[_Link]) -> Finding:
-    """Nothing goes from one computer to another although it should: the network, or its name."""
+    """Judge a missing way from one computer to another: the network, or a wrong name."""
     source, target = hosts
     own = facts.computer.is_own(source)
     topics = sorted({topic for topic, _, _ in links})
@@ -126,12 +126,12 @@ def _no_way(facts: Facts, hosts: _Way, links: List[_Link]) -> Finding:
             listed(sorted({publisher for _, publisher, _ in links})),
             'does' if len(topics) == 1 else 'do'),
         'the robot is heard, but does not obey' if own else _ONE_WAY, mend,
-        'seen at its connections: the robot cannot be asked to try')
+        'seen by its connections: the doctor cannot ask the robot to try')
 
 
 def _back(facts: Facts, present: Set[Tuple[str, str, str, str]],
           ways: Dict[_Way, List[_Link]]) -> List[Finding]:
-    """Say for each remote robot whether it was seen to reach this computer."""
+    """Say for each remote robot whether it reaches this computer, as far as seen."""
     found = []
     robots: Dict[str, Set[str]] = {}
     for node in facts.nodes.values():
@@ -164,9 +164,9 @@ def _definitions(facts: Facts) -> List[Finding]:
             kinds.setdefault((stream.type, stream.node), []).append(stream.topic)
     for (kind, node), names in sorted(kinds.items()):
         found.append(Finding(
-            FAULT, 'md5_differs', robot_of(node) or node, '{} sends {} by another definition '
+            FAULT, 'md5_differs', robot_of(node) or node, '{} sends {} with another definition '
             'of {} than {} has'.format(node, listed(sorted(names)), kind, HOST),
-            'the topic is listed, but the panel shows nothing of it', _REBUILD.format(kind)))
+            'the topic is listed, but the panel shows none of it', _REBUILD.format(kind)))
     for topic, said in sorted(topics.items()):
         if len(set(said.values())) > 1:
             found.append(Finding(

@@ -1,17 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The doctor on the nodes: which answer, which are dead, which share a name."""
+"""The doctor on nodes: which answer, which are dead, which share a name."""
 from typing import Callable, Collection, Dict, Iterable, List, Set, Tuple, TypeVar
 
 from mhri.core.doctor.facts import (
     ANSWERS, Facts, FAULT, FINE, Finding, Graph, is_ipv4, is_loopback, listed, MASTER, Node,
     REFUSED, SILENT, STRANGER, SYSTEM, UNRESOLVED, WARNING)
 
-CLEAN_UP = 'rosnode cleanup   # answer y: it takes dead nodes off the master'
+CLEAN_UP = 'rosnode cleanup   # answer y: it removes dead nodes from the master'
 _GHOST = 'a robot or node is listed that is not there; others try in vain to reach it'
-# What every node of rospy and roscpp has, and so proves nothing about which node it is.
+# Every node of rospy and roscpp has these, so they prove nothing about which node it is.
 COMMON = ('/rosout', '/rosout_agg', '/clock')
-# What nodes are put together by: it can be sorted.
+# What nodes are grouped by; sortable.
 _Key = TypeVar('_Key', str, Tuple[str, ...])
 
 
@@ -29,7 +29,7 @@ def start_robot(facts: Facts, name: str) -> str:
 
 
 def _other_name(facts: Facts, name: str) -> str:
-    """Return how two programs come to have a name each."""
+    """Return how to give two programs a name each."""
     robot = robot_of(name)
     return 'give each robot a name of its own ({})'.format(start_robot(facts, robot + '_2')) \
         if robot else 'give one of them another name (__name:={}_2)'.format(name.lstrip('/'))
@@ -38,7 +38,7 @@ def _other_name(facts: Facts, name: str) -> str:
 def find_on_nodes(facts: Facts, known: Collection[str] = ()) -> List[Finding]:
     """Return the findings about reachability, registrations and names of the nodes.
 
-    :param known: names of nodes that hang, as is told elsewhere
+    :param known: names of hanging nodes that another finding reports
     """
     found = (_dead(facts) + _hosts(facts, known) + _wrong_address(facts) + _strangers(facts)
              + _loopback(facts) + _stale(facts) + _fought(facts) + _doubles(facts)
@@ -66,7 +66,7 @@ def _in_state(facts: Facts, *states: str) -> List[Node]:
 
 
 def _about(nodes: List[Node], host: str = '') -> str:
-    """Return what a finding about some nodes is about: their robot, else their computer."""
+    """Return the subject of a finding about some nodes: their robot, else their computer."""
     robots = {robot_of(node.name) for node in nodes}
     if len(robots) == 1 and '' not in robots:
         return robots.pop()
@@ -78,7 +78,7 @@ def _names(nodes: List[Node]) -> str:
 
 
 def _dead(facts: Facts) -> List[Finding]:
-    """Registered, the computer is there, but no program listens: crashed or killed."""
+    """Judge registered nodes that do not listen on a living computer: crashed or killed."""
     nodes = [node for node in _in_state(facts, REFUSED) if not true_address(facts, node)]
     return [Finding(
         FAULT, 'node_dead', _about(group, host), '{} registered at {}, but not running'.format(
@@ -88,7 +88,7 @@ def _dead(facts: Facts) -> List[Finding]:
 
 
 def _hosts(facts: Facts, known: Collection[str]) -> List[Finding]:
-    """Computers that do not answer, or whose name is unknown."""
+    """Judge computers that do not answer, or whose name is unknown."""
     found = []
     silent = [node for node in _in_state(facts, SILENT)
               if node.name not in known and not true_address(facts, node)]
@@ -100,7 +100,7 @@ def _hosts(facts: Facts, known: Collection[str]) -> List[Finding]:
                 FAULT, 'node_silent', _about(nodes, host), '{} at {} no answer in time, though '
                 'its computer answers'.format(_names(nodes), 'gives' if len(nodes) == 1 else
                                               'give'),
-                'it hangs: its topics stand still and it cannot be connected',
+                'it hangs: its topics stand still, and nothing can connect to it',
                 'rosnode kill {}   # then start it again; if that hangs too: {}'.format(
                     nodes[0].name, CLEAN_UP)))
             continue
@@ -123,7 +123,7 @@ def _hosts(facts: Facts, known: Collection[str]) -> List[Finding]:
 
 
 def _seen_at(facts: Facts, node: Node) -> Set[str]:
-    """Return the addresses that a node is connected from, by those that it has its topics of."""
+    """Return the addresses that a node connects from, as the publishers of its topics see them."""
     return {link.address for other in facts.nodes.values() if facts.answering(other.name)
             for link in other.connections or ()
             if link.out and link.peer == node.name and link.address
@@ -131,9 +131,9 @@ def _seen_at(facts: Facts, node: Node) -> Set[str]:
 
 
 def _beside(facts: Facts, node: Node) -> Set[str]:
-    """Return the addresses of other nodes that answer, of the same robot or computer's name."""
+    """Return the addresses of other answering nodes with the same robot or computer name."""
     def machine(host: str) -> str:
-        """Return the name of a computer without its domain, '' of an address."""
+        """Return the name of a computer without its domain, '' for an address."""
         return '' if is_ipv4(host) else host.partition('.')[0]
 
     robot, name = robot_of(node.name), machine(node.host)
@@ -145,10 +145,10 @@ def _beside(facts: Facts, node: Node) -> Set[str]:
 
 
 def true_address(facts: Facts, node: Node) -> str:
-    """Return the address that a node which does not answer ought to tell, '' if it is unknown.
+    """Return the address that a silent node ought to advertise, '' if it is unknown.
 
-    Where it is seen to be connected from another address than it tells, that is it. Else, where
-    nothing answers at the address it tells, it is the one at which the rest of its robot does.
+    If it connects from another address than it advertises, that is the one. Else, if nothing
+    answers at the advertised address, it is the one at which the rest of its robot answers.
     """
     told = set(facts.computer.addresses_of(node.host)) | {node.host}
     seen = _seen_at(facts, node)
@@ -160,7 +160,7 @@ def true_address(facts: Facts, node: Node) -> str:
 
 
 def _wrong_address(facts: Facts) -> List[Finding]:
-    """Nodes that live, as far as can be seen, but tell others an address that is not theirs."""
+    """Judge nodes that seem alive, but advertise an address that is not theirs."""
     nodes = [node for node in _in_state(facts, SILENT, REFUSED)
              if true_address(facts, node)
              and not (is_loopback(node.host) and facts.several_computers())]
@@ -175,17 +175,17 @@ def _wrong_address(facts: Facts) -> List[Finding]:
                 _names(group), 'tells' if len(group) == 1 else 'tell', host,
                 'its connections come from' if seen else 'the rest of its robot answers at',
                 address), 'its topics are listed, but no data arrives',
-            '{}: export ROS_IP={}, then start {} again   # not "rosnode cleanup": it would take '
-            'living nodes off the master'.format(
+            '{}: export ROS_IP={}, then start {} again   # not "rosnode cleanup": it would remove '
+            'living nodes from the master'.format(
                 'here' if own else 'on ' + address, address, _names(group)),
             '' if seen else 'concluded; if it is on a computer of its own: ping -c 3 ' + host))
     return found
 
 
 def _strangers(facts: Facts) -> List[Finding]:
-    """Another program answers at the address: the node has died, its port was taken."""
+    """Judge nodes whose address another program answers at: the node died, its port was taken."""
     found = [Finding(
-        FAULT, 'node_stranger', node.name, 'what answers at {} is no ROS node: {}'.format(
+        FAULT, 'node_stranger', node.name, 'what answers at {} is not a ROS node: {}'.format(
             node.uri, node.detail), _GHOST, CLEAN_UP) for node in _in_state(facts, STRANGER)]
     for name, other in sorted(_taken(facts).items()):
         found.append(Finding(
@@ -215,11 +215,11 @@ def _knows_nothing(graph: Graph, node: Node) -> bool:
 
 
 def _loopback(facts: Facts) -> List[Finding]:
-    """Nodes that tell others a loopback address where there are several computers."""
+    """Judge nodes that advertise a loopback address though there are several computers."""
     if not facts.several_computers():
         return []
-    # Those that answer run here; where the address of this computer is said to be wrong, they
-    # have it from there.
+    # Those that answer run here; if another finding calls this computer's address wrong, it is the
+    # cause.
     here = is_loopback(facts.computer.own_host()[0])
     nodes = [node for _, node in sorted(facts.nodes.items())
              if is_loopback(node.host) and not (here and node.state == ANSWERS)]
@@ -234,12 +234,12 @@ def _loopback(facts: Facts) -> List[Finding]:
 
 
 def _second(facts: Facts) -> Tuple[Graph, Dict[str, Node]]:
-    """Return (graph, nodes) of the second look, or of the first where there was none."""
+    """Return (graph, nodes) of the second look, or of the first if there was none."""
     return facts.later or facts.graph, facts.later_nodes
 
 
 def stale_topics(graph: Graph, node: Node) -> List[str]:
-    """Return the registered topics of which a node itself knows nothing, sorted."""
+    """Return the registered topics that the node itself does not know, sorted."""
     published, subscribed = graph.topics_of(node.name)
     stale = set()
     if node.publications is not None:
@@ -250,7 +250,7 @@ def stale_topics(graph: Graph, node: Node) -> List[str]:
 
 
 def _stale(facts: Facts) -> List[Finding]:
-    """Registrations that outlived what they stand for, though the node lives."""
+    """Judge registrations of living nodes that outlived their publisher or subscriber."""
     graph, later = _second(facts)
     taken = _taken(facts)
     found = []
@@ -274,9 +274,9 @@ def _stale(facts: Facts) -> List[Finding]:
 
 
 def _fought(facts: Facts) -> List[Finding]:
-    """Nodes that were registered elsewhere while they were looked at."""
+    """Judge nodes that registered elsewhere during the examination."""
     return [Finding(
-        WARNING, 'name_fought', name, 'it changed from {} to {} while it was looked at'.format(
+        WARNING, 'name_fought', name, 'it changed from {} to {} during the examination'.format(
             node.uri, node.uri_later),
         'robots come and go by themselves; programs end with "new node registered with same name"',
         '{}, or start one copy of {} only'.format(_other_name(facts, name), name),
@@ -286,7 +286,7 @@ def _fought(facts: Facts) -> List[Finding]:
 
 
 def _double_links(node: Node) -> Set[Tuple[str, str]]:
-    """Return the (topic, peer) that a publisher is connected to more than once."""
+    """Return the (topic, peer) pairs that a publisher is connected to more than once."""
     seen: Set[Tuple[str, str]] = set()
     double: Set[Tuple[str, str]] = set()
     for link in node.connections or ():
@@ -297,12 +297,12 @@ def _double_links(node: Node) -> Set[Tuple[str, str]]:
 
 
 def _own(facts: Facts, name: str) -> bool:
-    """Tell whether a name is that of a doctor."""
+    """Tell whether a name is a doctor's."""
     return name == facts.caller_id or name.startswith('/mhri_doctor')
 
 
 def _doubles(facts: Facts) -> List[Finding]:
-    """Two subscribers of one name at one publisher: two programs share the name."""
+    """Judge two subscribers of one name at one publisher: two programs share the name."""
     names: Dict[str, Set[str]] = {}
     for node in facts.nodes.values():
         again = facts.later_nodes.get(node.name)
@@ -315,14 +315,14 @@ def _doubles(facts: Facts) -> List[Finding]:
         WARNING, 'name_twice', peer, 'two connections of that name take {}'.format(
             listed(sorted(topics))),
         'one of two robots obeys commands meant for the other, or its data jumps',
-        '{}; rosnode info {}   # tells where the one is that the master knows: end the '
+        '{}; rosnode info {}   # shows where the one is that the master knows: end the '
         'other'.format(_other_name(facts, peer), peer),
         'two programs share the name, or one was switched off without saying goodbye')
         for peer, topics in sorted(names.items())]
 
 
 def _forgotten(facts: Facts) -> List[Finding]:
-    """Nodes that others are connected to, but that the master does not know (any more)."""
+    """Judge nodes that others are connected to, but that the master does not know (any more)."""
     graph, later = _second(facts)
     if facts.later is None:
         return []
@@ -339,13 +339,13 @@ def _forgotten(facts: Facts) -> List[Finding]:
     return [Finding(
         WARNING, 'node_forgotten', peer, 'it is connected to {}, but the {} does not know '
         'it'.format(listed(sorted(names)), MASTER),
-        'it works with whom it knows already, but nobody new finds it',
+        'it works with the nodes it knows already, but no new one finds it',
         'start {} again   # the master was restarted, or another node took its name'.format(peer))
         for peer, names in sorted(seen.items())]
 
 
 def odd_nodes(facts: Facts) -> Set[str]:
-    """Return the names of the nodes to look at again before anything is said about them."""
+    """Return the names of the nodes to look at again before reporting anything about them."""
     known = set(facts.graph.nodes())
     odd = set()
     for name in facts.nodes:

@@ -20,14 +20,14 @@ TWIST = 'geometry_msgs/Twist'
 _TYPES = (('imu', 'sensor_msgs/Imu'), ('rgb', 'sensor_msgs/Image'),
           ('depth', 'sensor_msgs/Image'), ('scan', 'sensor_msgs/LaserScan'),
           ('battery', 'sensor_msgs/BatteryState'))
-# Who may publish a robot's velocity: the gates; its own guard; a doctor that tries its watchdog.
+# Who may publish a robot's velocity: the gates, its own guard, a doctor that tries its watchdog.
 GATES, TRIAL, GUARD = '/mhri_gates', '/mhri_doctor', 'mhri_guard'
 OFFSET_WARN_S, OFFSET_FAULT_S = 0.1, 0.5
 
 
 @dataclass(frozen=True)
 class Robot:
-    """A candidate of the graph with its parameters and the template it is driven by."""
+    """A candidate from the graph with its parameters and its template."""
 
     candidate: Candidate
     template: RobotType
@@ -47,7 +47,7 @@ class Robot:
         return '/{}/{}'.format(self.candidate.name, path)
 
     def list_topics(self) -> str:
-        """Return the command that lists its topics, and perhaps those of others."""
+        """Return the command that lists its topics, perhaps among those of others."""
         return 'rostopic list' if self.candidate.seen.at_root else \
             'rostopic list | grep /{}/'.format(self.candidate.name)
 
@@ -77,14 +77,14 @@ def find_on_robots(facts: Facts, types: Mapping[str, RobotType],
             continue
         if candidate.problem:
             found.append(Finding(
-                FAULT, 'robot_name_bad', candidate.name, 'this cannot be the name of a robot: '
+                FAULT, 'robot_name_bad', candidate.name, 'this is not a possible name for a robot: '
                 + candidate.problem, 'the panel refuses to add it',
                 'rosparam set /{} <its name>'.format(NAME_PARAMETER) if candidate.seen.at_root
                 else start_robot(facts, 'bot1')))
         elif not candidate.nodes:
             found.append(Finding(
-                WARNING, 'robot_leftover', candidate.name, 'only its parameters are left, no node '
-                'of it is registered', 'the panel shows a robot that is not there',
+                WARNING, 'robot_leftover', candidate.name, 'only its parameters are left; '
+                'none of its nodes is registered', 'the panel shows a robot that is not there',
                 '; '.join('rosparam delete /' + key for key in _left_over(facts, candidate))))
         else:
             found += _robot(facts, types, robot)
@@ -92,7 +92,7 @@ def find_on_robots(facts: Facts, types: Mapping[str, RobotType],
 
 
 def _left_over(facts: Facts, candidate: Candidate) -> List[str]:
-    """Return the parameters of a robot, those with others below them once."""
+    """Return the parameters of a robot; one with others below it stands for them all."""
     own = [candidate.name] if isinstance(facts.graph.parameters.get(candidate.name), dict) else []
     if not candidate.seen.at_root:
         return own
@@ -101,7 +101,7 @@ def _left_over(facts: Facts, candidate: Candidate) -> List[str]:
 
 
 def _absent(facts: Facts, candidates: Iterable[Candidate]) -> List[Finding]:
-    """Robots that were asked for, or are in the panel's list, and are not on the graph."""
+    """Judge robots that somebody asked for, or the panel lists, but are not on the graph."""
     there = {candidate.name for candidate in candidates}
     mhri = facts.graph.parameters.get('mhri')
     listing = mhri.get('robots') if isinstance(mhri, dict) else None
@@ -178,7 +178,7 @@ def _velocity(facts: Facts, robot: Robot) -> List[Finding]:
 
 
 def _foreign(name: str, topic: str, nodes: List[str]) -> Finding:
-    """Say who drives a robot past the gates, or tries to."""
+    """Say who drives a robot past the gates, or tries."""
     words = '{} {} {}, past the gates'.format(
         listed(nodes), 'publishes' if len(nodes) == 1 else 'publish', topic)
     if topic.endswith(GUARD + '/command'):
@@ -190,7 +190,7 @@ def _foreign(name: str, topic: str, nodes: List[str]) -> Finding:
     return Finding(
         WARNING, 'velocity_foreign', name, words,
         'the robot twitches, or goes on although the gates send zero: stop all does not reach that '
-        'program', 'rosnode kill {}   # or have it publish into a cmd_vel_mux'.format(
+        'program', 'rosnode kill {}   # or let it publish into a cmd_vel_mux'.format(
             ' '.join(nodes)))
 
 
@@ -199,7 +199,7 @@ def _uri(text: str) -> str:
 
 
 def _hidden(facts: Facts, name: str, topic: str, listeners: Iterable[str]) -> List[Finding]:
-    """Programs that send velocity and that the master does not know of."""
+    """Judge programs that send velocity but are unknown to the master."""
     known = {_uri(facts.nodes[node].uri) for node in facts.graph.publishers.get(topic, ())}
     if facts.later is not None:
         known |= {_uri(facts.nodes[node].uri_later or facts.nodes[node].uri)
@@ -222,7 +222,7 @@ def _hidden(facts: Facts, name: str, topic: str, listeners: Iterable[str]) -> Li
 
 
 def hidden_listeners(facts: Facts, topics: Iterable[str]) -> Set[str]:
-    """Return the nodes to look at twice: they have velocity from somebody unknown."""
+    """Return the nodes to look at twice: they receive velocity from somebody unknown."""
     odd = set()
     for topic in topics:
         known = {_uri(facts.nodes[node].uri) for node in facts.graph.publishers.get(topic, ())}
@@ -239,14 +239,14 @@ def _topics(facts: Facts, robot: Robot) -> List[Finding]:
     kinds = (('command', TWIST), ('odometry', template.odometry_type)) + _TYPES
     for key, full, kind in [(key, topic, kind) for key, kind in kinds
                             for topic in robot.topics(key)]:
-        # The master remembers the types of topics that nobody has any more.
+        # The master remembers the types of topics that nobody uses any more.
         used = facts.graph.publishers.get(full) or facts.graph.subscribers.get(full)
         real = facts.graph.types.get(full, '*') if used else '*'
         if real not in ('*', '', kind):
             found.append(Finding(
                 FAULT, 'topic_type', name, '{} is {}, but template "{}" expects {}'.format(
                     full, real, template.name, kind),
-                'the robot does not obey' if kind == TWIST else 'the panel shows nothing of it',
+                'the robot does not obey' if kind == TWIST else 'the panel shows none of it',
                 'rosparam set {} <its type>   # or name the right topic: rosparam set '
                 '/{}/mhri/{} "[<topic>]"'.format(robot.parameter('robot_type'), name, key)))
     return found
@@ -281,17 +281,17 @@ def _odometry(facts: Facts, robot: Robot) -> List[Finding]:
 
 
 def clock_offset(samples: Iterable[Tuple[float, float]]) -> Tuple[float, float]:
-    """Return (offset [s], uncertainty [s]) of a sender's clock, positive where it is ahead.
+    """Return (offset [s], uncertainty [s]) of a sender's clock, positive if it is ahead.
 
-    A stamp is older than its arrival by the way, which is never negative: the fastest message is
-    nearest to the truth, and the scatter of the others says how slow the way is.
+    A stamp is older than its arrival by the time of travel, which is never negative: the fastest
+    message is nearest to the truth, and the scatter of the others says how slow the network is.
 
     :param samples: pairs (received, stamp) [s], at least one
     """
     delays = sorted(received - stamp for received, stamp in samples)
     scatter = median(delays) - delays[0]
-    # One sample proves little; a message is rarely faster on its way than a tenth of a second on
-    # networks that robots are driven over.
+    # One sample proves little: take a tenth of a second, which a message rarely exceeds on networks
+    # that people drive robots over.
     return -delays[0], max(0.005, scatter, 0.1 if len(delays) < 5 else 0.0)
 
 
@@ -305,10 +305,10 @@ def _clock(facts: Facts, robot: Robot) -> List[Finding]:
     received_s, newest_s = max(samples)
     if delay_of(received_s, newest_s) is None:
         return [Finding(
-            WARNING, 'clock_offset', name, 'its stamps are of no real time (the newest: {:.1f} s '
+            WARNING, 'clock_offset', name, 'its stamps are not real time (the newest: {:.1f} s '
             'after 1970): a simulator\'s, or its clock was never set'.format(newest_s),
-            'transforms and recordings do not fit those of the others',
-            'rosparam set use_sim_time true   # where a simulator publishes /clock; on a robot: '
+            'transforms and recordings do not match those of the others',
+            'rosparam set use_sim_time true   # if a simulator publishes /clock; on a robot: '
             'sudo apt install chrony; sudo chronyc makestep')]
     offset_s, error_s = clock_offset(samples)
     words = 'its clock is {:.3f} s {} the clock here'.format(

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The doctor on mhri's own nodes: mux, gates, operators, topics that one node alone may have."""
+"""The doctor on mhri's own nodes: mux, gates, operators, topics that belong to one node alone."""
 from typing import Dict, Iterable, List
 
 from mhri.core.doctor.facts import (
@@ -10,7 +10,7 @@ from mhri.core.doctor.host import use_other
 TWIST, SELECT, MODE = ('/robot_controller/twist', '/robot_controller/robot_select', '/mux/mode')
 STOP_ALL, TASK_TWIST = '/robot_controller/stop_all', '/robot_controller/task_twist'
 STICK, GATES_STATE = '/mux_in/joy', '/gates/state'
-# The gates say their state at 2 Hz; their stamp is older than this where they hang [s].
+# The gates publish their state at 2 Hz; a stamp older than this means that they hang [s].
 STATE_OLD_S = 1.5
 _MUX_ALONE = ((TWIST, 'the operator\'s velocity'), (TASK_TWIST, 'the velocities of tasks'),
               (STOP_ALL, 'stop all'))
@@ -31,31 +31,31 @@ def find_on_system(facts: Facts) -> List[Finding]:
 
 
 def _publishers(facts: Facts, topic: str) -> List[str]:
-    """Return the nodes that publish a topic, but for those that do not answer."""
+    """Return the nodes that publish a topic, without those that do not answer."""
     return [node for node in facts.graph.publishers.get(topic, ())
             if node not in facts.nodes or facts.answering(node)]
 
 
 def muxes(facts: Facts) -> List[str]:
-    """Return the names of the muxes that run."""
+    """Return the names of the running muxes."""
     return _publishers(facts, MODE)
 
 
 def gates(facts: Facts) -> List[str]:
-    """Return the names of the gates that run: they say their state, and hear the mux."""
+    """Return the names of the running gates: they publish their state, and hear the mux."""
     return [node for node in _publishers(facts, GATES_STATE)
             if node in facts.graph.subscribers.get(TWIST, ())]
 
 
 def hung(facts: Facts) -> Dict[str, str]:
-    """Return {name: topic it is known by} of mux and gates that are there and do not answer."""
+    """Return {name: the topic that identifies it} of mux and gates that do not answer."""
     return {node: topic for topic in (MODE, GATES_STATE)
             for node in facts.graph.publishers.get(topic, ())
             if node in facts.nodes and facts.nodes[node].state == SILENT}
 
 
 def _silent(facts: Facts, topic: str, check: str, words: str, start: str) -> List[Finding]:
-    """Say which of those that make a topic hang."""
+    """Say which publishers of a topic hang."""
     found = []
     for name in sorted(name for name, known_by in hung(facts).items() if known_by == topic):
         found.append(Finding(
@@ -68,7 +68,7 @@ def _silent(facts: Facts, topic: str, check: str, words: str, start: str) -> Lis
 
 
 def _mux_missing(facts: Facts) -> Finding:
-    """Say that no mux runs; where another master has one, this may be the wrong master."""
+    """Say that no mux runs; if another master has one, this may be the wrong master."""
     nor = '' if gates(facts) else ', and no gates'
     if facts.master.elsewhere:
         return Finding(
@@ -83,7 +83,7 @@ def _mux_missing(facts: Facts) -> Finding:
 
 
 def _end_all_but(wanted: str, names: Iterable[str]) -> str:
-    """Return the command that leaves one of several nodes, the one of the usual name if it is."""
+    """Return the command that ends all but one of several nodes; the usual name stays."""
     return 'rosnode kill {}'.format(' '.join(sorted(names, key=lambda name: name != wanted)[1:]))
 
 
@@ -105,7 +105,7 @@ def _mux(facts: Facts) -> List[Finding]:
             found.append(Finding(
                 FAULT, 'mux_bypassed', SYSTEM, '{} publishes {} ({}), which is the mux\'s '
                 'alone'.format(listed(foreign), topic, words),
-                'the gates refuse it; a program that believes it shows or does what is not so',
+                'the gates refuse it; a program that believes it shows or does the wrong thing',
                 'rosnode kill {}   # nobody knows it? see "Security" in the guide'.format(
                     ' '.join(foreign))))
     return found
@@ -116,7 +116,7 @@ def _gates(facts: Facts) -> List[Finding]:
     running = gates(facts)
     found = _silent(facts, GATES_STATE, 'gates_silent', ': nothing speaks to robots',
                     'rosrun mhri gates')
-    # Where nothing of mhri runs, that is said once, of the mux.
+    # If nothing of mhri runs, the finding about the mux says so, once.
     if not running and not found and facts.graph.publishers.get(MODE):
         found.append(Finding(
             FAULT, 'gates_missing', SYSTEM, 'no gates run: nothing speaks to robots', _NOTHING,
@@ -125,13 +125,13 @@ def _gates(facts: Facts) -> List[Finding]:
         found.append(Finding(
             FAULT, 'gates_several', SYSTEM, '{} gates run: {}'.format(
                 len(running), listed(running)),
-            'robots twitch: what one sends, the other contradicts',
+            'robots twitch: each contradicts what the other sends',
             _end_all_but('/mhri_gates', running)))
     foreign = [node for node in _publishers(facts, GATES_STATE) if node not in running]
     if foreign:
         found.append(Finding(
             FAULT, 'gates_bypassed', SYSTEM, '{} publishes {}, which is the gates\' alone'.format(
-                listed(foreign), GATES_STATE), 'the screen shows what no robot does',
+                listed(foreign), GATES_STATE), 'the screen shows things that no robot does',
             'rosnode kill {}'.format(' '.join(foreign))))
     for stream in facts.streams:
         if stream.topic == GATES_STATE and stream.node in running:
@@ -140,16 +140,16 @@ def _gates(facts: Facts) -> List[Finding]:
 
 
 def _heard(facts: Facts, stream: Stream) -> List[Finding]:
-    """Judge what the gates say of themselves."""
+    """Judge what the gates say about themselves."""
     found = []
-    # The stamp of another computer may be off; that nothing comes at all is told by any clock.
+    # The clock of another computer may be off; but complete silence shows by any clock.
     comparable = not facts.is_remote(facts.nodes[stream.node]) \
         and facts.graph.parameters.get('use_sim_time') is not True
     old = comparable and any(received - stamp > STATE_OLD_S
                              for received, stamp in stream.samples[-1:])
     if stream.listened_s > 0.4 and (old or not stream.messages):
         found.append(Finding(
-            FAULT, 'gates_silent', SYSTEM, '{} answers, but says nothing of its state any '
+            FAULT, 'gates_silent', SYSTEM, '{} answers, but does not publish its state any '
             'more'.format(stream.node), _NOTHING + '; robots stand',
             'rosnode kill {}   # its launch file starts it again; if none does: rosrun mhri '
             'gates'.format(stream.node)))
@@ -184,7 +184,7 @@ def _operators(facts: Facts) -> List[Finding]:
 
 
 def _sim_time(facts: Facts) -> List[Finding]:
-    """Judge simulated time without anybody who tells it."""
+    """Judge simulated time that nobody publishes."""
     if facts.graph.parameters.get('use_sim_time') is not True or _publishers(facts, '/clock'):
         return []
     return [Finding(

@@ -25,9 +25,9 @@ _GUARD = 'on the robot: utils/remote/mhri_guard in its namespace (turtle_remote.
 class WatchdogTrial:
     """Turns a robot in place slowly, falls silent, and waits for it to stop by itself.
 
-    Turning leaves the robot where it is should it stand on the floor after all. ``phase`` is one of
-    WAITING (for odometry at rest), DRIVING, LISTENING (nothing is sent) and DONE; ``outcome`` is
-    set when DONE, ``stopped_s`` the time from the last command to standstill [s].
+    Turning keeps the robot in its place, should it stand on the floor after all. ``phase`` is one
+    of WAITING (for odometry at rest), DRIVING, LISTENING (the doctor sends nothing) and DONE;
+    ``outcome`` is set when DONE, ``stopped_s`` the time from the last command to standstill [s].
     """
 
     def __init__(self, now: float, turn_rad_s: float = TURN_RAD_S) -> None:
@@ -43,8 +43,8 @@ class WatchdogTrial:
     def step(self, now: float, motion: Optional[Motion], heard_at: float) -> Optional[float]:
         """Take the newest motion; return the turn to send now [rad/s], None for silence.
 
-        :param motion: :class:`mhri.core.robots.link.Motion`, None if nothing was heard yet
-        :param heard_at: when it was heard [s]
+        :param motion: :class:`mhri.core.robots.link.Motion`, None if none came yet
+        :param heard_at: when the motion came [s]
         """
         if not now - heard_at <= FRESH_S:
             motion = None
@@ -104,24 +104,24 @@ def verdict(robot: str, outcome: str, stopped_s: Optional[float] = None) -> Find
         sure = 'measured once, by its own odometry'
         if stopped_s <= SLOW_S:
             return Finding(FINE, 'watchdog', robot, words, sure=sure)
-        return Finding(WARNING, 'watchdog_slow', robot, words, 'when the network is lost, it goes '
-                       'on for that long', _GUARD, sure)
+        return Finding(WARNING, 'watchdog_slow', robot, words, 'when the network is lost, it '
+                       'drives on for that long', _GUARD, sure)
     if outcome == RUNS_ON:
         return Finding(
-            FAULT, 'watchdog_none', robot, 'it went on turning for {:.0f} s without any command, '
+            FAULT, 'watchdog_none', robot, 'it kept turning for {:.0f} s without any command, '
             'until it was sent zero'.format(PATIENCE_S),
             'when the network is lost or the panel\'s computer dies, it drives on for ever', _GUARD,
             'measured once, by its own odometry')
     words = {
         NOT_MOVED: 'it did not move, so nothing could be measured',
-        MOVED_BEFORE: 'it moved already before the trial, so nothing was tried',
-        MUTE: 'its odometry says nothing, so nothing was tried',
-        LOST: 'its odometry ceased during the trial, so nothing could be measured'}[outcome]
+        MOVED_BEFORE: 'it was already moving before the trial, so nothing was tried',
+        MUTE: 'it sends no odometry, so nothing was tried',
+        LOST: 'its odometry stopped during the trial, so nothing could be measured'}[outcome]
     return unknown(robot, words, 'rosrun mhri mhri_doctor {}   # mend what it says first'.format(
         robot))
 
 
 def unknown(robot: str, words: str, remedy: str) -> Finding:
-    """Return the :class:`Finding` that nothing is known of a robot's watchdog."""
+    """Return the :class:`Finding` that nobody knows about a robot's watchdog."""
     return Finding(WARNING, 'watchdog_unknown', robot, words,
                    'nobody knows whether it stops when the network is lost', remedy)

@@ -7,7 +7,7 @@ within the way that is free, after the time that scan and command take: zero bef
 """
 from dataclasses import dataclass
 import math
-from typing import Optional
+from typing import Iterable, Optional, Tuple
 
 import numpy as np
 
@@ -27,6 +27,8 @@ CRAWL_MPS = 0.1
 KEEP_M = 1.2
 _GRID_M = 0.03
 _EDGE_M = 0.05
+# What was met no further off a robot than this was that robot [m].
+_BESIDE_M = 0.15
 _NOTHING = np.zeros((0, 2))
 
 
@@ -64,6 +66,7 @@ class Surroundings:
 
     def __init__(self) -> None:
         self._met = _NOTHING
+        self._fresh = 0
 
     def see(self, scan: Scan, odometry: Pose) -> None:
         """Take in a scan that was made here."""
@@ -73,7 +76,17 @@ class Surroundings:
             # One of each cell; none is moved, which time after time would lead it astray.
             kept = kept[np.unique(np.round(kept / _GRID_M), axis=0, return_index=True)[1]]
         fresh = scan.points() @ _turned(odometry.heading_rad).T + (odometry.x_m, odometry.y_m)
-        self._met = np.vstack((fresh, kept))
+        self._met, self._fresh = np.vstack((fresh, kept)), len(fresh)
+
+    def forget(self, odometry: Pose, robots: Iterable[Tuple[float, float, float]]) -> None:
+        """Forget what is remembered where robots are known to be: they move, and leave nothing.
+
+        :param robots: (ahead, to the left, radius) [m] of each, seen from here
+        """
+        for x_m, y_m, radius_m in robots:
+            near = np.hypot(*(self.around(odometry) - (x_m, y_m)).T) < radius_m + _BESIDE_M
+            near[:self._fresh] = False
+            self._met = self._met[~near]
 
     def around(self, odometry: Pose) -> np.ndarray:
         """Return what is around the robot, were it here: an array (n, 2) in its frame [m]."""

@@ -49,11 +49,18 @@ KINDS: Dict[str, Tuple[str, str]] = {
     'source.trouble': (ATTENTION, ATTENTION_TONE), 'source.fine': (CALM, ''),
     'control.taken': (CALM, ''), 'control.lost': (ATTENTION, ATTENTION_TONE),
     'request.refused': (ATTENTION, ATTENTION_TONE),
+    'task.begun': (CALM, ''), 'task.said': (CALM, ''), 'task.done': (CALM, CALM_TONE),
+    'task.stopped': (CALM, ''), 'task.taken_over': (CALM, ''),
+    'task.timeout': (ATTENTION, ATTENTION_TONE), 'task.blocked': (ATTENTION, ATTENTION_TONE),
+    'task.lost': (ATTENTION, ATTENTION_TONE), 'task.failed': (ATTENTION, ATTENTION_TONE),
+    'task.refused': (ATTENTION, ATTENTION_TONE),
+    'tasks.silent': (ATTENTION, ATTENTION_TONE), 'tasks.back': (CALM, ''),
+    'tasks.stranger': (ATTENTION, ''),
     'mux.silent': (ATTENTION, ATTENTION_TONE), 'mux.back': (CALM, CALM_TONE),
     'gates.silent': (ATTENTION, ATTENTION_TONE), 'gates.back': (CALM, CALM_TONE),
     'master.lost': (ATTENTION, ATTENTION_TONE), 'master.back': (CALM, CALM_TONE),
     'screen.cut_off': (ALARM, ATTENTION_TONE), 'screen.note': (CALM, ''),
-    'screen.trouble': (ATTENTION, ''),
+    'screen.trouble': (ATTENTION, ''), 'camera.budget': (ATTENTION, ''),
 }
 
 

@@ -163,7 +163,7 @@ def split_path(text: str, env: Mapping[str, str],
     """
     text = text.strip()
     if '\0' in text:
-        raise PathRefused('it contains a character that no name may have')
+        raise PathRefused('it contains a character that no name can have')
     home = ros_home(env)
     if not text:
         return home, ''

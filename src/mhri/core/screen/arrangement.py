@@ -27,6 +27,8 @@ WORTH_MOVING = 1.06
 # Shape (width / height) of a picture that has not arrived yet.
 USUAL_SHAPE = 4.0 / 3.0
 _GROUP_AT_MOST = 4
+# In the place of a number of columns: one of three beside the two others, so that no cell is empty.
+_BESIDE = 0
 
 AUTO, ONE, ALIKE = 'auto', 'one', 'alike'
 
@@ -76,13 +78,31 @@ def choose_large(robots: Sequence[str], driven: Sequence[str], looked_at: str,
     return ()
 
 
-def _grid(box: Box, shapes: Sequence[float], columns: int, gap: int) -> Tuple[Box, ...]:
-    """Return a box for each shape, row by row, in this many columns."""
+def _beside(box: Box, shapes: Sequence[float], gap: int) -> Tuple[Box, ...]:
+    """Return boxes for three shapes: one at the left, two above each other."""
+    height = (box.height - gap) // 2
+    right = min(ceil(height * max(shapes[1:])), (box.width - gap) // 2)
+    left = box.width - gap - right
+    x = box.x + left + gap
+    return (Box(box.x, box.y, left, box.height), Box(x, box.y, right, height),
+            Box(x, box.y + height + gap, right, height))
+
+
+def _grid(box: Box, shapes: Sequence[float], columns: int, gap: int,
+          centred: bool = False) -> Tuple[Box, ...]:
+    """Return a box for each shape, row by row, in this many columns, or :data:`_BESIDE`.
+
+    :param centred: whether a last row that is not full is in the middle
+    """
+    if columns == _BESIDE:
+        return _beside(box, shapes, gap)
     rows = ceil(len(shapes) / columns)
     width = (box.width - gap * (columns - 1)) // columns
     height = (box.height - gap * (rows - 1)) // rows
-    return tuple(Box(box.x + index % columns * (width + gap), box.y + index // columns *
-                     (height + gap), width, height) for index in range(len(shapes)))
+    spare = (columns * rows - len(shapes)) * (width + gap) // 2 if centred else 0
+    return tuple(Box(box.x + index % columns * (width + gap) + (
+        spare if index // columns == rows - 1 else 0), box.y + index // columns * (height + gap),
+        width, height) for index in range(len(shapes)))
 
 
 def _cell(box: Box, kinds: Kinds, columns: int, gap: int) -> Tuple[int, int, float]:
@@ -102,10 +122,16 @@ def _worth(large_px: float, larges: int, small_px: float, smalls: int) -> float:
     return large + _SMALL_COUNTS * min(sqrt(small_px / smalls), _SMALL_ENOUGH * large)
 
 
-def _best_columns(box: Box, kinds: Kinds, gap: int) -> Tuple[float, int]:
+def _best_columns(box: Box, shapes: Sequence[float], gap: int) -> Tuple[float, int]:
     """Return the area of the pictures in the grid that shows most of them, and its columns."""
+    kinds = Counter(shapes)
     area, fewer = max((_cell(box, kinds, columns, gap)[2], -columns)
-                      for columns in range(1, sum(kinds.values()) + 1))
+                      for columns in range(1, len(shapes) + 1))
+    if len(shapes) == 3 and min(box.width, box.height) > 2 * gap:
+        other = sum(one.picture(shape) for one, shape in zip(_beside(box, shapes, gap), shapes))
+        # Alike, they are compared at a glance: it has to be worth it.
+        if other > WORTH_MOVING * area:
+            return other, _BESIDE
     return area, -fewer
 
 
@@ -164,15 +190,15 @@ def _arrange(whole: Box, large: Tuple[float, ...], small: Tuple[float, ...],
         return Arrangement()
     if not large or not small:
         shapes = large or small
-        area, columns = _best_columns(whole, Counter(shapes), gap)
-        boxes = _grid(whole, shapes, columns, gap)
+        area, columns = _best_columns(whole, shapes, gap)
+        boxes = _grid(whole, shapes, columns, gap, True)
         return Arrangement(boxes, (), area) if large else Arrangement((), boxes, area)
     best, best_score = None, (-1, -1.0, 0.0)
-    larges, smalls = Counter(large), Counter(small)
+    smalls = Counter(small)
     for room, strip in _splits(whole.width, whole.height, gap):
         if min(room.width, room.height, strip.width, strip.height) < 1:
             continue
-        large_px, large_columns = _best_columns(room, larges, gap)
+        large_px, large_columns = _best_columns(room, large, gap)
         for columns in range(1, len(small) + 1):
             width, height, small_px = _cell(strip, smalls, columns, gap)
             if min(width, height) < 1:
@@ -186,6 +212,6 @@ def _arrange(whole: Box, large: Tuple[float, ...], small: Tuple[float, ...],
     if best is None:
         return Arrangement()
     room, large_columns, strip, columns, picture_px = best
-    return Arrangement(_grid(room, large, large_columns, gap),
+    return Arrangement(_grid(room, large, large_columns, gap, True),
                        _snug(_grid(strip, small, columns, gap), small, gap, strip, least[0]),
                        picture_px)

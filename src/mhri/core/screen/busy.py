@@ -11,7 +11,8 @@ def remove_question(robot: RobotView) -> str:
 
     :param robot: :class:`mhri.core.screen.views.RobotView`
     """
-    uses = ['driven' if robot.driven else 'selected'] if robot.driven or robot.selected else []
+    uses = ['on a task'] if robot.on_task else ['driven'] if robot.driven else \
+        ['selected'] if robot.selected else []
     uses += ['being recorded'] if robot.recording else []
     return '{} is {}: remove it?'.format(robot.name, ' and '.join(uses)) if uses else ''
 
@@ -19,7 +20,8 @@ def remove_question(robot: RobotView) -> str:
 def close_question(robots: Iterable[RobotView]) -> str:
     """Return what to ask before the screen is closed; '' while nothing drives or records."""
     robots = tuple(robots)
-    parts = _part([robot.name for robot in robots if robot.driven], 'driven')
+    parts = _part([robot.name for robot in robots if robot.driven and not robot.on_task], 'driven')
+    parts += _part([robot.name for robot in robots if robot.on_task], 'on a task')
     parts += _part([robot.name for robot in robots if robot.recording], 'being recorded')
     return '{}: close anyway?'.format(', '.join(parts)) if parts else ''
 

@@ -23,7 +23,7 @@ class PanelSettings:
     """
 
     thumbnail_hz: float = 5.0
-    thumbnail_width_px: int = 320
+    thumbnail_width_px: int = 640
     record_warn_free_mb: float = 1000.0
     record_stop_free_mb: float = 256.0
     slow_with_link: bool = False

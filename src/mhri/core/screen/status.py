@@ -73,7 +73,10 @@ def _no_robots(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
     if not view.robots:
         return 'no robots yet: look for connected bots, or add one by its name', CALM
     if not any(robot.selected for robot in view.robots):
-        return 'no robot selected: check the ones to drive', CALM
+        busy = [robot.name for robot in view.robots if robot.on_task]
+        words = '{} on a task; '.format(', '.join(busy) if len(busy) <= 3 else '{} robots'.format(
+            len(busy))) if busy else ''
+        return words + 'no robot selected: check the ones to drive', CALM
     return None
 
 

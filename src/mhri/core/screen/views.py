@@ -10,6 +10,7 @@ from typing import Optional, Tuple
 
 from mhri.core.robots.mocap import Drift, Pose
 from mhri.core.screen.brake_view import BrakeView
+from mhri.core.screen.task_views import TaskView
 
 # Link states of a robot.
 WAITING = 'waiting'   # added, nothing heard yet
@@ -79,7 +80,8 @@ class RobotView:
 
     What the screen makes of it: ``asked`` is the operator's command [m/s, rad/s] where the robot
     has done something else for a moment, else None; ``why`` says in a sentence why it stands though
-    the stick is held, '' for nothing.
+    the stick is held, '' for nothing. ``task`` is what it does by itself, None for nothing,
+    ``carry_on`` the name of the task that it could continue, '' for none.
     """
 
     name: str
@@ -118,6 +120,13 @@ class RobotView:
     reached: bool = True
     asked: Optional[Tuple[float, float]] = None
     why: str = ''
+    task: Optional[TaskView] = None
+    carry_on: str = ''
+
+    @property
+    def on_task(self) -> bool:
+        """Whether it drives by itself, or is about to."""
+        return not self.selected and (self.obeys == 'task' or self.task is not None)
 
 
 @dataclass(frozen=True)
@@ -152,13 +161,14 @@ class DeviceView:
 
     ``name`` is the name of the connected device, '' if there is none; ``note`` says why there is
     none and what to do, or what the device waits for; both are '' if the node cannot tell.
-    ``kind`` is e.g. 'pad'.
+    ``kind`` is e.g. 'pad'; ``there`` are the names of all that could be chosen.
     """
 
     source: str
     name: str = ''
     note: str = ''
     kind: str = ''
+    there: Tuple[str, ...] = ()
 
     @property
     def absent(self) -> bool:
@@ -190,7 +200,8 @@ class PanelView:
     the gates are not heard, ``stop_taken`` true once they have said that the stop is in force.
     ``advice`` says what keeps the source that drives from doing so, and the remedy; '' for nothing.
     ``dead_man`` is false while the dead-man buttons of pads need not be held. ``asked`` is what the
-    mux commands now [m/s, rad/s], ``waits_for`` its word on what it waits for.
+    mux commands now [m/s, rad/s], ``waits_for`` its word on what it waits for, ``pushed`` whether
+    the stick of the source that drives is held.
     """
 
     ros: str = ROS_STARTING
@@ -216,3 +227,4 @@ class PanelView:
     stop_taken: bool = True
     asked: Tuple[float, float] = (0.0, 0.0)
     waits_for: str = ''
+    pushed: bool = False

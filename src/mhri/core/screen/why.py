@@ -29,14 +29,13 @@ _Stick = Tuple[float, float]
 def why_still(view: PanelView, robot: RobotView, stick: _Stick) -> str:
     """Return the sentence; '' while the robot moves, or while nobody asks it to.
 
-    A pad or pedal asks while the mux commands anything, or waits for somebody's hand or foot.
+    A pad or pedal asks while it is pushed, or the mux commands anything.
 
     :param view: :class:`mhri.core.screen.views.PanelView`
     :param robot: :class:`mhri.core.screen.views.RobotView`, one of its robots
     :param stick: how pointer or keys hold the stick of this screen
     """
-    asks = any(stick) or any(view.asked) or (
-        robot.selected and view.mode != VIRTUAL_JOYSTICK and view.waits_for in _WAITS)
+    asks = any(stick) or any(view.asked) or view.pushed and view.mode != VIRTUAL_JOYSTICK
     if not asks or robot.moving:
         return ''
     for rule in _RULES:
@@ -70,8 +69,10 @@ def _nobody_decides(view: PanelView, _: RobotView, __: _Stick) -> str:
 def _not_selected(_: PanelView, robot: RobotView, __: _Stick) -> str:
     if robot.selected:
         return ''
-    what = 'on a task: {} to take it over' if robot.obeys == 'task' else \
-        'not selected: {} to drive it'
+    what = 'not selected: {} to drive it'
+    if robot.on_task:
+        name = robot.task.label.lower() if robot.task else ''
+        what = ' '.join(filter(None, ('on a task:', name and name + ';', '{} to take it over')))
     return what.format('press {}'.format(robot.number) if 0 < robot.number <= LAST_KEY
                        else 'check it in the list')
 

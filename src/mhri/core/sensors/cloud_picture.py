@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A cloud drawn into a picture by numpy: no GPU, and nothing but pixels over a remote screen.
+"""Draws a cloud into a picture with numpy: no GPU, and only pixels go to a remote screen.
 
-The points are sorted by their distance from the eye and their ranks put into a buffer; what is
-near is drawn as squares, by the least rank of a neighbourhood, so that nothing far ever covers
-anything near. The ground is dark on every desktop, as a camera's picture has its own colours.
+It sorts the points by their distance from the eye and puts their ranks into a buffer; near points
+become squares, by the least rank of a neighbourhood, so that nothing far ever covers anything near.
+The ground is dark on every desktop, as a camera's picture has its own colours, too.
 """
 import math
 from typing import NamedTuple, Optional, Sequence, Tuple
@@ -19,23 +19,23 @@ from mhri.core.sensors.point_cloud import Cloud
 
 HEIGHT, DISTANCE, INTENSITY, COLOUR = 'height', 'distance', 'intensity', 'colour'
 
-#: the picture where there is nothing, the lines of the floor, the robot (0xffrrggbb)
+#: the empty picture, the lines on the floor, the robot (0xffrrggbb)
 GROUND, LINES, ROBOT = 0xff15191d, 0xff39424b, 0xffffffff
 _AHEAD, _LEFT, _UP = 0xffe69f00, 0xff009e73, 0xff56b4e9
 # x ahead, y left, z up of an optical frame's x right, y down, z ahead (REP-103).
 _FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 _SAMPLES = 20_000
-# No sensor's intensity is more, and the differences of such can still be had.
+# No sensor's intensity is larger, and differences between such values do not overflow.
 _MOST = np.float32(1e30)
-# The width of a point [m], and the sides it may have on the screen [px].
+# The width of a point [m], and the sides it can have on the screen [px].
 _POINT_M = 0.02
 _SIDES_PX = (2, 3, 5)
 _SPARSE = 60_000
-# What is nearer to the eye than this part of the distance of its target is not drawn.
+# Points nearer to the eye than this part of the distance to its target are not drawn.
 _NEAR = 0.05
 _GRID_M = (0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 _GRID_LINES = 10
-#: how far above the floor a cloud is cut that is looked down on from above that [m]
+#: how far above the floor a cloud is cut when the eye is above that [m]
 CEILING_M = 1.9
 _DOWN_RAD = math.radians(10.0)
 _ROBOT_RADIUS_M = 0.18
@@ -46,9 +46,10 @@ _FOLLOWERS = {HEIGHT: (0.5, -math.inf), DISTANCE: (0.5, 0.0), INTENSITY: (1e-3, 
 class Picture(NamedTuple):
     """A drawn cloud: ``pixels`` uint32 (h, w), each 0xffrrggbb, and what they mean.
 
-    ``scale`` is the range of the colours, in metres or the unit of the intensity, None if they
-    are those of the points; ``grid_m`` the distance of the lines on the floor, ``colouring`` what
-    the colours mean. ``cut``: what is more than :data:`CEILING_M` above the floor is left out.
+    ``scale`` is the range of the colours, in metres or the unit of the intensity, None if the
+    points have colours of their own; ``grid_m`` the spacing of the lines on the floor,
+    ``colouring`` what the colours mean. ``cut``: whatever is more than :data:`CEILING_M` above the
+    floor is left out.
     """
 
     pixels: np.ndarray
@@ -61,7 +62,7 @@ class Picture(NamedTuple):
 def _table() -> np.ndarray:
     """Return 256 colours as 0xffrrggbb: viridis without its darkest, which the ground would hide.
 
-    Its lightness grows evenly, it can be read with any of the usual colour deficiencies.
+    Its lightness grows evenly, so people with any of the usual colour deficiencies can read it.
     """
     ramp = np.linspace(50, 255, 256).round().astype(np.uint8).reshape(256, 1)
     blue, green, red = cv2.applyColorMap(ramp, cv2.COLORMAP_VIRIDIS)[:, 0].T.astype(np.uint32)
@@ -72,12 +73,12 @@ TABLE = _table()
 
 
 def upright_axes(cloud: Cloud) -> np.ndarray:
-    """Return what turns points of a cloud into x ahead, y left, z up: rows, float64 (3, 3)."""
+    """Return the rotation of a cloud's points into x ahead, y left, z up: rows, float64 (3, 3)."""
     return _FROM_OPTICAL if cloud.optical else np.eye(3)
 
 
 def colourings(cloud: Cloud) -> Tuple[str, ...]:
-    """Return by what a cloud can be coloured."""
+    """Return the ways in which a cloud can be coloured."""
     extras = ((INTENSITY, cloud.intensity), (COLOUR, cloud.colours))
     return (HEIGHT, DISTANCE) + tuple(key for key, values in extras if values is not None)
 
@@ -95,7 +96,7 @@ class CloudArtist:
         """Return the :class:`Picture` of a cloud.
 
         :param size: (width, height) of the picture [px], > 0
-        :param colouring: of :func:`colourings`; what the cloud does not have is taken for height
+        :param colouring: of :func:`colourings`; one that the cloud lacks counts as height
         """
         if colouring not in colourings(cloud):
             colouring = HEIGHT
@@ -104,7 +105,7 @@ class CloudArtist:
         colours, scale = self._colours(cloud, colouring, heights, floor)
         floor_m = floor[0] if floor else 0.0
         top_m = floor_m + CEILING_M
-        # Seen from above, a ceiling would hide the room, and no robot meets it.
+        # From above, a ceiling would hide the room, and no robot reaches it.
         hides = orbit.pitch_rad > _DOWN_RAD and orbit.eye_m()[2] > top_m
         low = heights < top_m if hides else np.ones(len(heights), bool)
         grid_m = next((step for step in _GRID_M if step >= 0.15 * orbit.distance_m), _GRID_M[-1])
@@ -145,7 +146,7 @@ class CloudArtist:
 def _along(axis: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Return how far points are along an axis, float32 (n,).
 
-    A product of matrices would be given to threads that cost more than they spare.
+    A matrix product would run on threads that cost more than they save.
     """
     a, b, c = axis.astype(np.float32)
     x, y, z = points.T
@@ -157,7 +158,7 @@ def _along(axis: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 def _splat(pixels: np.ndarray, cloud: Cloud, colours: np.ndarray, orbit: Orbit,
            wanted: np.ndarray) -> None:
-    """Draw those points of a cloud that are wanted (bool (n,)) into a picture."""
+    """Draw the wanted points (bool (n,)) of a cloud into a picture."""
     height, width = pixels.shape
     focal = focal_px(height)
     lens = np.array([[focal, 0.0, 0.5 * width], [0.0, focal, 0.5 * height], [0.0, 0.0, 1.0]])
@@ -173,11 +174,11 @@ def _splat(pixels: np.ndarray, cloud: Cloud, colours: np.ndarray, orbit: Orbit,
         seen = np.flatnonzero(wanted & (ahead > near) & (x >= 0) & (x < width)
                               & (y >= 0) & (y < height))
     closeness = closeness[seen]
-    # 16 bits are enough to tell what is in front, and are sorted in a tenth of the time.
+    # 16 bits are enough to tell what is in front, and sort in a tenth of the time.
     far_first = np.argsort((closeness * (near * 65535)).astype(np.uint16), kind='stable')
     seen, closeness = seen[far_first], closeness[far_first]
     place = y[seen].astype(np.int32) * width + x[seen].astype(np.int32)
-    # Ranks are exact in float32, of which OpenCV finds the greatest of a neighbourhood quickly.
+    # float32 holds ranks exactly, and OpenCV quickly finds the greatest float32 of a neighbourhood.
     ranks = np.zeros(pixels.shape, np.float32)
     ranks.reshape(-1)[place] = np.arange(1, len(seen) + 1, dtype=np.float32)
     ranks = _grown(ranks, closeness, focal, len(cloud.points))
@@ -188,10 +189,10 @@ def _splat(pixels: np.ndarray, cloud: Cloud, colours: np.ndarray, orbit: Orbit,
 
 
 def _grown(ranks: np.ndarray, closeness: np.ndarray, focal: float, count: int) -> np.ndarray:
-    """Return a buffer of ranks with what is near as squares.
+    """Return a buffer of ranks in which near points are squares.
 
-    :param closeness: of each rank, growing: 1 by the way ahead [1/m]
-    :param count: how many points the cloud has: few are all drawn larger
+    :param closeness: of each rank, growing: 1 / distance ahead [1/m]
+    :param count: number of points of the cloud: the points of a sparse one are all drawn larger
     """
     grown = ranks
     for side in _SIDES_PX:
@@ -205,12 +206,12 @@ def _grown(ranks: np.ndarray, closeness: np.ndarray, focal: float, count: int) -
 
 
 def _bytes(pixels: np.ndarray) -> np.ndarray:
-    """Return pixels as OpenCV takes them, (h, w, 4): blue, green, red and alpha, as in memory."""
+    """Return pixels as OpenCV takes them, (h, w, 4): blue, green, red, alpha, as in memory."""
     return pixels.view(np.uint8).reshape(pixels.shape + (4,))
 
 
 class _Pen:
-    """Draws lines that are in metres into a picture."""
+    """Draws lines given in metres into a picture."""
 
     def __init__(self, pixels: np.ndarray, orbit: Orbit) -> None:
         self._image = _bytes(pixels)
@@ -219,7 +220,7 @@ class _Pen:
         self._near_m = _NEAR * orbit.distance_m
 
     def grid(self, floor_m: float, step_m: float) -> None:
-        """Draw the lines of the floor around what is looked at."""
+        """Draw the lines on the floor around the eye's target."""
         x, y = (step_m * round(value / step_m) for value in self._orbit.target_m[:2])
         reach = _GRID_LINES * step_m
         lines = []
@@ -240,7 +241,7 @@ class _Pen:
             self._lines([(here, end)], ink, 2)
 
     def _lines(self, lines: Sequence[_Line], ink: int, thickness: int = 1) -> None:
-        """Draw lines as far as they are ahead."""
+        """Draw the parts of lines that are ahead."""
         ends = np.array(lines)
         depths = (ends - self._orbit.eye_m()) @ self._orbit.axes()[2] - self._near_m
         seen = depths.max(axis=1) > 0.0
@@ -253,7 +254,7 @@ class _Pen:
             share = depths[line, begin] / (depths[line, begin] - depths[line, end])
             ends[line, begin] += share * (ends[line, end] - ends[line, begin])
         places = projected(ends.reshape(-1, 3), self._orbit, self._size)[:, :2]
-        # OpenCV counts in whole numbers of 32 bits, and a pixel from its middle.
+        # OpenCV takes whole numbers of 32 bits, and counts a pixel from its middle.
         corners = np.clip(places - 0.5, -20_000, 20_000).round().astype(np.int32)
         colour = [ink & 255, ink >> 8 & 255, ink >> 16 & 255, 255]
         cv2.polylines(self._image, list(corners.reshape(-1, 2, 2)), False, colour, thickness,

@@ -9,7 +9,7 @@ import numpy as np
 
 from mhri.core.sensors.plausible import BOUNDS, RANGE
 
-# What an older scan says is not said [s].
+# An older scan is not put into words [s].
 OLD_S = 1.0
 # From ahead to the left, an eighth of a turn each.
 DIRECTIONS = ('ahead', 'ahead left', 'left', 'behind left', 'behind', 'behind right', 'right',
@@ -24,16 +24,16 @@ class Nearest:
     direction: str
 
     def words(self) -> str:
-        """Return it as a person says it."""
+        """Return it as a person would say it."""
         return '{:.2f} m to the nearest thing, {}'.format(self.distance_m, self.direction)
 
 
 def nearest(ranges: Sequence[float], angle_min: float,
             angle_increment: float) -> Optional[Nearest]:
-    """Return the :class:`Nearest` of a scan, None where it sees nothing.
+    """Return the :class:`Nearest` of a scan, None if it sees nothing.
 
-    :param ranges: distances [m]; NaN, infinity and what cannot be are left out
-    :param angle_min: angle of the first one [rad], 0 ahead, left positive; any turn of it
+    :param ranges: distances [m]; NaN, infinity and impossible values are left out
+    :param angle_min: angle of the first one [rad], 0 ahead, left positive; may be off by full turns
     :param angle_increment: from one to the next [rad], negative for a scanner upside down
     """
     distances = np.asarray(ranges, dtype=float)

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a sensor can say at all: one table of bounds, far beyond any real robot.
+"""What a sensor can possibly report: one table of bounds, far beyond any real robot.
 
 A value beyond its bound comes from a fault (bytes of another type, a driver that divides by zero)
-or from somebody who means harm. It is no measurement: it counts as NaN, as if it had not come. NaN
-itself is no fault, since drivers write it for what they do not measure.
+or from somebody who means harm. It is no measurement: it counts as NaN, as if it had not arrived.
+NaN itself is no fault: drivers write it for what they do not measure.
 """
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
@@ -12,7 +12,7 @@ import numpy as np
 
 
 class Bound(NamedTuple):
-    """The least and the greatest value that can be, and the unit they are in."""
+    """The least and the greatest possible value, and their unit."""
 
     least: float
     greatest: float
@@ -49,13 +49,13 @@ MOST_BEAMS = 100_000
 
 
 def can_be(kind: str, value: float) -> bool:
-    """Tell whether a number is one that a sensor can say; NaN is not."""
+    """Tell whether a sensor can report a number; NaN it cannot."""
     bound = BOUNDS[kind]
     return bound.least <= value <= bound.greatest
 
 
 def sifted(kinds: Sequence[str], values: Sequence[float]) -> Tuple[List[float], Optional[str]]:
-    """Return (values with NaN for each that cannot be, the first of those in words or None).
+    """Return (values with NaN for each impossible one, the first of those in words or None).
 
     :param kinds: key of :data:`BOUNDS` for each value
     """
@@ -70,7 +70,7 @@ def sifted(kinds: Sequence[str], values: Sequence[float]) -> Tuple[List[float], 
 
 
 def beams_problem(count: int, angle_min: float, angle_increment: float) -> Optional[str]:
-    """Return in words why a scan cannot be, None if it can.
+    """Return in words why a scan is impossible, None if it is possible.
 
     :param count: number of its ranges
     :param angle_min: of the first of them [rad]
@@ -87,7 +87,8 @@ def beams_problem(count: int, angle_min: float, angle_increment: float) -> Optio
 def measured_ranges(ranges: Sequence[float], least: float, greatest: float) -> np.ndarray:
     """Return ranges [m] as an array with NaN if there is no measurement.
 
-    :param least: what the sensor says it can measure at least [m]; NaN and absurd ones do not count
+    :param least: the least that the sensor says it can measure [m]; NaN and absurd values do not
+        count
     :param greatest: the same for the greatest
     """
     bound = BOUNDS[RANGE]
@@ -102,7 +103,7 @@ def measured_ranges(ranges: Sequence[float], least: float, greatest: float) -> n
 def thinned(ranges: np.ndarray, most: int) -> Tuple[np.ndarray, int]:
     """Return (at most ``most`` ranges, how many beams each stands for).
 
-    Of beams that are taken together the nearest counts: what could be hit is never left out.
+    Of beams taken together the nearest counts: nothing that the robot could hit is left out.
 
     :param ranges: array [m], NaN for no measurement
     """

@@ -3,9 +3,9 @@
 """A ``sensor_msgs/PointCloud2``, or a depth picture with its lens, turned into points.
 
 What the fields mean: http://docs.ros.org/en/noetic/api/sensor_msgs/html/msg/PointCloud2.html and
-PointField; ``rgb`` is four bytes, 0x00rrggbb as a number in the message's order, whatever type they
-claim to have (pcl/point_types.h). A message says of itself how it is to be read, so that all of it
-is checked before a byte is.
+PointField; ``rgb`` is four bytes, 0x00rrggbb as a number in the message's byte order, whatever type
+they claim to have (pcl/point_types.h). A message itself says how to read it, so everything it says
+is checked before a byte is read.
 """
 from dataclasses import dataclass
 import math
@@ -18,7 +18,7 @@ from mhri.core.camera.images import Data
 from mhri.core.sensors.plausible import BOUNDS, RANGE
 
 CLOUD_TYPE = 'sensor_msgs/PointCloud2'
-#: What has more points is thinned out evenly: nobody can tell them apart on a screen.
+#: A larger cloud is thinned out evenly: nobody can tell more points apart on a screen.
 MOST_POINTS = 500_000
 _MOST_FIELDS = 100
 _TYPES = {1: 'i1', 2: 'u1', 3: 'i2', 4: 'u2', 5: 'i4', 6: 'u4', 7: 'f4', 8: 'f8'}
@@ -26,7 +26,7 @@ _AXES = ('x', 'y', 'z')
 _PACKED = ('rgb', 'rgba')
 _PARTS = ('r', 'g', 'b')
 _INTENSITIES = ('intensity', 'intensities', 'i')
-# How a frame is called in which z is ahead and y is down (REP-103).
+# The name of a frame in which z is ahead and y is down ends so (REP-103).
 _OPTICAL = '_optical_frame'
 _OPAQUE = np.uint32(0xff000000)
 
@@ -36,7 +36,7 @@ class CloudError(ValueError):
 
 
 class Field(NamedTuple):
-    """A ``sensor_msgs/PointField``: where in the bytes of a point a value is, and of what type."""
+    """A ``sensor_msgs/PointField``: where in the bytes of a point a value lies, and its type."""
 
     name: str
     offset: int
@@ -58,7 +58,7 @@ class RawCloud(NamedTuple):
 
 
 class Lens(NamedTuple):
-    """What a ``sensor_msgs/CameraInfo`` says of a pinhole: focal lengths, centre and size [px]."""
+    """The pinhole of a ``sensor_msgs/CameraInfo``: focal lengths, centre and size [px]."""
 
     fx: float
     fy: float
@@ -70,14 +70,14 @@ class Lens(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Cloud:
-    """The points that were measured, of one message.
+    """The measured points of one message.
 
     ``points`` is float32 (n, 3), x, y and z [m] in the frame of the message, all finite.
     ``colours`` is uint32 (n,), each 0xffrrggbb; ``intensity`` float32 (n,) in the unit of the
-    sensor, NaN if it says none; None if the message has no such thing. ``optical``: z is
-    ahead, x to the right, y down; else x is ahead, y to the left, z up (REP-103). ``sent`` is the
-    number of points in the message, measured or not, ``kept_of`` how many of them one that is kept
-    stands for. ``received_s``: time of receipt [s, monotonic].
+    sensor, NaN where it gives none; None if the message has no such field. ``optical``: z is ahead,
+    x to the right, y down; else x is ahead, y to the left, z up (REP-103). ``sent`` is the number
+    of points in the message, measured or not, ``kept_of`` how many of them each kept one stands
+    for. ``received_s``: time of receipt [s, monotonic].
     """
 
     points: np.ndarray
@@ -93,7 +93,7 @@ class Cloud:
 def read_cloud(data: Data) -> RawCloud:
     """Return the :class:`RawCloud` of a serialised ``sensor_msgs/PointCloud2``.
 
-    :raises CloudError: it ends early, or has more fields than can be
+    :raises CloudError: it ends early, or claims an absurd number of fields
     """
     wire = Wire(CLOUD_TYPE, data, CloudError)
     wire.numbers('<III')
@@ -108,12 +108,12 @@ def read_cloud(data: Data) -> RawCloud:
 
 
 def parse_cloud(raw: RawCloud, received_s: float = 0.0) -> Cloud:
-    """Return the :class:`Cloud` of a message; without a point where the message has none.
+    """Return the :class:`Cloud` of a message; it is empty if the message is.
 
-    Points that are NaN, infinite, farther than any sensor sees, or the sensor itself (how some
-    drivers write "nothing") are left out.
+    Leave out points that are NaN, infinite, farther than any sensor sees, or at the sensor itself
+    (some drivers write "nothing" so).
 
-    :raises CloudError: it has no x, y and z that can be read, or too little data
+    :raises CloudError: it has no readable x, y and z, or too little data
     """
     optical = raw.frame_id.endswith(_OPTICAL)
     _check_sizes(raw)
@@ -141,14 +141,14 @@ def from_depth(depth_m: np.ndarray, lens: Lens, frame_id: str = '',
     """Return the :class:`Cloud` of a depth picture, without distortion.
 
     :param depth_m: float32 (h, w), along the optical axis [m], NaN invalid
-    :param lens: of the camera; of another size than the picture it is scaled to it
-    :raises CloudError: the lens cannot be
+    :param lens: of the camera; scaled to the picture if their sizes differ
+    :raises CloudError: the lens is impossible
     """
     height, width = depth_m.shape
     numbers = np.array(lens[:4], float)
     if not (np.isfinite(numbers).all() and min(lens.fx, lens.fy) > 0.0
             and np.abs(numbers).max() < 1e6):
-        raise CloudError('camera_info: no focal length and centre that can be; is the camera '
+        raise CloudError('camera_info: no possible focal length and centre; is the camera '
                          'calibrated?')
     across = width / lens.width if lens.width > 0 else 1.0
     along = height / lens.height if lens.height > 0 else 1.0
@@ -156,7 +156,7 @@ def from_depth(depth_m: np.ndarray, lens: Lens, frame_id: str = '',
     depth = depth_m[::step]
     rows, columns = np.arange(0, height, step), np.arange(width)
     points = np.empty((3,) + depth.shape, np.float32)
-    # The centre of a pixel has whole numbers.
+    # The centre of a pixel is at whole numbers.
     centre_x, centre_y = (lens.cx + 0.5) * across - 0.5, (lens.cy + 0.5) * along - 0.5
     np.multiply(depth, ((columns - centre_x) / (lens.fx * across)).astype(np.float32),
                 out=points[0])
@@ -169,7 +169,7 @@ def from_depth(depth_m: np.ndarray, lens: Lens, frame_id: str = '',
 
 
 def _check_sizes(raw: RawCloud) -> None:
-    """Refuse a message whose sizes do not fit one another, or its data."""
+    """Refuse a message whose sizes contradict each other or its data."""
     what = '{} of {:,} x {:,} points'.format(CLOUD_TYPE, raw.width, raw.height)
     if min(raw.width, raw.height, raw.point_step, raw.row_step) < 0:
         raise CloudError('{}: refused, a size below zero'.format(what))
@@ -185,13 +185,13 @@ def _check_sizes(raw: RawCloud) -> None:
 
 
 def _row_step(raw: RawCloud) -> int:
-    """Return the bytes from one row to the next; some drivers say nothing, or wrong for one row."""
+    """Return the bytes from row to row; for a single row some drivers give none, or wrong ones."""
     row = raw.width * raw.point_step
     return (raw.row_step or row) if raw.height > 1 else row
 
 
 class _View:
-    """The values of a message where they lie, of as many points as are kept."""
+    """The values of the points to keep, read in place."""
 
     def __init__(self, raw: RawCloud) -> None:
         self._raw = raw
@@ -231,8 +231,8 @@ class _View:
         return None
 
     def _check(self, field: Field, size: int) -> None:
-        """Refuse a field that is not one value within the bytes of a point."""
-        # Old drivers write no count for one value.
+        """Refuse a field that is more than one value, or outside the bytes of a point."""
+        # For a single value old drivers write no count.
         if field.values not in (0, 1):
             raise CloudError('{}: refused, field {!r} has {:,} values'.format(
                 CLOUD_TYPE, field.name, field.values))
@@ -255,9 +255,9 @@ class _View:
 
 
 def _thinned(height: int, width: int) -> Tuple[Tuple[slice, slice], int]:
-    """Return (what leaves about :data:`MOST_POINTS` of rows and columns, one of how many).
+    """Return (slices that leave about :data:`MOST_POINTS`, how many points each stands for).
 
-    Rows and columns alike, as far as there are any, so that an organised cloud stays even.
+    Thin rows and columns alike, as far as there are any, so that an organised cloud stays even.
     """
     times = -(-width * height // MOST_POINTS)
     across = min(width, max(math.isqrt(max(0, times - 1)) + 1, -(-times // height)))
@@ -266,13 +266,13 @@ def _thinned(height: int, width: int) -> Tuple[Tuple[slice, slice], int]:
 
 
 def _measured(points: np.ndarray) -> Optional[np.ndarray]:
-    """Return the places of the points that are measurements; None: all are.
+    """Return the indices of the points that are measurements; None: all are.
 
     :param points: float32 (3, n)
     """
     with np.errstate(invalid='ignore'):
         reach = np.abs(points).max(axis=0, initial=0.0)
-        # False for NaN as well, and for a point that is the sensor itself.
+        # Also false for NaN, and for a point at the sensor itself.
         good = (reach > 0.0) & (reach < BOUNDS[RANGE].greatest)
     return None if good.all() else np.flatnonzero(good)
 

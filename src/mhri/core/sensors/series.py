@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a graph shows of the last minute: rings of a fixed size that keep every peak.
+"""The last minute for a graph: rings of a fixed size that keep every peak.
 
 Samples of any rate go into bins of 1/30 s, of which each keeps the least and the greatest value and
 the times of its first and last sample. A curve is made of at most 300 points out of these, whatever
-the rate of the samples was: a spike of one sample is seen at a window of a minute, too.
+the rate of the samples was: even in a window of a minute a spike of one sample shows.
 """
 from dataclasses import dataclass
 import math
@@ -16,10 +16,10 @@ import numpy as np
 BIN_S = 1.0 / 30.0
 LONGEST_S = 60.0
 POINTS = 300
-# What is beyond this is no value, whoever hands it over: sums of larger ones overflow, and the
-# dashes of a line that long would never all be painted.
+# Anything beyond this counts as no value, whoever hands it over: sums of larger ones overflow, and
+# painting the dashes of a line that long would never end.
 BIGGEST = 1e9
-# A line is not drawn across a silence longer than this.
+# No line is drawn across a longer silence.
 GAP_S = 0.5
 # Numbers in rows, as an array or not.
 _Rows = Union[np.ndarray, Sequence[float], Sequence[Sequence[float]]]
@@ -35,14 +35,14 @@ IMU_KEYS = ORIENTATION + GYRO + ACCEL
 
 
 class BinRing:
-    """The last minute of some values that come together, in bins.
+    """The last minute of some values that arrive together, in bins.
 
     :param keys: names of the values; those of ORIENTATION are angles, which wrap around
     """
 
     def __init__(self, keys: Iterable[str]) -> None:
         self.keys = tuple(keys)
-        # One more than the longest window needs: both ends are cut through a bin.
+        # One more than the longest window needs: each of its ends cuts a bin in two.
         self._size = math.ceil(LONGEST_S / BIN_S) + 2
         shape = (self._size, len(self.keys))
         self._low, self._high = np.full(shape, np.nan), np.full(shape, np.nan)
@@ -55,8 +55,8 @@ class BinRing:
         """Take samples.
 
         :param times_s: array (n,), ascending, of one clock that never goes back; a sample older
-            than the newest bin counts as of that bin
-        :param rows: array (n, keys); NaN and what is beyond :data:`BIGGEST` leaves no trace
+            than the newest bin goes into that bin
+        :param rows: array (n, keys); NaN and values beyond :data:`BIGGEST` leave no trace
         """
         times_s, rows = np.asarray(times_s, float), np.array(rows, float)
         if not len(times_s):
@@ -75,7 +75,7 @@ class BinRing:
             low[0] = np.fmin(low[0], self._low[slot])
             high[0] = np.fmax(high[0], self._high[slot])
             first[0] = self._first[slot]
-        # Of a batch longer than the ring the newest part is kept.
+        # Of a batch longer than the ring, keep the newest part.
         found = bins[starts][-self._size:]
         slots = found % self._size
         for kept, new in ((self._low, low), (self._high, high), (self._first, first),
@@ -85,7 +85,7 @@ class BinRing:
         self.latest = rows[-1]
 
     def copy(self) -> 'BinRing':
-        """Return a ring that keeps what there is now."""
+        """Return a ring with the present contents."""
         other = BinRing.__new__(BinRing)
         other.__dict__.update(self.__dict__)
         for name in ('_low', '_high', '_first', '_last', '_bins'):
@@ -118,7 +118,7 @@ class BinRing:
 
 def _points(first: np.ndarray, last: np.ndarray, low: np.ndarray,
             high: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """Return the line through least and greatest values, in the order in which the line climbs."""
+    """Return the line through least and greatest values, in the order that follows its slope."""
     middle = low + high
     climbs = np.concatenate(([True], np.diff(middle) >= 0.0))
     x = np.column_stack((first, last)).ravel()
@@ -130,7 +130,7 @@ def _points(first: np.ndarray, last: np.ndarray, low: np.ndarray,
 
 def _broken(x: np.ndarray, y: np.ndarray, wraps: bool,
             step_s: float) -> Tuple[np.ndarray, np.ndarray]:
-    """Put a NaN if nothing came for long, and where an angle goes around."""
+    """Put a NaN where nothing came for long, and where an angle wraps around."""
     breaks = np.diff(x) > max(GAP_S, 2.0 * step_s)
     if wraps:
         breaks |= np.abs(np.diff(y)) > math.pi
@@ -140,7 +140,7 @@ def _broken(x: np.ndarray, y: np.ndarray, wraps: bool,
 
 @dataclass(frozen=True)
 class Series:
-    """A robot's motion of the last minute as of one instant, never changed afterwards.
+    """A robot's motion in the last minute before one instant; immutable.
 
     :param now_s: the instant on the clock of the rings
     :param rings: {key: :class:`BinRing`} for every key of ODOMETRY_KEYS and IMU_KEYS
@@ -154,7 +154,7 @@ class Series:
         return self.rings[key].curve(key, self.now_s, window_s)
 
     def latest(self, key: str) -> Optional[float]:
-        """Return the newest value of a key, None before the first one; NaN if it had none."""
+        """Return the newest value of a key, None before the first sample; NaN if it held none."""
         ring = self.rings[key]
         return None if ring.latest is None else float(ring.latest[ring.keys.index(key)])
 
@@ -162,8 +162,8 @@ class Series:
 def roll_pitch_yaw(quaternions: np.ndarray) -> np.ndarray:
     """Return the angles [rad] of orientations as an array (n, 3); turns about z, y, x in turn.
 
-    :param quaternions: array (n, 4) of x, y, z, w; what is not of unit length is scaled, and one of
-        no length, or with an element beyond :data:`BIGGEST`, gives NaN
+    :param quaternions: array (n, 4) of x, y, z, w; other than unit length is scaled; zero length,
+        or an element beyond :data:`BIGGEST`, gives NaN
     """
     with np.errstate(invalid='ignore'):
         turns = np.where(np.abs(quaternions) <= BIGGEST, quaternions, np.nan)
@@ -182,10 +182,10 @@ def round_step(least: float) -> float:
 
 
 class AxisRange:
-    """The range of an axis that does not jitter: grows at once, shrinks late, ends on round ones.
+    """The range of an axis, without jitter: grows at once, shrinks late, ends on round numbers.
 
-    :param least: the least half of the range, in the unit of the values
-    :param shrink_after_s: how long less has to be enough before it shrinks [s]
+    :param least: least half-width of the range, in the unit of the values
+    :param shrink_after_s: how long a smaller range must be enough before it shrinks [s]
     """
 
     def __init__(self, least: float, shrink_after_s: float = 4.0) -> None:
@@ -210,7 +210,7 @@ class AxisRange:
         return self._range
 
     def _around(self, low: float, high: float) -> Tuple[float, float]:
-        """Return round limits with some room around values; a side without values stays small."""
+        """Return round limits with room around the values; a side without values stays small."""
         reach = max(-low, high, self._least)
         step = round_step(reach / 5.0)
         margin = 0.05 * reach
@@ -218,5 +218,5 @@ class AxisRange:
         ceiling = step * math.ceil((high + margin) / step) if high > 0.0 else 0.0
         if reach == self._least:
             return -self._least, self._least
-        # The side on which nothing is gets half a step, so that zero is not on the edge.
+        # The empty side gets half a step, so that zero is not on the edge.
         return min(floor, -step / 2.0), max(ceiling, step / 2.0)

@@ -7,7 +7,7 @@ keeps it from obstacles, ends it when it has to, and brings its robot to rest.
 """
 from dataclasses import dataclass, field
 import math
-from typing import Callable, Dict, Iterable, Mapping, Optional, Sequence, Tuple, Union
+from typing import Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -25,6 +25,8 @@ ENDS = (DONE, TIMEOUT, BLOCKED, LOST, TAKEN_OVER, STOPPED, FAILED)
 
 NOWHERE = np.zeros((0, 2))
 MOST_CORNERS = 1000
+# The parameter that every task has: see Values.team.
+TEAM = 'team'
 
 
 @dataclass(frozen=True)
@@ -52,10 +54,12 @@ class Other:
 class Senses:
     """What a robot senses at one instant.
 
-    ``pose`` is its place by motion capture where that sees it, else by its own odometry;
-    ``odometry`` is the latter in any case, ``captured`` the former or None. ``points`` is an array
-    (n, 2) of what its laser has met, in its own frame [m]: x ahead, y to the left. ``others`` are
-    robots in the frame of ``pose``, by their names.
+    ``pose`` is its place in the frame of the map where it is placed, else by its own odometry;
+    ``odometry`` is the latter in any case, ``captured`` the place by motion capture or None.
+    ``points`` is an array (n, 2) of what its laser has met, in its own frame [m]: x ahead, y to the
+    left. ``others`` are the other robots that are placed, by their names; none where it is not.
+    ``fence`` is an array (n, 2) of the corners of what no task leaves, in the frame of ``pose``
+    [m], empty where there is none.
     """
 
     now_s: float
@@ -64,6 +68,7 @@ class Senses:
     captured: Optional[Pose] = None
     points: np.ndarray = field(default_factory=lambda: NOWHERE)
     others: Mapping[str, Other] = field(default_factory=dict)
+    fence: np.ndarray = field(default_factory=lambda: NOWHERE)
 
 
 @dataclass(frozen=True)
@@ -83,12 +88,19 @@ class Step:
 
 @dataclass(frozen=True)
 class Start:
-    """Who is started: the robot, its place in the team, its body, and its trail (odometry)."""
+    """Who is started: the robot, its place in the team, its body, and its trail (odometry).
+
+    ``trail_ages_s`` is the age of each place of the trail [s], ``marks`` are named places in the
+    frame of the map, and ``drive`` is what a recording says of where it was (odometry).
+    """
 
     robot: str
     team: Tuple[str, ...]
     body: Body
     trail: Tuple[Pose, ...] = ()
+    trail_ages_s: Tuple[float, ...] = ()
+    marks: Mapping[str, Pose] = field(default_factory=dict)
+    drive: Tuple[Pose, ...] = ()
 
     @property
     def place(self) -> int:
@@ -120,6 +132,8 @@ class Field:
 
     :param default: None: may be left out; REQUIRED: has to be given
     :param kind: NUMBER in [least, greatest], TEXT, or ROUTE: a list of [x, y] [m]
+    :param choices: what a TEXT may be; empty: anything
+    :param needs_place: where this is given, the robot has to be placed
     """
 
     name: str
@@ -129,16 +143,24 @@ class Field:
     least: float = math.nan
     greatest: float = math.nan
     kind: str = NUMBER
+    choices: Tuple[str, ...] = ()
+    needs_place: bool = False
 
 
 REQUIRED = '\0required'
+ODOM = 'odom'
+# Of a task that needs no place where it is told so.
+FRAME = Field('frame', '', 'odom: by its own odometry, no place is needed; else in the frame of '
+              'the map', '', kind=TEXT, choices=('', ODOM))
 
 
 class Values:
     """The parameters of one task, read and checked."""
 
-    def __init__(self, values: Mapping[str, Value]) -> None:
+    def __init__(self, values: Mapping[str, Value], team: Tuple[str, ...] = ()) -> None:
         self._values = dict(values)
+        #: robots among which places are counted, where that is not who is started
+        self.team = team
 
     def number(self, name: str) -> float:
         """Return a number that is there."""
@@ -162,6 +184,14 @@ class Values:
         assert isinstance(value, tuple)
         return value
 
+    def is_given(self, row: Field) -> bool:
+        """Tell whether a parameter is something else than its default."""
+        return self._values.get(row.name, row.default) != row.default
+
+    def by_odometry(self) -> bool:
+        """Tell whether places are meant in the frame of the robot's own odometry."""
+        return self._values.get(FRAME.name) == ODOM
+
 
 @dataclass(frozen=True)
 class TaskKind:
@@ -169,7 +199,7 @@ class TaskKind:
 
     :param make: function (values, start) -> :class:`Task`; it raises ValueError with a sentence
         where the robot cannot be started
-    :param needs_others: it has to know where other robots are: poses have to share a frame
+    :param needs_place: robots have to be placed in the frame of the map; see :meth:`placed`
     """
 
     key: str
@@ -177,7 +207,12 @@ class TaskKind:
     text: str
     fields: Tuple[Field, ...]
     make: Callable[[Values, Start], Task]
-    needs_others: bool = False
+    needs_place: bool = False
+
+    def placed(self, values: Values) -> bool:
+        """Tell whether a robot has to be placed for it, with these parameters."""
+        return (self.needs_place and not values.by_odometry()) or any(
+            values.is_given(row) for row in self.fields if row.needs_place)
 
     def read(self, parameters: str) -> Values:
         """Return the parameters of a YAML text.
@@ -186,9 +221,18 @@ class TaskKind:
         """
         origin = 'task ' + self.key
         section = parse_yaml(parameters if parameters.strip() else '{}', origin)
-        values = Values({row.name: _value(section, row) for row in self.fields})
+        values = Values({row.name: _value(section, row) for row in self.fields}, _team(section))
         section.close()
         return values
+
+
+def _team(section: Section) -> Tuple[str, ...]:
+    """Return the robots among which places are counted: one that is sent on keeps its place."""
+    names = section.take(TEAM, [])
+    if not isinstance(names, list) or len(names) > MOST_CORNERS or len(set(
+            map(str, names))) < len(names) or not all(isinstance(name, str) for name in names):
+        raise section.error(TEAM, 'expected a list of robots, each once')
+    return tuple(names)
 
 
 def _value(section: Section, row: Field) -> Value:
@@ -199,8 +243,16 @@ def _value(section: Section, row: Field) -> Value:
         return section.number(row.name, row.least, row.greatest,
                               row.default if isinstance(row.default, float) else None)
     if row.kind == TEXT:
-        return section.text(row.name, row.default if isinstance(row.default, str) else '')
+        return _text(section, row)
     return _route(section, row.name)
+
+
+def _text(section: Section, row: Field) -> str:
+    text = section.text(row.name, row.default if isinstance(row.default, str) else '')
+    if row.choices and text not in row.choices:
+        raise section.error(row.name, 'expected {}'.format(
+            ' or '.join(choice or 'nothing' for choice in row.choices)))
+    return text
 
 
 def _route(section: Section, name: str) -> Corners:
@@ -231,13 +283,22 @@ def discs(pose: Pose, others: Iterable[Other], more_m: float) -> np.ndarray:
     """
     rows = [NOWHERE]
     turns = np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False) - pose.heading_rad
-    for other in others:
-        gap_x, gap_y = other.pose.x_m - pose.x_m, other.pose.y_m - pose.y_m
-        cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
-        middle = (cos * gap_x + sin * gap_y, cos * gap_y - sin * gap_x)
-        rows.append((other.radius_m + more_m) * np.column_stack((np.cos(turns), np.sin(turns)))
-                    + middle)
+    for x_m, y_m, radius_m in circles(pose, others):
+        rows.append((radius_m + more_m) * np.column_stack((np.cos(turns), np.sin(turns)))
+                    + (x_m, y_m))
     return np.vstack(rows)
+
+
+def within(pose: Pose, other: Pose) -> Tuple[float, float]:
+    """Return where another pose lies in the frame of a pose: (ahead, to the left) [m]."""
+    gap_x, gap_y = other.x_m - pose.x_m, other.y_m - pose.y_m
+    cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
+    return cos * gap_x + sin * gap_y, cos * gap_y - sin * gap_x
+
+
+def circles(pose: Pose, others: Iterable[Other]) -> List[Tuple[float, float, float]]:
+    """Return (ahead, to the left, radius) [m] of other robots in the frame of a pose."""
+    return [within(pose, other.pose) + (other.radius_m,) for other in others]
 
 
 def wrapped(angle_rad: float) -> float:

@@ -77,4 +77,4 @@ ROW = TaskKind(
     (Field('leader', '', 'name of the robot that the first one follows', REQUIRED, kind=TEXT),
      Field('distance', 'm', 'from middle to middle, along the trail', 0.8, 0.3, 10.0),
      Field('speed', 'm/s', 'the most it drives', 0.3, 0.02, 2.0), HOLD.fields[1]),
-    make, needs_others=True)
+    make, needs_place=True)

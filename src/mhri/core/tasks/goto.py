@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The task goto: drive to a place, and turn to a heading there."""
 import math
-from typing import Optional
+from typing import Optional, Tuple
 
 from mhri.core.robots.mocap import Pose
 from mhri.core.tasks.base import (
-    BLOCKED, DONE, Field, REQUIRED, Senses, Start, Step, Task, TaskKind, Values, WAITING, way)
+    beside, BLOCKED, DONE, FAILED, Field, FRAME, REQUIRED, Senses, Start, Step, Task, TaskKind,
+    Values, WAITING, way)
+from mhri.core.tasks.fence import is_inside
 from mhri.core.tasks.pilot import Pilot
 
 SPEED = Field('speed', 'm/s', 'the most it drives', 0.2, 0.02, 2.0)
@@ -24,22 +26,27 @@ class Goto(Task):
 
     :param heading_rad: to look at there, None: as it comes
     :param rest: come to rest there
+    :param by_odometry: the place is in the frame of odometry, not in that of the pose
     """
 
     def __init__(self, start: Start, x_m: float, y_m: float, heading_rad: Optional[float],
-                 speed_mps: float, rest: bool = True, within_m: float = WITHIN_M) -> None:
+                 speed_mps: float, rest: bool = True, within_m: float = WITHIN_M,
+                 by_odometry: bool = False) -> None:
         self._pilot = Pilot(start.body, speed_mps)
         self._place = (x_m, y_m)
         self._heading_rad = heading_rad
         self._rest = rest
         self._within_m = within_m
+        self._by_odometry = by_odometry
         self._there = False
         self._nearest_m = math.inf
         self._nearer_at = -math.inf
 
     def step(self, senses: Senses) -> Step:
         """Return what leads there from the pose."""
-        return self.from_pose(senses, senses.pose)
+        if not self._by_odometry and not is_inside(senses.fence, *self._place):
+            return Step(state=FAILED, text='its goal lies outside of the fence')
+        return self.from_pose(senses, senses.odometry if self._by_odometry else senses.pose)
 
     def from_pose(self, senses: Senses, pose: Pose) -> Step:
         """Return what leads there from a pose that is in the frame of the place."""
@@ -66,20 +73,25 @@ class Goto(Task):
         return Step(velocity, left_m=left_m, text='turns to its heading')
 
 
+def spread(place: Pose, start: Start) -> Tuple[float, float]:
+    """Return where in a team that stands side by side across its heading a robot stands [m]."""
+    # 0, 1, -1, 2, -2 ... to the left and right of the place.
+    aside = SPREAD_M * ((start.place + 1) // 2) * (1.0 if start.place % 2 else -1.0)
+    return beside(place, 0.0, aside)
+
+
 def make(values: Values, start: Start) -> Goto:
     """Begin; a team stands side by side across its heading, the first one on the place."""
     heading = values.maybe('heading')
-    x, y = values.number('x'), values.number('y')
-    # 0, 1, -1, 2, -2 ... to the left and right of the place.
-    aside = SPREAD_M * ((start.place + 1) // 2) * (1.0 if start.place % 2 else -1.0)
-    across = (heading or 0.0) + 0.5 * math.pi
-    return Goto(start, x + aside * math.cos(across), y + aside * math.sin(across), heading,
-                values.number('speed'))
+    place = spread(Pose(values.number('x'), values.number('y'), heading or 0.0), start)
+    return Goto(start, *place, heading,
+                values.number('speed'), by_odometry=values.by_odometry())
 
 
 ROW = TaskKind(
     'goto', 'Go to', 'to a place, around a single thing in the way; several robots side by side',
     (Field('x', 'm', 'ahead of where its frame begins', REQUIRED, -1000.0, 1000.0),
      Field('y', 'm', 'to the left of where its frame begins', REQUIRED, -1000.0, 1000.0),
-     Field('heading', 'rad', 'where it looks at the end', None, -7.0, 7.0), SPEED, TIMEOUT_S),
-    make)
+     Field('heading', 'rad', 'where it looks at the end', None, -7.0, 7.0), SPEED, FRAME,
+     TIMEOUT_S),
+    make, needs_place=True)

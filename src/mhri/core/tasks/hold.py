@@ -25,10 +25,12 @@ class Hold(Task):
 
     def step(self, senses: Senses) -> Step:
         """Stand, and look whether that is so."""
+        # Not its place, which may be corrected while it stands.
+        pose = senses.captured or senses.odometry
         if self._place is None:
-            self._place, self._begun_s = senses.pose, senses.now_s
-        off_m = way(self._place, senses.pose.x_m, senses.pose.y_m)
-        turn = abs(wrapped(senses.pose.heading_rad - self._place.heading_rad))
+            self._place, self._begun_s = pose, senses.now_s
+        off_m = way(self._place, pose.x_m, pose.y_m)
+        turn = abs(wrapped(pose.heading_rad - self._place.heading_rad))
         text = 'it stands'
         said: Tuple[str, ...] = ()
         if off_m > PUSHED_M or turn > PUSHED_RAD:

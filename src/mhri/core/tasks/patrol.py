@@ -4,7 +4,7 @@
 from typing import Optional
 
 from mhri.core.tasks.base import (
-    DONE, Field, REQUIRED, ROUTE, RUNNING, Senses, Start, Step, Task, TaskKind, Values)
+    DONE, Field, FRAME, REQUIRED, ROUTE, RUNNING, Senses, Start, Step, Task, TaskKind, Values)
 from mhri.core.tasks.goto import Goto, SPEED
 from mhri.core.tasks.hold import ROW as HOLD
 
@@ -22,6 +22,7 @@ class Patrol(Task):
         self._route = values.route('route')
         self._rounds = int(values.number('rounds'))
         self._speed_mps = values.number('speed')
+        self._by_odometry = values.by_odometry()
         self._passed = 0
         self._leg: Optional[Goto] = None
 
@@ -30,7 +31,7 @@ class Patrol(Task):
         corner = self._passed % len(self._route)
         if self._leg is None:
             self._leg = Goto(self._start, *self._route[corner], None, self._speed_mps,
-                             within_m=0.1)
+                             within_m=0.1, by_odometry=self._by_odometry)
         done = self._leg.step(senses)
         words = 'round {}, corner {}'.format(self._passed // len(self._route) + 1, corner + 1)
         if done.state != DONE:
@@ -44,5 +45,5 @@ class Patrol(Task):
 
 ROW = TaskKind('patrol', 'Patrol', 'along a route, once or again and again', (
     Field('route', 'm', 'its corners: [[x, y], ...]', REQUIRED, kind=ROUTE),
-    Field('rounds', '', 'how often, 0 until it is ended', 0.0, 0.0, 10000.0), SPEED, TIMEOUT_S),
-    lambda values, start: Patrol(start, values))
+    Field('rounds', '', 'how often, 0 until it is ended', 0.0, 0.0, 10000.0), SPEED, FRAME,
+    TIMEOUT_S), lambda values, start: Patrol(start, values), needs_place=True)

@@ -1,13 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The task return: back along the robot's own trail, by odometry."""
+"""The task return: to a mark, or back along the robot's own trail, by odometry."""
 import math
 from typing import List, Optional, Tuple
 
+from mhri.core.config import shown
 from mhri.core.robots.mocap import Pose
 from mhri.core.tasks.base import (
-    Corners, DONE, Field, Senses, Start, Step, Task, TaskKind, Values, WAITING, way, wrapped)
-from mhri.core.tasks.goto import SPEED, TIMEOUT_S
+    Corners, DONE, Field, Senses, Start, Step, Task, TaskKind, TEXT, Values, WAITING, way, wrapped)
+from mhri.core.tasks.goto import Goto, SPEED, spread, TIMEOUT_S
 from mhri.core.tasks.pilot import Pilot
 
 # Places of a trail are this far apart [m], and so many at most: the oldest go.
@@ -21,8 +22,9 @@ class Trail:
 
     def __init__(self) -> None:
         self._places: List[Pose] = []
+        self._times: List[float] = []
 
-    def add(self, pose: Pose) -> None:
+    def add(self, pose: Pose, now_s: float = 0.0) -> None:
         """Take in a pose; one that leaps (its odometry began anew) begins the trail anew."""
         if self._places:
             moved_m = way(self._places[-1], pose.x_m, pose.y_m)
@@ -30,12 +32,18 @@ class Trail:
                 return
             if moved_m > 1.0:
                 self._places.clear()
+                self._times.clear()
         self._places.append(pose)
-        del self._places[:-MOST_PLACES]
+        self._times.append(now_s)
+        del self._places[:-MOST_PLACES], self._times[:-MOST_PLACES]
 
     def places(self) -> Tuple[Pose, ...]:
         """Return them, the oldest first."""
         return tuple(self._places)
+
+    def ages_s(self, now_s: float) -> Tuple[float, ...]:
+        """Return how long ago it was at each of them [s]."""
+        return tuple(now_s - at_s for at_s in self._times)
 
 
 class Path(Task):
@@ -75,11 +83,17 @@ class Path(Task):
         return Step(velocity, left_m=left_m, text='{:.1f} m to go'.format(left_m))
 
 
-def make(values: Values, start: Start) -> Path:
-    """Begin with the newest place of the trail.
+def make(values: Values, start: Start) -> Task:
+    """Begin: to a mark, side by side, or with the newest place of the trail.
 
-    :raises ValueError: the robot has no trail
+    :raises ValueError: there is no such mark, or the robot has no trail
     """
+    if values.text('mark'):
+        mark = start.marks.get(values.text('mark'))
+        if mark is None:
+            raise ValueError('there is no mark {}; there are: {}'.format(
+                shown(values.text('mark')), ', '.join(sorted(start.marks)) or 'none'))
+        return Goto(start, *spread(mark, start), mark.heading_rad, values.number('speed'))
     most_m, places, gone_m = values.number('distance'), list(reversed(start.trail)), 0.0
     if not places:
         raise ValueError('it has no trail yet: nobody has seen it move')
@@ -94,6 +108,8 @@ def make(values: Values, start: Start) -> Path:
 
 
 ROW = TaskKind(
-    'return', 'Return', 'back along its own trail to where it was first seen, by odometry',
-    (Field('distance', 'm', 'go back by no more than this, 0 for all of it', 0.0, 0.0, 10000.0),
+    'return', 'Return', 'to a mark, or back along its own trail to where it was first seen',
+    (Field('mark', '', 'name of a mark; else along its trail, by odometry', '', kind=TEXT,
+           needs_place=True),
+     Field('distance', 'm', 'go back by no more than this, 0 for all of it', 0.0, 0.0, 10000.0),
      SPEED, TIMEOUT_S), make)

@@ -24,6 +24,7 @@ from mhri.core.screen.battery import FLAT_AT
 from mhri.core.tasks.base import (
     BLOCKED, Body, discs, ENDS, FAILED, LOST, RUNNING, Senses, Step, STOPPED, TAKEN_OVER, Task,
     TIMEOUT, turn_to, WAITING, way)
+from mhri.core.tasks.fence import kept_inside
 
 READYING, JOINING, UNDER_WAY, ENDED = 'readying', 'joining', 'under_way', 'ended'
 # Odometry or place that is older is lost [s]; what is new has so long to be heard.
@@ -157,17 +158,21 @@ class RobotRun:
     def _drive(self, facts: Facts) -> Velocity:
         """Return what the task wants, as far as the way is free."""
         assert self._task is not None and facts.senses is not None
-        senses = replace(facts.senses, points=np.vstack((facts.senses.points, discs(
-            facts.senses.pose, facts.senses.others.values(), _MOVES_M))))
+        robots = discs(facts.senses.pose, facts.senses.others.values(), _MOVES_M)
+        senses = replace(facts.senses, points=np.vstack((facts.senses.points, robots)))
         step = self._task.step(senses)
         self.left_m = step.left_m
         self.said += step.said
         if step.state in ENDS:
             self.end(step.state, step.text, facts.now_s)
             return ZERO
-        velocity = braked(step.velocity, senses.points, self._body.radius_m, facts.scan_age_s) \
-            if facts.has_laser else step.velocity
-        held = self._held(step, velocity, facts)
+        if not all(map(math.isfinite, (step.velocity.linear_mps, step.velocity.angular_rad_s))):
+            self.end(FAILED, 'its task asked for a velocity that is no number', facts.now_s)
+            return ZERO
+        free = braked(step.velocity, senses.points, self._body.radius_m, facts.scan_age_s) \
+            if facts.has_laser else braked(step.velocity, robots, self._body.radius_m, 0.0)
+        velocity = kept_inside(free, senses.pose, senses.fence, self._body)
+        held = self._held(step, free, facts) or _at_fence(free, velocity)
         self._mark(held, facts.now_s)
         self.state, self.text = (WAITING, held) if held else (RUNNING, step.text)
         patience_s = PASSED_AFTER_S if held.startswith(_LETS_PASS) else BLOCKED_AFTER_S
@@ -206,6 +211,12 @@ class RobotRun:
 
 
 _LETS_PASS = 'it lets pass '
+
+
+def _at_fence(free: Velocity, velocity: Velocity) -> str:
+    """Return that the fence holds it, in words; '' where it does not."""
+    held = abs(velocity.linear_mps) <= _STANDS_MPS < abs(free.linear_mps)
+    return 'it is at the fence' if held else ''
 
 
 def _unheard(facts: Facts) -> str:

@@ -10,6 +10,8 @@ from mhri.core.screen.asked import asked_line
 from mhri.gui.screen import theme, words
 
 _EDGE = 0.22
+# Sizes of the numbers and of the sentence, the one that fits: a large tile may be narrow.
+_NUMBER_SIZES, _SENTENCE_SIZES = (1.35, 1.0), (1.25, 1.0)
 _DIM = QColor(190, 190, 190)
 
 
@@ -24,6 +26,20 @@ def hud_lines(view):
                asked_line(view))
     return [words.BETWEEN_FIGURES.join(filter(None, figures)),
             'heading {}'.format(words.compass_text(view.heading_rad))]
+
+
+def _wrapped(line, metrics, width):
+    """Return a line in as many as it takes in a width [px], broken between words."""
+    if metrics.horizontalAdvance(line) <= width:
+        return [line]
+    found = ['']
+    for word in line.split(' '):
+        longer = ' '.join(filter(None, (found[-1], word)))
+        if found[-1] and metrics.horizontalAdvance(longer) > width:
+            found.append(word)
+        else:
+            found[-1] = longer
+    return found
 
 
 class Hud(QWidget):
@@ -136,24 +152,30 @@ class Hud(QWidget):
         painter.setRenderHint(QPainter.Antialiasing)
         unit = self.fontMetrics().height()
         y = self.height() - 0.6 * unit
-        font = theme.number_font(theme.larger(self.font(), 1.35 if self._large else 1.0, bold=True))
+        font, lines = self._fitting(self.width() - self._clear_px - 1.4 * unit)
         ink = _DIM if self._old else QColor(Qt.white)
-        for line in reversed(self._fitting(font, self.width() - self._clear_px - 1.4 * unit)):
+        for line in reversed(lines):
             y -= self._paint_line(painter, line, font, ink, 0.7 * unit, y)
         if self._sentence:
             self._paint_sentence(painter, y - 0.2 * unit)
         painter.end()
         return picture
 
-    def _fitting(self, font, width):
-        """Return the lines that are written in a width [px]; a small tile has one alone."""
-        metrics, lines = QFontMetrics(font), []
-        for line in self._lines if self._shown else ():
-            if metrics.horizontalAdvance(line) <= width:
-                lines.append(line)
-            else:
-                lines += line.split(words.BETWEEN_FIGURES)
-        return lines if self._large else lines[:1]
+    def _fitting(self, width):
+        """Return (font, lines) as they fit a width [px]; a small tile has one line alone."""
+        for size in _NUMBER_SIZES if self._large else _NUMBER_SIZES[-1:]:
+            font = theme.number_font(theme.larger(self.font(), size, bold=True))
+            metrics, lines = QFontMetrics(font), []
+            for line in self._lines if self._shown else ():
+                if metrics.horizontalAdvance(line) <= width:
+                    lines.append(line)
+                else:
+                    lines += line.split(words.BETWEEN_FIGURES)
+            if all(metrics.horizontalAdvance(line) <= width for line in lines):
+                break
+        if self._large:
+            return font, [part for line in lines for part in _wrapped(line, metrics, width)]
+        return font, lines[:1]
 
     @staticmethod
     def _paint_line(painter, text, font, ink, x, y):
@@ -173,18 +195,21 @@ class Hud(QWidget):
 
     def _paint_sentence(self, painter, foot):
         """Paint the sentence on a dark ground, with its sign, over the lines."""
-        font = theme.larger(self.font(), 1.25 if self._large else 1.0, bold=self._large)
-        painter.setFont(font)
-        metrics, unit = painter.fontMetrics(), self.fontMetrics().height()
-        side = metrics.height() if self._sign else 0
-        left = 0.6 * unit + 1.3 * side
-        room = QRectF(left, 0, max(unit, self.width() - self._clear_px - left - unit),
-                      max(unit, foot))
-        flags = int(Qt.AlignLeft | Qt.AlignBottom | Qt.TextWordWrap)
-        texts = [words.kept_together(text) for text in (
-            self._sentence, *words.beginnings(self._sentence, most=4))]
-        text = next((text for text in texts if metrics.boundingRect(
-            room.toRect(), flags, text).height() <= room.height()), '')
+        unit, flags = self.fontMetrics().height(), int(
+            Qt.AlignLeft | Qt.AlignBottom | Qt.TextWordWrap)
+        for size in _SENTENCE_SIZES if self._large else _SENTENCE_SIZES[-1:]:
+            painter.setFont(theme.larger(self.font(), size, bold=self._large))
+            metrics = painter.fontMetrics()
+            side = metrics.height() if self._sign else 0
+            left = 0.6 * unit + 1.3 * side
+            room = QRectF(left, 0, max(unit, self.width() - self._clear_px - left - unit),
+                          max(unit, foot))
+            texts = [words.kept_together(text) for text in (
+                self._sentence, *words.beginnings(self._sentence, most=4))]
+            text = next((text for text in texts if metrics.boundingRect(
+                room.toRect(), flags, text).height() <= room.height()), '')
+            if text == texts[0]:
+                break
         needed = metrics.boundingRect(room.toRect(), flags, text)
         ground = QRectF(0.4 * unit, needed.top() - 0.15 * unit,
                         needed.right() - 0.4 * unit + 0.5 * unit, needed.height() + 0.3 * unit)

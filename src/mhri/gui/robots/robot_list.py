@@ -88,6 +88,8 @@ class RobotList(QScrollArea):
     cleared = Signal()
     #: the window of this robot was asked for, without selecting it
     open_requested = Signal(str)
+    #: this robot is to go on with the task that it was taken from
+    carry_on_requested = Signal(str)
 
     def __init__(self, parent=None):
         super().__init__(parent)
@@ -216,6 +218,7 @@ class RobotList(QScrollArea):
         row.checked.connect(self._on_checked)
         row.clicked.connect(self._on_click)
         row.opened.connect(self.open_requested)
+        row.carry_on_requested.connect(self.carry_on_requested)
         return row
 
     def _show_again(self):

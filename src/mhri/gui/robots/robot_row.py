@@ -3,15 +3,18 @@
 """One robot in the list: who it is, how its link is, what it does."""
 from python_qt_binding.QtCore import QRectF, QSize, Qt, Signal
 from python_qt_binding.QtGui import QPainter, QPalette, QPen
-from python_qt_binding.QtWidgets import QCheckBox, QGridLayout, QHBoxLayout, QSizePolicy, QWidget
+from python_qt_binding.QtWidgets import (
+    QCheckBox, QGridLayout, QHBoxLayout, QPushButton, QSizePolicy, QWidget)
 
 from mhri.core.robots.numbers import LAST_KEY
 from mhri.core.screen import views
-from mhri.core.screen.brake_view import guard_words
+from mhri.core.screen.brake_view import brake_words, guard_words
+from mhri.core.screen.task_words import interrupted_line, task_lines
 from mhri.gui.screen import theme, words
-from mhri.gui.screen.labels import BatteryLine, Pill, Sign, TextLine
+from mhri.gui.screen.labels import BatteryLine, Pill, plain_tip, Sign, TextLine
 
-DRIVING = 'DRIVING'
+DRIVING, ON_TASK = 'DRIVING', 'ON TASK'
+CARRY_ON = 'Continue'
 MOVING = 'moving'
 RECORDING = 'rec'
 # What a name asks for before it gives way, in average characters; longer ones end in "...".
@@ -61,7 +64,7 @@ class BigCheckBox(QCheckBox):
 class RobotRow(QWidget):
     """Two lines of fixed height: identity and link; below it speed, then turn or what is wrong.
 
-    The speed is never replaced by a sentence; what is old is dimmed.
+    The speed gives way only to why a task waits; what is old is dimmed.
     """
 
     #: the check box was clicked: name, checked
@@ -70,11 +73,13 @@ class RobotRow(QWidget):
     clicked = Signal(str)
     #: the row was double-clicked
     opened = Signal(str)
+    #: it shall go on with the task that it was taken from
+    carry_on_requested = Signal(str)
 
     def __init__(self, name, parent=None):
         super().__init__(parent)
         self.name = name
-        self._driven = False
+        self._tone = None
         self._current = False
         self._link = None
         self._trouble_shown = None
@@ -124,6 +129,15 @@ class RobotRow(QWidget):
         self.filler.setMinimumWidth(1)
         self.pill = Pill(self)
         self.pill.set_words((DRIVING, MOVING))
+        self.task_pill = Pill(self)
+        self.task_pill.set_words((ON_TASK,))
+        self.task_pill.say(ON_TASK, theme.TASK)
+        self.task_pill.hide()
+        self.carry_on_button = QPushButton(CARRY_ON, self)
+        self.carry_on_button.setObjectName('carry_on_' + self.name)
+        self.carry_on_button.setFocusPolicy(Qt.TabFocus)
+        self.carry_on_button.setMinimumHeight(theme.touch_size(self))
+        self.carry_on_button.hide()
         self.battery = self._fixed_line(numbers, '100 %', Qt.AlignRight, BatteryLine)
         self._lay_out()
 
@@ -143,7 +157,8 @@ class RobotRow(QWidget):
         grid.setHorizontalSpacing(unit // 3)
         grid.setVerticalSpacing(0)
         first, second = QHBoxLayout(), QHBoxLayout()
-        for widget, stretch in ((self.title, 0), (self.kind, 1), (self.recording, 0),
+        for widget, stretch in ((self.title, 0), (self.task_pill, 0), (self.kind, 1),
+                                (self.recording, 0),
                                 (self.sign, 0), (self.link, 0), (self.age, 0)):
             first.addWidget(widget, stretch)
         for widget, stretch in ((self.linear, 0), (self.trouble_sign, 0), (self.trouble, 1),
@@ -156,6 +171,7 @@ class RobotRow(QWidget):
         grid.addWidget(self.box, 0, 1, 2, 1)
         grid.addLayout(first, 0, 2)
         grid.addLayout(second, 1, 2)
+        grid.addWidget(self.carry_on_button, 0, 3, 2, 1)
         grid.setColumnStretch(2, 1)
         self._show_trouble(None, '')
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
@@ -164,6 +180,11 @@ class RobotRow(QWidget):
     def _connect(self):
         """Wire the check box; only clicks count, not what the view sets."""
         self.box.clicked.connect(self._on_box)
+        self.carry_on_button.clicked.connect(self._on_carry_on)
+
+    def _on_carry_on(self):
+        """Tell of a click on "Continue"."""
+        self.carry_on_requested.emit(self.name)
 
     def _on_box(self, on):
         """Tell of a click on the box."""
@@ -188,15 +209,29 @@ class RobotRow(QWidget):
         self._show_second_line(view)
         self.recording.say(RECORDING if view.recording else '', filled=False)
         self.recording.setVisible(view.recording)
-        if view.driven != self._driven:
-            self._driven = view.driven
+        self._offer_to_carry_on(view.carry_on)
+        # Who waits stands: the room is for the reason.
+        self.linear.setVisible(not (view.carry_on or view.on_task and view.task
+                                    and view.task.waits))
+        tone = theme.TASK if view.on_task else theme.DRIVE if view.driven else None
+        if tone != self._tone:
+            self._tone = tone
             self.update()
+
+    def _offer_to_carry_on(self, label):
+        """Offer to continue a task, '' for none."""
+        self.carry_on_button.setVisible(bool(label))
+        if label:
+            text = '{} {} of {}'.format(CARRY_ON, label.lower(), self.name)
+            self.carry_on_button.setAccessibleName(text)
+            self.carry_on_button.setToolTip(plain_tip(text))
 
     def _show_numbers(self, view):
         """Show what changes all the time."""
         self.age.show_text(words.link_age(view), theme.MUTED)
-        self.setToolTip('\n'.join(filter(None, (words.figures_text(view.figures),
-                                                guard_words(view.brake)))))
+        self.setToolTip('\n'.join(filter(None, (
+            words.figures_text(view.figures), brake_words(view.brake),
+            guard_words(view.brake)))))
         old = view.link != views.LIVE
         tone = theme.MUTED if old else theme.TEXT
         linear = words.linear_text(view.linear_mps)
@@ -207,15 +242,22 @@ class RobotRow(QWidget):
 
     def _show_second_line(self, view):
         """Show the proof of a stop, or what is wrong with the link, or how the robot moves."""
-        if view.driven:
+        self.task_pill.setVisible(view.on_task)
+        if view.driven and not view.on_task:
             self.pill.say(DRIVING)
         else:
-            self.pill.say(MOVING if view.moving else '', theme.ATTENTION, filled=False)
+            self.pill.say(MOVING if view.moving and not view.on_task else '', theme.ATTENTION,
+                          filled=False)
         if view.proof is not None:
             self._show_trouble(theme.PROOF_SIGNS[view.proof.state], view.proof.text,
-                               view.proof.state == views.PROOF_NOT_CONFIRMED)
+                               loud=view.proof.state == views.PROOF_NOT_CONFIRMED)
         elif view.link != views.LIVE:
             self._show_trouble(None, view.note or words.LINK_WORDS[view.link])
+        elif view.task is not None:
+            self._show_trouble(theme.TASK_WAITS if view.task.waits else theme.ON_TASK,
+                               *task_lines(view.task))
+        elif view.carry_on and not view.note:
+            self._show_trouble(None, interrupted_line(view.carry_on))
         else:
             sign = (theme.TRIANGLE, theme.ATTENTION) if view.slow else None
             self._show_trouble(sign, view.note, with_state=True)
@@ -227,9 +269,10 @@ class RobotRow(QWidget):
             self.number.fix_width('8' * len(text))
         self.number.show_text(text, theme.TEXT if number <= LAST_KEY else theme.MUTED)
 
-    def _show_trouble(self, sign, text, loud=False, with_state=False):
+    def _show_trouble(self, sign, text, *shorter, loud=False, with_state=False):
         """Show a sentence in place of the turn; '' brings the turn back.
 
+        :param shorter: the same in fewer and fewer words, by default its beginnings
         :param with_state: leave the robot's state beside the sentence
         """
         speaking = bool(text)
@@ -239,7 +282,7 @@ class RobotRow(QWidget):
         if font.bold() != loud:
             font.setBold(loud)
             self.trouble.setFont(font)
-        self.trouble.show_text(text, shorter=words.beginnings(text, most=3))
+        self.trouble.show_text(text, shorter=shorter or words.beginnings(text, most=3))
         # A sentence takes the room of a state that there is none of.
         state = state and bool(self.pill.word or not speaking)
         if (speaking, state, sign is None) == self._trouble_shown:
@@ -273,11 +316,11 @@ class RobotRow(QWidget):
         palette = self.palette()
         rect = self.rect()
         base = palette.color(QPalette.Base)
-        drive = theme.colour(theme.DRIVE, palette)
         if self._current:
             painter.fillRect(rect, theme.blend(base, palette.color(QPalette.WindowText), 0.12))
-        if self._driven:
-            painter.fillRect(rect, theme.blend(base, drive, 0.30 if self._current else 0.16))
-            painter.fillRect(0, 0, _EDGE_PX, rect.height(), drive)
+        if self._tone:
+            ink = theme.colour(self._tone, palette)
+            painter.fillRect(rect, theme.blend(base, ink, 0.30 if self._current else 0.16))
+            painter.fillRect(0, 0, _EDGE_PX, rect.height(), ink)
         painter.setPen(theme.line_colour(palette))
         painter.drawLine(rect.bottomLeft(), rect.bottomRight())

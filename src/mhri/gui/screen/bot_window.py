@@ -7,6 +7,7 @@ from python_qt_binding.QtWidgets import QLayout, QWidget
 
 from mhri.core.screen import views
 from mhri.core.screen.arrangement import USUAL_SHAPE
+from mhri.core.screen.task_words import interrupted_line, task_line
 from mhri.core.screen.view_rows import KEYS, load, PICTURES, RECORD, RGB, SCAN, VIEW_ROWS
 from mhri.gui.driving.drive_keys import mark_drive_area
 from mhri.gui.driving.stop_button import StopButton
@@ -50,11 +51,15 @@ class BotWindow(QWidget):
     drive_requested = Signal(str)
     #: it shall go into a window of its own, or back
     tear_requested = Signal(str)
+    #: it shall go on with the task that it was taken from
+    carry_on_requested = Signal(str)
 
     def __init__(self, ui_dir, name, type_label, parent=None):
         super().__init__(parent)
         self.name = name
         self.torn_off = False
+        #: whether its picture is driven by, even if the map has its place
+        self.full_rate = True
         self._drive = None
         self._trouble = None
         self._link = None
@@ -114,6 +119,8 @@ class BotWindow(QWidget):
         self.switches.changed.connect(self._arrange)
         self.views_button.toggled.connect(self._show_tools)
         self.tear_button.clicked.connect(lambda: self.tear_requested.emit(self.name))
+        self.header.carry_on_button.clicked.connect(
+            lambda: self.carry_on_requested.emit(self.name))
 
     def _restore(self):
         """Begin with nothing heard."""
@@ -299,6 +306,11 @@ class BotWindow(QWidget):
             sign = (theme.TRIANGLE, theme.ATTENTION) if view.link == views.LIVE \
                 else theme.LINK_SIGNS[view.link]
             text = view.note
+        elif view.task is not None:
+            sign, text = theme.TASK_WAITS if view.task.waits else theme.ON_TASK, \
+                task_line(view.task)
+        elif view.carry_on and not view.note:
+            sign, text = None, interrupted_line(view.carry_on, 'C' if self._looked_at else '')
         else:
             sign, text = None, view.note
         before = self.hud.sentence

@@ -18,12 +18,15 @@ LIVE = 'live'
 ATTENTION = 'attention'
 STOP = 'stop'
 DRIVE = 'drive'
+TASK = 'task'
 MUTED = 'muted'
 TEXT = 'text'
 
 # Three of them are darker on a light ground: a sign has a contrast of 3 there, too.
-_LIGHT = {LIVE: '#00855F', ATTENTION: '#A86E00', STOP: '#C65300', DRIVE: '#0072B2'}
-_DARK = {LIVE: '#10B083', ATTENTION: '#E69F00', STOP: '#E8702A', DRIVE: '#56B4E9'}
+_LIGHT = {LIVE: '#00855F', ATTENTION: '#A86E00', STOP: '#C65300', DRIVE: '#0072B2',
+          TASK: '#A0527D'}
+_DARK = {LIVE: '#10B083', ATTENTION: '#E69F00', STOP: '#E8702A', DRIVE: '#56B4E9',
+         TASK: '#CC79A7'}
 # The ground of the stop button, in every theme: white on it has a contrast of 4.5 at least.
 STOP_GROUND = QColor('#C35200')
 
@@ -41,6 +44,7 @@ TRIANGLE = 'triangle'
 CROSSED_SQUARE = 'crossed_square'
 OCTAGON = 'octagon'
 TICK = 'tick'
+DIAMOND = 'diamond'
 
 # What each state looks like: shape and colour.
 LINK_SIGNS = {
@@ -59,6 +63,8 @@ SEVERITY_SIGNS = {
     events.ATTENTION: (TRIANGLE, ATTENTION),
     events.ALARM: (OCTAGON, STOP),
 }
+# A robot on a task, and one whose task waits.
+ON_TASK, TASK_WAITS = (DIAMOND, TASK), (TRIANGLE, ATTENTION)
 BATTERY_TONES = {battery.FINE: TEXT, battery.LOW: ATTENTION, battery.FLAT: STOP}
 
 # Where an application keeps the desktop's own palette.
@@ -124,7 +130,7 @@ def over_picture(palette):
 
 
 def colour(name, palette):
-    """Return the :class:`QColor` of LIVE, ATTENTION, STOP, DRIVE, MUTED or TEXT on a palette."""
+    """Return the :class:`QColor` of LIVE, ATTENTION, ..., MUTED or TEXT on a palette."""
     if name == TEXT:
         return palette.color(QPalette.WindowText)
     if name == MUTED:
@@ -327,5 +333,9 @@ def _tick(painter, ink, ground):
     painter.drawPath(path)
 
 
+def _diamond(painter, ink, ground):
+    painter.drawPolygon(QPolygonF([QPointF(0, -9), QPointF(9, 0), QPointF(0, 9), QPointF(-9, 0)]))
+
+
 _SHAPES = {DISC: _disc, RING: _ring, TRIANGLE: _triangle, CROSSED_SQUARE: _crossed_square,
-           OCTAGON: _octagon, TICK: _tick}
+           OCTAGON: _octagon, TICK: _tick, DIAMOND: _diamond}

@@ -14,11 +14,14 @@ from mhri.gui.screen.labels import BatteryLine, Pill, Sign, TextLine
 VIEWS, VIEWS_IN_SHORT = 'Views', '…'
 TEAR_OFF, PUT_BACK = 'Tear off', 'Put back'
 TYPE, AGE, LINK, PILL, BATTERY = 'type', 'age', 'link', 'pill', 'battery'
+GAPS, SIGN = 'gaps', 'sign'
 # What is left out where there is no room, in this order; small tiles never have the first ones.
-_LEFT_OUT = (TYPE, AGE, TEAR_OFF, VIEWS, LINK, PILL, BATTERY)
-_OF_SMALL = 6
+# The last ones stay for as long as a shorter name makes room.
+_LEFT_OUT = (TYPE, AGE, TEAR_OFF, VIEWS, LINK, PILL, BATTERY, GAPS, SIGN)
+_OF_SMALL, _BEFORE_NAME = 6, 7
 
 DRIVING = 'DRIVING'
+ON_TASK = 'ON TASK'
 SELECTED = 'selected'
 NOT_SELECTED = 'not selected'
 STOPPING = 'STOPPING'
@@ -29,6 +32,7 @@ STOPPED = 'STOPPED'
 # last is that of a robot which nobody drives.
 LOOKS = {
     DRIVING: (theme.DRIVE, True, 4),
+    ON_TASK: (theme.TASK, True, 3),
     SELECTED: (theme.DRIVE, False, 2),
     STOPPING: (theme.STOP, False, 4),
     NOT_CONFIRMED: (theme.STOP, True, 4),
@@ -47,7 +51,14 @@ def drive_state(view, stopped):
     """
     if stopped:
         return _STOPS.get(view.proof.state, STOPPING) if view.proof else STOPPING
+    if view.on_task:
+        return ON_TASK
     return DRIVING if view.driven else SELECTED if view.selected else NOT_SELECTED
+
+
+def carry_on_text(label):
+    """Return what a button says that continues a task, e.g. "Continue square"; '' for none."""
+    return 'Continue ' + label.lower() if label else ''
 
 
 def trouble_of(view, charge):
@@ -67,7 +78,8 @@ class TileHeader(QWidget):
     """Lies on the picture, light on dark in every theme; small tiles leave out what can be left.
 
     Child widgets: ``number_label``, ``name_label``, ``type_label``, ``pill``, ``link_sign``,
-    ``link_label``, ``battery_label``, ``rec_label``, ``views_button``, ``tear_button``.
+    ``link_label``, ``battery_label``, ``rec_label``, ``carry_on_button``, ``views_button``,
+    ``tear_button``.
     """
 
     def __init__(self, name, type_label, parent=None):
@@ -92,20 +104,23 @@ class TileHeader(QWidget):
         self.views_button.setAccessibleName(VIEWS)
         self.views_button.setToolTip('what this tile shows, its recording and its streams')
         self.tear_button = QPushButton(TEAR_OFF, self)
+        self.carry_on_button = QPushButton(self)
+        self.carry_on_button.hide()
         self.tear_button.setToolTip('into a window of its own, for another monitor')
         for part, key in ((self.number_label, 'number_label'), (self.name_label, 'name_label'),
                           (self.type_label, 'type_label'), (self.pill, 'pill'),
                           (self.link_sign, 'link_sign'), (self.link_label, 'link_label'),
                           (self.battery_label, 'battery_label'), (self.rec_label, 'rec_label'),
-                          (self.views_button, 'views_button'), (self.tear_button, 'tear_button')):
+                          (self.views_button, 'views_button'), (self.tear_button, 'tear_button'),
+                          (self.carry_on_button, 'carry_on_button')):
             part.setObjectName(key)
-        for button in (self.views_button, self.tear_button):
+        for button in (self.views_button, self.tear_button, self.carry_on_button):
             button.setFocusPolicy(Qt.TabFocus)
             button.setAutoDefault(False)
         row = self._row = QHBoxLayout(self)
         for part in (self.number_label, self.name_label, self.pill, None, self.link_sign,
                      self.link_label, self.battery_label, self.rec_label, self.type_label, None,
-                     self.views_button, self.tear_button):
+                     self.carry_on_button, self.views_button, self.tear_button):
             if part is None:
                 row.addStretch()
             else:
@@ -120,7 +135,6 @@ class TileHeader(QWidget):
         base = theme.base_font(self.window().font() if self.window() else self.font())
         unit = self.fontMetrics().height()
         self._row.setContentsMargins(unit // 2, 2, 2 if large else unit // 3, 2)
-        self._row.setSpacing(unit // 2 if large else unit // 4)
         bold = theme.larger(base, 1.4 if large else 1.05, bold=True)
         numbers = theme.number_font(base)
         for part, font in ((self.name_label, bold), (self.number_label, bold),
@@ -130,7 +144,7 @@ class TileHeader(QWidget):
             part.setFont(font)
         self.battery_label.fix_width('100 %')
         self.rec_label.fix_width('REC 00:00')
-        for button in (self.views_button, self.tear_button):
+        for button in (self.views_button, self.tear_button, self.carry_on_button):
             button.setMinimumHeight(theme.touch_size(self))
         for place in range(self._row.count()):
             if self._row.itemAt(place).spacerItem():
@@ -152,14 +166,16 @@ class TileHeader(QWidget):
         name.setMaximumWidth(natural)
         name.setMinimumWidth(1)
         self.number_label.fix_width(self.number_label.text() or '0')
-        for count in range(0 if self.large else _OF_SMALL, len(_LEFT_OUT) + 1):
+        for count in range(*((0, len(_LEFT_OUT) + 1) if self.large else (_OF_SMALL, len(_LEFT_OUT)))):
             self._leave_out(_LEFT_OUT[:count])
-            if self._needed(natural) <= self.width():
+            if self._needed(natural if count < _BEFORE_NAME else 1) <= self.width():
                 break
 
     def _leave_out(self, parts):
         """Show everything but some parts of :data:`_LEFT_OUT`."""
         self._with_age = AGE not in parts
+        self._row.setSpacing(self.fontMetrics().height() // (
+            2 if self.large and GAPS not in parts else 4))
         self.link_label.fix_width('waiting 000 ms' if self._with_age else 'waiting')
         self._show_link()
         self.views_button.setText(VIEWS if VIEWS not in parts else VIEWS_IN_SHORT)
@@ -169,9 +185,11 @@ class TileHeader(QWidget):
         self.pill.set_words((self.pill.word,) if PILL in parts else tuple(LOOKS))
         self.type_label.fix_width(self.type_label.text())
         for part, key in ((self.type_label, TYPE), (self.link_label, LINK),
-                          (self.tear_button, TEAR_OFF), (self.battery_label, BATTERY)):
+                          (self.tear_button, TEAR_OFF), (self.battery_label, BATTERY),
+                          (self.link_sign, SIGN)):
             part.setVisible(key not in parts)
         self.views_button.setVisible(self.large)
+        self.carry_on_button.setVisible(self.large and bool(self.carry_on_button.text()))
 
     def _needed(self, name_width):
         """Return the width that everything on show needs [px]."""
@@ -200,6 +218,7 @@ class TileHeader(QWidget):
         """Show a :class:`RobotView`; the numbers of it only if ``numbers``."""
         self.link_sign.show_sign(theme.LINK_SIGNS[view.link])
         self.link_sign.setToolTip(words.LINK_WORDS[view.link])
+        self._offer_to_carry_on(view.carry_on)
         number = str(view.number) if view.number else ''
         if number != self.number_label.text():
             self.number_label.show_text(number, theme.MUTED)
@@ -214,6 +233,13 @@ class TileHeader(QWidget):
         self._view = view
         self._show_link()
         self.battery_label.show_charge(view.battery, view.link != views.LIVE)
+
+    def _offer_to_carry_on(self, label):
+        """Offer to continue a task that the robot was taken from, '' for none."""
+        text = carry_on_text(label)
+        if text != self.carry_on_button.text():
+            self.carry_on_button.setText(text)
+            self.fit()
 
     def show_recording(self, status):
         """Show how long a recording has been running, None where none is."""

@@ -1,30 +1,32 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The camera budget applied to the feeds of a screen: who sees what says what, the rest follows."""
+"""Applies the camera budget to the feeds of a screen."""
 import time
-from typing import NamedTuple
+from typing import NamedTuple, Union
 
-from mhri.core.camera.budget import BudgetPlanner, Picture
+from mhri.core.camera.budget import BudgetPlanner, DRIVEN, Picture
 from mhri.ros.camera.camera_feed import CameraFeed
+from mhri.ros.sensors.cloud_feed import CloudFeed
 
 PERIOD_S = 1.0
 
 
 class Wish(NamedTuple):
-    """A picture that the screen has a place for.
+    """A picture or a point cloud with a place on the screen.
 
-    ``importance``: one of :data:`mhri.core.camera.budget.IMPORTANCES`, a checked robot's is DRIVEN;
-    ``visible``: false where nobody can see it (tile closed, minimised, on another page).
+    ``robot``: its name, for a cloud with a word added; ``importance``: one of
+    :data:`mhri.core.camera.budget.IMPORTANCES`, a checked robot's picture is DRIVEN;
+    ``visible``: false if nobody can see it (tile closed, minimised, on another page).
     """
 
     robot: str
     importance: str
-    feed: CameraFeed
+    feed: Union[CameraFeed, CloudFeed]
     visible: bool = True
 
 
 class CameraBudget:
-    """Shares the network among the pictures of one screen; for one thread.
+    """Shares the network among the pictures of one screen; use it on one thread.
 
     :param settings: function that returns the :class:`mhri.core.screen.settings.PanelSettings`
     """
@@ -42,21 +44,24 @@ class CameraBudget:
     def settle(self, wishes):
         """Hand every feed its grant; return them, {robot: Grant}.
 
-        Call it with every drawing: it plans once a second, and at once where a picture is opened or
-        another one matters. That takes about a millisecond for a dozen and asks nobody.
+        Call it at every redraw: it plans once a second, and at once when a picture opens or the
+        importance changes. That takes about a millisecond for a dozen pictures and asks nobody.
 
-        :param wishes: a :class:`Wish` for every feed that is open, each robot once
+        :param wishes: a :class:`Wish` for every feed that is open, each name once
         """
         wishes, now = list(wishes), self._clock()
         if wishes == self._wishes and now < self._due:
             return self._grants
         self._wishes, self._due = wishes, now + PERIOD_S
         settings = self._settings()
-        plan = self._planner.plan(
-            [Picture(wish.robot, wish.importance, wish.visible, *wish.feed.figures())
-             for wish in wishes],
-            settings.camera_budget_mbit_s * 1e6, settings.thumbnail_hz, now)
+        pictures = [Picture(wish.robot, wish.importance, wish.visible, *wish.feed.figures())
+                    for wish in wishes]
+        plan = self._planner.plan(pictures, settings.camera_budget_mbit_s * 1e6,
+                                  settings.thumbnail_hz, now)
         for wish in wishes:
             wish.feed.grant(plan.grants[wish.robot])
-        self.note, self._grants = plan.note, plan.grants
+        # What was not measured yet is not told as if it had been.
+        guessed = any(None in (picture.bits, picture.native_hz) for picture in pictures
+                      if picture.visible and picture.importance == DRIVEN)
+        self.note, self._grants = '' if guessed else plan.note, plan.grants
         return self._grants

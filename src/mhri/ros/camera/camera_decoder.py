@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Between the network and the screen: the newest picture of one stream, decoded as it is wanted."""
+"""Decodes the newest picture of one stream on its way from the network to the screen."""
 import threading
 
 import rospy
@@ -12,10 +12,10 @@ from mhri.core.camera.image_message import read_picture
 from mhri.core.camera.stream_meter import StreamMeter, WINDOW_S
 from mhri.core.screen.text import tidy_text
 
-# Room for the list of what can be read.
+# Room for the list of readable encodings.
 _LONGEST_PROBLEM = 400
 SILENT_S = 2.0
-# A picture that is thinned is late when so many have not come.
+# A thinned stream is late when so many pictures have not come.
 _MISSED = 2.5
 
 
@@ -24,12 +24,12 @@ class Decoder:
 
     It lives from the opening of a feed to its closing.
 
-    :param name: whose pictures they are, for the log
+    :param name: the owner of the pictures, for the log
     :param kind: 'rgb' or 'depth'
     :param wanted: function that returns ((width, height) [pixels] or None, most pictures per second
         or None); called on the decoder's thread
     :param clock: function that returns seconds, monotonic
-    :param depth_range_m: (near, far) of the colours [m], None: as the scene has it
+    :param depth_range_m: (near, far) of the colours [m], None: follow the scene
     """
 
     def __init__(self, name, kind, wanted, clock, depth_range_m=None):
@@ -61,13 +61,13 @@ class Decoder:
                 self._changed.notify_all()
 
     def wake(self):
-        """Decode the last message once more: it is wanted at another size, the next may be late."""
+        """Decode the last message once more, e.g. at another size: the next one may be late."""
         with self._changed:
             self._message = self._message or self._last
             self._changed.notify_all()
 
     def expect(self, grant):
-        """Take note of how much is let through, a :class:`mhri.core.camera.budget.Grant`."""
+        """Note how much gets through, a :class:`mhri.core.camera.budget.Grant`."""
         with self._changed:
             self._grant = grant
             self._period_s = 1.0 / grant.rate_hz if grant.rate_hz else 0.0
@@ -86,14 +86,14 @@ class Decoder:
                 now - self._good_at < max(SILENT_S, _MISSED * self._period_s))
 
     def end(self):
-        """Let the decoder end, with what it holds."""
+        """End the decoder; it drops what it holds."""
         with self._changed:
             self._ended = True
             self._message = self._last = self._frame = None
             self._changed.notify_all()
 
     def take(self):
-        """Return the newest frame once."""
+        """Return the newest frame, each frame once."""
         with self._changed:
             frame, self._frame = self._frame, None
             self._shown += frame is not None
@@ -121,10 +121,10 @@ class Decoder:
             if message is None:
                 return
             self._decode(message, view)
-            del message  # nothing is held while waiting for the next
+            del message  # hold nothing while waiting for the next
 
     def _decode(self, message, view):
-        """Decode one message; what cannot be decoded is counted and named."""
+        """Decode one message; if that fails, count it and say why."""
         message_type, data, received_s = message
         try:
             frame, transport = self.read(message_type, data, view, received_s)
@@ -138,7 +138,7 @@ class Decoder:
             self._note_good(frame, transport)
 
     def read(self, message_type, data, view, received_s):
-        """Return (what a message holds, its transport in words).
+        """Return (the content of a message, its transport in words).
 
         :raises FrameError: it cannot be decoded
         """
@@ -147,8 +147,8 @@ class Decoder:
     def _next(self, last):
         """Wait for a message and for its turn.
 
-        :param last: when the last one's turn was [s]
-        :returns: (message, None at the end; view; when its turn was)
+        :param last: the last one's turn [s]
+        :returns: (message, None at the end; view; its turn [s])
         """
         with self._changed:
             while not self._ended:
@@ -158,8 +158,8 @@ class Decoder:
                 if self._message is not None and now >= due:
                     message, self._message = self._message, None
                     self._last = message
-                    # From its turn, not from now: else a stream a little late each time would
-                    # come out at a lower rate than is wanted.
+                    # From its turn, not from now: else a stream a little late each time would come
+                    # out slower than wanted.
                     return message, view, max(due, now - (due - last))
                 self._changed.wait(None if self._message is None else due - now)
             return None, None, last
@@ -168,7 +168,7 @@ class Decoder:
         with self._changed:
             self._bad += 1
             self._bad_at = received_s
-            # It names what a message says of itself, which may be any text.
+            # It quotes what a message says of itself, which may be any text.
             self._problem = tidy_text(problem, _LONGEST_PROBLEM)
             self._hint = ''
 

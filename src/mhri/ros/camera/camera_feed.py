@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""One camera of one robot: found, subscribed, decoded at the size shown, newest picture only.
+"""One camera of one robot: finds, subscribes and decodes it at the size shown, newest picture only.
 
-While it is open it has two threads: one finds the topic and holds the subscription, the other
-decodes; a third one while the network is thinned. Closed, or granted nothing, nothing arrives from
-the network; closed, it has none.
+An open feed has two threads: one finds the topic and holds the subscription, the other decodes;
+thinned on the network, it has a third. Closed, or granted nothing, it receives nothing; closed, it
+has no threads.
 """
 import threading
 import time
@@ -23,7 +23,7 @@ from mhri.ros.graph.subscription import Subscription, reachable
 
 LOOK_S = 1.0           # between looks at the master while nothing comes
 LOOK_AGAIN_S = 5.0     # ... and while pictures come: a better transport may turn up
-# How long a subscription has to last before it tells how often the camera sends.
+# How long a subscription must last before it tells how often the camera sends [s].
 SETTLED_S = WINDOW_S + 0.5
 
 
@@ -32,14 +32,13 @@ class CameraFeed:
 
     Subscribes ``/<robot>/<topic>/compressed`` (depth: ``.../compressedDepth``), type
     ``sensor_msgs/CompressedImage``, or ``/<robot>/<topic>``, type ``sensor_msgs/Image``: the first
-    that is published. No method but :meth:`close` with a wait blocks; all may be called from any
-    thread.
+    one published. No method blocks, except :meth:`close` with a wait; call them on any thread.
 
     :param robot: namespace of the robot
     :param topics: camera topics relative to it, in order of preference, without transport
     :param kind: 'rgb' or 'depth'
     :param transport: 'auto', or a name of :meth:`transports`
-    :param depth_range_m: (near, far) of the colours [m]; None: as the scene has it
+    :param depth_range_m: (near, far) of the colours [m]; None: follow the scene
     """
 
     @classmethod
@@ -62,14 +61,14 @@ class CameraFeed:
         self._wanted = (None, None)
         self._grant = AS_IT_COMES
         self._offers = []
-        # The subscription, or what stands in for it; since when, and of which topic the last one.
+        # The subscription, or its stand-in; since when, and the topic of the last one.
         self._line = None
         self._changed_at = clock()
         self._topic = ''
         self._known = {}
 
     def open(self):
-        """Begin to look for the camera and to decode; returns at once."""
+        """Begin to look for the camera and to decode; return at once."""
         with self._changed:
             if self._session is not None:
                 return
@@ -77,28 +76,34 @@ class CameraFeed:
             self._session.expect(self._grant)
             self._changed_at = self._clock()
             if self._finder is None:
-                # One that is still giving a topic back to the master goes on with this instead.
+                # A thread that is still giving a topic back to the master goes on with this
+                # instead.
                 self._finder = threading.Thread(target=self._find, daemon=True,
                                                 name='camera finder ' + self.robot)
                 self._finder.start()
             self._changed.notify_all()
 
     def new_session(self, wanted):
-        """Return the :class:`Decoder` of one opening; ``wanted`` is for it."""
+        """Return the :class:`Decoder` of one opening; ``wanted`` is its argument."""
         return Decoder(self.robot, self.kind, wanted, self._clock, self._depth_range)
 
     def find_offers(self, published):
-        """Return the offers, best first, among {topic: type} of what is published."""
+        """Return the offers, best first, among the published {topic: type}."""
         return find_offers(self.kind, self._topics, published)
 
     def line_of(self, session, offer):
-        """Return the class of a subscription to an offer, and what it is made with."""
+        """Return the class of a subscription to an offer, and its arguments."""
         return Subscription, offer.topic, session.hear
 
-    def close(self, wait_s=0.0):
-        """Decode nothing more and unregister the topic; the latter on the feed's own thread.
+    def samples_of(self, session, offer, grant, native_hz):
+        """Return the same of single pictures of an offer, one at a time."""
+        return (Samples, offer.topic, session.hear, session.explain, grant.rate_hz, native_hz,
+                self._clock)
 
-        :param wait_s: wait at most so long for it [s]
+    def close(self, wait_s=0.0):
+        """Decode nothing more and unregister the topic, the latter on the feed's own thread.
+
+        :param wait_s: wait for it at most so long [s]
         """
         with self._changed:
             session, self._session = self._session, None
@@ -111,7 +116,7 @@ class CameraFeed:
             finder.join(wait_s)
 
     def set_view(self, width=None, height=None, max_hz=None):
-        """Say how large [pixels] and how often [Hz] pictures are wanted; None: as they come."""
+        """Choose how large [pixels] and how often [Hz] pictures come; None: as they are sent."""
         wanted = ((width, height) if width and height else None, max_hz)
         changed, self._wanted = wanted != self._wanted, wanted
         session = self._session
@@ -119,9 +124,9 @@ class CameraFeed:
             session.wake()
 
     def grant(self, grant):
-        """Let through what a :class:`mhri.core.camera.budget.Grant` says, from now on.
+        """Obey a :class:`mhri.core.camera.budget.Grant` from now on.
 
-        Granted nothing, it keeps what it has shown and gives the topic back.
+        Granted nothing, the feed keeps what it has shown and gives the topic back.
         """
         with self._changed:
             changed, self._grant = grant != self._grant, grant
@@ -131,13 +136,13 @@ class CameraFeed:
             session.expect(grant)
 
     def _wishes(self):
-        """Return what the decoder shall do: (size or None, rate at most [Hz] or None)."""
+        """Return the decoder's task: (size or None, greatest rate [Hz] or None)."""
         (view, max_hz), grant = self._wanted, self._grant
         rates = [rate for rate in (max_hz, None if grant.sampled else grant.rate_hz) if rate]
         return view, min(rates, default=None)
 
     def figures(self):
-        """Return the :class:`mhri.core.camera.budget.Figures` of what it takes of the network."""
+        """Return the :class:`mhri.core.camera.budget.Figures` of its load on the network."""
         now = self._clock()
         with self._changed:
             session, line, topic, grant = self._session, self._line, self._topic, self._grant
@@ -149,7 +154,7 @@ class CameraFeed:
             return Figures(bits, native_hz, heavy)
         status = session.status(now)
         if line is None or isinstance(line, Subscription) and not status.rate_hz:
-            # Nothing comes: for long, or only not yet?
+            # Nothing comes: for long, or not yet?
             return Figures(bits, native_hz, heavy) if lasts_s < SETTLED_S else Figures(0.0, 0.0)
         if status.rate_hz:
             bits = status.bits_per_s / status.rate_hz
@@ -186,7 +191,7 @@ class CameraFeed:
             self._changed.notify_all()
 
     def _find(self):
-        """Hold the subscription that is wanted; the thread ends when none is."""
+        """Hold the wanted subscription; the thread ends when none is wanted."""
         served = None
         while True:
             with self._changed:
@@ -203,7 +208,7 @@ class CameraFeed:
             self._rest(wish)
 
     def _wish(self):
-        """Return what decides over the subscription."""
+        """Return what the subscription depends on."""
         return self._session, self._transport, self._grant
 
     def _look_guarded(self, session, transport, grant):
@@ -217,14 +222,14 @@ class CameraFeed:
             session.explain('cannot look for the camera: {}'.format(error))
 
     def _rest(self, wish):
-        """Wait until it is time for another look, or something is to be done."""
+        """Wait until it is time for another look, or there is something to do."""
         look_s = LOOK_AGAIN_S if wish[0].hears(self._clock()) else LOOK_S
         with self._changed:
             if self._wish() == wish:
                 self._changed.wait(look_s)
 
     def _hold(self, make, *args):
-        """Give back what there is, and make another; None: none."""
+        """Give the present subscription back, and make another; None: none."""
         with self._changed:
             line, self._line = self._line, None
             self._changed_at = self._clock()
@@ -236,7 +241,7 @@ class CameraFeed:
             self._topic = line.topic if line else self._topic
 
     def _look(self, session, transport, grant):
-        """Look at the master; hold the subscription that is right now, or none.
+        """Look at the master; hold the subscription that fits now, or none.
 
         :raises MasterError: the master cannot be reached
         """
@@ -253,13 +258,12 @@ class CameraFeed:
             if not (line and line.topic == offer.topic
                     and getattr(line, 'rate_hz', None) == grant.rate_hz):
                 native_hz = self._known.get(offer.topic, (None, None))[1]
-                self._hold(Samples, offer.topic, session.hear, session.explain, grant.rate_hz,
-                           native_hz, self._clock)
+                self._hold(*self.samples_of(session, offer, grant, native_hz))
         elif not (isinstance(line, Subscription) and line.topic == offer.topic):
             self._subscribe(session, offer)
 
     def _subscribe(self, session, offer):
-        """Change over to an offer where its sender answers."""
+        """Change over to an offer if its sender answers."""
         if not reachable(rospy.get_name(), offer.topic):
             session.explain('{} is registered, but its sender does not answer'.format(offer.topic))
             return

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A stream thinned on the network: now and then a connection for one picture alone.
 
-A subscriber gets every message of a topic. A connection that is asked for from the publisher itself
-and cut after a message costs 4 to 5 kB besides, 1 ms of CPU here and about as much there, and
-nothing of the master's; a subscription that is opened and closed instead costs 5 ms here, four
-calls to the master, and at a publisher in Python a whole picture more (measured on loopback with
-pictures of 40 kB; as they come, 30 Hz take 4 ms of CPU a second).
+A subscriber gets every message of a topic. To ask the publisher itself for a connection and cut it
+after a message costs an extra 4 to 5 kB, 1 ms of CPU here and about as much there, and does not
+involve the master; to open and close a subscription instead costs 5 ms here, four calls to the
+master and, with a publisher in Python, a whole extra picture (measured on loopback with pictures of
+40 kB; unthinned, 30 Hz take 4 ms of CPU per second).
 """
 import select
 import threading
@@ -17,7 +17,7 @@ import rospy
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.recording.raw_link import LinkError, RawLink
 
-# A camera that sends more rarely is not thinned.
+# A camera that sends less often than this [s] is not thinned.
 PATIENCE_S = 3.0
 CONNECT_S = 1.0
 AGAIN_S = 1.0
@@ -33,9 +33,9 @@ class Samples:
     the publisher alone. ``native_hz`` is how often the camera sends, None if unknown.
 
     :param on_bytes: called with (type, bytes-like) on a thread of this object
-    :param on_problem: called with a sentence where the publisher cannot be had
+    :param on_problem: called with a sentence if no publisher answers
     :param rate_hz: how often [Hz], > 0; may be changed
-    :param native_hz: where it is known already
+    :param native_hz: if it is known already
     """
 
     def __init__(self, topic, on_bytes, on_problem, rate_hz, native_hz=None, clock=time.monotonic):
@@ -50,7 +50,7 @@ class Samples:
         threading.Thread(target=self._run, daemon=True, name='samples ' + topic).start()
 
     def close(self):
-        """Take no more; returns at once, a connection that is open is closed soon."""
+        """Take no more; return at once; an open connection closes soon."""
         self._ended.set()
 
     def _run(self):
@@ -65,7 +65,7 @@ class Samples:
                 else self._clock() + AGAIN_S
 
     def _take(self):
-        """Take one picture, several where the rate of the camera is not known; tell whether."""
+        """Take one picture, several if the camera's rate is unknown; tell whether one came."""
         link = self._connect()
         if link is None:
             return False
@@ -96,7 +96,7 @@ class Samples:
         return None
 
     def _publishers(self):
-        """Return the addresses of those who publish the topic.
+        """Return the addresses of the topic's publishers.
 
         :raises MasterError: the master cannot be reached
         """
@@ -107,7 +107,7 @@ class Samples:
             if nodes else []
 
     def _read(self, link, wanted):
-        """Hand on so many messages; tell whether one came in time.
+        """Pass on so many messages; tell whether one came in time.
 
         :raises LinkError: the publisher has gone
         """
@@ -119,7 +119,7 @@ class Samples:
                 select.select([link], [], [], LOOK_S)
             for frame in frames[:wanted - len(times)]:
                 times.append(self._clock())
-                # Without the length that it begins with.
+                # Without the length in front.
                 self._on_bytes(link.fields['type'], memoryview(frame)[4:])
         if len(times) > 1 and times[-1] > times[0]:
             self.native_hz = (len(times) - 1) / (times[-1] - times[0])

@@ -17,12 +17,21 @@ from mhri.core.screen.views import HeardView
 from mhri.msg import Heard
 from mhri.ros.devices.device_state import DeviceStates
 
-# Said again while it is held, so that a panel that dies does not leave the ear open.
+# Repeated while held, so that a panel that dies does not leave the ear open [s].
 TALK_PERIOD_S = 0.2
 
 
+def choose_device(source, name):
+    """Have the node of a source open the device of this name (blocking: it asks the master).
+
+    It does so within a second of being resumed, by its parameter ``~device``.
+    """
+    service = suspend_services(rospy.get_param('/mux/sources', []))[source]
+    rospy.set_param(service.rpartition('/')[0] + '/device', name)
+
+
 class DeviceClient:
-    """What the panel says to the input nodes and hears of them; every method returns at once."""
+    """The panel's words to the input nodes, and theirs to it; every method returns at once."""
 
     def __init__(self):
         self._rumble = rospy.Publisher('/mhri_joy/rumble', Empty, queue_size=1)
@@ -42,7 +51,7 @@ class DeviceClient:
                                 message.accepted, tidy_text(message.reason))
 
     def follow(self, rows):
-        """Hear which devices the sources have (blocking: it asks the master).
+        """Listen to which devices the sources have (blocking: it asks the master).
 
         :param rows: the parameter ``/mux/sources``
         """
@@ -50,7 +59,7 @@ class DeviceClient:
         self._states.follow(suspend_services(rows))
 
     def view(self):
-        """Return what a :class:`mhri.core.screen.views.PanelView` says of devices, as a dict."""
+        """Return the part of a :class:`mhri.core.screen.views.PanelView` on devices, as a dict."""
         devices = self._states.views()
         return {'sources': called_by_device(self._sources, devices), 'devices': devices,
                 'heard': self._heard}

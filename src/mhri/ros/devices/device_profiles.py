@@ -15,11 +15,11 @@ PREFIX = 'profile:'
 class DeviceProfiles:
     """Reads the profiles that devices name in ``header.frame_id`` as ``profile:<name>``.
 
-    A profile is read when its device is first heard, and again when another device was heard
-    meanwhile or :meth:`forget` was called. Shipped names come from ``resource/pads``, all others
-    from the operator's own folder.
+    It reads a profile when it first hears the device, and again after another device was heard or
+    :meth:`forget` was called. Shipped names come from ``resource/pads``, all others from the
+    operator's own folder.
 
-    :param dead_man: whether their dead-man buttons have to be held
+    :param dead_man: whether their dead-man buttons must be held
     """
 
     def __init__(self, dead_man=True):
@@ -31,7 +31,7 @@ class DeviceProfiles:
 
         :param source: name of the source
         :param frame_id: of the Joy; anything but ``profile:<name>`` asks for the source's own
-        :raises JoyRefused: there is no such profile, or it cannot be used
+        :raises JoyRefused: there is no such profile, or it is unusable
         """
         if not frame_id.startswith(PREFIX):
             return None
@@ -46,19 +46,19 @@ class DeviceProfiles:
         return profile
 
     def forget(self):
-        """Read every profile anew when it is asked for next."""
+        """Read every profile anew when next asked for it."""
         self._newest = {}
 
 
 def _read(name):
-    """Return a profile, or the reason why there is none (kept, so that it costs nothing again)."""
+    """Return a profile, or why there is none (kept, so that asking again costs nothing)."""
     if not is_base_name(name):
-        return JoyRefused('unknown_profile', '{!r} is no name of a profile'.format(name))
+        return JoyRefused('unknown_profile', '{!r} is not the name of a profile'.format(name))
     path = resource_path('pads', name + '.yaml')
     if not os.path.exists(path):
         path = os.path.join(own_folder(), name + '.yaml')
     try:
         return parse_profile(read_text(path), path)
     except (OSError, ConfigError) as error:
-        return JoyRefused('unknown_profile', 'the device names profile {}, which cannot be used '
+        return JoyRefused('unknown_profile', 'the device names profile {}, which is unusable '
                           'here: {}'.format(name, error))

@@ -3,20 +3,23 @@
 """Which device an input node has, for the screen: ``device_state`` beside its ``set_suspended``.
 
 ``diagnostic_msgs/DiagnosticStatus``, latched, on change: ``name`` is what the device is, e.g.
-'pad'; ``hardware_id`` the name of the one that is open, or would be if the node were resumed, ''
-where there is none; ``message`` why there is none and what to do, or what has to be done to the one
-there is; OK where there is one, WARN where there is none, STALE where the node cannot tell without
-opening it.
+'pad'; ``hardware_id`` the name of the open device, or of the one that would open if the node were
+resumed, '' if there is none; ``message`` why there is none and the remedy, or what the present one
+needs; OK if there is a device, WARN if there is none, STALE if the node cannot tell without opening
+it. ``values`` has a ``there`` for each device that could be opened instead.
 """
-from diagnostic_msgs.msg import DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 import rospy
 
 from mhri.core.screen.text import tidy_text
 from mhri.core.screen.views import DeviceView
 
+THERE = 'there'
+MOST_DEVICES = 20
+
 
 def state_topic(service):
-    """Return the name of the topic that belongs to a service ``set_suspended``."""
+    """Return the name of the topic beside a service ``set_suspended``."""
     return service.rpartition('/')[0] + '/device_state'
 
 
@@ -33,24 +36,25 @@ class DeviceState:
         self._topic = rospy.Publisher(state_topic(service), DiagnosticStatus, queue_size=1,
                                       latch=True)
 
-    def tell(self, device, note):
-        """Say what is there; the same again costs nothing."""
-        if (device, note) != self._told:
-            self._told = device, note
+    def tell(self, device, note, there=()):
+        """Say which device there is; repeating the same costs nothing."""
+        if (device, note, there) != self._told:
+            self._told = device, note, there
             level = DiagnosticStatus.OK if device else \
                 DiagnosticStatus.WARN if note else DiagnosticStatus.STALE
-            self._topic.publish(level=level, name=self._kind, message=note, hardware_id=device)
+            self._topic.publish(level=level, name=self._kind, message=note, hardware_id=device,
+                                values=[KeyValue(THERE, name) for name in there])
 
 
 class DeviceStates:
-    """The panel's side: what the input nodes say, for as long as they are there."""
+    """The panel's side: what the input nodes say, for as long as they live."""
 
     def __init__(self):
         self._subscribers = {}
         self._said = {}
 
     def follow(self, services):
-        """Hear the nodes of the sources there are now (blocking: it asks the master).
+        """Listen to the nodes of the present sources (blocking: it asks the master).
 
         :param services: {source: name of its ``set_suspended``}
         """
@@ -63,10 +67,12 @@ class DeviceStates:
 
     def _hear(self, message, source):
         self._said[source] = DeviceView(source, *map(tidy_text, (
-            message.hardware_id, message.message, message.name)))
+            message.hardware_id, message.message, message.name)), tuple(
+                tidy_text(pair.value) for pair in message.values[:MOST_DEVICES]
+                if pair.key == THERE and pair.value))
 
     def views(self):
-        """Return a :class:`mhri.core.screen.views.DeviceView` of each that is known now."""
+        """Return a :class:`mhri.core.screen.views.DeviceView` of each device known now."""
         return tuple(self._said[source] for (source, _), subscriber in
                      sorted(list(self._subscribers.items()))
                      if source in self._said and subscriber.get_num_connections())

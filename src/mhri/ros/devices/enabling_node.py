@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""An input device that allows others to drive, and is therefore read whatever the mode is."""
+"""An input device that allows others to drive; it is read in every mode."""
 from mhri.ros.devices.input_node import InputNode
 from mhri.srv import SetSuspendedRequest, SetSuspendedResponse
 
@@ -8,15 +8,15 @@ from mhri.srv import SetSuspendedRequest, SetSuspendedResponse
 class EnablingNode(InputNode):
     """An :class:`InputNode` that resumes by itself and cannot be suspended.
 
-    The mux suspends every input node but that of the mode in force. An enabling pedal has to be
-    read in all of them: suspended, it would fall silent, and that holds the robots. So the wish is
-    answered with success, since the mux repeats what was refused, and the message says that reading
-    goes on. Whoever wants to do without the pedal ends the node or changes the mux's configuration,
-    never a running session by one call.
+    The mux suspends every input node except that of the mode in force. An enabling pedal must be
+    read in all of them: suspended, it would fall silent, and that holds the robots. So the node
+    answers the request with success, since the mux repeats a refused one, and the message says that
+    reading goes on. To do without the pedal, end the node or change the mux's configuration; no
+    single call can do it in a running session.
     """
 
     def start(self):
-        """Open for business, resumed; call it after ``rospy.init_node``."""
+        """Begin to serve, resumed; call it after ``rospy.init_node``."""
         super().start()
         self._on_set_suspended(SetSuspendedRequest(suspended=False))
 

@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The ROS side of every input device: suspended it costs nothing, lost it is neutral at once.
+"""The ROS side of every input device: suspended it costs nothing, lost it goes neutral at once.
 
 Interfaces of the node (the names are passed in):
 
 - publishes ``sensor_msgs/Joy`` on its topic, on change (at most 100 Hz) and at 20 Hz;
   ``header.frame_id`` is ``profile:<name>``, the profile that says what the axes mean, or ''; the
-  last word of a device that is lost or suspended has `` lost`` behind that
+  last message of a device that is lost or suspended has `` lost`` appended
 - serves ``mhri/SetSuspended``; a node starts suspended
-- ``device_state`` beside the service (:mod:`mhri.ros.devices.device_state`): which device is there
+- ``device_state`` beside the service (:mod:`mhri.ros.devices.device_state`): which device there is
 - ``/diagnostics`` at 1 Hz: which device is open, or why none is
 """
 import threading
@@ -32,30 +32,31 @@ READING = 'reading'
 CLOSED = 'closed'
 
 LOOK_PERIOD_S = 1.0
-# How often a suspended node sees whether its device is there.
+# How often a suspended node looks for its device [s].
 FIND_PERIOD_S = 2.0
-# Behind header.frame_id of a device's last word: the mux asks for neutral before it drives again.
+# Appended to header.frame_id of a device's last message: the mux then wants neutral before it
+# drives again.
 LOST = ' lost'
-# After it, for listeners that go by the time alone.
+# Silence after it [s], for listeners that go by time alone.
 SILENCE_S = 1.0
 HANGING_S = 2.0
-# rospy writes on a thread for each connection: what was published needs this to leave the process.
+# rospy writes on one thread per connection: a published message needs this to leave the process.
 FLUSH_S = 0.1
-# How soon a node that nobody drives with is found again after a restart of the master.
+# How soon an idle node is found again after a restart of the master [s].
 MASTER_PERIOD_S = 2.0
 
 
 class InputNode:
-    """Reads a device on a thread of its own while it is resumed, and publishes what it reads.
+    """Reads a device on its own thread while resumed, and publishes the readings.
 
     The service never waits for the device: it changes the state, sends the neutral Joy that ends
     the old one, and lets the thread do the rest. A session is the time between two changes of the
-    state by the service; what a thread that was stuck in the driver brings home from an older
-    session is thrown away.
+    state by the service; the node discards what a thread stuck in the driver brings back from an
+    older session.
 
-    :param reader: :class:`mhri.inputs.reader.Reader`; used on that thread alone
-    :param topic: name of the topic of ``sensor_msgs/Joy``
-    :param service: name of the service of ``mhri/SetSuspended``
+    :param reader: :class:`mhri.inputs.reader.Reader`; used only on that thread
+    :param topic: name of the ``sensor_msgs/Joy`` topic
+    :param service: name of the ``mhri/SetSuspended`` service
     :param clock: function returning seconds that never go back
     """
 
@@ -83,7 +84,7 @@ class InputNode:
         self._watch = MasterWatch(period_s=MASTER_PERIOD_S)
 
     def start(self):
-        """Open for business, suspended; call it after ``rospy.init_node``."""
+        """Begin to serve, suspended; call it after ``rospy.init_node``."""
         rospy.on_shutdown(self.close)
         self._watch.start()
         self._thread.start()
@@ -91,7 +92,7 @@ class InputNode:
         self._diagnostics = publish_diagnostics({self._kind: self._diagnose})
 
     def close(self):
-        """Send the neutral Joy and give the device back; returns when that has left the process."""
+        """Send the neutral Joy and release the device; return when the Joy has left the process."""
         with self._changed:
             if self._state == CLOSED:
                 return
@@ -103,11 +104,11 @@ class InputNode:
         if spoke:
             time.sleep(FLUSH_S)
         if self._thread.is_alive():
-            # A driver that hangs must not keep the node from ending.
+            # A hanging driver must not keep the node from ending.
             self._thread.join(FLUSH_S)
 
     def words(self):
-        """Return the state of the device, as the service answers it."""
+        """Return the state of the device, as in the service's answer."""
         with self._changed:
             if self._state == SUSPENDED:
                 return 'suspended: no {} is open'.format(self._kind)
@@ -124,7 +125,7 @@ class InputNode:
                 ': ' + self._words if self._words else '')
 
     def _hanging_s(self):
-        """Return for how long a call into the driver has taken too long [s]; 0.0 if it has not.
+        """Return how long an overdue call into the driver has taken [s]; 0.0 if none is overdue.
 
         Call it with the lock held.
         """
@@ -157,7 +158,7 @@ class InputNode:
         self._changed.notify_all()
 
     def _neutral(self):
-        """Send the one neutral Joy that ends what was published; call it with the lock held."""
+        """Send the one neutral Joy that ends the stream; call it with the lock held."""
         if self._last is not None:
             self._publish(self._last.neutral(), LOST)
             self._silent_until = self._clock() + SILENCE_S
@@ -185,18 +186,18 @@ class InputNode:
             self._look(session)
 
     def _rest(self):
-        """Wait while suspended, and say now and then which device is there."""
+        """Wait while suspended, and say now and then which device there is."""
         while True:
             with self._changed:
                 if self._state != SUSPENDED:
                     return
-            self._there.tell(*self._find())
+            self._there.tell(*self._find(), self._reader.there())
             with self._changed:
                 if self._state == SUSPENDED:
                     self._changed.wait(FIND_PERIOD_S)
 
     def _find(self):
-        """Return (the name of the device that could be opened, why there is none)."""
+        """Return (the name of the device that would open, why there is none)."""
         try:
             return self._call(self._reader.find), ''
         except DeviceAbsent as reason:
@@ -209,7 +210,7 @@ class InputNode:
             return session == self._session
 
     def _call(self, method, *args):
-        """Call the driver, and leave a note for how long that takes."""
+        """Call the driver, and note when the call began."""
         with self._changed:
             self._called_at = self._clock()
         try:
@@ -219,9 +220,9 @@ class InputNode:
                 self._called_at = None
 
     def _look(self, session):
-        """Look for a device once a second, and read it while there is one, until the session ends.
+        """Look for a device once a second and read it while it lasts, until the session ends.
 
-        The guard of this thread: whatever a driver raises means that the device is lost.
+        This is the thread's guard: whatever a driver raises means that the device is lost.
         """
         while self._pause(session):
             try:
@@ -238,7 +239,7 @@ class InputNode:
             self._next_look = self._clock() + LOOK_PERIOD_S
 
     def _pause(self, session):
-        """Wait until it is time to look; return whether the session is still on."""
+        """Wait until it is time to look; return whether the session goes on."""
         with self._changed:
             until = max(self._silent_until, self._next_look)
             while session == self._session and self._clock() < until:
@@ -246,7 +247,7 @@ class InputNode:
             return session == self._session
 
     def _give_back(self):
-        """Close the device, whatever state it is in."""
+        """Close the device, whatever its state."""
         try:
             self._call(self._reader.close)
         except Exception as error:
@@ -259,15 +260,15 @@ class InputNode:
             if session != self._session:
                 return
             self._state, self._device, self._words = READING, device, ''
-        self._there.tell(self._reader.name or device, '')
+        self._there.tell(self._reader.name or device, '', self._reader.there())
         rospy.loginfo('reading %s', device)
 
     def _step(self, session):
-        """Wait for a change or for the time of a repetition, and publish what is due."""
+        """Wait for a change or the next repetition, and publish what is due."""
         with self._changed:
             wait_s = self._pacer.due_in(self._clock())
             if self._pacer.holding_back and wait_s > 0.0 and session == self._session:
-                # Changes in between would only be coalesced: the driver is left alone until then.
+                # Leave the driver alone until then: it would only coalesce the changes in between.
                 self._changed.wait(wait_s)
                 wait_s = 0.0
         reading = self._call(self._reader.read, wait_s)
@@ -280,10 +281,11 @@ class InputNode:
             if due is not None:
                 self._publish(due)
                 self._last = due
-        self._there.tell(self._reader.name or self._device, self._reader.note)
+        self._there.tell(self._reader.name or self._device, self._reader.note,
+                         self._reader.there())
 
     def _lose(self, session, reason):
-        """Send the neutral Joy, and say why once."""
+        """Send the neutral Joy, and say once why."""
         with self._changed:
             if session != self._session:
                 return
@@ -291,7 +293,7 @@ class InputNode:
             lost, new = self._state == READING, self._words != reason
             self._losses += lost
             self._state, self._words, self._device = LOOKING, reason, ''
-        self._there.tell('', reason)
+        self._there.tell('', reason, self._reader.there())
         if lost:
             rospy.logwarn('the %s is lost: %s', self._kind, reason)
         elif new:

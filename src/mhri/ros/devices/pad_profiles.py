@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The files of all pad profiles: the operator's own before those that are shipped."""
+"""The files of all pad profiles: the operator's own before the shipped ones."""
 import glob
 import os
 
@@ -18,7 +18,7 @@ def own_folder():
 
 
 def shipped_names():
-    """Return the names that shipped profiles have; an operator's own may not be called so."""
+    """Return the names of the shipped profiles; an operator's own must have another name."""
     return {os.path.splitext(os.path.basename(path))[0]
             for path in glob.glob(resource_path('pads', '*.yaml'))}
 
@@ -26,7 +26,7 @@ def shipped_names():
 def pad_profiles():
     """Return every :class:`mhri.core.driving.profile.Profile` in the order of preference.
 
-    A file that cannot be used is named in the log, once a minute, and left out.
+    Leave out an unusable file, and name it in the log once a minute.
     """
     shipped = shipped_names()
     files, problems = [], []

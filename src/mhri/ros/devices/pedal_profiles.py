@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The files of all pedal profiles: the operator's own before those that are shipped."""
+"""The files of all pedal profiles: the operator's own before the shipped ones."""
 import glob
 import os
 
@@ -15,7 +15,8 @@ from mhri.ros.resources import read_text, resource_path
 class PedalProfiles:
     """Reads ``$ROS_HOME/mhri/pedals/*.yaml`` and ``resource/pedals/*.yaml``.
 
-    They are read anew when one of them has changed: a pedal is looked for once a second.
+    It reads them anew only when one has changed, since it is called once a second to look for a
+    pedal.
     """
 
     def __init__(self):
@@ -25,7 +26,7 @@ class PedalProfiles:
     def __call__(self):
         """Return {name: :class:`mhri.core.devices.pedals.PedalProfile`}.
 
-        A file that cannot be used is named in the log once and left out.
+        Leave out an unusable file, and name it in the log once.
         """
         seen = [(path, _changed_at(path)) for path in _paths()]
         if seen != self._seen:
@@ -42,7 +43,7 @@ def _paths():
 
 
 def _changed_at(path):
-    """Return when a file was changed last, None if it is gone."""
+    """Return when a file last changed, None if it is gone."""
     try:
         return os.stat(path).st_mtime_ns
     except OSError:
@@ -50,7 +51,7 @@ def _changed_at(path):
 
 
 def _load(paths):
-    """Return {name: profile} of the files that can be used."""
+    """Return {name: profile} of the usable files."""
     files, errors = [], []
     for path in paths:
         try:

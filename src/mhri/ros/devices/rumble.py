@@ -11,7 +11,7 @@ class Rumble:
     """Calls ``shake`` when stop-all is engaged, and at every message of a topic.
 
     Subscribes to ``/robot_controller/stop_all`` (``std_msgs/Bool``) and to ``topic``
-    (``std_msgs/Empty``: a robot was lost). What was in force before this node came shakes nobody.
+    (``std_msgs/Empty``: a robot was lost). A stop engaged before this node started shakes nobody.
     """
 
     def __init__(self, shake, topic):

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Examines the ROS system from this computer: :func:`examine` is all that others need.
+"""Examines the ROS system from this computer; others need only :func:`examine`.
 
-It disturbs nothing: it registers no node, sets no parameter, and hangs up where it listened.
+It disturbs nothing: it registers no node, sets no parameter, and hangs up after listening.
 """
 import os
 import time
@@ -28,11 +28,11 @@ from mhri.ros.graph.look import shipped_ignore_list
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.resources import robot_types
 
-# When the nodes have been asked, and asked again, counted from the start; what began late has less
-# time for them, yet the least in which one that listens can answer.
+# Deadlines for asking the nodes and for asking again, counted from the start [s]; an examination
+# that began late has less time, but never less than a living node needs to answer.
 ASKED_S, AGAIN_S = 1.9, 2.6
 LEAST_S, LEAST_AGAIN_S = 0.8, 0.3
-# Programs that take a name from each other do so about once a second.
+# Programs that fight over a name take it from each other about once a second.
 WATCH_S, WATCH_EACH_S = 1.5, 0.2
 _MASTER_S = 0.8
 
@@ -42,8 +42,8 @@ def examine(robots=(), environ=None, begun=None):
 
     :param robots: names of the robots to judge, () for all
     :param environ: the environment to judge, default that of this program
-    :param begun: since when somebody waits for it [s, monotonic], default now
-    :returns: list of :class:`mhri.core.doctor.facts.Finding`: faults, warnings, what is fine
+    :param begun: since when somebody has waited for it [s, monotonic], default now
+    :returns: list of :class:`mhri.core.doctor.facts.Finding`: faults, warnings, then fine ones
     """
     begun = time.monotonic() if begun is None else begun
     environ = os.environ if environ is None else environ
@@ -52,7 +52,7 @@ def examine(robots=(), environ=None, begun=None):
         types, errors = robot_types()
         ignore, faults = _ignore_list()
     except rospkg.ResourceNotFound:
-        # Without the workspace there are no templates to judge robots by: that comes first.
+        # Without the workspace there are no templates to judge robots by: check it first.
         master = parse_uri(environ.get('ROS_MASTER_URI') or rosgraph.rosenv.DEFAULT_MASTER_URI)
         return find_on_host(Facts(computer=look_at_computer(environ, master.host), master=master))
     facts = replace(look(environ, types, ignore, begun, robots, caller_id),
@@ -61,7 +61,7 @@ def examine(robots=(), environ=None, begun=None):
 
 
 def _ignore_list():
-    """Return (:class:`IgnoreList`, [what is wrong with its file])."""
+    """Return (:class:`IgnoreList`, [problems with its file])."""
     try:
         return shipped_ignore_list(), []
     except (ConfigError, OSError) as error:
@@ -69,7 +69,7 @@ def _ignore_list():
 
 
 def look(environ, types, ignore, begun, robots=(), caller_id='/mhri_doctor'):
-    """Return the :class:`Facts` of this moment (blocking, until 3 s after ``begun`` at most)."""
+    """Return the :class:`Facts` of this moment (blocking, at most until 3 s after ``begun``)."""
     master = parse_uri(environ.get('ROS_MASTER_URI') or rosgraph.rosenv.DEFAULT_MASTER_URI)
     computer = look_at_computer(environ, master.host)
     facts = Facts(computer=computer, wanted=tuple(robots), caller_id=caller_id)
@@ -94,12 +94,12 @@ def look(environ, types, ignore, begun, robots=(), caller_id='/mhri_doctor'):
 
 
 def _deadline(wanted, least_s):
-    """Return a deadline, or a later one where that leaves too little time."""
+    """Return a deadline, or a later one if that leaves too little time."""
     return max(wanted, time.monotonic() + least_s)
 
 
 def _without_master(facts, master):
-    """Return the facts with a master that cannot be asked, and others that can."""
+    """Return the facts with a master that does not answer, and others that do."""
     return replace(facts, master=replace(master, elsewhere=look_elsewhere(
         master, facts.computer, facts.caller_id)))
 
@@ -107,7 +107,7 @@ def _without_master(facts, master):
 def _ask_master(api, master):
     """Return (master, graph, {node: URI}); three requests.
 
-    :raises MasterError: no answer, or not that of a master
+    :raises MasterError: no answer, or not a master's
     """
     begun = time.monotonic()
     graph = _graph(api)
@@ -119,7 +119,7 @@ def _ask_master(api, master):
 def _with_uris(api, graph):
     """Return (graph, {node: URI}) of one moment; one request.
 
-    A node that went between two requests is in the graph and has no URI: it is left out of both.
+    A node that left between two requests is in the graph but has no URI: leave it out of both.
     """
     uris = _uris(api, graph)
     return graph.of(uris), uris
@@ -137,14 +137,14 @@ def _graph(api):
 
 
 def _uris(api, graph):
-    """Return {node: URI} of those the master has one of; one request."""
+    """Return {node: URI} where the master has a URI; one request."""
     names = graph.nodes()
     answers = api.call_many([('lookupNode', name) for name in names]) if names else []
     return {name: uri for name, uri in zip(names, answers) if uri}
 
 
 def _why_not(master, error):
-    """Return the master with the reason why it cannot be asked."""
+    """Return the master with the reason why it does not answer."""
     cause = error.__context__
     if isinstance(cause, ConnectionRefusedError):
         state = REFUSED
@@ -165,7 +165,7 @@ def _ask_nodes(facts, robots, uris, deadline):
                 for topic in robot.topics('odometry', 'imu')} | {GATES_STATE}
     for name, uri in sorted(uris.items()):
         published = facts.graph.topics_of(name)[0]
-        # What is listened to comes last: it takes its time.
+        # Listening comes last: it takes time.
         probe.ask(name, uri, sorted(((topic, facts.graph.types.get(topic, ''), topic in listened)
                                      for topic in published), key=lambda item: item[2]))
     nodes, streams, resolved = probe.result()
@@ -176,7 +176,7 @@ def _ask_nodes(facts, robots, uris, deadline):
 
 
 def _own_md5(kind):
-    """Return the md5 sum of a message type on this computer, None if it is not here."""
+    """Return the md5 sum of a message type on this computer, None if the type is not here."""
     try:
         found = genpy.message.get_message_class(kind)
     except (ImportError, ValueError):
@@ -189,7 +189,7 @@ def _look_again(facts, robots, api, wanted):
     try:
         odd = odd_ones(facts, robots)
         if odd:
-            time.sleep(0.25)  # time to connect, for what has only just begun
+            time.sleep(0.25)  # time to connect, for programs that have only just started
         graph, uris = _with_uris(api, _graph(api))
     except MasterError:
         return facts
@@ -202,7 +202,7 @@ def _look_again(facts, robots, api, wanted):
 
 
 def _watch_names(facts, api, until):
-    """Return the facts with the nodes that are registered elsewhere meanwhile; asks to the end."""
+    """Return the facts with the nodes that register elsewhere meanwhile; keep asking to the end."""
     nodes = facts.nodes
     try:
         while not any(node.uri_later not in ('', node.uri) for node in nodes.values()) \
@@ -212,5 +212,5 @@ def _watch_names(facts, api, until):
             nodes = {name: replace(node, uri_later=uris.get(name, ''))
                      for name, node in nodes.items()}
     except MasterError:
-        pass  # it has ended just now: what was seen before still holds
+        pass  # it has just ended: the facts from before still hold
     return replace(facts, nodes=nodes)

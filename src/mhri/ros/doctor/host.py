@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The doctor looks at its own computer: variables, addresses, folders, packages."""
+"""The doctor examines its own computer: variables, addresses, folders, packages."""
 import importlib.util
 import os
 import socket
@@ -16,11 +16,11 @@ from mhri.core.camera import jpeg
 from mhri.core.doctor.facts import Computer, Folder, is_ipv4
 from mhri.core.recording.recording import ros_home
 
-# Debian packages of package.xml and the Python module that each one brings.
+# Debian packages of package.xml, and the Python module that each brings.
 _MODULES = {'python3-evdev': 'evdev', 'python3-numpy': 'numpy', 'python3-opencv': 'cv2',
             'python3-pygame': 'pygame', 'python3-pyqtgraph': 'pyqtgraph', 'python3-yaml': 'yaml'}
 _LIBRARIES = {'libturbojpeg': jpeg.available}
-# The panel has a window of its own where there is no rqt; a TurtleBot 2 alone runs nodelets.
+# Optional: without rqt the panel has its own window; only a TurtleBot 2 runs nodelets.
 _OPTIONAL = ('nodelet', 'rqt_gui', 'rqt_gui_py')
 
 
@@ -30,14 +30,14 @@ def own_addresses():
     for interface in netifaces.interfaces():
         try:
             entries = netifaces.ifaddresses(interface).get(netifaces.AF_INET, ())
-        except ValueError:  # the interface has gone meanwhile
+        except ValueError:  # the interface is gone by now
             continue
         found += [entry['addr'] for entry in entries if 'addr' in entry]
     return tuple(found)
 
 
 def resolve(host):
-    """Return the IPv4 addresses of a name (blocking, for long where no name server answers).
+    """Return the IPv4 addresses of a name (blocking, for long if no name server answers).
 
     :returns: a tuple, or None if the name is unknown
     """
@@ -51,7 +51,7 @@ def resolve(host):
 def resolve_all(hosts, limit_s):
     """Return {name: addresses or None} of many names at once.
 
-    A name of which nothing has come within the limit counts as unknown: nobody can work with it.
+    A name without an answer within the limit counts as unknown: nobody can work with it.
     """
     answers, threads = {}, []
     for host in set(hosts):
@@ -66,9 +66,9 @@ def resolve_all(hosts, limit_s):
 
 
 def route_ip(address):
-    """Return the own address from which packets to another one leave; None if there is no way.
+    """Return the local address from which packets to another one leave; None if there is no route.
 
-    Nothing is sent: connecting a UDP socket only looks at the routes.
+    It sends nothing: connecting a UDP socket only looks at the routes.
     """
     try:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
@@ -105,7 +105,7 @@ def _folders(environ):
 
 
 def _folder(what, path):
-    """Return how a folder is, or the one above it that it would be made in."""
+    """Return the state of a folder or, if it is missing, of the nearest one above it."""
     place = path = os.path.abspath(os.path.expanduser(path))
     while not os.path.exists(place) and place != os.path.dirname(place):
         place = os.path.dirname(place)
@@ -132,7 +132,7 @@ def _package_path():
 
 
 def _packages(package_path):
-    """Return {what package.xml wants at run time: why it cannot be used, '' if it can}."""
+    """Return {run-time dependency of package.xml: why it is unusable, '' if it is usable}."""
     if package_path is None:
         return {}
     root = xml.etree.ElementTree.parse(os.path.join(package_path, 'package.xml')).getroot()
@@ -152,7 +152,7 @@ def _packages(package_path):
 
 
 def _has_package(finder, name):
-    """Tell whether a ROS package is here; Debian splits some into parts without package.xml."""
+    """Tell whether a ROS package is here; Debian splits some into parts without a package.xml."""
     try:
         finder.get_path(name)
         return True
@@ -161,6 +161,6 @@ def _has_package(finder, name):
 
 
 def _has_module(name):
-    """Tell whether there is a Python module; a folder that was left without files is none."""
+    """Tell whether there is a Python module; an empty folder left behind is none."""
     spec = importlib.util.find_spec(name)
     return spec is not None and spec.origin is not None

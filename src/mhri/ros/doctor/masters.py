@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The doctor looks for other masters than the one it was told of: those that others here use."""
+"""The doctor looks for other masters than the configured one: those that programs here use."""
 import glob
 import os
 import threading
@@ -21,7 +21,7 @@ _PORT = (b'-p', b'--port')
 
 
 def parse_uri(uri):
-    """Return the :class:`Master` of a URI, with what is wrong with it."""
+    """Return the :class:`Master` of a URI, with the URI's problem."""
     try:
         parts = urlsplit(uri.strip())
         host, port = parts.hostname or '', parts.port
@@ -37,11 +37,11 @@ def parse_uri(uri):
 
 
 def uris_in_use(folder='/proc'):
-    """Return the URIs of the masters that programs on this computer were started with.
+    """Return the master URIs that programs on this computer were started with.
 
-    Of other users' programs only masters are seen, and only where their port is an argument.
+    Of other users' programs it sees only masters, and only if their port is an argument.
 
-    :param folder: where the kernel tells of processes; elsewhere than on Linux there is none
+    :param folder: where the kernel lists processes; only Linux has one
     """
     found = {}
     for path in glob.glob(os.path.join(folder, '[0-9]*')):
@@ -57,7 +57,7 @@ def uris_in_use(folder='/proc'):
 
 
 def _words(path, name):
-    """Return what a process was started with, [] where it is another user's, or has ended."""
+    """Return a process's arguments or environment, [] if it is another user's, or has ended."""
     try:
         with open(os.path.join(path, name), 'rb') as file:
             return file.read().split(b'\0')
@@ -66,7 +66,7 @@ def _words(path, name):
 
 
 def _others(master, computer, uris):
-    """Return the URIs, each master once, but for those that mean the same master."""
+    """Return the URIs of other masters, each master once."""
     def key(item):
         return ('' if computer.is_own(item.host) else item.host, item.port)
 
@@ -83,17 +83,17 @@ def _others(master, computer, uris):
 def look_elsewhere(master, computer, caller_id, only_with_mux=False, uris=None):
     """Return the URIs of other masters that answer, those with a mux first (blocking, 0.4 s).
 
-    Looked for are those that programs on this computer use, and one at the usual port.
+    It tries those that programs on this computer use, and one at the usual port.
 
-    :param master: the :class:`Master` that does not do
+    :param master: the :class:`Master` that did not serve
     :param computer: :class:`mhri.core.doctor.facts.Computer`
-    :param only_with_mux: leave the others out
+    :param only_with_mux: leave out those without a mux
     :param uris: the URIs to ask, default those in use
     """
     answers, threads = {}, []
 
     def ask(uri):
-        """Note whether a master has a mux that runs; nothing if none answers."""
+        """Note whether a master has a running mux; nothing if no master answers."""
         try:
             api = MasterApi(caller_id, LIMIT_S, uri)
             muxes = dict(api.call('getSystemState')[0]).get(MODE, ())

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The doctor asks every node at once, on a thread for each, and listens to what it publishes.
+"""The doctor asks all nodes at once, each on its own thread, and listens to what they publish.
 
-Nothing is registered at the master. A topic is asked for as a subscriber does it, and hung up at
-once; pictures and point clouds are left alone, since a driver may start its sensor for them.
+It registers nothing at the master. It asks for a topic as a subscriber does, and hangs up at once;
+it leaves pictures and point clouds alone, since a driver may start its sensor for them.
 """
 import http.client
 import re
@@ -23,18 +23,18 @@ from mhri.ros.doctor.host import resolve
 from mhri.ros.graph.master_api import TimedTransport
 from mhri.ros.recording.raw_link import LinkError, RawLink
 
-# Not asked for: whoever subscribes them starts a camera, or gets megabytes.
+# Not asked for: subscribing to them starts a camera, or brings megabytes.
 HEAVY = ('sensor_msgs/Image', 'sensor_msgs/CompressedImage', 'sensor_msgs/CameraInfo',
          'sensor_msgs/PointCloud2', 'sensor_msgs/PointCloud', 'stereo_msgs/DisparityImage',
          'theora_image_transport/Packet', 'nav_msgs/OccupancyGrid')
 GATES_STATE = 'mhri/GatesState'
-# Begin with a std_msgs/Header, whose stamp is read from the bytes.
+# These begin with a std_msgs/Header; the stamp is read from the bytes.
 STAMPED = ('nav_msgs/Odometry', 'sensor_msgs/Imu', GATES_STATE)
 LISTEN_S = 0.6
 ENOUGH_SAMPLES = 25
 _QUESTIONS = ('getPid', 'getPublications', 'getSubscriptions', 'getBusInfo')
 _STAMP = struct.Struct('<II')
-# As rospy and roscpp say it, and rosnode reads it: "... to [192.0.2.7:40623 on socket 6]".
+# As rospy and roscpp write it, and rosnode reads it: "... to [192.0.2.7:40623 on socket 6]".
 _OTHER_END = re.compile(r' to \[([0-9.]+):\d+ on socket ')
 
 
@@ -42,7 +42,7 @@ class Probe:
     """Asks nodes, each on a thread of its own, until a deadline.
 
     :param caller_id: the name under which to ask
-    :param deadline: when to have done [s, monotonic]
+    :param deadline: when to be done [s, monotonic]
     """
 
     def __init__(self, caller_id, deadline):
@@ -69,7 +69,7 @@ class Probe:
         thread.start()
 
     def result(self):
-        """Wait for all, up to the deadline.
+        """Wait for all answers, up to the deadline.
 
         :returns: ({name: :class:`Node`}, [:class:`Stream`], {host name: addresses or None})
         """
@@ -116,7 +116,7 @@ class Probe:
             return bool(self._resolved[host])
 
     def _question(self, name, uri, host):
-        """Ask a node for itself and return the :class:`Node`."""
+        """Ask a node about itself and return the :class:`Node`."""
         begun = time.monotonic()
         proxy = xmlrpc.client.ServerProxy(uri, transport=TimedTransport(self._left()))
         batch = xmlrpc.client.MultiCall(proxy)
@@ -135,7 +135,7 @@ class Probe:
         except (xmlrpc.client.Error, http.client.HTTPException, ValueError, TypeError) as error:
             return Node(name, uri, host, STRANGER, '{}: {}'.format(type(error).__name__, error))
         except OSError as error:
-            # A port taken by something that hangs up at once has a computer, but no node.
+            # Something at the port hangs up at once: the computer is there, but no node.
             state = STRANGER if isinstance(error, ConnectionError) else SILENT
             return Node(name, uri, host, state, error.strerror or str(error))
         if answers[0] is None:
@@ -144,7 +144,7 @@ class Probe:
                     _topics(answers[2]), _connections(answers[3]))
 
     def _stream(self, topic, kind, node, listen):
-        """Connect to a topic, listen for a moment where that is wanted, and hang up."""
+        """Connect to a topic, listen for a moment if wanted, and hang up."""
         if kind in HEAVY:
             return Stream(topic, node.name, kind)
         try:
@@ -178,7 +178,7 @@ class Probe:
                 break
             messages += len(frames)
             newest = frames[-1] if frames else newest
-            # Of those that came together only the newest was not kept waiting.
+            # Of messages that came together, only the newest was not kept waiting.
             if stamped and frames and len(frames[-1]) >= 16:
                 seconds, nanoseconds = _STAMP.unpack_from(frames[-1], 8)
                 if seconds:
@@ -187,10 +187,10 @@ class Probe:
 
 
 def _refused(fields, frame):
-    """Return what gates say they refused in a frame of their state, () of any other topic."""
+    """Return what the gates refused, from a frame of their state, () for any other topic."""
     if fields['type'] != GATES_STATE or not frame:
         return ()
-    # Takes its time to import: only where there are gates.
+    # Slow to import: only if there are gates.
     from mhri.msg import GatesState
     if fields['md5sum'] != GatesState._md5sum:
         return ()
@@ -198,7 +198,7 @@ def _refused(fields, frame):
         state = GatesState().deserialize(frame[4:])
     except genpy.DeserializationError:
         return ()
-    # Who is believed by now was refused while nothing was known of it.
+    # Senders believed by now were refused only while still unknown.
     return tuple(line for line in state.refused
                  if line.partition(':')[0] not in (state.mux, state.operator))
 
@@ -220,7 +220,7 @@ def _value(item):
 
 
 def _topics(pairs):
-    """Return {topic: type} of a node's own list, None if it is none."""
+    """Return {topic: type} of a node's own list, None if it is not such a list."""
     try:
         return {str(name): str(kind) for name, kind in pairs}
     except (TypeError, ValueError):
@@ -228,13 +228,13 @@ def _topics(pairs):
 
 
 def _address(text):
-    """Return the IPv4 address in what a node says of a connection, '' if there is none."""
+    """Return the IPv4 address in a node's text about a connection, '' if there is none."""
     found = _OTHER_END.search(str(text))
     return found.group(1) if found and is_ipv4(found.group(1)) else ''
 
 
 def _connections(entries):
-    """Return the :class:`Connection` tuple of ``getBusInfo``, None if it cannot be read."""
+    """Return the :class:`Connection` tuple of ``getBusInfo``, None if it is unreadable."""
     try:
         return tuple(Connection(entry[2] == 'o', str(entry[4]), str(entry[1]),
                                 _address(entry[6] if len(entry) > 6 else ''))

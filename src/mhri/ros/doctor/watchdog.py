@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The trial of a robot's watchdog on ROS. It moves the robot: on request only, see the caller."""
+"""The trial of a robot's watchdog, on ROS. It moves the robot: only on request, see the caller."""
 import importlib
 import select
 import threading
@@ -57,9 +57,9 @@ class _Ear:
 
 
 def measure_watchdog(name):
-    """Turn a robot slowly, fall silent, see whether it stops by itself; zeros at the end, always.
+    """Turn a robot slowly, fall silent, see whether it stops by itself; always end with zeros.
 
-    For a robot on blocks, or a simulated one. Needs ``rospy.init_node``; blocks for 10 s at most.
+    For a robot on blocks, or a simulated one. Needs ``rospy.init_node``; blocks for at most 10 s.
     Does nothing if the robot is selected in a panel or stop-all is in force.
 
     :returns: :class:`mhri.core.doctor.facts.Finding`
@@ -86,13 +86,13 @@ def _check_idle(name):
     if _latched('/robot_controller/robot_select', RobotSelect,
                 lambda message: name in message.robots):
         raise _Refused('it is selected in a panel, so nothing was tried',
-                       'take its tick away in the panel')
+                       'untick it in the panel')
 
 
 def _latched(topic, message_class, test):
     """Tell whether the newest message of any publisher of a latched topic passes a test.
 
-    :raises _Refused: there is a publisher that does not say
+    :raises _Refused: there is a publisher that does not answer
     """
     api = MasterApi(rospy.get_name(), timeout_s=2.0)
     publishers = dict(api.call('getSystemState')[0]).get(topic, ())
@@ -101,7 +101,7 @@ def _latched(topic, message_class, test):
 
 
 def _first(topic, uri, message_class):
-    """Return the message that a publisher has latched.
+    """Return a publisher's latched message.
 
     :raises _Refused: it gives none
     """
@@ -109,7 +109,7 @@ def _first(topic, uri, message_class):
     try:
         link = RawLink(topic, uri, rospy.get_name(), timeout_s=1.5)
     except LinkError as error:
-        raise _Refused('it cannot be told whether somebody drives it: {}'.format(error), remedy)
+        raise _Refused('nobody can tell whether it is being driven: {}'.format(error), remedy)
     try:
         deadline = time.monotonic() + 1.5
         while time.monotonic() < deadline:
@@ -118,12 +118,12 @@ def _first(topic, uri, message_class):
                 return message_class().deserialize(frames[-1][4:])
             select.select([link], [], [], max(0.0, deadline - time.monotonic()))
     except LinkError as error:
-        raise _Refused('it cannot be told whether somebody drives it: {}'.format(error), remedy)
+        raise _Refused('nobody can tell whether it is being driven: {}'.format(error), remedy)
     finally:
         link.close()
     if message_class is RobotSelect:
-        return RobotSelect()  # a panel that has never selected anything has latched nothing
-    raise _Refused('it cannot be told whether stop all is in force', remedy)
+        return RobotSelect()  # a panel latches nothing before its first selection
+    raise _Refused('nobody can tell whether stop all is in force', remedy)
 
 
 def _try(name, template):
@@ -150,7 +150,7 @@ def _try(name, template):
 
 
 def _connected(publishers, tick):
-    """Return the first publisher with a subscriber, as the gate chooses; None if none has."""
+    """Return the first publisher with a subscriber, as the gate chooses; None if there is none."""
     deadline = time.monotonic() + CONNECT_S
     while time.monotonic() < deadline:
         chosen = next((item for item in publishers if item.get_num_connections()), None)

@@ -12,7 +12,7 @@ from mhri.ros.graph.look import robot_facts
 from mhri.ros.graph.master_api import MasterApi, MasterError
 
 ROBOTS_PARAMETER = '/mhri/robots'
-# What was ever checked, for the next gates: a robot that was driven needs their zero, even if it
+# Every robot ever checked, for the next gates: a robot that was driven needs their zero, even if it
 # was unchecked meanwhile.
 DRIVEN_PARAMETER = '/mhri_gates/robots'
 PERIOD_S = 1.0
@@ -56,11 +56,13 @@ class Roster:
 
     def start(self):
         """Begin; returns at once."""
+        # The first look is now: robots on a task, which nobody checks, wait for their zero, too.
+        self._changed.set()
         threading.Thread(target=self._run, name='roster', daemon=True).start()
         return self
 
     def check(self, names):
-        """Take note of the checked robots; returns at once."""
+        """Note the checked robots; returns at once."""
         self._checked = frozenset(names)
         if not self._checked <= set(self._open):
             self._changed.set()
@@ -73,10 +75,10 @@ class Roster:
                 self._look()
                 self._announce(time.monotonic())
             except (MasterError, OSError) as error:
-                rospy.logdebug('the robots cannot be looked at now: %s', error)
+                rospy.logdebug('cannot look at the robots now: %s', error)
             except Exception as error:  # without this thread no robot would ever be added
                 rospy.logerr_throttle(
-                    10.0, 'the robots could not be looked at: {}'.format(repr(error)[:300]))
+                    10.0, 'could not look at the robots: {}'.format(repr(error)[:300]))
 
     def _look(self):
         """Open and close gates as needed.

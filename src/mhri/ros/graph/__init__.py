@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What touches the master, or rospy beneath its public interface."""
+"""Everything that touches the master, or rospy beneath its public interface."""

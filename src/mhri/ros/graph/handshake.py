@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A time limit on the handshake of whoever connects to this node's TCPROS port.
+"""Puts a time limit on the handshake of whoever connects to this node's TCPROS port.
 
 rospy reads the header of a new connection on the thread that accepts connections, for as long as it
-takes (``TCPServer.run`` of ``rospy/impl/tcpros_base.py``): one connection that says nothing locks
-every later subscriber and service call out, for ever. Here each header is waited for on a thread of
-its own, for :data:`LIMIT_S`; rospy's code gets the connection once the whole header is there.
+takes (``TCPServer.run`` of ``rospy/impl/tcpros_base.py``): one silent connection locks out every
+later subscriber and service call, for ever. Here a separate thread waits for each header, for
+:data:`LIMIT_S`; rospy's code gets the connection once the whole header is there.
 
-And of a connection of our own that broke in the middle of a message, or brought bytes that are
-none, rospy keeps what it has read: it takes that for the beginning of the next header, finds that
-it is none, and never connects again (``TCPROSTransport.read_header``). Here each begins afresh.
+And when a connection of our own breaks in the middle of a message, or brings garbage, rospy keeps
+what it has read: it takes that for the beginning of the next header, finds it invalid, and never
+connects again (``TCPROSTransport.read_header``). Here each header begins afresh.
 """
 import collections
 import logging
@@ -22,9 +22,9 @@ import time
 from rospy.impl import tcpros_base
 
 LIMIT_S = 10.0
-# A header is a few hundred bytes. One whose length says more is no header: "GET " is 541 million.
+# A header is a few hundred bytes. One that claims more is no header: "GET " is 541 million.
 MOST_BYTES = 64 * 1024
-# Threads that wait at a time; beyond them the one that has waited longest has to go.
+# Threads that wait at a time; beyond that the one that has waited longest must go.
 MOST_WAITING = 32
 _LOOK_AGAIN_S = 0.01
 _LENGTH = struct.Struct('<I')
@@ -32,7 +32,7 @@ _LOG = logging.getLogger('rosout')
 
 
 def _check():
-    """Make sure that rospy is as it is assumed to be here.
+    """Make sure that rospy is as this module assumes.
 
     :raises ImportError: it is not
     """
@@ -55,11 +55,11 @@ _check()
 
 
 class Doorman:
-    """Waits for the headers of new connections; calls ``enter(connection, address)`` with each.
+    """Waits for the headers of new connections; calls ``enter(connection, address)`` for each.
 
     :param enter: reads the header and takes the connection over; called on one thread at a time
-    :param limit_s: a header that is not whole by then is not waited for any longer [s]
-    :param most: how many are waited for at a time
+    :param limit_s: the longest wait for a whole header [s]
+    :param most: the most headers to wait for at a time
     """
 
     def __init__(self, enter, limit_s=LIMIT_S, most=MOST_WAITING):
@@ -71,7 +71,7 @@ class Doorman:
         self._waiting = collections.OrderedDict()
 
     def receive(self, connection, address):
-        """Take a connection that was accepted just now; returns at once."""
+        """Take a newly accepted connection; return at once."""
         with self._lock:
             self._waiting[connection] = address
             late = list(self._waiting.items())[:-self._most]
@@ -80,7 +80,7 @@ class Doorman:
         threading.Thread(target=self._wait, args=(connection, address), daemon=True).start()
 
     def waiting(self):
-        """Return of how many connections the header is waited for."""
+        """Return the number of connections whose header is still due."""
         with self._lock:
             return len(self._waiting)
 
@@ -100,22 +100,22 @@ class Doorman:
                 self._enter(connection, address)
 
     def _send_away(self, connection, address, why):
-        """Hang up, unless somebody else has done so."""
+        """Hang up, unless somebody already has."""
         with self._lock:
             if self._waiting.pop(connection, None) is None:
                 return
         try:
-            # Wakes the thread that waits for it; to close it alone would not.
+            # Wakes the thread that waits for it; closing alone would not.
             connection.shutdown(socket.SHUT_RDWR)
         except OSError:
             pass  # the other end was quicker
         connection.close()
-        # To the log file alone: whoever connects must not fill the terminal.
+        # Only to the log file: whoever connects must not fill the terminal.
         _LOG.debug('a connection from %s was closed: %s', address, why)
 
 
 def _header_problem(connection, deadline):
-    """Wait until a header has come whole, without reading it; return why it has not, else ''.
+    """Wait for a whole header without reading it; return why it did not come, '' if it did.
 
     :raises OSError: the connection broke
     """
@@ -135,12 +135,12 @@ def _header_problem(connection, deadline):
                 return ''
         if not data or events[0][1] & ~select.POLLIN:
             return 'it ended before its header did'
-        # What has come stays where it is, and poll would return at once.
+        # The bytes stay in the socket, so poll would return at once.
         time.sleep(_LOOK_AGAIN_S)
 
 
 def _begin_headers_afresh():
-    """Let a connection that is made anew forget what came of the one before."""
+    """Let a reconnected transport forget the bytes of the connection before."""
     read = tcpros_base.TCPROSTransport.read_header
 
     def read_header(self):
@@ -152,10 +152,10 @@ def _begin_headers_afresh():
 
 
 def limit_handshakes():
-    """Let every connection to this process's TCPROS port have :data:`LIMIT_S` for its header.
+    """Allow every connection to this process's TCPROS port :data:`LIMIT_S` for its header.
 
-    Its own connections begin each header afresh. Call it once, before or after ``rospy.init_node``;
-    more often does nothing more.
+    The process's own connections begin each header afresh. Call it before or after
+    ``rospy.init_node``; further calls do nothing.
     """
     server_class = tcpros_base.TCPROSServer
     read = server_class._tcp_server_callback
@@ -163,7 +163,7 @@ def limit_handshakes():
         return
 
     def callback(self, connection, address):
-        """Take the place of the callback that waits for the header itself."""
+        """Replace the callback that waits for the header itself."""
         if getattr(self, 'mhri_doorman', None) is None:
             self.mhri_doorman = Doorman(lambda *taken: read(self, *taken))
         self.mhri_doorman.receive(connection, address)
@@ -172,5 +172,5 @@ def limit_handshakes():
     _begin_headers_afresh()
     running = tcpros_base._tcpros_server
     if running is not None and running.tcp_ros_server is not None:
-        # In rqt another plugin has started it: it keeps the callback that it began with.
+        # In rqt another plugin may have started the server, which keeps its first callback.
         running.tcp_ros_server.inbound_handler = running._tcp_server_callback

@@ -11,12 +11,12 @@ PERIOD_S = 1.0
 
 
 class LiveParameter:
-    """Asks the master for a parameter once a second, on a thread of its own, while it is wanted.
+    """Asks the master for a parameter once a second, on its own thread, while wanted.
 
     :param name: e.g. ``~device``
-    :param default: its value where it is not set
-    :param apply: function called with the value, at first and whenever it has changed
-    :param wanted: ``threading.Event``; nobody is asked while it is not set
+    :param default: its value if it is not set
+    :param apply: function called with the value, at first and after every change
+    :param wanted: ``threading.Event``; nothing is asked while it is not set
     """
 
     def __init__(self, name, default, apply, wanted):
@@ -26,7 +26,7 @@ class LiveParameter:
         self._wanted = wanted
 
     def start(self):
-        """Take the value there is now, and keep watching; call it after ``rospy.init_node``."""
+        """Take the present value, and keep watching; call it after ``rospy.init_node``."""
         self._value = rospy.get_param(self._name, self._default)
         self._apply(self._value)
         threading.Thread(target=self._run, name=self._name, daemon=True).start()
@@ -41,7 +41,7 @@ class LiveParameter:
             try:
                 self._look(api)
             except MasterError as error:
-                # The last value stays; the watch of the master says that it is gone.
+                # The last value stays; the master's watch reports that it is gone.
                 rospy.logdebug('%s: %s', self._name, error)
             done.wait(PERIOD_S)
 
@@ -52,7 +52,7 @@ class LiveParameter:
         """
         known, value = api.call_many([('hasParam', self._name), ('getParam', self._name)])
         value = value if known else self._default
-        # By their words: NaN is not equal to itself, and 1 is equal to true.
+        # Compare the texts: NaN is not equal to itself, and 1 is equal to true.
         if repr(value) != repr(self._value):
             self._value = value
             self._apply(value)

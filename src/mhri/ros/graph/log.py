@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A log that nobody has to wait for.
 
-rospy writes a line where it is logged: to the terminal, to the log file, to /rosout. A terminal
-that takes nothing (Ctrl-S, a pipe that nobody reads) or a disk that hangs would hold up whoever
-logs, and with it the zero that was to be sent next.
+rospy writes each line on the thread that logs it: to the terminal, to the log file, to /rosout. A
+terminal that takes nothing (Ctrl-S, a pipe that nobody reads) or a hanging disk would hold up that
+thread, and with it the zero that it had to send next.
 """
 import atexit
 import logging
@@ -15,14 +15,14 @@ import time
 
 import rospy
 
-# Lines that wait for one place; what comes on top of them is counted, not kept.
+# Lines that may wait for one destination; any more are counted, not kept.
 QUEUE_SIZE = 1000
-# How long a program that ends waits for its last lines to be written [s].
+# How long an ending program waits for its last lines [s].
 LAST_WORDS_S = 0.5
 
 
 class PatientHandler(logging.Handler):
-    """Hands every record to another handler, on a thread of its own; never waits.
+    """Passes every record to another handler, on its own thread; never waits.
 
     :param handler: the one that may block
     :param size: the most records that wait
@@ -37,19 +37,19 @@ class PatientHandler(logging.Handler):
         threading.Thread(target=self._run, name='log', daemon=True).start()
 
     def createLock(self):
-        """Do without: the queue has its own."""
+        """Make no lock: the queue has its own."""
         self.lock = None
 
     def emit(self, record):
-        """Take a record; one too many is counted."""
+        """Take a record; count one too many."""
         try:
-            # Now: what it speaks of may have changed by the time it is written.
+            # Format it now: what it speaks of may change before it is written.
             record.msg, record.args = record.getMessage(), None
             self._waiting.put_nowait(record)
         except queue.Full:
             with self._counting:
                 self._lost += 1
-        except Exception:  # the words do not fit their arguments: that is for logging to say
+        except Exception:  # text and arguments do not match: logging itself reports that
             self.handleError(record)
 
     def written(self):
@@ -57,7 +57,7 @@ class PatientHandler(logging.Handler):
         return not self._waiting.unfinished_tasks
 
     def _run(self):
-        """Write what waits, and how much is missing."""
+        """Write the waiting records, and how many are missing."""
         while True:
             record = self._waiting.get()
             with self._counting:
@@ -65,13 +65,13 @@ class PatientHandler(logging.Handler):
             if lost:
                 self._handler.handle(logging.makeLogRecord({
                     'name': record.name, 'levelno': logging.WARNING, 'levelname': 'WARNING',
-                    'msg': '{} lines of the log are missing: nobody took them'.format(lost)}))
+                    'msg': '{} log lines are missing: the output was stuck'.format(lost)}))
             self._handler.handle(record)
             self._waiting.task_done()
 
 
 def install():
-    """Put every handler that the program logs to behind a queue; call it after init_node.
+    """Put a queue in front of every log handler of the program; call it after init_node.
 
     :returns: the :class:`PatientHandler` of each; none if they are in place already
     """
@@ -91,7 +91,7 @@ def install():
 
 
 def _finish(handlers):
-    """Wait a little for the last lines; leave without them where nobody takes them.
+    """Wait a little for the last lines; leave without them if nobody takes them.
 
     Python's own end would wait for ever: it asks for the lock of a stream that is being written.
     """

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The ROS graph asked for robots: one question to the master, then a knock at each door."""
+"""Looks for robots on the ROS graph: one question to the master, then a knock at each door."""
 import socket
 import threading
 import time
@@ -21,11 +21,10 @@ NODES_EACH = 3
 
 @dataclass(frozen=True)
 class Facts:
-    """What is known of one robot before it is in the list.
+    """What the graph tells about a robot before it is in the list.
 
     :param parameters: those of the robot as a nested dict, {} if it has none
-    :param seen: :class:`Seen`, None if the graph was not looked at, or
-        has nothing of the robot
+    :param seen: :class:`Seen`, None if nobody looked at the graph, or it has nothing of the robot
     """
 
     parameters: dict = field(default_factory=dict)
@@ -36,9 +35,9 @@ class Facts:
 class Found:
     """The result of looking for robots.
 
-    ``live`` are candidates of which a node answers; ``leftovers`` are registered, but nothing
+    ``live`` are candidates with a node that answers; ``leftovers`` are registered, but nothing
     answers (crashed, switched off, out of reach) or only parameters are left; ``refused`` have
-    names that no robot can have. ``facts`` is {name: :class:`Facts`} of all of them.
+    impossible names. ``facts`` is {name: :class:`Facts`} of all of them.
     """
 
     live: Tuple = ()
@@ -51,8 +50,8 @@ class Found:
 def knock(uris, timeout_s=KNOCK_S):
     """Try to connect to many node URIs at once; return the set of those that accept.
 
-    Nobody is waited for beyond the time limit, not even a name server: a thread that hangs in one
-    is left behind (daemon).
+    It waits for nobody beyond the time limit, not even a name server: it leaves a thread that hangs
+    in one behind (daemon).
     """
     answered, lock, threads = set(), threading.Lock(), []
 
@@ -80,13 +79,13 @@ def knock(uris, timeout_s=KNOCK_S):
 def look_for_robots(caller_id, ignore, known=(), api=None, types=None):
     """Look for robots (blocking; never on the GUI thread).
 
-    The master is asked once for its whole state, the types of all topics and all parameters, in one
-    request, and once more for the addresses of the robots found, again in one request.
+    It asks the master for its whole state, the types of all topics and all parameters in one
+    request, and for the addresses of the robots found in another.
 
     :param ignore: :class:`mhri.core.robots.discovery.IgnoreList`
-    :param known: robots that are in the list already
+    :param known: robots already in the list
     :param api: the :class:`MasterApi` to ask, default that of ``ROS_MASTER_URI``
-    :param types: {name: RobotType}, default all that are installed
+    :param types: {name: RobotType}, default all installed ones
     :returns: :class:`Found`
     :raises MasterError: the master cannot be reached
     """
@@ -102,7 +101,7 @@ def look_for_robots(caller_id, ignore, known=(), api=None, types=None):
     uris = api.call_many([('lookupNode', node) for _, node in asked]) if asked else []
     answered = knock([uri for uri in uris if uri])
     alive = {candidate.name for (candidate, _), uri in zip(asked, uris) if uri in answered}
-    # What is a part of a robot that lives is none itself; a dead robot has no parts.
+    # A part of a living robot is not a robot itself; a dead robot has no parts.
     root_lives = any(item.seen.at_root and item.name in alive for item in candidates)
     candidates = [item for item in candidates
                   if not item.part or item.name in alive and not root_lives]
@@ -126,13 +125,13 @@ def shipped_ignore_list():
 
 
 def robot_facts(caller_id, names, types, seen=None):
-    """Return {name: :class:`Facts`}: the parameters of robots, asked in one request.
+    """Return {name: :class:`Facts`}: the parameters of robots, in one request.
 
-    Only where a robot has no ``robot_type`` and nothing is known of it, the graph is looked at, in
-    one more request.
+    It looks at the graph, in another request, only if a robot has no ``robot_type`` and ``seen``
+    lacks it.
 
     :param types: {name: RobotType}
-    :param seen: {name: :class:`Seen`} of what is known already
+    :param seen: {name: :class:`Seen`} as far as known already
     :raises MasterError: the master cannot be reached
     """
     names, seen = list(names), dict(seen or {})

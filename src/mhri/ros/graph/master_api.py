@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The ROS master asked directly, with a time limit on every call.
+"""Asks the ROS master directly, with a time limit on every call.
 
-rospy's own master proxy has none: a master that is out of reach (not refused, but silent) blocks
+rospy's own master proxy has no limit: a master that is out of reach (silent, not refusing) blocks
 the caller for minutes.
 """
 import contextlib
@@ -13,7 +13,7 @@ import xmlrpc.client
 import rosgraph
 
 ERRORS = (OSError, xmlrpc.client.Error, http.client.HTTPException)
-# Whatever else answers there makes xmlrpc raise these as well: no XML, no text, not three values.
+# xmlrpc also raises these if something else answers there: no XML, no text, not three values.
 _NONSENSE = (xml.parsers.expat.ExpatError, ValueError, TypeError, LookupError, AttributeError,
              ArithmeticError)
 
@@ -66,7 +66,7 @@ class MasterApi:
 
         :param calls: [(method, arg, ...)]
         :returns: their values in order; None if the master refused the single call
-        :raises MasterError: no answer in time, or one that cannot be understood
+        :raises MasterError: no answer in time, or an unintelligible one
         """
         batch = xmlrpc.client.MultiCall(self._proxy)
         for method, *args in calls:
@@ -83,7 +83,7 @@ class MasterApi:
             raise MasterError('no answer from the ROS master at {}: {}'.format(
                 self.uri, str(error)[:200]))
         except _NONSENSE as error:
-            raise MasterError('what answers at {} is no ROS master: {}'.format(
+            raise MasterError('what answers at {} is not a ROS master: {}'.format(
                 self.uri, repr(error)[:200]))
 
     def node_uri(self, name):

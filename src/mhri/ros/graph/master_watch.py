@@ -3,8 +3,7 @@
 """Watches the master, and registers this node again when the master has forgotten it.
 
 rospy registers once and never looks back: after a restart of the master its nodes live on, but
-nobody can find them (robot_upstart#35). Connections that exist outlive the master; new ones need
-it.
+nobody can find them (robot_upstart#35). Existing connections outlive the master; new ones need it.
 """
 import threading
 import time
@@ -19,31 +18,30 @@ LOST = 'lost'
 
 
 def log_without_master():
-    """Keep rospy from asking the master at every line it logs; call it after ``rospy.init_node``.
+    """Keep rospy from asking the master for every line it logs; call it after ``rospy.init_node``.
 
-    To each line for /rosout rospy adds the names of the topics, unless a parameter forbids it, and
-    while that parameter is not set it subscribes to it anew every time. A master that is out of
-    reach would hold up whoever logs; and a node whose name has been taken over would thereby take
-    it back, upon which the master ends both (ros_comm#2018).
+    rospy adds the names of the topics to each line for /rosout, unless a parameter forbids it;
+    while that parameter is not set, rospy subscribes to it anew every time. A master out of reach
+    would hold up whoever logs; and a node whose name was taken over would take it back, whereupon
+    the master ends both (ros_comm#2018).
     """
     name = '/rosout_disable_topics_generation'
     never_ask_for(name, bool(rospy.get_param(name, False)))
 
 
 class MasterWatch:
-    """Asks the master again and again whether it is there and knows this node.
+    """Asks the master again and again whether it lives and knows this node.
 
-    ``on_lost(reason)`` is called once when two calls in a row were refused, or one had no answer
-    for ``patience_s``: at most ``period_s`` plus ``patience_s`` after the master hung. And
-    ``on_back(forgotten)`` once when it answers again (``forgotten``: it is another master process
-    that did not know this node; registrations and ``parameters`` have been given to it anew). A
-    master that was restarted between two calls counts as lost and back. Both run on the watch's own
-    thread.
+    It calls ``on_lost(reason)`` once when the master refused two calls in a row, or did not answer
+    one for ``patience_s``: at most ``period_s`` plus ``patience_s`` after it hung. It calls
+    ``on_back(forgotten)`` once when the master answers again (``forgotten``: it is another master
+    process that did not know this node; it now has the registrations and ``parameters`` again). A
+    master restarted between two calls counts as lost and back. Both run on the watch's own thread.
 
-    :param parameters: {absolute name: value} which this node owns and restores
+    :param parameters: {absolute name: value} that this node owns and restores
     :param period_s: the time between two calls [s]
-    :param patience_s: the longest that a call may take [s]; one that is that slow on a busy
-        computer counts as lost, so no less than about one second
+    :param patience_s: the longest that a call may take [s]; a slower one counts as a lost master,
+        so allow about one second at least for a busy computer
     """
 
     def __init__(self, on_lost=None, on_back=None, parameters=None, period_s=0.5,
@@ -77,7 +75,7 @@ class MasterWatch:
         self._api_once().call('setParam', name, value)
 
     def _api_once(self):
-        """Return a proxy for use on another thread than the watch's own."""
+        """Return a proxy for threads other than the watch's own."""
         return MasterApi(rospy.get_name(), timeout_s=1.0)
 
     def _run(self):
@@ -91,15 +89,15 @@ class MasterWatch:
     def _look(self):
         """Ask once; register again where needed."""
         own = rospy.get_node_uri()
-        # In this order: a node that takes the name over between the two is seen by the second. The
+        # In this order: the second call sees a node that takes the name over between the two. The
         # other way round it would look like a master that has forgotten this node.
         service, uri = self._api.call_many([
             ('lookupService', rospy.get_name() + '/get_loggers'),
             ('lookupNode', rospy.get_name())])
         self._misses = 0
         if service is None:
-            # The name alone proves nothing: any call that mentions this node makes a new master
-            # know its name. The service that every rospy node has is registered with the rest.
+            # The name alone proves nothing: a new master knows it after any call that mentions this
+            # node. But the service that every rospy node has is registered with the rest.
             uri = None if uri == own else uri
         if uri is not None and uri != own:
             rospy.signal_shutdown('name taken over')
@@ -107,7 +105,7 @@ class MasterWatch:
                           rospy.get_name())
             return
         if rospy.is_shutdown():
-            # What the master does not know any more, this node has taken back itself.
+            # This node itself has taken back what the master no longer knows.
             return
         if uri is None:
             if self.state == PRESENT:
@@ -119,7 +117,7 @@ class MasterWatch:
             self._on_back(uri is None)
 
     def _miss(self, reason, hangs):
-        """Count a call without an answer; two in a row are a lost master, or one that hangs."""
+        """Count a call without an answer; two in a row, or one that hangs, mean a lost master."""
         self._misses += 2 if hangs else 1
         if self._misses >= 2 and self.state == PRESENT:
             self._lose(reason)
@@ -130,7 +128,7 @@ class MasterWatch:
         rospy.logwarn('ROS master lost: %s', reason)
 
     def _register(self):
-        """Give the master everything that rospy has registered in its life.
+        """Give the master everything that rospy has ever registered.
 
         :raises MasterError: it went away again meanwhile
         """

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What rospy logs over and over, once a second.
+"""Limits what rospy logs over and over to once a second.
 
-A message whose bytes are none of its type costs a traceback or two each time, and so does one that
-a callback cannot deal with: dozens a second hide what an operator has to read, and fill the disk.
+A message whose bytes do not fit its type costs a traceback or two each time, and so does one that a
+callback cannot handle: dozens a second hide what an operator must read, and fill the disk.
 """
 import logging
 import time
@@ -11,17 +11,17 @@ import time
 EVERY_S = 1.0
 _MOST_KEYS = 200
 _LONGEST_KEY = 200
-# So much of a line is looked at, at both ends.
+# So many characters of a line are examined, at both ends.
 _LOOKED_AT = 500
 # rospy.msg, deserialize_messages; rospy.impl.tcpros_base, receive_once and receive_loop;
 # rospy.topics, _invoke_callback.
 _REPEATED = ('cannot deserialize', 'error deserializing incoming request', 'bad callback')
-# Those that rospy logs with.
+# The loggers of rospy.
 _LOGGERS = ('rosout', 'rospy.internal', 'rospy.msg')
 
 
 class OncePerSecond(logging.Filter):
-    """Lets a line that comes with every message through once a second; all others always.
+    """Passes a line that comes with every message once a second, and all others always.
 
     :param clock: seconds, monotonic
     """
@@ -32,13 +32,13 @@ class OncePerSecond(logging.Filter):
         self._passed = {}
 
     def filter(self, record):
-        """Tell whether a record is to be logged."""
+        """Tell whether to log a record."""
         text = record.getMessage()
         looked_at = text[:_LOOKED_AT] + text[-_LOOKED_AT:]
         words = next((words for words in _REPEATED if words in looked_at), None)
         if words is None:
             return True
-        # A topic in brackets stands before the words, a callback's name behind them.
+        # A topic in brackets precedes the words, a callback's name follows them.
         key = (record.name, words, text[:_LONGEST_KEY].partition('\n')[0].partition(words)[
             2 if text.startswith('bad') else 0])
         now = self._clock()
@@ -51,7 +51,7 @@ class OncePerSecond(logging.Filter):
 
 
 def quiet_repeats():
-    """Filter what rospy logs in this program; once is enough, more do no harm."""
+    """Filter what rospy logs in this program; further calls do no harm."""
     for name in _LOGGERS:
         logger = logging.getLogger(name)
         if not any(isinstance(known, OncePerSecond) for known in logger.filters):

@@ -1,20 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""All that reaches beneath rospy's public interface, in one place, tested when it is imported.
+"""All that reaches beneath rospy's public interface, in one place, tested at import.
 
-rospy is not developed any further (ros_comm was archived in 2025), but a distribution may patch it:
-what is relied on here is looked for at import, and an :class:`ImportError` says what is not there.
+Nobody develops rospy any further (ros_comm was archived in 2025), but a distribution may patch it:
+this module looks at import for all it relies on, and an :class:`ImportError` says what is missing.
 
-**Publishing.** rospy's own publisher, with a queue, hands every message to a thread of each
-connection: two changes of threads, several hundred microseconds where others are busy. Without a
-queue it writes at once, and waits for a robot whose link has stalled. :class:`PromptPublisher`
-writes at once and never waits: what the socket does not take now goes to the connection's thread,
-and there the newest message wins as always. And TCP keeps what it was given: a link that comes back
-after a second brings a second of old commands. So nothing but zeros is given to a connection whose
-peer has confirmed nothing for a while; the newest message follows as soon as it confirms something.
+**Publishing.** rospy's own publisher, with a queue, passes every message to a thread of each
+connection: two thread switches, several hundred microseconds on a busy computer. Without a queue it
+writes at once, but waits for a robot whose link has stalled. :class:`PromptPublisher` writes at
+once and never waits: what the socket does not take now goes to the connection's thread, and there
+the newest message wins as always. And TCP keeps what it was given: a link that comes back after a
+second brings a second of old commands. So a connection whose peer has confirmed nothing for a while
+gets nothing but zeros; the newest message follows as soon as it confirms something.
 
 **Who is there.** :func:`caller_of`, :func:`listeners`, :func:`on_publisher_gone` and
-:func:`publisher_uri` tell who is at the other end of a connection, and when it has gone.
+:func:`publisher_uri` tell who is at the other end of a connection, and when it is gone.
 """
 import socket
 import struct
@@ -37,7 +37,7 @@ _INFO = struct.Struct('=24xI28xI8xI')
 
 
 class Flow:
-    """Tells whether a connection's peer still confirms what it is sent.
+    """Tells whether a connection's peer still confirms what it gets.
 
     :param end: its socket
     :param clock: function that returns seconds, monotonic
@@ -51,9 +51,9 @@ class Flow:
             socket.AF_INET, socket.AF_INET6) else None
 
     def quiet_s(self):
-        """Return for how long nothing was confirmed although something is due [s], else 0.
+        """Return how long nothing was confirmed although something is due [s], else 0.
 
-        0 if the system does not tell, and while two round trips have not passed.
+        Also 0 if the system does not tell, and until two round trips have passed.
         """
         if self._option is None:
             return 0.0
@@ -75,7 +75,7 @@ class Flow:
 
 
 class _Call(threading.local):
-    """What the caller says of the message that it publishes now."""
+    """The caller's word on the message that it publishes now."""
 
     urgent = False
 
@@ -83,12 +83,12 @@ class _Call(threading.local):
 class PromptConnection(QueuedConnection):
     """A connection to one subscriber.
 
-    Bytes leave in order whatever happens: while the thread has anything to do, all goes through it,
-    and a message that was taken in part is finished before any other.
+    Bytes always leave in order: while the thread has anything to do, everything goes through it,
+    and it finishes a partly sent message before any other.
 
     :param connection: rospy's ``TCPROSTransport``
-    :param queue_size: the most messages that wait, the oldest are left out
-    :param call: ``call.urgent``: the message is sent into a stalled link as well
+    :param queue_size: the most messages that wait; the oldest are dropped
+    :param call: ``call.urgent``: send the message even into a stalled link
     """
 
     def __init__(self, connection, queue_size, call):
@@ -101,7 +101,7 @@ class PromptConnection(QueuedConnection):
     def write_data(self, data):
         """Send a message, or leave it to the thread; never waits.
 
-        :raises Exception: what went wrong with the message before (rospy drops the connection)
+        :raises Exception: what went wrong with an earlier message (rospy drops the connection)
         """
         with self._lock:
             if self._error:
@@ -109,7 +109,7 @@ class PromptConnection(QueuedConnection):
                 raise error
             self._urgent = self._call.urgent
             if self._urgent and not self._busy:
-                # What waited for the link is older.
+                # What waits for the link is older.
                 self._queue = []
             sent = 0
             if not self._busy and not self._queue and (self._urgent or not self._flow.stalled()):
@@ -126,13 +126,12 @@ class PromptConnection(QueuedConnection):
         return True
 
     def _send(self, data):
-        """Return how many bytes the socket has taken."""
+        """Return how many bytes the socket took."""
         connection = self._connection
         try:
             sent = connection.socket.send(data, socket.MSG_DONTWAIT)
         except (OSError, AttributeError):
-            # A full buffer, or a connection that has ended: the thread finds that out in rospy's
-            # own way.
+            # A full buffer, or a closed connection: the thread finds out in rospy's own way.
             return 0
         if sent == len(data):
             connection.stat_bytes += sent
@@ -140,11 +139,11 @@ class PromptConnection(QueuedConnection):
         return sent
 
     def stalled_s(self):
-        """Return for how long the peer has confirmed nothing of what it was sent [s], 0: no."""
+        """Return how long the peer has confirmed nothing of what it was sent [s], 0 if it does."""
         return self._flow.quiet_s()
 
     def _next(self):
-        """Wait for something to send; return the list of it, [] at the end (the thread)."""
+        """Wait for something to send; return it as a list, [] at the end (the thread)."""
         with self._lock:
             while not self._connection.done:
                 if self._rest:
@@ -158,7 +157,7 @@ class PromptConnection(QueuedConnection):
             return []
 
     def _run(self):
-        """Send what did not go at once (the connection's thread)."""
+        """Send what could not go at once (the connection's thread)."""
         while True:
             waiting = self._next()
             if not waiting:
@@ -167,7 +166,7 @@ class PromptConnection(QueuedConnection):
             try:
                 for data in waiting:
                     self._connection.write_data(data)
-            except Exception as reason:  # handed to whoever publishes next, as rospy does
+            except Exception as reason:  # raised to whoever publishes next, as in rospy
                 error = reason
             with self._lock:
                 self._busy = False
@@ -189,22 +188,22 @@ class PromptPublisher(rospy.Publisher):
         plain = type(impl).add_connection
 
         def add_connection(connection):
-            """Take the connection in, in our own wrapping."""
+            """Add the connection in our own wrapper."""
             return plain(impl, PromptConnection(connection, queue_size, call))
 
-        # With a size rospy wraps each connection in its own; another publisher of this topic in the
-        # same process (a plugin beside us in rqt) would set one.
+        # Given a size, rospy wraps each connection in its own class; another publisher of this
+        # topic in the same process (a plugin beside us in rqt) would set one.
         impl.set_queue_size(None)
         impl.set_queue_size = lambda size: None
         impl.add_connection = add_connection
         with impl.c_lock:
-            # A robot that was waiting may have connected since the topic was registered, above.
+            # A waiting robot may have connected since the topic was registered, above.
             impl.connections = [link if isinstance(link, PromptConnection) else PromptConnection(
                 getattr(link, '_connection', link), queue_size, call)
                 for link in impl.connections]
 
     def stalled_s(self, names):
-        """Return for how long the worst connection to some nodes confirmed nothing [s]; 0: none.
+        """Return how long the worst connection to some nodes confirmed nothing [s]; 0: all do.
 
         :param names: their caller ids
         """
@@ -212,14 +211,14 @@ class PromptPublisher(rospy.Publisher):
                     if connection.endpoint_id in names), default=0.0)
 
     def links(self):
-        """Return the open connections, a tuple that is another one after each change."""
+        """Return the open connections, a tuple replaced at each change."""
         impl = self.impl
         return impl.connections if impl else ()
 
     def publish_urgent(self, message):
-        """Publish what may be late but must not be left out: the word to stop.
+        """Publish what may be late but must not be dropped: the word to stop.
 
-        It is given to a stalled link, too, behind the little that is in it: whatever comes to this
+        It goes even into a stalled link, behind the little already in it: whatever happens to this
         program meanwhile, the robot hears it before anything newer.
         """
         self._call.urgent = True
@@ -240,7 +239,7 @@ def type_of(message):
 
 
 def link_of(message):
-    """Return something that is the same object for all messages of one connection."""
+    """Return an object that is the same for all messages of one connection."""
     return message._connection_header
 
 
@@ -256,19 +255,19 @@ def publishers(subscriber):
 
 
 def publisher_uri(subscriber):
-    """Return the XML-RPC address of a node that publishes what is subscribed, or None."""
+    """Return the XML-RPC address of a node that publishes the subscribed topic, or None."""
     impl = subscriber.impl
     return next((link.endpoint_id for link in (impl.connections if impl else ())
                  if link.endpoint_id), None)
 
 
 def on_publisher_gone(subscriber, call):
-    """Have a function called whenever the connection to a publisher ends.
+    """Call a function whenever the connection to a publisher ends.
 
-    rospy tells that of subscribers alone. Killed, a publisher on this computer is noticed within
+    rospy reports that only for subscribers. A killed publisher on this computer shows within
     milliseconds: the kernel closes its connections.
 
-    :param call: called with the publisher's caller id on the connection's thread; quick
+    :param call: called with the publisher's caller id on the connection's thread; must be quick
     """
     impl = subscriber.impl
     plain = impl.remove_connection
@@ -284,9 +283,10 @@ def on_publisher_gone(subscriber, call):
 
 
 def ended_by_hand():
-    """Return a function that tells whether somebody has ended this node by ``rosnode kill``.
+    """Return a function that tells whether somebody ended this node by ``rosnode kill``.
 
-    Not the master, which ends the older of two nodes with one name. Call it after ``init_node``.
+    The master, which ends the older of two nodes with one name, does not count. Call it after
+    ``init_node``.
     """
     reasons = []
     rospy.core.add_preshutdown_hook(reasons.append)
@@ -297,7 +297,7 @@ def unsubscribe(subscriber):
     """Unregister a ``rospy.Subscriber`` (blocking: it asks the master).
 
     rospy leaves the epoll handle of the topic open until the garbage collector comes to its oldest
-    generation (ros_comm issue 2373), hundreds of them where views are toggled: it is closed here.
+    generation (ros_comm issue 2373), hundreds of them as an operator toggles views: this closes it.
     """
     impl = subscriber.impl
     subscriber.unregister()
@@ -306,14 +306,14 @@ def unsubscribe(subscriber):
 
 
 def never_ask_for(name, value):
-    """Let rospy know a parameter from now on without asking the master for it."""
+    """Tell rospy the value of a parameter, so that it never asks the master for it."""
     get_param_server_cache().set(name, value)
 
 
 def registrations():
-    """Return what this node has registered: ([(topic, type)], [(service, URI)], [(topic, type)]).
+    """Return this node's registrations: ([(topic, type)], [(service, URI)], [(topic, type)]).
 
-    Publications, services, subscriptions.
+    These are publications, services and subscriptions.
     """
     topics = get_topic_manager()
     return (topics.get_publications(), get_service_manager().get_services(),
@@ -321,16 +321,16 @@ def registrations():
 
 
 def meet_publishers(topic, uris):
-    """Connect this node's subscription to publishers, as when the master tells of them."""
+    """Connect this node's subscription to publishers, as if the master had reported them."""
     manager = next(iter(get_registration_listeners().listeners), None)
     if manager is not None:
         manager.publisher_update(topic, uris)
 
 
 def _self_test():
-    """Look for everything that this module relies on.
+    """Check for everything that this module relies on.
 
-    :raises ImportError: rospy is not the one that this was written for
+    :raises ImportError: rospy is not the version this was written for
     """
     wanted = [
         (rospy.topics._PublisherImpl, ('add_connection', 'set_queue_size', 'publish')),

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A subscription to raw bytes that can be opened and closed any number of times.
+"""A subscription to raw bytes that you can open and close any number of times.
 
-rospy's own leaves things behind when it is unregistered (ros_comm issues 544, 1998, 2373; the
-project is archived, so they will stay): the epoll handle of each topic, which sits in a cycle of
-references and so stays open until the garbage collector comes to its oldest generation; and a
-thread that asks a publisher for a connection for ever, where its machine does not answer.
+rospy's own leaves things behind when unregistered (ros_comm issues 544, 1998, 2373; the project is
+archived, so they will stay): the epoll handle of each topic, which sits in a reference cycle and so
+stays open until the garbage collector comes to its oldest generation; and, if a publisher's machine
+does not answer, a thread that asks it for a connection for ever.
 """
 import io
 
@@ -15,17 +15,17 @@ from mhri.ros.graph.look import knock
 from mhri.ros.graph.master_api import MasterApi
 from mhri.ros.graph.rospy_inside import type_of, unsubscribe
 
-# The most that is read from the socket at once [bytes]; what does not fit is read the next time.
-# From 64 kB to 16 MB the CPU time per picture was measured to be the same.
+# The most to read from the socket at once [bytes]; the rest follows the next time. From 64 kB to 16
+# MB the CPU time per picture was measured to be the same.
 BUFF_SIZE = 1 << 20
 
 
 class Subscription:
     """The messages of one topic as bytes, of whatever type.
 
-    rospy has one connection for all subscribers of a topic in a program, with the class of whoever
-    came first and the queue size of whoever came last. So no queue size is asked for here, that a
-    recorder of the same topic misses nothing: the callback only stores, and none can wait for it.
+    rospy has one connection for all subscribers of a topic in a program, with the class of the
+    first and the queue size of the last. So this asks for no queue size, lest a recorder of the
+    same topic miss something: the callback only stores, and no queue can build up.
 
     :param on_bytes: called with (type, bytes-like) on rospy's thread; it must return at once
     """
@@ -40,7 +40,7 @@ class Subscription:
         message_type = type_of(message)
         if isinstance(message, rospy.AnyMsg):
             self._on_bytes(message_type, message._buff)
-        else:  # another subscriber of this program was first
+        else:  # another subscriber in this program was first
             buffer = io.BytesIO()
             message.serialize(buffer)
             self._on_bytes(message_type, buffer.getbuffer())

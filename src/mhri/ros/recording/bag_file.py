@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A bag on the disk: made where there is none, written chunk by chunk, closed whole."""
+"""A bag on the disk: made if missing, written chunk by chunk, closed whole."""
 import errno
 import io
 import itertools
@@ -17,31 +17,31 @@ from mhri.core.recording.recording import (
 
 _WORDS = {errno.EACCES: 'no permission', errno.EPERM: 'no permission',
           errno.EROFS: 'that disk is read-only', errno.ENOSPC: 'the disk is full',
-          errno.EDQUOT: 'no space is left to this user', errno.ENAMETOOLONG: 'the name is too long',
+          errno.EDQUOT: 'your disk quota is used up', errno.ENAMETOOLONG: 'the name is too long',
           errno.ELOOP: 'its links lead in a circle', errno.ENOTDIR: 'a part of it is a file',
           errno.EEXIST: 'a part of it is a file', errno.EFBIG: 'the file is too large for it',
           errno.EIO: 'the disk does not answer'}
 
-# What Linux takes (PATH_MAX) less room for a name; asked before anything is made.
+# The longest path on Linux (PATH_MAX) less room for a name; checked before anything is made.
 _LONGEST_PATH = 4096 - 256
 _NS = 10 ** 9
 
 
 def words_of(error):
-    """Return why a path or a disk failed, for a person."""
+    """Return why a path or a disk failed, in words for the operator."""
     if isinstance(error, OSError):
         return _WORDS.get(error.errno) or (error.strerror or str(error)).lower()
     if isinstance(error, ValueError) and not isinstance(error, PathRefused):
-        return 'it contains a character that no name may have'
+        return 'it contains a character that no name can have'
     return str(error)
 
 
 class Publisher(str):
     """The topic of one publisher, equal to no other's.
 
-    ``rosbag.Bag`` keeps one connection for each topic that it is given. With this for a topic, each
-    publisher has a connection and a header of its own, as ``rosbag record`` has it: they may differ
-    in caller, latching and even type.
+    ``rosbag.Bag`` keeps one connection per topic. Given this as the topic, it keeps a connection
+    and a header for each publisher, as ``rosbag record`` does: publishers may differ in caller,
+    latching and even type.
 
     :param fields: {name: text} as it introduced itself; ``topic``, ``type``, ``md5sum`` and
         ``message_definition`` must be among them
@@ -55,17 +55,17 @@ class Publisher(str):
         """Take the topic's name."""
         self = super().__new__(cls, fields['topic'])
         self.fields = fields
-        # What the library asks of a message class, which need not be installed here.
+        # What the library wants of a message class, which need not be installed here.
         self.kind = SimpleNamespace(_md5sum=fields['md5sum'],
                                     _full_text=fields['message_definition'])
         return self
 
 
 class _Tail(io.BytesIO):
-    """A file whose end is in memory until it is saved, all or nothing.
+    """A file whose tail stays in memory until it is saved, all or nothing.
 
-    ``rosbag.Bag`` writes a chunk piece by piece and then goes back to its header: on the disk, a
-    program that is killed would leave a chunk without a size, a full disk half a chunk.
+    ``rosbag.Bag`` writes a chunk piece by piece and then goes back to its header: written straight
+    to disk, a killed program would leave a chunk without a size, a full disk half a chunk.
 
     :param file_descriptor: of an empty file; closed with this
     ``saved`` is the length of the file on the disk.
@@ -84,7 +84,7 @@ class _Tail(io.BytesIO):
         return self._base + super().tell()
 
     def seek(self, offset, whence=os.SEEK_SET):
-        """Go to a position; before one that is on the disk already, what is here is saved.
+        """Go to a position; save the tail first if the position is already on the disk.
 
         :raises OSError: as :meth:`save`
         """
@@ -96,7 +96,7 @@ class _Tail(io.BytesIO):
         return self._base + super().seek(offset, whence)
 
     def save(self):
-        """Write what is in memory.
+        """Write the tail from memory.
 
         :raises OSError: nothing was written, and memory is empty
         """
@@ -112,7 +112,7 @@ class _Tail(io.BytesIO):
         self._forget()
 
     def cut(self, length):
-        """Give up what is in memory, and of the file all that is beyond a length."""
+        """Discard the tail in memory, and cut the file to a length."""
         self._forget()
         os.ftruncate(self._fd, length)
         self._base = self.saved = length
@@ -122,9 +122,9 @@ class _Tail(io.BytesIO):
         self.truncate()
 
     def close(self):
-        """Save, and have the disk keep it.
+        """Save, and flush to the disk.
 
-        :raises OSError: the disk failed; the file is closed all the same
+        :raises OSError: the disk failed; the file is closed anyway
         """
         if self.closed:
             return
@@ -139,10 +139,11 @@ class _Tail(io.BytesIO):
 class BagFile:
     """A rosbag 2.0 file called ``<path>.active`` until it is closed. Not thread-safe.
 
-    Written by ``rosbag.Bag``. Beneath its public interface are only its lists of chunks (the newest
-    is given up where the disk has no room) and of messages (kept for readers, endless).
+    Written by ``rosbag.Bag``. The only access beneath its public interface is to its lists of
+    chunks (to give up the newest if the disk has no room) and of messages (kept for readers,
+    endless).
 
-    :param path: what it will be called; ``path.active`` is made and must not exist
+    :param path: its final name; ``path.active`` is made and must not exist
     :raises OSError: it cannot be made or written
     """
 
@@ -152,7 +153,7 @@ class BagFile:
         self._fd = os.open(self._active, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
         self._tail = _Tail(self._fd)
         try:
-            # Chunks end where it is told to, see write().
+            # Chunks end only where write() says.
             self._bag = rosbag.Bag(self._tail, 'w', chunk_threshold=sys.maxsize)
             self._tail.save()
         except OSError:
@@ -191,14 +192,14 @@ class BagFile:
             raise
 
     def sync(self):
-        """Have the disk keep what is written, whatever happens to this machine (blocking).
+        """Flush to the disk, so that the data survive whatever happens to this machine (blocking).
 
         :raises OSError: the disk failed
         """
         os.fdatasync(self._fd)
 
     def free_bytes(self):
-        """Return the space left for this user on the disk, None if it cannot be told."""
+        """Return the space left for this user on the disk, None if unknown."""
         try:
             found = os.fstatvfs(self._fd)
         except OSError:
@@ -206,8 +207,9 @@ class BagFile:
         return found.f_bavail * found.f_frsize
 
     def close(self):
-        """Write the index, give the file its name, and return its path; chunks that leave no room
-        for an index on a full disk are given up, the newest first.
+        """Write the index, give the file its name, and return its path.
+
+        If a full disk has no room for the index, give up chunks, the newest first.
 
         :raises OSError: it stays under the name ``<path>.active``
         """
@@ -234,13 +236,13 @@ class BagFile:
         for number in itertools.count():
             path = os.path.join(folder, numbered(name, number))
             try:
-                # Unlike a rename, a link never replaces a file that has come up meanwhile.
+                # Unlike a rename, a link never replaces a file that appeared meanwhile.
                 os.link(self._active, path)
                 os.unlink(self._active)
             except FileExistsError:
                 continue
             except OSError:
-                # No links on this disk (FAT). A file that comes up in this instant is lost.
+                # No links on this disk (FAT). A file that appears in this instant is lost.
                 if os.path.lexists(path):
                     continue
                 os.rename(self._active, path)
@@ -251,7 +253,7 @@ class BagFile:
 def _is_taken(path):
     """Tell whether a file of this name exists.
 
-    :raises PathRefused: something that is no file has the name
+    :raises PathRefused: the name belongs to something other than a file
     :raises OSError: links in a circle, a name that is too long
     """
     if not os.path.lexists(path):
@@ -279,11 +281,11 @@ def _make_folder(folder):
             try:
                 os.makedirs(folder, exist_ok=True)
             except RecursionError:
-                raise PathRefused('that are too many folders in one another')
+                raise PathRefused('the folders are nested too deeply')
 
 
 def _create(folder, name):
-    """Return (BagFile, whether the name had to be changed) in a folder, which is made if missing.
+    """Return (BagFile, whether its name had to change) in a folder, made if missing.
 
     :raises PathRefused: files do not go there
     :raises OSError, ValueError: they cannot
@@ -300,10 +302,10 @@ def _create(folder, name):
 
 
 def open_bag(text, robot, when, env=None):
-    """Make the bag that the operator asked for, or the default one where that is not possible.
+    """Make the bag that the operator asked for, or the default one if that is impossible.
 
-    :param text: what was typed: empty, a folder, or a file with or without ``.bag``; ``~`` and
-        variables are replaced
+    :param text: what the operator typed: empty, a folder, or a file with or without ``.bag``; ``~``
+        and variables are expanded
     :param when: a :class:`datetime.datetime` in local time
     :returns: (:class:`BagFile`, note); the note is '' if all is as asked for
     :raises PathRefused: not even the default can be written; the text says why

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The thread that a disk may hold up: writes messages, watches the space, closes the file."""
+"""The thread that the disk may hold up: it writes messages, watches the space, closes the file."""
 import logging
 import queue
 import threading
@@ -13,14 +13,15 @@ _LOG = logging.getLogger(__name__)
 
 
 class BagWriter:
-    """Writes messages in the order in which they are put, none of them dropped.
+    """Writes messages in the order of :meth:`put`; drops none.
 
     ``failure`` says why nothing more can be written, ``warning`` what is wrong with the disk now
-    ('' while all is well); ``closed`` is an event: the file is closed and has its name, or cannot.
+    ('' while all is well); ``closed`` is an event: the file is closed and has its name, or closing
+    failed.
 
     :param file: :class:`mhri.ros.recording.bag_file.BagFile`; closed by this thread
     :param limits: :class:`mhri.core.recording.recording.RecordingLimits`
-    :param on_trouble: called once, on this thread, when the recording has to stop
+    :param on_trouble: called once, on this thread, when the recording must stop
     """
 
     def __init__(self, file, limits, on_trouble=lambda: None, clock=time.monotonic):
@@ -42,7 +43,7 @@ class BagWriter:
         threading.Thread(target=self._run, name='bag_writer', daemon=True).start()
 
     def put(self, messages, size):
-        """Queue messages for one chunk of the file; returns at once.
+        """Queue messages for one chunk of the file; return at once.
 
         :param messages: as :meth:`mhri.ros.recording.bag_file.BagFile.write` takes them
         :param size: their bytes
@@ -50,20 +51,20 @@ class BagWriter:
         self._put_bytes += size
         self._queue.put((messages, size))
         if self.queue_bytes >= self._limits.warn_queue_bytes:
-            # The thread that writes may be the one that the disk holds up.
+            # Judge it here, too: the disk may be holding up the thread that writes.
             self._judge(None)
 
     def finish(self):
-        """Close the file when all that was put is written; returns at once."""
+        """Close the file once everything queued is written; return at once."""
         self._queue.put(None)
 
     @property
     def queue_bytes(self):
-        """What was put and is not written yet."""
+        """The bytes queued and not written yet."""
         return self._put_bytes - self._done_bytes
 
     def _judge(self, free_bytes):
-        """Take note of the queue and the space left; end the recording where need be."""
+        """Note the queue and the space left; end the recording if need be."""
         self.warning, stop = warning_of(self._limits, free_bytes, self.queue_bytes)
         if stop:
             self._fail(self.warning)
@@ -82,14 +83,14 @@ class BagWriter:
                     broken = not self._write(messages)
                 self._done_bytes += size
             self.file.close()
-        except Exception as error:  # the guard of this thread: said to the operator, and logged
+        except Exception as error:  # the guard of this thread: tell the operator, and log it
             _LOG.exception('%s could not be closed', self.file.path)
             self._fail(words_of(error))
         finally:
             self.closed.set()
 
     def _write(self, messages):
-        """Write one chunk; return whether more may follow."""
+        """Write one chunk; return whether more can follow."""
         try:
             self.file.write(messages)
             if self._clock() - self._synced_at >= self._limits.sync_s:

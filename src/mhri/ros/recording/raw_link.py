@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""One TCPROS connection to a publisher, read as bytes (http://wiki.ros.org/ROS/TCPROS)."""
+"""Reads one TCPROS connection to a publisher as bytes (http://wiki.ros.org/ROS/TCPROS)."""
 import io
 import socket
 import struct
@@ -14,7 +14,7 @@ from mhri.core.recording.frames import FrameSplitter
 from mhri.ros.graph.master_api import ERRORS, TimedTransport
 
 _SMALL, _LARGE = 64 * 1024, 1024 * 1024
-# A robot that loses its power says no goodbye: asked after 5 s of silence, given up after 5 more.
+# A robot that loses power says no goodbye: probe it after 5 s of silence, give up after 5 more.
 _KEEPALIVE = ((socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1),
               (socket.IPPROTO_TCP, socket.TCP_KEEPIDLE, 5),
               (socket.IPPROTO_TCP, socket.TCP_KEEPINTVL, 1),
@@ -23,7 +23,7 @@ _KEEPALIVE = ((socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1),
 
 
 class LinkError(Exception):
-    """A publisher that cannot be connected, or not any more; the text says which and why."""
+    """A publisher that does not connect, or no longer; the text says which and why."""
 
 
 class RawLink:
@@ -33,9 +33,9 @@ class RawLink:
     :param uri: the XML-RPC address of the publisher's node
     :param caller_id: the name under which to connect
     :param timeout_s: the most that each step may take [s]
-    ``fields`` is what the publisher says of itself; ``publisher`` is for the one who records.
+    ``fields`` is what the publisher says of itself; ``publisher`` is free for the recorder's use.
 
-    :raises LinkError: it does not answer, does not publish this topic, or speaks something else
+    :raises LinkError: it does not answer, does not publish this topic, or speaks another protocol
     """
 
     def __init__(self, topic, uri, caller_id, timeout_s=3.0):
@@ -53,11 +53,11 @@ class RawLink:
         self._recv = self._socket.recv
 
     def _connect(self, topic, uri, caller_id, timeout_s):
-        """Ask for the topic, connect, and return what the publisher says of it."""
+        """Ask for the topic, connect, and return the publisher's header."""
         with xmlrpc.client.ServerProxy(uri, transport=TimedTransport(timeout_s)) as proxy:
             code, message, protocol = proxy.requestTopic(caller_id, topic, [['TCPROS']])
         if code != 1 or not protocol:
-            raise ValueError('not to be had: {}'.format(message))
+            raise ValueError('not available: {}'.format(message))
         self._socket = socket.create_connection((protocol[1], protocol[2]), timeout_s)
         for option in _KEEPALIVE:
             self._socket.setsockopt(*option)
@@ -82,7 +82,7 @@ class RawLink:
         return self._socket.fileno()
 
     def read(self):
-        """Return the frames that are whole now, () where nothing has come.
+        """Return the complete frames, () if nothing has come.
 
         :raises LinkError: the publisher has gone
         """
@@ -101,10 +101,10 @@ class RawLink:
         raise LinkError('{} at {}: closed'.format(*self.key))
 
     def read_all(self):
-        """Yield the frames of everything that has come by now."""
+        """Yield all frames that have come by now."""
         while True:
             try:
-                # Bytes that are not a whole message yet are followed by more, or by nothing.
+                # Part of a message yields no frame, but more bytes may wait behind it.
                 before = self._splitter.wanted
                 frames = self.read()
             except LinkError:
@@ -121,13 +121,13 @@ class RawLink:
     def cut(self):
         """Hang up with a reset: the publisher learns of it before it sends the next message.
 
-        Of a connection that was merely closed rospy learns by that message, and sends it whole.
+        If merely closed, rospy learns of it only by sending that message whole.
         """
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack('ii', 1, 0))
         self.close()
 
 
 def _definition(found):
-    """Return the text of a message type that its publisher did not send, '' if unknown here."""
+    """Return the definition of a type whose publisher did not send it, '' if unknown here."""
     known = genpy.message.get_message_class(found['type'])
     return known._full_text if known is not None and known._md5sum == found['md5sum'] else ''

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads every publisher of some topics on one thread, as bytes, in the order in which they come."""
+"""Reads every publisher of some topics on one thread, as bytes, in order of arrival."""
 import logging
 import os
 import select
@@ -14,14 +14,14 @@ _LOG = logging.getLogger(__name__)
 class RawReader:
     """The connections of a recording.
 
-    Connections are made on threads of their own, so that an address that does not answer holds
-    nothing up; one that breaks is made anew as long as its publisher is on the graph.
+    Separate threads make the connections, so that an address that does not answer holds nothing up;
+    a broken one is made anew as long as its publisher is on the graph.
 
     :param caller_id: the name under which to connect
-    :param on_frame: called with (link, frame) for each message on the reading thread, in order
-    :param on_turn: called after each turn of reading; returns in how many seconds it wants to be
-        called again, None for "with the next message"
-    :param on_end: called on the reading thread when everything that came is read
+    :param on_frame: called on the reading thread with (link, frame) for each message, in order
+    :param on_turn: called after each turn of reading; returns in how many seconds to call it again,
+        None for "with the next message"
+    :param on_end: called on the reading thread when everything received is read
     """
 
     def __init__(self, caller_id, on_frame, on_turn, on_end):
@@ -40,14 +40,14 @@ class RawReader:
         self._poll.register(self._wake_read, select.EPOLLIN)
 
     def start(self):
-        """Begin to read."""
+        """Start reading."""
         threading.Thread(target=self._run, name='raw_reader', daemon=True).start()
 
     def want(self, topic, uris):
-        """Connect to the publishers of a topic that are not connected yet; returns at once.
+        """Connect to the publishers of a topic that are not connected yet; return at once.
 
-        Those that are gone are not hung up: what they sent last may still be on its way, and they
-        hang up themselves.
+        It does not hang up on publishers that are gone: their last messages may still be on the
+        way, and they hang up themselves.
         """
         with self._lock:
             if self._stopping:
@@ -60,7 +60,7 @@ class RawReader:
                              daemon=True).start()
 
     def stop(self):
-        """Read what has come by now, then end; returns at once."""
+        """Read what has come by now, then end; return at once."""
         with self._lock:
             if self._stopping:
                 return
@@ -68,7 +68,7 @@ class RawReader:
             os.write(self._wake_write, b'x')
 
     def wake(self):
-        """Have ``on_turn`` called soon."""
+        """Call ``on_turn`` soon."""
         with self._lock:
             if not self._stopping:
                 os.write(self._wake_write, b'x')
@@ -91,7 +91,7 @@ class RawReader:
     def _run(self):
         try:
             self._read_until_stopped()
-        except Exception:  # the guard of this thread: the recording ends with what there is
+        except Exception:  # the guard of this thread: the recording ends with what it has
             _LOG.exception('the reading of %s ends', self._caller_id)
         with self._lock:
             self._stopping = True

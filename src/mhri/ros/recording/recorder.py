@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Save IMU Data: one recording of one robot, from the sockets to the file.
 
-Threads: one makes the connections and one reads them, so that no display in this program and no
-disk holds a message up; one writes, so that nobody waits for the disk.
+One thread makes the connections and one reads them, so that no display in this program and no disk
+holds a message up; one writes, so that nobody waits for the disk.
 """
 from datetime import datetime
 import io
@@ -27,10 +27,10 @@ _LOG = logging.getLogger(__name__)
 
 
 def receipt_clock():
-    """Return a function to the time of now [ns]: ROS time where it is simulated.
+    """Return a function that returns the time now [ns]: ROS time if it is simulated.
 
-    Else the time of day at the start plus what has gone by since: a clock that is set meanwhile
-    does not bring the messages out of order.
+    Else it is the time of day at the start plus the time elapsed since: setting the clock meanwhile
+    does not disorder the messages.
     """
     if rospy.rostime.is_rostime_initialized() and not rospy.rostime.is_wallclock():
         return lambda: max(1, rospy.get_rostime().to_nsec())
@@ -40,20 +40,19 @@ def receipt_clock():
 
 
 class Recorder:
-    """One recording: started once, stopped once, and then only asked for its status.
+    """One recording: start it once, stop it once, and then only ask for its status.
 
-    It subscribes (any type, as the node ``/mhri_recorder_<robot>_<number>``) and writes every
+    It subscribes (to any type, as the node ``/mhri_recorder_<robot>_<number>``) and writes every
     message that arrives, with its receipt time, in the order of receipt. Call ``stop(wait=True)``
-    before the program ends (also on SIGTERM): that closes the file whole. A program that is killed
-    leaves ``<file>.bag.active``, of which ``rosbag reindex`` saves all but the last half second.
+    before the program ends (also on SIGTERM): that closes the file whole. A killed program leaves
+    ``<file>.bag.active``, from which ``rosbag reindex`` saves all but the last half second.
 
     :param robot: its name
     :param topics: absolute names (:func:`mhri.core.recording.recording.topics_of`); not the
-        robot's velocity
-        topics: whoever subscribes those is taken for the robot
+        robot's velocity topics: whoever subscribes to those counts as the robot
     :param path: as the operator typed it, '' for the default
     :param limits: :class:`mhri.core.recording.recording.RecordingLimits`
-    :param clock_ns: function to the receipt time [ns], default :func:`receipt_clock`
+    :param clock_ns: function that returns the receipt time [ns], default :func:`receipt_clock`
     """
 
     _numbers = iter(range(1, 10 ** 9))
@@ -64,7 +63,7 @@ class Recorder:
         self._asked = path
         self._limits = limits
         self._clock_ns = clock_ns or receipt_clock()
-        # One lock for the beginning and the end, one for the messages: the end may come with one.
+        # One lock for start and end, one for the messages: a message may bring the end.
         self._life = threading.Lock()
         self._lock = threading.Lock()
         self._state = OFF
@@ -85,7 +84,7 @@ class Recorder:
         self._complete = False
 
     def start(self):
-        """Open the file and subscribe; returns at once, :meth:`status` says what came of it."""
+        """Open the file and subscribe; return at once; :meth:`status` has the result."""
         with self._life:
             if self._state != OFF:
                 return
@@ -93,9 +92,9 @@ class Recorder:
         threading.Thread(target=self._begin, name='recording', daemon=True).start()
 
     def stop(self, wait=False, timeout_s=10.0):
-        """Write what has come by now and close the file; returns at once unless told to wait.
+        """Write what has come by now and close the file; return at once unless told to wait.
 
-        :param wait: return when the file is closed, or after ``timeout_s`` [s]
+        :param wait: return only when the file is closed, or after ``timeout_s`` [s]
         :returns: whether the recording has ended
         """
         with self._life:
@@ -109,7 +108,7 @@ class Recorder:
         return self._ended.wait(timeout_s) if wait else self._ended.is_set()
 
     def put(self, topic, message):
-        """Record a message of this program itself, e.g. a command that it sends to the robot.
+        """Record a message of this program's own, e.g. a command that it sends to the robot.
 
         :param message: a ROS message
         """
@@ -127,7 +126,7 @@ class Recorder:
         self._reader.wake()
 
     def status(self):
-        """Return the :class:`mhri.core.recording.recording.RecordingStatus` of now; cheap."""
+        """Return the present :class:`mhri.core.recording.recording.RecordingStatus`; cheap."""
         writer, state, now = self._writer, self._state, time.monotonic()
         note, attention = self._note, bool(self._note)
         if state == RECORDING and writer is not None and writer.warning:
@@ -143,12 +142,12 @@ class Recorder:
             note=note, attention=attention)
 
     def _begin(self):
-        """Open everything (on a thread of its own: a disk or a name server may be slow)."""
+        """Open everything (on its own thread: a disk or a name server may be slow)."""
         try:
             self._open()
         except PathRefused as error:
             self._end(FAILED, str(error))
-        except Exception as error:  # the guard of this thread: said to the operator, and logged
+        except Exception as error:  # the guard of this thread: tell the operator, and log it
             _LOG.exception('a recording of %s could not begin', self.robot)
             self._end(FAILED, 'cannot record: {}'.format(words_of(error)))
 
@@ -162,7 +161,7 @@ class Recorder:
             self._node = TapNode(name, self.topics, reader.want)
             self._node.start()
         except OSError as error:
-            self._end(FAILED, 'nothing can be received: {}'.format(words_of(error)))
+            self._end(FAILED, 'cannot receive anything: {}'.format(words_of(error)))
             self._writer.finish()
             self._writer.start()
             return
@@ -182,7 +181,7 @@ class Recorder:
             self._add(publisher, frame)
 
     def _add(self, publisher, frame):
-        """Take one message into the chunk (under the lock)."""
+        """Add one message to the chunk (under the lock)."""
         self._chunk.append((publisher, self._clock_ns(), frame))
         self._chunk_size += len(frame)
         self._messages += 1
@@ -193,18 +192,18 @@ class Recorder:
             self._flush()
 
     def _publisher(self, fields):
-        """Return the publisher of this description; one that comes back is the same."""
+        """Return the publisher with this description; a returning one is the same."""
         return self._publishers.setdefault(tuple(sorted(fields.items())), Publisher(fields))
 
     def _flush(self):
-        """Hand the chunk to the writer (under the lock)."""
+        """Pass the chunk to the writer (under the lock)."""
         if self._chunk:
             self._writer.put(self._chunk, self._chunk_size)
             self._chunk, self._chunk_size = [], 0
         self._chunk_due_s = None
 
     def _on_turn(self):
-        """Return after how many seconds the chunk has to go to the disk."""
+        """Return in how many seconds the chunk must go to the disk."""
         due_s = self._chunk_due_s
         if due_s is None:
             return None
@@ -216,7 +215,7 @@ class Recorder:
         return None
 
     def _on_read(self):
-        """Everything is read: close the file and leave the graph (on the reading thread)."""
+        """Close the file and leave the graph after everything is read (on the reading thread)."""
         self._node.stop()
         with self._lock:
             self._complete = True

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The recordings of all robots of one program: at most one running for each at a time."""
+"""The recordings of all robots in one program: at most one running per robot."""
 import threading
 
 from mhri.core.recording.recording import RECORDING, RecordingLimits, RecordingStatus, topics_of
@@ -10,23 +10,23 @@ NOTHING = RecordingStatus()
 
 
 class Recordings:
-    """Starts, stops and closes; every method but :meth:`close` returns at once.
+    """Starts, stops and closes recordings; every method but :meth:`close` returns at once.
 
-    ``limits`` (:class:`RecordingLimits`) hold for what is started from now on.
+    ``limits`` (:class:`RecordingLimits`) apply to recordings started from now on.
     """
 
     def __init__(self):
         self.limits = RecordingLimits()
         self._lock = threading.Lock()
         self._recorders = {}
-        # Told to stop while their files are still being closed, and followed by another already.
+        # Stopped, and already followed by another while their files are still being closed.
         self._closing = []
         self._stopped = set()
 
     def start(self, robot, robot_type, path='', choices=()):
-        """Begin to record a robot; one that is being recorded goes on as it is.
+        """Begin to record a robot; if one is running already, it goes on unchanged.
 
-        While the last recording of it is still being closed, the new one begins beside it.
+        While its last recording is still being closed, the new one begins beside it.
 
         :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
         :param path: as the operator typed it, '' for the default
@@ -45,7 +45,7 @@ class Recordings:
         recorder.start()
 
     def stop(self, robot):
-        """End the recording of a robot; its file is closed in the background."""
+        """End a robot's recording; its file closes in the background."""
         with self._lock:
             recorder = self._recorders.get(robot)
             self._stopped.add(robot)
@@ -53,18 +53,18 @@ class Recordings:
             recorder.stop()
 
     def running(self):
-        """Return the names of the robots that are being recorded."""
+        """Return the names of the robots being recorded."""
         with self._lock:
             items = list(self._recorders.items())
         return tuple(robot for robot, recorder in items if recorder.status().state == RECORDING)
 
     def status(self, robot):
-        """Return the :class:`RecordingStatus` of a robot's present or last recording."""
+        """Return the :class:`RecordingStatus` of a robot's current or last recording."""
         recorder = self._recorders.get(robot)
         return recorder.status() if recorder else NOTHING
 
     def close(self):
-        """End them all and wait until their files are closed whole."""
+        """End all recordings and wait until their files are complete and closed."""
         with self._lock:
             recorders = self._closing + list(self._recorders.values())
         for recorder in recorders:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A subscriber on the graph that is not rospy's: it learns who publishes, and when that changes."""
+"""A subscriber on the graph without rospy: it learns who publishes, and when that changes."""
 import logging
 import os
 import threading
@@ -50,20 +50,20 @@ class _SlaveApi:
         return 0, 'this node publishes nothing', 0
 
     def shutdown(self, caller_id, message=''):
-        return 0, 'this is a part of the panel: stop the recording there', 0
+        return 0, 'this is part of the panel: stop the recording there', 0
 
 
 class TapNode:
     """Subscribes topics of any type under a name of its own.
 
     rospy has one connection for all subscribers of a topic in a program, with the class and the
-    queue of one message that the displays ask for: a recording beside them has to have its own. The
-    subscriptions are renewed every 2 s, which also brings them back to a master that was restarted.
+    queue of one message that the displays ask for: a recording beside them needs its own. The node
+    renews its subscriptions every 2 s, which also restores them after a restart of the master.
 
     :param name: the node's name, e.g. ``/mhri_recorder_bot1``
     :param topics: absolute names
-    :param on_publishers: called with (topic, XML-RPC addresses) whenever they are heard of, on a
-        thread of this node; the same ones come again
+    :param on_publishers: called with (topic, XML-RPC addresses) at every report, on a thread of
+        this node; the same ones come repeatedly
     """
 
     def __init__(self, name, topics, on_publishers):
@@ -82,9 +82,9 @@ class TapNode:
         return self._api.uri if self._api else ''
 
     def start(self):
-        """Open the address and begin to subscribe; returns at once.
+        """Open the address and begin to subscribe; return at once.
 
-        :raises OSError: no address can be had
+        :raises OSError: no address is available
         """
         self._server = ThreadingXMLRPCServer((get_bind_address(), 0), 0)
         self._server.register_instance(_SlaveApi(self))
@@ -97,7 +97,7 @@ class TapNode:
         self.worker.do(self._renew)
 
     def update(self, topic, publishers):
-        """Hand on who publishes a topic now (on the worker's thread)."""
+        """Report who publishes a topic now (on the worker's thread)."""
         if self._open:
             self._on_publishers(topic, publishers)
 
@@ -114,7 +114,7 @@ class TapNode:
             self.update(topic, publishers or [])
 
     def stop(self):
-        """Leave the graph; returns at once."""
+        """Leave the graph; return at once."""
         self.worker.do(self._leave)
 
     def _leave(self):
@@ -126,6 +126,6 @@ class TapNode:
             _LOG.debug('%s', error)
         self._server.shutdown()
         self._server.server_close()
-        # With it goes its kept connection to the master.
+        # This also drops its open connection to the master.
         self._api = None
         self.worker.stop()

@@ -36,7 +36,7 @@ class Fleet:
         self._stopped = False
 
     def want(self, name):
-        """Take note that a robot is in the list; :meth:`connect` makes its link."""
+        """Note that a robot is in the list; :meth:`connect` makes its link."""
         with self._lock:
             self._wanted.add(name)
 
@@ -90,10 +90,10 @@ class Fleet:
         self._problems[name] = words
 
     def supervise(self):
-        """Look again at the type of each robot that is not heard: it may have started meanwhile.
+        """Look again at the type of each silent robot: it may have started meanwhile.
 
-        A robot that can be reached keeps its type: a topic that comes or goes never changes a type
-        under way.
+        A robot within reach keeps its type: a topic that comes or goes never changes it on the
+        move.
         """
         with self._lock:
             names = [name for name in self._wanted if name not in self._links
@@ -104,7 +104,7 @@ class Fleet:
         try:
             facts = robot_facts(rospy.get_name(), names, self._types, seen)
         except (MasterError, ValueError, OSError) as error:
-            rospy.logdebug('the robots cannot be looked at now: %s', error)
+            rospy.logdebug('cannot look at the robots now: %s', error)
             return
         for name in names:
             self.connect(name, facts[name])

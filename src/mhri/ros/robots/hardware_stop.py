@@ -10,7 +10,7 @@ from mhri.ros.messages import message_class, MessageMissing, read_field
 class HardwareStop:
     """Listens to the topic that a robot type names as ``hardware_stop``.
 
-    The last message counts while a publisher is connected: many publish it once, latched.
+    The last message counts while a publisher is connected: many publish only once, latched.
 
     :param robot: the robot's name
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
@@ -27,9 +27,9 @@ class HardwareStop:
             kind = message_class(self._spec.kind)
             read_field(kind(), self._spec.field)
         except MessageMissing as error:
-            self.problem = 'its emergency stop cannot be read: {}'.format(error)
+            self.problem = 'cannot read its emergency stop: {}'.format(error)
         except AttributeError:
-            self.problem = 'its emergency stop cannot be read: {} has no field {}'.format(
+            self.problem = 'cannot read its emergency stop: {} has no field {}'.format(
                 self._spec.kind, self._spec.field)
         else:
             self._subscriber = rospy.Subscriber(topic_of(robot, self._spec.name), kind, self._hear,

@@ -358,6 +358,7 @@ class ScreenBackend:
             **(self._devices.view() if self._devices else {}),
             control=self._control(), answers=answers,
             stop_taken=answers and self._stopped_by_gates, asked=asked, waits_for=waits_for or '',
+            pushed=waits_for is not None and self._mux.pushed,
             **({'advice': self._mux.advice, 'dead_man': self._mux.dead_man} if self._mux else {}))
         status, level = status_line(view, waits_for, self.master_uri)
         return replace(view, status=status, status_level=level)

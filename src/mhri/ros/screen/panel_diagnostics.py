@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the panel publishes on ``/diagnostics``: its robots' links, and whom it did not believe."""
+"""The panel's ``/diagnostics``: its robots' links, and whom it did not believe."""
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from mhri.core.screen.views import LIVE

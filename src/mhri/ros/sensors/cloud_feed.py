@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A robot's newest point cloud: as it is sent, or made of a depth picture and its lens."""
+"""A robot's newest point cloud: as sent, or made from a depth picture and its lens."""
 import time
 
 from sensor_msgs.msg import CameraInfo
@@ -13,10 +13,11 @@ from mhri.core.sensors.point_cloud import (
     CLOUD_TYPE, CloudError, from_depth, Lens, parse_cloud, read_cloud)
 from mhri.ros.camera.camera_decoder import Decoder
 from mhri.ros.camera.camera_feed import CameraFeed
+from mhri.ros.camera.samples import Samples
 from mhri.ros.graph.subscription import Subscription
 from mhri.ros.sensors.refusals import Refusals
 
-# More a second nobody looks at, and each costs tens of milliseconds.
+# Nobody looks at more per second, and each costs tens of milliseconds.
 MOST_HZ = 5.0
 _INFO_TYPE = 'sensor_msgs/CameraInfo'
 
@@ -29,7 +30,7 @@ def info_topic(depth_topic):
 class CloudDecoder(Decoder):
     """Reads clouds, and depth pictures once their lens is known.
 
-    :param name: whose clouds they are, for the log
+    :param name: the owner of the clouds, for the log
     """
 
     def __init__(self, name, wanted, clock):
@@ -41,7 +42,7 @@ class CloudDecoder(Decoder):
         """Store the newest ``sensor_msgs/CameraInfo`` (rospy's thread)."""
         try:
             info = CameraInfo().deserialize(bytes(data))
-        except Exception as error:  # genpy raises all sorts for bytes that are no message
+        except Exception as error:  # genpy raises all sorts for bytes that are not a message
             self._refusals.note('a {} of these bytes ({!r})'.format(_INFO_TYPE, error))
             return
         self._lens = Lens(info.K[0], info.K[4], info.K[2], info.K[5], info.width, info.height)
@@ -49,7 +50,7 @@ class CloudDecoder(Decoder):
     def read(self, message_type, data, view, received_s):
         """Return (:class:`mhri.core.sensors.point_cloud.Cloud`, its transport in words).
 
-        :raises FrameError: it cannot be read, or its lens has not come yet
+        :raises FrameError: it is unreadable, or its lens has not come yet
         """
         try:
             if message_type == CLOUD_TYPE:
@@ -63,11 +64,11 @@ class CloudDecoder(Decoder):
             raise FrameError(str(error))
 
 
-class _WithLens(Subscription):
-    """A subscription to a depth picture, and to its lens as well."""
+class _WithLens:
+    """Beside a line to a depth picture, a subscription to its lens."""
 
-    def __init__(self, topic, on_bytes, lens_topic, on_lens):
-        super().__init__(topic, on_bytes)
+    def __init__(self, lens_topic, on_lens, *line):
+        super().__init__(*line)
         self._lens = Subscription(lens_topic, on_lens)
 
     def close(self):
@@ -77,8 +78,16 @@ class _WithLens(Subscription):
             self._lens.close()
 
 
+class _Depths(_WithLens, Subscription):
+    """All pictures, and their lens."""
+
+
+class _DepthSamples(_WithLens, Samples):
+    """Single pictures, and their lens."""
+
+
 class _CloudStream(CameraFeed):
-    """Finds, subscribes and decodes as a camera's feed does, but clouds."""
+    """Finds, subscribes and decodes clouds as a camera's feed does pictures."""
 
     def __init__(self, robot, clouds, depths, clock):
         super().__init__(robot, clouds + depths, DEPTH, clock=clock)
@@ -97,19 +106,26 @@ class _CloudStream(CameraFeed):
         return offers + find_offers(DEPTH, depths, published)
 
     def line_of(self, session, offer):
+        return self._with_lens(_Depths, session, offer, super().line_of(session, offer))
+
+    def samples_of(self, session, offer, grant, native_hz):
+        return self._with_lens(_DepthSamples, session, offer,
+                               super().samples_of(session, offer, grant, native_hz))
+
+    def _with_lens(self, line_class, session, offer, line):
         if offer.transport == 'cloud':
-            return super().line_of(session, offer)
+            return line
         depth = next(topic for topic in self._depths if offer.topic.startswith(topic))
-        return (_WithLens, offer.topic, session.hear, info_topic(depth), session.hear_lens)
+        return (line_class, info_topic(depth), session.hear_lens, *line[1:])
 
 
 class CloudFeed:
     """A robot's point clouds, for a widget that asks for them on a timer; newest only.
 
-    Subscribes the first that is published of ``/<robot>/<cloud>`` (``sensor_msgs/PointCloud2``) and
+    Subscribes to the first one published of ``/<robot>/<cloud>`` (``sensor_msgs/PointCloud2``) and
     ``/<robot>/<depth>`` (``sensor_msgs/CompressedImage`` or ``sensor_msgs/Image``, with the
-    ``camera_info`` beside it, ``sensor_msgs/CameraInfo``). No method blocks but :meth:`close` with
-    a wait; all may be called from any thread.
+    ``camera_info`` beside it, ``sensor_msgs/CameraInfo``). No method blocks, except :meth:`close`
+    with a wait; call them on any thread.
 
     :param robot: namespace of the robot
     :param clouds: topics of clouds relative to it, in order of preference
@@ -126,13 +142,13 @@ class CloudFeed:
         self._stream.set_view(max_hz=MOST_HZ)
 
     def open(self):
-        """Begin to look for clouds and to read them; returns at once."""
+        """Begin to look for clouds and to read them; return at once."""
         self._stream.open()
 
     def close(self, wait_s=0.0):
-        """Read nothing more and unregister the topic; the latter on the feed's own thread.
+        """Read nothing more and unregister the topic, the latter on the feed's own thread.
 
-        :param wait_s: wait at most so long for it [s]
+        :param wait_s: wait for it at most so long [s]
         """
         self._stream.close(wait_s)
 
@@ -140,16 +156,24 @@ class CloudFeed:
         """Return the newest :class:`Cloud`, None if there is no new one since the last call."""
         return self._stream.take()
 
+    def grant(self, grant):
+        """Let through what a :class:`mhri.core.camera.budget.Grant` says, from now on."""
+        self._stream.grant(grant)
+
+    def figures(self):
+        """Return the :class:`mhri.core.camera.budget.Figures` of what it takes of the network."""
+        return self._stream.figures()
+
     def status(self):
         """Return the :class:`mhri.core.camera.images.StreamStatus` of this moment."""
         return self._stream.status()
 
     def refused(self):
-        """Return the number of clouds that could not be read, and were left out."""
+        """Return the number of unreadable clouds left out."""
         return self.status().bad
 
     def topic(self):
-        """Return the topic of clouds that is published now, '' for none."""
+        """Return the cloud topic published now, '' for none."""
         return self._stream.cloud_topic
 
     def age_s(self):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a robot's IMU and odometry say, gathered for the graph of its window."""
+"""Gathers what a robot's IMU and odometry say, for the graph of its tile."""
 import importlib
 import math
 import threading
@@ -16,17 +16,18 @@ from mhri.core.sensors.series import BinRing, IMU_KEYS, ODOMETRY_KEYS, roll_pitc
 from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.sensors.refusals import Refusals
 
-# This many samples at most wait for the next drawing; then the ROS thread sorts them in itself.
+# At most this many samples wait for the next redraw; beyond that the ROS thread sorts them in
+# itself.
 _MOST_PENDING = 1024
-# Of several topics with the same thing the first one counts while it is not silent for this long.
+# Of several topics for one thing the first counts, until it has been silent this long [s].
 _SILENT_S = 1.0
 _NAN = math.nan
 
 
 def _imu_row(message):
-    """Return orientation (x, y, z, w), angular velocity and acceleration; NaN for what it lacks.
+    """Return orientation (x, y, z, w), angular velocity and acceleration; NaN where missing.
 
-    A first covariance of -1 says that the sensor has no such measurement (``sensor_msgs/Imu``).
+    A first covariance of -1 means that the sensor does not measure it (``sensor_msgs/Imu``).
     """
     turn, rate, accel = message.orientation, message.angular_velocity, message.linear_acceleration
     row = (turn.x, turn.y, turn.z, turn.w, rate.x, rate.y, rate.z, accel.x, accel.y, accel.z)
@@ -52,14 +53,14 @@ def _turtle_row(message):
 
 _IMU_KINDS = (QUATERNION,) * 4 + (ANGULAR_VELOCITY,) * 3 + (ACCELERATION,) * 3
 _MOTION_KINDS = (SPEED, ANGULAR_VELOCITY)
-# Type: module and class of its messages, what makes a row of one, and what kind each value is of.
+# Type: module and class of its messages, function that makes a row of one, kind of each value.
 _READERS = {'sensor_msgs/Imu': ('sensor_msgs.msg', 'Imu', _imu_row, _IMU_KINDS),
             'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', _odometry_row, _MOTION_KINDS),
             'turtlesim/Pose': ('turtlesim.msg', 'Pose', _turtle_row, _MOTION_KINDS)}
 
 
 class _Intake:
-    """The samples of one kind, from whichever topic speaks; sorted into a ring in batches."""
+    """The samples of one kind, from whichever topic speaks, sorted into a ring in batches."""
 
     def __init__(self, topics, message_type, keys, prepare, clock):
         self.topics = topics
@@ -127,15 +128,14 @@ def _with_angles(rows):
 
 
 class ImuFeed:
-    """A robot's motion of the last minute; subscribed between :meth:`open` and :meth:`close`.
+    """A robot's motion in the last minute; subscribed between :meth:`open` and :meth:`close`.
 
-    Every time is that of the receipt, since a robot's clock may be off.
+    All times are times of receipt, since a robot's clock may be off.
 
     :param robot: the robot's name (namespace)
     :param imu_topics: ``sensor_msgs/Imu``, relative to the namespace, in order of preference
     :param odometry_topics: the same for the odometry
-    :param odometry_type: one of :data:`ODOMETRY_TYPES`; one that is not
-        installed here is left out
+    :param odometry_type: one of :data:`ODOMETRY_TYPES`; left out if not installed here
     """
 
     @classmethod
@@ -160,12 +160,12 @@ class ImuFeed:
                               message_type)
 
     def open(self):
-        """Begin to listen (blocking: it asks the master)."""
+        """Start listening (blocking: it asks the master)."""
         for intake in self._intakes.values():
             intake.subscribe()
 
     def close(self):
-        """Stop listening (blocking: it asks the master); what was heard stays."""
+        """Stop listening (blocking: it asks the master); keep what was heard."""
         for intake in self._intakes.values():
             intake.unsubscribe()
 
@@ -181,5 +181,5 @@ class ImuFeed:
         return intake.age_s() if intake and intake.topics else None
 
     def refused(self):
-        """Return the number of messages of which something could not be, and was left out."""
+        """Return the number of messages with an impossible part, which was left out."""
         return sum(intake.refused() for intake in self._intakes.values())

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A robot's pose by motion capture, where a vrpn_client_node tracks it."""
+"""A robot's pose from motion capture, if a vrpn_client_node tracks it."""
 import math
 import threading
 import time
@@ -23,7 +23,7 @@ class MocapFeed:
 
     Subscribed between :meth:`open` and :meth:`close`; a robot that nobody tracks has no pose.
 
-    :param robot: the robot's name, which is that of its rigid body in the tracker
+    :param robot: the robot's name, also that of its rigid body in the tracker
     """
 
     def __init__(self, robot, clock=time.monotonic):
@@ -37,7 +37,7 @@ class MocapFeed:
         self._refusals = Refusals(self._topic, clock)
 
     def open(self):
-        """Begin to listen (blocking: it asks the master)."""
+        """Start listening (blocking: it asks the master)."""
         self._subscriber = rospy.Subscriber(self._topic, PoseStamped, self._hear, tcp_nodelay=True)
 
     def close(self):
@@ -61,7 +61,7 @@ class MocapFeed:
             return self._pose
 
     def _read(self, message):
-        """Return the :class:`Pose` in a message, NaN if it cannot be; None for mere bytes."""
+        """Return the :class:`Pose` in a message, NaN if impossible; None for mere bytes."""
         message = self._refusals.read(message, PoseStamped)
         if message is None:
             return None
@@ -73,7 +73,7 @@ class MocapFeed:
         return Pose(x, y, math.nan if any(map(math.isnan, turn_values)) else yaw_of(turn))
 
     def refused(self):
-        """Return the number of poses that could not be, and were left out."""
+        """Return the number of impossible poses left out."""
         return self._refusals.count
 
     def age_s(self):

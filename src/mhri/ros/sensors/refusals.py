@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a topic said that cannot be: counted, and logged once a second at most."""
+"""Counts the impossible things that a topic says, and logs them at most once a second."""
 import threading
 
 import genpy
@@ -10,7 +10,7 @@ LOG_EVERY_S = 1.0
 
 
 class Refusals:
-    """Of one topic, from any thread.
+    """The refusals of one topic, from any thread.
 
     :param topic: its full name, for the log
     :param clock: seconds, monotonic
@@ -25,14 +25,14 @@ class Refusals:
 
     @property
     def count(self):
-        """Messages of which something was refused so far."""
+        """Number of messages with a refused part so far."""
         return self._count
 
     def read(self, message, message_class):
-        """Return a message as one of its class, None if its bytes are none.
+        """Return a message as one of its class, None if its bytes are not valid.
 
-        :param message: of the class, or ``rospy.AnyMsg``: what comes where another subscriber of
-            the topic in this program asked for bytes
+        :param message: of the class, or ``rospy.AnyMsg``, which comes if another subscriber of the
+            topic in this program asked for bytes
         """
         if not isinstance(message, rospy.AnyMsg):
             return message
@@ -43,9 +43,9 @@ class Refusals:
             return None
 
     def note(self, problem):
-        """Count a message, and say what is wrong with it unless that was said just now.
+        """Count a message, and log what is wrong with it unless just logged.
 
-        :param problem: what it says, in words, e.g. 'angular velocity of 1e+30 rad/s'
+        :param problem: the impossible part in words, e.g. 'angular velocity of 1e+30 rad/s'
         """
         now = self._clock()
         with self._lock:
@@ -54,5 +54,5 @@ class Refusals:
             if self._logged_at is not None and now - self._logged_at < LOG_EVERY_S:
                 return
             self._logged_at = now
-        rospy.logwarn('%s: %s cannot be; left out (%d so far)', self._topic, problem,
+        rospy.logwarn('%s: %s is impossible; left out (%d so far)', self._topic, problem,
                       count)

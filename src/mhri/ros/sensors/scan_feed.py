@@ -12,7 +12,7 @@ from mhri.core.sensors.plausible import beams_problem, measured_ranges, thinned
 from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.sensors.refusals import Refusals
 
-# More than one for each pixel around the view; a scan with more is thinned out to this.
+# More than one per pixel around the view; a scan with more is thinned out to this.
 MOST_POINTS = 4000
 
 
@@ -20,7 +20,7 @@ class ScanFeed:
     """The newest ``sensor_msgs/LaserScan``; subscribed between :meth:`open` and :meth:`close`.
 
     :param robot: the robot's name (namespace)
-    :param topics: relative to the namespace; of several that speak the newest message counts
+    :param topics: relative to the namespace; if several speak, the newest message counts
     """
 
     @classmethod
@@ -39,7 +39,7 @@ class ScanFeed:
         self._refusals = [Refusals(topic, clock) for topic in self._topics]
 
     def open(self):
-        """Begin to listen (blocking: it asks the master)."""
+        """Start listening (blocking: it asks the master)."""
         # No queue_size, for the sake of a recorder of the same topic in this program.
         self._subscribers = [rospy.Subscriber(topic, LaserScan, self._hear, refusals,
                                               tcp_nodelay=True)
@@ -65,16 +65,16 @@ class ScanFeed:
             self._message, self._heard_at = message, self._clock()
 
     def refused(self):
-        """Return the number of scans that could not be, and were left out."""
+        """Return the number of impossible scans left out."""
         return sum(refusals.count for refusals in self._refusals)
 
     def take(self):
         """Return (ranges, angle_min, angle_increment, range_max), or None if nothing is new.
 
-        ``ranges`` is an array [m] in which NaN stands for no measurement: nothing within reach, too
-        near, outside what the sensor says it can, or beyond what any can. There are
-        :data:`MOST_POINTS` at most, each the nearest of the beams around it. Angles [rad] begin
-        ahead and grow to the left.
+        ``ranges`` is an array [m] in which NaN means no measurement: nothing within reach, too
+        near, outside the sensor's stated limits, or beyond any sensor's. There are at most
+        :data:`MOST_POINTS`, each the nearest of the beams around it. Angles [rad] begin ahead and
+        grow to the left.
         """
         with self._lock:
             message, self._message = self._message, None

@@ -140,8 +140,12 @@ class RobotSenses:
         except ValueError as error:
             self._scan.note(error)
 
-    def points(self):
-        """Return what its laser has met, in its frame, were it where it was heard last."""
+    def points(self, robots=()):
+        """Return what its laser has met, in its frame, were it where it was heard last.
+
+        :param robots: (ahead, to the left, radius) [m] of robots of which nothing is remembered
+        """
+        self._surroundings.forget(self.pose, robots)
         return self._surroundings.around(self.pose)
 
     def captured(self):

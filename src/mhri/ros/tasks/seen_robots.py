@@ -7,7 +7,7 @@ import threading
 import rospy
 
 from mhri.core.robots.robot_types import resolve_robot_type
-from mhri.core.tasks.base import Other, Senses
+from mhri.core.tasks.base import circles, Other, Senses
 from mhri.ros.graph.look import robot_facts
 from mhri.ros.graph.master_api import MasterApi
 from mhri.ros.sensors.mocap_feed import TOPIC as MOCAP_TOPIC
@@ -107,8 +107,10 @@ class SeenRobots:
         captured = robot.captured()
         if robot.pose is None or (robot.tracked and captured is None):
             return None
-        return Senses(now_s, captured or robot.pose, robot.pose, captured, robot.points(),
-                      self._others(robot, busy) if captured else {})
+        others = self._others(robot, busy) if captured else {}
+        pose = captured or robot.pose
+        return Senses(now_s, pose, robot.pose, captured,
+                      robot.points(circles(pose, others.values())), others)
 
     def _others(self, robot, busy):
         """Return the others that share the frame of motion capture with a robot."""

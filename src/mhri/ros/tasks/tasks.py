@@ -24,9 +24,10 @@ import rospy
 from std_msgs.msg import Bool
 
 from mhri.core.config import ConfigError, short
+from mhri.core.driving.limits import ZERO
 from mhri.core.robots.names import name_problem
-from mhri.core.tasks.base import DONE, FAILED, LOST, Start, STOPPED, TAKEN_OVER
-from mhri.core.tasks.rows import BY_KEY, TASKS
+from mhri.core.tasks.base import DONE, FAILED, LOST, Start, STOPPED, TAKEN_OVER, TEAM
+from mhri.core.tasks.rows import BY_KEY
 from mhri.core.tasks.run import ENDED, Facts, RobotRun
 from mhri.msg import (
     GatesState, RunTaskAction, RunTaskFeedback, RunTaskResult, TaskList, TaskRun, TeamTwist)
@@ -56,6 +57,8 @@ class _Goal:
         self.key = goal.task
         self.parameters = goal.parameters
         self.team = tuple(goal.robots)
+        # In whose order places are counted.
+        self.order = values.team or self.team
         self.values = values
         self.cancelled = False
         self.runs = []
@@ -75,10 +78,12 @@ class Tasks:
     """The tasks of all robots.
 
     :param types: {name: RobotType}
+    :param kinds: {key: TaskKind} of the tasks that can be started
     :param clock: seconds, monotonic
     """
 
-    def __init__(self, types, clock=time.monotonic):
+    def __init__(self, types, kinds=BY_KEY, clock=time.monotonic):
+        self._kinds = kinds
         self._clock = clock
         self._lock = threading.RLock()
         self._wake = threading.Event()
@@ -160,7 +165,7 @@ class Tasks:
         """Accept a goal that can be understood, and begin it on the worker."""
         goal = handle.get_goal()
         try:
-            values = _values_of(goal)
+            values = _values_of(goal, self._kinds)
         except ConfigError as error:
             handle.set_rejected(RunTaskResult(), short(error))
             return
@@ -203,19 +208,21 @@ class Tasks:
 
     def _new_run(self, goal, name, problem, now):
         """Return the run of one robot; one that cannot be begun has ended."""
-        robot, kind, state = self._seen.get(name), BY_KEY[goal.key], FAILED
+        robot, kind, state = self._seen.get(name), self._kinds[goal.key], FAILED
         task = body = None
         if not problem and robot is None:
             state = LOST
             problem = 'the drive service does not know it: add it to the list of robots'
-        if not problem and kind.needs_others and not robot.tracked:
+        if not problem and kind.key == 'follow' and not robot.tracked:
             problem = 'nobody knows where it is: motion capture does not see it'
         if not problem:
             body = robot.body
             try:
-                task = kind.make(goal.values, Start(name, goal.team, body, robot.trail.places()))
+                task = kind.make(goal.values, Start(name, goal.order, body, robot.trail.places()))
             except ValueError as error:
                 problem = str(error)
+            except Exception as error:  # a task may be a lab's own
+                problem = 'its task cannot be begun: {!r}'.format(error)[:200]
         run = RobotRun(name, task, body, goal.values.number('timeout'), now)
         if problem:
             run.end(state, problem, now)
@@ -257,12 +264,21 @@ class Tasks:
                     message.robots.append(name)
                     message.twists.append(Twist())
                 continue
-            velocity = run.tick(self._facts(name, now, busy))
+            velocity = self._ticked(run, now, busy)
             message.robots.append(name)
             message.twists.append(to_twist(velocity.linear_mps, velocity.angular_rad_s))
         if message.robots:
             message.header.stamp = rospy.Time.now()
             self._task.publish(message)
+
+    def _ticked(self, run, now, busy):
+        """Return what a robot shall do; a task that fails ends its own run alone."""
+        try:
+            return run.tick(self._facts(run.robot, now, busy))
+        except Exception as error:  # a task may be a lab's own
+            rospy.logerr('%s: its task failed: %r', run.robot, error)
+            run.end(FAILED, 'its task failed: {!r}'.format(error)[:200], now)
+            return ZERO
 
     def _facts(self, name, now, busy):
         """Return the :class:`Facts` of a robot."""
@@ -305,20 +321,21 @@ class Tasks:
         told = [(run.id, [(robot.robot, robot.state) for robot in run.robots]) for run in runs]
         if told != self._told:
             self._told = told
-            message = TaskList(tasks=[kind_message(kind) for kind in TASKS], runs=runs)
+            message = TaskList(tasks=[kind_message(kind) for kind in self._kinds.values()],
+                               runs=runs)
             message.header.stamp = rospy.Time.now()
             self._list.publish(message)
 
 
-def _values_of(goal):
+def _values_of(goal, kinds):
     """Return the parameters of a ``mhri/RunTaskGoal``.
 
     :raises ConfigError: something of it cannot be used
     """
-    kind = BY_KEY.get(goal.task)
+    kind = kinds.get(goal.task)
     if kind is None:
         raise ConfigError('task', '', 'no task {!r}; there are {}'.format(
-            goal.task[:60], ', '.join(BY_KEY)))
+            goal.task[:60], ', '.join(kinds)))
     origin = 'task ' + goal.task
     if not 0 < len(goal.robots) <= MOST_ROBOTS or len(set(goal.robots)) < len(goal.robots):
         raise ConfigError(origin, 'robots', 'expected 1 to {} robots, each once'.format(
@@ -327,4 +344,7 @@ def _values_of(goal):
         problem = name_problem(name)
         if problem:
             raise ConfigError(origin, 'robots', '{!r}: {}'.format(name[:64], problem))
-    return kind.read(goal.parameters)
+    values = kind.read(goal.parameters)
+    if values.team and not set(goal.robots) <= set(values.team):
+        raise ConfigError(origin, TEAM, 'has to name every robot that is started')
+    return values

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The ROS side of the voice: what was heard goes out, and what it needs to know comes in.
+"""The ROS side of the voice: what it heard goes out, and what it needs to know comes in.
 
 Interfaces beside those of :class:`mhri.ros.devices.input_node.InputNode`:
 
@@ -11,8 +11,7 @@ Interfaces beside those of :class:`mhri.ros.devices.input_node.InputNode`:
   language, 10 s, unless it is sent again), ``/mux/mode`` (``mhri/ControlMode``),
   ``/robot_controller/robot_select`` (``mhri/RobotSelect``)
 - reads ``/mhri/robots`` (list of names) and ``/mhri/robot_numbers`` ({name: number}) once a second
-  while it listens; where the panel has not written them, the selected robots are those that can be
-  called
+while it listens; if the panel has not written them, the operator can call the selected robots
 """
 import threading
 import time
@@ -33,13 +32,13 @@ from mhri.ros.worker import Worker
 ROBOTS_PARAMETER = '/mhri/robots'
 NUMBERS_PARAMETER = '/mhri/robot_numbers'
 VOICE_SOURCE = 'voice'
-# A stop that the mux does not take is repeated for this long; it is said aloud then.
+# A stop that the mux does not take is repeated for this long [s], then reported aloud.
 _INSIST_S = 3.0
 _RETRY_S = 0.2
 
 
 def robot_names(value):
-    """Return the names in a parameter that anybody may have set to anything."""
+    """Return the names in a parameter, which anybody may have set to anything."""
     if not isinstance(value, (list, tuple)):
         return ()
     return tuple(name for name in value[:MOST_ROBOTS] if isinstance(name, str)
@@ -47,10 +46,9 @@ def robot_names(value):
 
 
 class VoiceLink:
-    """Hands what was heard to the graph, and what the graph says to the reader.
+    """Passes what was heard to the graph, and what the graph says to the reader.
 
-    The methods ``on_heard`` and ``on_act`` are those that
-    :class:`mhri.inputs.voice.VoiceReader` calls; they return at once.
+    :class:`mhri.inputs.voice.VoiceReader` calls ``on_heard`` and ``on_act``; they return at once.
     """
 
     def __init__(self, clock=time.monotonic):
@@ -66,7 +64,7 @@ class VoiceLink:
         self._stopper = Worker('stop_all').start()
 
     def start(self, reader, wanted):
-        """Let the graph be heard.
+        """Start listening to the graph.
 
         :param reader: :class:`mhri.inputs.voice.VoiceReader`
         :param wanted: ``threading.Event``, set while the node listens
@@ -97,13 +95,13 @@ class VoiceLink:
             self._tell_robots()
 
     def _tell_robots(self):
-        """Tell the reader whom it can call; call it with the lock held."""
+        """Tell the reader which robots can be called; call it with the lock held."""
         self._reader.set_robots(in_places(self._listed, self._numbers) if self._listed
                                 else self._selected)
 
     def _on_selection(self, message):
         with self._lock:
-            # A robot that was seen once keeps its number.
+            # A robot once seen keeps its number.
             self._selected = tuple(dict.fromkeys(
                 self._selected + robot_names(message.robots)))[:MOST_ROBOTS]
             self._tell_robots()
@@ -125,7 +123,7 @@ class VoiceLink:
             self._request.publish(action=command.action, robots=command.robots)
 
     def _stop_all(self):
-        """Engage stop-all, on the worker; insists for a while."""
+        """Engage stop-all, on the worker; insist for a while."""
         deadline = self._clock() + _INSIST_S
         wait_s = 0.0
         while not rospy.is_shutdown():
@@ -141,7 +139,7 @@ class VoiceLink:
                 wait_s = _RETRY_S
 
     def _call_stop(self):
-        """Call the mux over a connection that is kept open, so that it works without a master."""
+        """Call the mux over a connection kept open, so that it works without a master."""
         if self._stop is None:
             self._stop = rospy.ServiceProxy(STOP_SERVICE, SetBool, persistent=True)
         try:

@@ -1,0 +1,119 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""``doc/new_task.md`` word by word: its files written, its commands typed, its task run."""
+import os
+from pathlib import Path
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.newcomer import blocks, last_words, Newcomer, PATIENCE_S  # noqa: E402
+from support.ros_system import wait_for  # noqa: E402
+
+REPO = Path(__file__).resolve().parents[2]
+GUIDE = REPO / 'doc' / 'new_task.md'
+EXAMPLE = REPO / 'test' / 'example_task_package'
+
+
+def test_the_guide_shows_the_example_package():
+    """So that who copies the one has the other."""
+    files = {name: text for name, text in blocks(GUIDE.read_text()) if not name.startswith('sh')}
+    files['src/lab_tasks/__init__.py'] = files['CATKIN_IGNORE'] = ''
+    assert files == {path.relative_to(EXAMPLE).as_posix(): path.read_text()
+                     for path in EXAMPLE.rglob('*')
+                     if path.is_file() and '__pycache__' not in path.parts}
+
+
+def help_with(folder, **files):
+    """Return (exit status, output, errors) of ``mhri_task --help`` with a copy of the example.
+
+    :param files: name of a file of the package, ``/`` written as ``__``, and (old, new) text
+    """
+    package = folder / 'lab_tasks'
+    shutil.copytree(str(EXAMPLE), str(package))
+    (package / 'CATKIN_IGNORE').unlink()
+    for name, (old, new) in files.items():
+        path = package / name.replace('__', '/').replace('_xml', '.xml').replace('_py', '.py')
+        assert old in path.read_text()
+        path.write_text(path.read_text().replace(old, new))
+    done = subprocess.run(
+        [sys.executable, '-c', 'from mhri.nodes.mhri_task import main; main()', '--help'],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, env=dict(
+            os.environ, PYTHONPATH='{}:{}'.format(package / 'src', os.environ['PYTHONPATH']),
+            ROS_PACKAGE_PATH='{}:{}'.format(folder, os.environ['ROS_PACKAGE_PATH'])))
+    return done.returncode, done.stdout, done.stderr
+
+
+def test_the_help_lists_a_task_of_another_package(tmp_path):
+    status, output, errors = help_with(tmp_path)
+    assert (status, errors) == (0, '')
+    assert re.search(r'^look_around turns once on the spot', output, re.M)
+    assert re.search(r'^    turn +how fast it turns \[rad/s\]; else 0.5$', output, re.M)
+
+
+TASK = 'src__lab_tasks__look_around_py'
+
+
+@pytest.mark.parametrize('files, said', [
+    ({TASK: ('import math\n', 'import maths\n')},
+     "cannot be imported (ModuleNotFoundError: No module named 'maths'); has its package"),
+    ({TASK: ('ROW = ', 'ROWS = ')}, "cannot be imported (AttributeError: module "),
+    ({TASK: ("'look_around', 'Look", "'goto', 'Look")},
+     "there is a task 'goto' already, choose another key; "),
+    ({TASK: (', TIMEOUT_S), make', ',), make')},
+     'it has no field timeout: add mhri.core.tasks.goto.TIMEOUT_S; '),
+    ({TASK: ('ROW = TaskKind(', 'ROW = dict(key=(')}, 'cannot be imported (SyntaxError: '),
+    ({'package_xml': ('task="lab_tasks.look_around"', 'task=""')},
+     'a task is exported by itself; write <mhri task="package.module"/>; '),
+    ({'package_xml': ('look_around"/>', 'look_around" window="a.B"/>')},
+     'a task is exported by itself; '),
+])
+def test_a_task_that_is_left_out_is_named(tmp_path, files, said):
+    status, output, errors = help_with(tmp_path, **files)
+    assert status == 1 and errors.count('\n') == 1, errors
+    assert errors.startswith('left out: package lab_tasks: ')
+    assert said in errors
+    assert 'look_around' not in output and re.search('^goto ', output, re.M)
+
+
+@pytest.fixture
+def newcomer(tmp_path):
+    made = Newcomer(tmp_path)
+    yield made
+    made.system.close()
+
+
+def test_the_guide_word_by_word(newcomer):
+    terminals = []
+    for kind, text in blocks(GUIDE.read_text()):
+        if kind == 'sh terminal':
+            terminals.append(text)
+        else:
+            said = newcomer.follow(kind, text)
+    assert re.search('^look_around turns once on the spot', said, re.M), said
+    assert 'left out: ' not in said
+    system = newcomer.follow('sh terminal', terminals[0])
+    try:
+        wait_for(lambda: 'bot1' in robots_on_tasks(), PATIENCE_S, 'the robot in the list', 0.2)
+        task = newcomer.follow('sh terminal', terminals[1])
+        status = task.wait(2 * PATIENCE_S)
+        said = last_words(task)
+        assert status == 0, said
+        assert re.search(r'bot1: done: nearest thing \d\.\d\d m away', said), said
+    except BaseException:
+        print(last_words(system)[-4000:])
+        raise
+
+
+def robots_on_tasks():
+    """Return the robots that can be told a task; () before there is a master."""
+    import rosgraph
+    try:
+        return rosgraph.Master('/newcomer').getParam('/mhri/robots')
+    except (rosgraph.MasterException, OSError):
+        return ()

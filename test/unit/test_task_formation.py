@@ -1,0 +1,157 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Formations in a small kinematic world: how far each robot is off its place, in bends as well."""
+import math
+from pathlib import Path
+import sys
+
+import pytest
+
+from mhri.core.config import ConfigError
+from mhri.core.driving.limits import Velocity
+from mhri.core.robots.mocap import Pose
+from mhri.core.tasks.base import LOST, RUNNING, Step, Task
+from mhri.core.tasks.formation import COLUMN, LeaderPath, LINE, Slot, slot_of, WEDGE
+from mhri.core.tasks.rows import BY_KEY
+from mhri.core.tasks.run import RobotRun
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from support.task_world import World  # noqa: E402
+
+SPACING_M = 0.8
+TEAM = ('bot2', 'bot3')
+
+
+class Leads(Task):
+    """Drives at 0.2 m/s for half a minute: straight on, in a circle of 2 m, or from side to side.
+
+    The last has bends with a radius of 1 m.
+    """
+
+    def __init__(self, how):
+        self._how = how
+
+    def step(self, senses):
+        turn = {'straight': 0.0, 'circle': 0.1,
+                'weave': -0.2 * math.sin(senses.now_s * math.pi / 15.0)}[self._how]
+        return Step(Velocity(0.2, turn) if senses.now_s < 32.0 else Velocity())
+
+
+def formed(shape, how='straight', off=(0.0, 0.0)):
+    """Return (world, leader, [(follower, its slot)]) with all of them in their places, or off."""
+    world = World()
+    leader = world.add('bot1')
+    leader.run = RobotRun('bot1', Leads(how), leader.task_body, 0.0, 0.0)
+    followers = []
+    for number, name in enumerate(TEAM):
+        slot = slot_of(shape, SPACING_M, number)
+        robot = world.add(name, off[0] - slot.behind_m, off[1] + slot.left_m, seed=number)
+        robot.begin(BY_KEY['formation'], '{{leader: bot1, shape: {}, spacing: {}}}'.format(
+            shape, SPACING_M), 0.0, TEAM)
+        followers.append((robot, slot))
+    return world, leader, followers
+
+
+def errors(world, leader, followers, path):
+    """Return how far each is off its place [m]."""
+    path.add(leader.pose())
+    found = []
+    for robot, slot in followers:
+        place = path.pose(slot.behind_m, slot.left_m)
+        found.append(math.hypot(robot.body.x - place.x_m, robot.body.y - place.y_m))
+    return found
+
+
+@pytest.mark.parametrize('shape, how, mean_m, most_m', [
+    (COLUMN, 'straight', 0.02, 0.08), (COLUMN, 'circle', 0.06, 0.1), (COLUMN, 'weave', 0.07, 0.12),
+    (LINE, 'straight', 0.02, 0.08), (LINE, 'circle', 0.12, 0.2), (LINE, 'weave', 0.15, 0.3),
+    (WEDGE, 'straight', 0.02, 0.08), (WEDGE, 'circle', 0.06, 0.12), (WEDGE, 'weave', 0.08, 0.2)])
+def test_spacing_holds_in_bends(shape, how, mean_m, most_m):
+    world, leader, followers = formed(shape, how)
+    path, found = LeaderPath(), []
+    while world.now_s < 40.0:
+        world.step()
+        now = errors(world, leader, followers, path)
+        if world.now_s > 3.0:
+            found += now
+    print('formation {} {}: mean {:.3f} m, most {:.3f} m off'.format(
+        shape, how, sum(found) / len(found), max(found)))
+    assert sum(found) / len(found) < mean_m and max(found) < most_m
+    assert max(now) < 0.1, 'where the leader stands, all come to their places'
+    assert not sum(robot.contacts for robot in world.robots)
+    assert [robot.run.state for robot, _ in followers] == [RUNNING, RUNNING]
+
+
+@pytest.mark.parametrize('shape', [COLUMN, LINE, WEDGE])
+def test_who_begins_elsewhere_falls_in(shape):
+    world, leader, followers = formed(shape, off=(-1.0, 0.8))
+    path = LeaderPath()
+    while world.now_s < 55.0:
+        world.step()
+        now = errors(world, leader, followers, path)
+    assert max(now) < 0.1
+    assert not sum(robot.contacts for robot in world.robots)
+
+
+def test_who_is_ahead_waits_and_does_not_turn_round():
+    world, leader, followers = formed(COLUMN, off=(0.25, 0.0))
+    while world.now_s < 6.0:
+        world.step()
+        assert all(abs(robot.body.yaw) < 0.5 for robot, _ in followers)
+
+
+def test_a_leader_that_turns_on_the_spot_swings_nobody_around():
+    path = LeaderPath()
+    for x in range(20):
+        path.add(Pose(0.1 * x, 0.0, 0.0))
+    path.add(Pose(1.9, 0.0, 1.5))
+    place = path.pose(0.0, 1.0)
+    assert (place.x_m, place.y_m, place.heading_rad) == pytest.approx((1.9, 1.0, 0.0))
+
+
+def test_what_the_leader_backs_over_is_no_path():
+    path = LeaderPath()
+    for x in list(range(20)) + list(range(19, 9, -1)):
+        path.add(Pose(0.1 * x, 0.0, 0.0))
+    assert path.at(0.5) == pytest.approx((0.5, 0.0))
+
+
+def test_before_it_has_moved_its_path_lies_straight_behind():
+    path = LeaderPath()
+    path.add(Pose(1.0, 2.0, 0.5 * math.pi))
+    place = path.pose(1.0, 0.5)
+    assert (place.x_m, place.y_m, place.heading_rad) == pytest.approx((0.5, 1.0, 0.5 * math.pi))
+
+
+SLOTS = [
+    (COLUMN, [(0.8, 0.0), (1.6, 0.0), (2.4, 0.0)]),
+    (LINE, [(0.0, 0.8), (0.0, -0.8), (0.0, 1.6)]),
+    (WEDGE, [(0.566, 0.566), (0.566, -0.566), (1.131, 1.131)])]
+
+
+@pytest.mark.parametrize('shape, places', SLOTS)
+def test_who_stands_where(shape, places):
+    for number, (behind_m, left_m) in enumerate(places):
+        slot = slot_of(shape, SPACING_M, number)
+        assert isinstance(slot, Slot)
+        assert (slot.behind_m, slot.left_m) == pytest.approx((behind_m, left_m), abs=1e-3)
+
+
+def test_a_formation_without_its_leader_is_lost():
+    world = World()
+    robot = world.add('bot2')
+    robot.begin(BY_KEY['formation'], '{leader: bot9}', 0.0)
+    world.until_ended()
+    assert (robot.run.state, robot.run.text) == (LOST, 'nobody knows where bot9 is')
+
+
+def test_a_leader_does_not_follow_itself():
+    world = World()
+    with pytest.raises(ValueError, match='bot1 leads'):
+        world.add('bot1').begin(BY_KEY['formation'], '{leader: bot1}', 0.0)
+
+
+def test_a_shape_that_is_none_is_refused():
+    with pytest.raises(ConfigError, match='shape: expected line or column or wedge'):
+        BY_KEY['formation'].read('{leader: bot1, shape: circle}')
