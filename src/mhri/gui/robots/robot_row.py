@@ -64,7 +64,7 @@ class BigCheckBox(QCheckBox):
 class RobotRow(QWidget):
     """Two lines of fixed height: identity and link; below it speed, then turn or what is wrong.
 
-    The speed is never replaced by a sentence; what is old is dimmed.
+    The speed gives way only to why a task waits; what is old is dimmed.
     """
 
     #: the check box was clicked: name, checked
@@ -210,6 +210,9 @@ class RobotRow(QWidget):
         self.recording.say(RECORDING if view.recording else '', filled=False)
         self.recording.setVisible(view.recording)
         self._offer_to_carry_on(view.carry_on)
+        # Who waits stands: the room is for the reason.
+        self.linear.setVisible(not (view.carry_on or view.on_task and view.task
+                                    and view.task.waits))
         tone = theme.TASK if view.on_task else theme.DRIVE if view.driven else None
         if tone != self._tone:
             self._tone = tone
@@ -218,8 +221,6 @@ class RobotRow(QWidget):
     def _offer_to_carry_on(self, label):
         """Offer to continue a task, '' for none."""
         self.carry_on_button.setVisible(bool(label))
-        # It stands, and there is not the room for both.
-        self.linear.setVisible(not label)
         if label:
             text = '{} {} of {}'.format(CARRY_ON, label.lower(), self.name)
             self.carry_on_button.setAccessibleName(text)

@@ -26,7 +26,7 @@ from std_msgs.msg import Bool
 from mhri.core.config import ConfigError, short
 from mhri.core.driving.limits import ZERO
 from mhri.core.robots.names import name_problem
-from mhri.core.tasks.base import DONE, FAILED, LOST, Start, STOPPED, TAKEN_OVER
+from mhri.core.tasks.base import DONE, FAILED, LOST, Start, STOPPED, TAKEN_OVER, TEAM
 from mhri.core.tasks.rows import BY_KEY
 from mhri.core.tasks.run import ENDED, Facts, RobotRun
 from mhri.msg import (
@@ -57,6 +57,8 @@ class _Goal:
         self.key = goal.task
         self.parameters = goal.parameters
         self.team = tuple(goal.robots)
+        # In whose order places are counted.
+        self.order = values.team or self.team
         self.values = values
         self.cancelled = False
         self.runs = []
@@ -216,7 +218,7 @@ class Tasks:
         if not problem:
             body = robot.body
             try:
-                task = kind.make(goal.values, Start(name, goal.team, body, robot.trail.places()))
+                task = kind.make(goal.values, Start(name, goal.order, body, robot.trail.places()))
             except ValueError as error:
                 problem = str(error)
             except Exception as error:  # a task may be a lab's own
@@ -342,4 +344,7 @@ def _values_of(goal, kinds):
         problem = name_problem(name)
         if problem:
             raise ConfigError(origin, 'robots', '{!r}: {}'.format(name[:64], problem))
-    return kind.read(goal.parameters)
+    values = kind.read(goal.parameters)
+    if values.team and not set(goal.robots) <= set(values.team):
+        raise ConfigError(origin, TEAM, 'has to name every robot that is started')
+    return values

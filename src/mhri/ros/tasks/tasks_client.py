@@ -179,4 +179,4 @@ def _progress(states):
     """Return the :class:`Progress` of each ``mhri/TaskState``."""
     return tuple(Progress(state.robot, state.state, tidy_text(state.text),
                           state.left_m if math.isfinite(state.left_m) else None,
-                          tuple(map(tidy_text, state.said))) for state in states)
+                          tuple(state.said)) for state in states)
