@@ -130,8 +130,8 @@ class ScreenWidget(QWidget):
 
     def _connect(self):
         """Wire widgets to signals."""
-        self.look_button.clicked.connect(self._look)
-        self.stage.look_requested.connect(self._look)
+        self.look_button.clicked.connect(self.look_requested)
+        self.stage.look_requested.connect(self.look_requested)
         self._result_timer.timeout.connect(self.look_label.clear)
         self.doctor_button.clicked.connect(self.doctor_requested)
         self.add_button.clicked.connect(self._add)
@@ -206,9 +206,11 @@ class ScreenWidget(QWidget):
         """Say below the name field why a name was refused; '' clears it."""
         self.name_problem_label.show_text(text)
         self.name_problem_sign.show_sign((theme.TRIANGLE, theme.ATTENTION) if text else None)
+        for part, shown in ((self.name_problem_label, text), (self.look_label, not text)):
+            part.setVisible(bool(shown))
 
     def show_look_result(self, text, busy=False, shorter=()):
-        """Say beside the button for a while what came of looking; ``busy`` while it looks.
+        """Say below the name field for a while what came of looking; ``busy`` while it looks.
 
         :param shorter: what to say where there is no room, the longest first
         """
@@ -307,10 +309,6 @@ class ScreenWidget(QWidget):
         self.arrangement.restore_settings(settings)
         if 'geometry' in settings and self.isWindow():
             restore_geometry(self, settings['geometry'])
-
-    def _look(self):
-        """Ask to look for robots."""
-        self.look_requested.emit()
 
     def _on_name_edited(self, text):
         """Take back what was said about another name."""
