@@ -16,6 +16,7 @@ from mhri.gui.driving.leave_bar import LeaveBar
 from mhri.gui.screen.forms import load_form
 from mhri.gui.screen.labels import Sign, TextLine
 from mhri.gui.driving.mode_combo import ModeCombo
+from mhri.gui.look.page_tabs import PageTabs
 from mhri.gui.screen.pending import Pace
 from mhri.gui.screen.screen_layout import ScreenLayout
 from mhri.gui.screen.stage import Stage
@@ -33,8 +34,8 @@ STOP_RECORDING = 'Stop recording ({})'
 # What came of looking or recording is news for so long.
 RESULT_MS = 20000
 
-_WIDGETS = (ControlBar, EventButton, ModeCombo, RobotList, Sign, SpeedLimits, Stage, StatusLine,
-            StopBar, TextLine, VirtualJoystick)
+_WIDGETS = (ControlBar, EventButton, ModeCombo, PageTabs, RobotList, Sign, SpeedLimits, Stage,
+            StatusLine, StopBar, TextLine, VirtualJoystick)
 
 
 class ScreenWidget(QWidget):
