@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The tabs of the drawer: they move together before any of them needs scrolling."""
-from python_qt_binding.QtWidgets import QTabBar
+from python_qt_binding.QtCore import Qt
+from python_qt_binding.QtWidgets import QStyle, QStyleOptionTab, QStylePainter, QTabBar
 
 from mhri.gui.screen import theme
 
@@ -30,3 +31,15 @@ class PageTabs(QTabBar):
         super().resizeEvent(event)
         # Qt keeps the sizes of tabs until something of this kind is set.
         self.setIconSize(self.iconSize())
+
+    def paintEvent(self, event):  # noqa: N802
+        """Paint the tabs; the style alone would cut words off to keep its own space."""
+        painter = QStylePainter(self)
+        current = self.currentIndex()
+        for index in sorted(range(self.count()), key=lambda index: index == current):
+            option = QStyleOptionTab()
+            self.initStyleOption(option, index)
+            words, option.text = option.text, ''
+            painter.drawControl(QStyle.CE_TabBarTab, option)
+            painter.setPen(option.palette.color(option.palette.WindowText))
+            painter.drawText(option.rect, int(Qt.AlignCenter | Qt.TextShowMnemonic), words)
