@@ -150,7 +150,7 @@ def test_more_than_four_are_counted_and_silence_is_said(pane):
 
 
 def test_what_a_place_rests_on_is_in_the_tip(pane):
-    assert pane.view.tip(BOT2) == '2 bot2: on a task\nplaced by tf'
+    assert pane.view.tip(BOT2) == '2 bot2: patrol\nplaced by tf'
 
 
 # How it is looked at.

@@ -11,7 +11,7 @@ from mhri.core.map.canvas import (
     Canvas, known_corners, LEAST_PX_PER_M, length_words, MOST_PX_PER_M, place_words, scale_bar)
 from mhri.core.map.grid import Grid
 from mhri.core.map.scene import (
-    goals_of, in_frame, map_robot, MapMark, MapRobot, own_pose, Placing, Scene, TaskView)
+    goals_of, in_frame, map_robot, MapMark, MapRobot, own_pose, Placing, Scene, UnderWay)
 from mhri.core.map.spread import spread, SPACING_RADII
 from mhri.core.map.track import Track
 from mhri.core.map.trail import GOOD, link_grade, LOST, SLOW, Trail
@@ -290,12 +290,12 @@ def test_points_are_turned_into_the_frame():
 
 def test_goals_are_read_from_the_parameters_of_tasks():
     goals, leaders = goals_of((
-        TaskView('goto', '{x: 1.0, y: -2, heading: 0.5}', ('bot1',)),
-        TaskView('patrol', '{route: [[0, 0], [1, 0], [1, 1]]}', ('bot2', 'bot3')),
-        TaskView('follow', '{leader: bot1}', ('bot4', 'bot5')),
-        TaskView('goto', '{x: 1.0, y: 2.0, frame: odom}', ('bot6',)),
-        TaskView('square', '{side: 1.0}', ('bot7',)), TaskView('x', '{x: [', ('bot8',)),
-        TaskView('x', '{route: [[a, 0]], x: .nan, y: 0}', ('bot9',))))
+        UnderWay('goto', '{x: 1.0, y: -2, heading: 0.5}', ('bot1',)),
+        UnderWay('patrol', '{route: [[0, 0], [1, 0], [1, 1]]}', ('bot2', 'bot3')),
+        UnderWay('follow', '{leader: bot1}', ('bot4', 'bot5')),
+        UnderWay('goto', '{x: 1.0, y: 2.0, frame: odom}', ('bot6',)),
+        UnderWay('square', '{side: 1.0}', ('bot7',)), UnderWay('x', '{x: [', ('bot8',)),
+        UnderWay('x', '{route: [[a, 0]], x: .nan, y: 0}', ('bot9',))))
     assert [(goal.robots, goal.route, goal.heading_rad, goal.closed) for goal in goals] == [
         (('bot1',), ((1.0, -2.0),), 0.5, False),
         (('bot2', 'bot3'), ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0)), None, True)]

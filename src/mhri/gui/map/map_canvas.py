@@ -357,6 +357,8 @@ class MapCanvas(QWidget):
         map_marks.paint_drawn(painter, self.canvas, palette, self.gesture, cursor)
         map_marks.paint_margin(painter, self.canvas, palette, self.font(),
                                cursor if self._large else None)
+        if self._large and self._by_link:
+            map_marks.paint_legend(painter, self.canvas, palette, self.font())
         painter.end()
         self.painted.emit()
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The map on the screen: tools above it, zoom at its side, and below it what came of an act."""
 from python_qt_binding.QtCore import QPoint, QSize, Qt, Signal
-from python_qt_binding.QtGui import QPainter
+from python_qt_binding.QtGui import QPainter, QPalette
 from python_qt_binding.QtWidgets import QHBoxLayout, QMenu, QPushButton, QVBoxLayout, QWidget
 
 from mhri.core.map import gesture
@@ -23,7 +23,7 @@ NOBODY = 'Select a robot, or look at one: nobody is meant.'
 NO_MARK_NAME = 'The mark needs a name.'
 # Tools that mean robots.
 _FOR_ROBOTS = (gesture.GOTO, gesture.ROUTE, gesture.LEADER, gesture.PLACE)
-TRAILS = ('Trails: time', 'Trails: link')
+TRAILS = ('By time', 'By link')
 
 
 class MapPane(QWidget):
@@ -91,7 +91,10 @@ class MapPane(QWidget):
         column.setSpacing(3)
         column.addWidget(self.head)
         column.addWidget(self.view, 1)
-        column.addWidget(self.line)
+        foot = QHBoxLayout()
+        foot.setContentsMargins(8, 0, 8, 3)
+        foot.addWidget(self.line)
+        column.addLayout(foot)
         self._build_over()
 
     def _build_over(self):
@@ -108,7 +111,8 @@ class MapPane(QWidget):
         self.turn_button = self._button(
             'turn_button', 'Turn', column, 'ahead of the robot you look at is up', True)
         self.trails_button = self._button(
-            'trails_button', TRAILS[0], column, 'what the colour of a trail says')
+            'trails_button', TRAILS[0], column,
+            'what the colour of a trail says: when a robot was there, or how good its link was')
         self.strip = UnplacedStrip(self.view)
         self.name_field = NameField(self.view)
 
@@ -199,7 +203,7 @@ class MapPane(QWidget):
         """Show which tool is in the hand, and what to do with it."""
         drawn = self.view.gesture
         for tool, button in self.tools.items():
-            button.setChecked(tool == drawn.tool)
+            _show_checked(button, tool == drawn.tool)
         self.done_button.setVisible(drawn.tool in gesture.CORNERS)
         self.done_button.setEnabled(not drawn.problem())
         self.cancel_button.setVisible(drawn.tool != gesture.LOOK)
@@ -211,8 +215,8 @@ class MapPane(QWidget):
 
     def _show_choices(self):
         """Show how the map is looked at."""
-        self.follow_button.setChecked(self.view.follows)
-        self.turn_button.setChecked(self.view.turns)
+        _show_checked(self.follow_button, self.view.follows)
+        _show_checked(self.turn_button, self.view.turns)
         self.trails_button.setText(TRAILS[self.view.by_link])
 
     # What is done.
@@ -340,3 +344,14 @@ class MapPane(QWidget):
         """Paint the ground of tools and line."""
         painter = QPainter(self)
         painter.fillRect(self.rect(), self.palette().window())
+
+
+def _show_checked(button, checked):
+    """Show a button checked, in a colour that a glance tells apart."""
+    button.setChecked(checked)
+    palette = QPalette()
+    if checked:
+        ground = theme.colour(theme.DRIVE, button.parentWidget().palette())
+        palette.setColor(QPalette.Button, ground)
+        palette.setColor(QPalette.ButtonText, theme.readable_on(ground))
+    button.setPalette(palette)
