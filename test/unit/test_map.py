@@ -16,6 +16,7 @@ from mhri.core.map.spread import spread, SPACING_RADII
 from mhri.core.map.track import Track
 from mhri.core.map.trail import GOOD, link_grade, LOST, SLOW, Trail
 from mhri.core.robots.mocap import Pose
+from mhri.core.screen.task_views import TaskView
 from mhri.core.screen.views import GONE, LinkFigures, LIVE, RobotView
 
 
@@ -266,6 +267,18 @@ def test_a_robot_is_where_its_odometry_has_taken_it_since_it_was_placed():
 def test_a_robot_that_is_nowhere_says_why(view, placing, text):
     robot = map_robot(view, placing, 0.2, False)
     assert robot.pose is None and text in robot.text
+
+
+@pytest.mark.parametrize('more, word, task', [
+    ({}, 'standing', ''), ({'moving': True}, 'moving', ''), ({'selected': True}, 'selected', ''),
+    ({'selected': True, 'driven': True}, 'driving', ''),
+    ({'obeys': 'task', 'driven': True}, 'on a task', 'task'),
+    ({'task': TaskView('Patrol')}, 'patrol', 'Patrol'),
+    ({'task': TaskView('Go to', waits=True)}, 'go to waits', 'Go to')])
+def test_the_state_of_a_robot_is_a_word(more, word, task):
+    view = RobotView(**{**vars(VIEW), **more})
+    robot = map_robot(view, Placing(Pose(0.0, 0.0, 0.0), ''), 0.2, False)
+    assert (robot.state, robot.task, robot.trouble) == (word, task, '')
 
 
 def test_numbers_that_are_none_are_no_pose():

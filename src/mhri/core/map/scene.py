@@ -173,11 +173,11 @@ def state_word(view: RobotView) -> Tuple[str, str]:
     """Return a word of a robot's state, and the same where it needs a person, else ''."""
     if view.link != LIVE:
         return view.link, view.link
-    if view.driven:
-        return 'driving', ''
     if view.on_task:
         return (view.task.label.lower() + (' waits' if view.task.waits else '') if view.task
                 else 'on a task'), ''
+    if view.driven:
+        return 'driving', ''
     return ('selected' if view.selected else 'standing' if not view.moving else 'moving'), ''
 
 

@@ -6,7 +6,7 @@ import math
 from python_qt_binding.QtCore import QPointF, Qt
 from python_qt_binding.QtGui import QFontMetrics, QPalette, QPen, QPolygonF
 
-from mhri.core.map.canvas import length_words, place_words, scale_bar
+from mhri.core.map.canvas import length_words, scale_bar
 from mhri.core.map.gesture import FENCE
 from mhri.core.map.trail import LINK_WORDS
 from mhri.gui.map.map_paint import (
@@ -112,16 +112,3 @@ def paint_legend(painter, canvas, palette, font):
         paint_words(painter, left + 29.0, bottom, words, font, theme.colour(theme.TEXT, palette),
                     palette.color(QPalette.Base))
         left += 29.0 + metrics.horizontalAdvance(words) + metrics.height()
-
-
-def paint_margin(painter, canvas, palette, font, cursor):
-    """Paint the scale bar at the lower left, and in the lower right the place of the pointer.
-
-    :param cursor: (x, y) [m], None for none
-    """
-    paint_scale(painter, canvas, palette, font)
-    if cursor is not None:
-        text, font = place_words(*cursor), theme.number_font(font)
-        paint_words(painter, canvas.width - theme.text_width(font, text) - 9.0,
-                    canvas.height - 9.0, text, font, theme.colour(theme.TEXT, palette),
-                    palette.color(QPalette.Base))

@@ -236,10 +236,8 @@ def _edge_ink(robot, palette):
     """Return the colour around a robot whose state is not the rule, else None."""
     if robot.trouble:
         return theme.colour(theme.STOP if robot.trouble == GONE else theme.ATTENTION, palette)
-    if robot.driven or robot.selected:
-        return theme.colour(theme.DRIVE, palette)
-    if robot.task:
-        return theme.colour(theme.TASK, palette)
+    if robot.task or robot.driven or robot.selected:
+        return theme.colour(theme.TASK if robot.task else theme.DRIVE, palette)
     return theme.colour(theme.TEXT, palette) if robot.looked_at else None
 
 

@@ -6,6 +6,7 @@ from python_qt_binding.QtGui import QPainter, QPalette
 from python_qt_binding.QtWidgets import QHBoxLayout, QMenu, QPushButton, QVBoxLayout, QWidget
 
 from mhri.core.map import gesture
+from mhri.core.map.canvas import place_words
 from mhri.gui.map.map_canvas import MapCanvas
 from mhri.gui.map.map_menu import fit_rows, menu_rows
 from mhri.gui.map.map_strip import NameField, UnplacedStrip
@@ -75,6 +76,9 @@ class MapPane(QWidget):
         self.view = MapCanvas(self)
         self.line = TextLine(self)
         self.line.setObjectName('map_line')
+        self.place_label = TextLine(self)
+        self.place_label.setFont(theme.number_font(self.font()))
+        self.place_label.fix_width(place_words(-888.88, -888.88))
         self.head = QWidget(self)
         row = QHBoxLayout(self.head)
         row.setContentsMargins(4, 4, 4, 0)
@@ -93,7 +97,8 @@ class MapPane(QWidget):
         column.addWidget(self.view, 1)
         foot = QHBoxLayout()
         foot.setContentsMargins(8, 0, 8, 3)
-        foot.addWidget(self.line)
+        foot.addWidget(self.line, 1)
+        foot.addWidget(self.place_label)
         column.addLayout(foot)
         self._build_over()
 
@@ -155,6 +160,7 @@ class MapPane(QWidget):
         self.view.menu_requested.connect(self._open_menu)
         self.view.tool_changed.connect(self._on_tool)
         self.view.view_changed.connect(self._show_choices)
+        self.view.pointed.connect(lambda text: self.place_label.show_text(text, theme.MUTED))
 
     def _restore(self):
         """Begin with no tool in the hand."""
@@ -183,7 +189,7 @@ class MapPane(QWidget):
             self.take(gesture.LOOK)
             self.name_field.hide()
         self.view.show_large(large)
-        for part in (self.head, self.line, self.side):
+        for part in (self.head, self.line, self.place_label, self.side):
             part.setVisible(large)
         self.setToolTip('' if large else 'click, or M: the map large')
         self.show_scene(self.view.scene)
