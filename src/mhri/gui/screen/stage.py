@@ -263,7 +263,8 @@ class Stage(QWidget):
         if self._float is not None:
             tile = under = self._tiles.get(next(iter(self._large), ''))
             if self._map_state == MAP_LARGE and self._map is not None:
-                under, room = None, self._map.geometry()
+                # Above the line at its foot.
+                under, room = None, self._map.geometry().adjusted(0, 0, 0, -2 * unit)
             else:
                 room = self.rect() if tile is None else \
                     tile.picture_area().translated(tile.pos())
