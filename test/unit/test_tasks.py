@@ -274,7 +274,10 @@ PARAMETERS = [
     ('patrol', '{route: 3}', 'route: expected a list of [x, y]'),
     ('patrol', '{route: [[1, .nan]]}', 'route: expected a list of [x, y]'),
     ('follow', '{}', 'leader: is missing'),
-    ('goto', '{x: 1, y: 2, frame: base}', 'frame: expected nothing or odom')]
+    ('goto', '{x: 1, y: 2, frame: base}', 'frame: expected nothing or odom'),
+    ('hold', '{team: bot1}', 'team: expected a list of robots, each once'),
+    ('hold', '{team: [bot1, bot1]}', 'team: expected a list of robots, each once'),
+    ('hold', '{team: [1, 2]}', 'team: expected a list of robots, each once')]
 
 
 @pytest.mark.parametrize('task, parameters, words', PARAMETERS)
@@ -282,6 +285,15 @@ def test_parameters_that_cannot_be_used_are_refused_by_name(task, parameters, wo
     with pytest.raises(ConfigError) as refused:
         BY_KEY[task].read(parameters)
     assert words in str(refused.value)
+
+
+def test_every_task_takes_the_team_among_which_places_are_counted():
+    for kind in TASKS:
+        with pytest.raises(ConfigError) as refused:
+            kind.read('{team: 3}')
+        assert 'team' in str(refused.value) or 'is missing' in str(refused.value)
+    assert BY_KEY['hold'].read('{team: [bot1, bot2]}').team == ('bot1', 'bot2')
+    assert BY_KEY['hold'].read('').team == ()
 
 
 def test_every_task_has_a_timeout_and_words():

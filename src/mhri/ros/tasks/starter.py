@@ -3,7 +3,7 @@
 """Goals made into runs: whether a goal can be understood, and who can begin it."""
 from mhri.core.config import ConfigError
 from mhri.core.robots.names import name_problem
-from mhri.core.tasks.base import FAILED, LOST, Start
+from mhri.core.tasks.base import FAILED, LOST, Start, TEAM
 from mhri.core.tasks.delegated import DelegatedRun
 from mhri.core.tasks.goto import ROW as GOTO
 from mhri.core.tasks.goto import target_of
@@ -53,15 +53,19 @@ class Starter:
             problem = name_problem(name)
             if problem:
                 raise ConfigError(origin, 'robots', '{!r}: {}'.format(name[:64], problem))
-        return kind.read(goal.parameters)
+        values = kind.read(goal.parameters)
+        if values.team and not set(goal.robots) <= set(values.team):
+            raise ConfigError(origin, TEAM, 'has to name every robot that is started')
+        return values
 
     def know(self, names):
         """See exactly these robots (blocking: it asks the master).
 
         :raises MasterError: the master cannot be asked now
         """
-        self._seen.know(names)
+        # Goals that nobody wants any more first: robots drive to them.
         self._move_bases.know(names)
+        self._seen.know(names)
 
     def prepare(self, key, values, team, names):
         """Open what a goal needs (blocking: it asks the master and reads files).
@@ -88,7 +92,7 @@ class Starter:
     def run(self, goal, name, drives, problem, now):
         """Return the run of one robot; one that cannot be begun has ended.
 
-        :param goal: has ``key``, ``values`` and ``team``
+        :param goal: has ``key``, ``values`` and ``order``, the team
         :param drives: see :meth:`prepare`, as is ``problem``
         """
         robot, kind, values = self._seen.get(name), self._kinds[goal.key], goal.values
@@ -99,7 +103,7 @@ class Starter:
             problem = 'the drive service does not know it: add it to the list of robots'
         problem = problem or self._not_placed(robot, placed)
         if not problem:
-            start = Start(name, goal.team, robot.body, robot.trail.places(),
+            start = Start(name, goal.order, robot.body, robot.trail.places(),
                           robot.trail.ages_s(now), self._places.marks(), drives.get(name, ()))
             try:
                 made = self._made(kind, values, start, timeout_s, now)

@@ -60,6 +60,8 @@ class _Goal:
         self.key = goal.task
         self.parameters = goal.parameters
         self.team = tuple(goal.robots)
+        # In whose order places are counted.
+        self.order = values.team or self.team
         self.values = values
         self.cancelled = False
         self.runs = []
