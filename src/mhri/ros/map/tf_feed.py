@@ -3,7 +3,10 @@
 """What tf says, for little: a dozen robots tell it 600 messages a second, of which few matter here.
 
 ``tf2_ros`` makes objects of each. Here names and numbers are read from the bytes as they are; what
-becomes of them is worked out for the frames that are asked for, when they are asked for.
+becomes of them is worked out for the frames that are asked for, when they are asked for. Waking up
+for
+each would still cost most: the thread of a connection, which rospy gives each publisher, sleeps a
+moment after it has read, and finds several of them together then.
 """
 import struct
 import threading
@@ -17,6 +20,8 @@ from mhri.ros.messages import bytes_of
 from mhri.ros.sensors.refusals import Refusals
 
 MOST_TRANSFORMS = 1000
+# How long a connection sleeps, and what comes within so short a time was read together [s].
+SLEEPS_S, TOGETHER_S = 0.1, 0.02
 _COUNT, _NUMBERS = struct.Struct('<I'), struct.Struct('<7d')
 # Of a std_msgs/Header what is before its frame: number and stamp.
 _HEADER_BYTES = 12
@@ -53,16 +58,19 @@ class TfFeed:
         self._tree = TfTree()
         self._subscribers = []
         self._refusals = Refusals('/tf', clock)
+        self._thread = threading.local()
+        self._closed = threading.Event()
 
     def open(self):
         """Begin to listen (blocking: it asks the master)."""
         if not self._subscribers:
             self._subscribers = [
-                rospy.Subscriber('/tf', bytes_of(TFMessage), self._hear, False, tcp_nodelay=True),
+                rospy.Subscriber('/tf', bytes_of(TFMessage), self._hear, False),
                 rospy.Subscriber('/tf_static', bytes_of(TFMessage), self._hear, True)]
 
     def close(self):
         """Stop listening (blocking: it asks the master)."""
+        self._closed.set()
         subscribers, self._subscribers = self._subscribers, []
         for subscriber in subscribers:
             unsubscribe(subscriber)
@@ -77,6 +85,14 @@ class TfFeed:
         with self._lock:
             for parent, child, numbers in found:
                 self._tree.see(parent, child, numbers, at_s)
+        if not static:
+            self._rest()
+
+    def _rest(self):
+        """Let the next messages of this connection gather, once for all that were read together."""
+        if self._clock() - getattr(self._thread, 'woke_at', -SLEEPS_S) > TOGETHER_S:
+            self._closed.wait(SLEEPS_S)
+            self._thread.woke_at = self._clock()
 
     def find(self, frame, other):
         """Return where a frame lies in another one, as :meth:`TfTree.find` has it."""
