@@ -4,9 +4,8 @@
 
 ``tf2_ros`` makes objects of each. Here names and numbers are read from the bytes as they are; what
 becomes of them is worked out for the frames that are asked for, when they are asked for. Waking up
-for
-each would still cost most: the thread of a connection, which rospy gives each publisher, sleeps a
-moment after it has read, and finds several of them together then.
+for each message would still cost a quarter of a core: the thread of a connection, which rospy gives
+each publisher, sleeps a moment after it has read, and then finds several of them together.
 """
 import struct
 import threading
