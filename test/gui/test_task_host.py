@@ -202,7 +202,7 @@ def test_news_are_events_and_a_refusal_is_said_in_place(desk):
     desk.draw()
     assert desk.notes == [('task.done', 'square done: it ended', 'bot2'),
                           ('task.refused', 'square not started: side is too small', 'bot2')]
-    assert desk.host.page.problem_label.text() == 'square not started: side is too small'
+    assert desk.host.page.problem_label.text() == 'bot2: square not started: side is too small'
 
 
 def test_who_runs_the_tasks_is_missed_and_welcomed_back(desk):

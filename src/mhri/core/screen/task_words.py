@@ -10,7 +10,7 @@ NOT_RUNNING = ('what runs the tasks is not running: it starts again within secon
                'started as a whole; else close this and start mhri again')
 NOT_ANSWERING = 'what runs the tasks does not answer: its robots stand'
 # How a task that is continued goes on; any other begins anew.
-_GOES_ON = {'goto': 'goes on to its goal', 'return': 'goes on back along its trail',
+_GOES_ON = {'goto': 'goes on to its goal', 'return': 'goes on back',
             'follow': 'goes on behind its leader', 'formation': 'goes back to its place',
             'patrol': 'goes to the first corner of its route', 'hold': 'stands where it is now'}
 _ANEW = 'begins anew from where it stands'
