@@ -35,13 +35,13 @@ class MhriPlugin(Plugin):
         instance_settings.set_value(_KEY, json.dumps(self._host.save_state()))
 
     def restore_settings(self, plugin_settings, instance_settings):
-        """Take them back; log what of a perspective cannot be used."""
+        """Take them back; log the unusable parts of a perspective."""
         try:
             problems = self._host.restore_state(json.loads(instance_settings.value(_KEY, '{}')))
         except (ValueError, TypeError, RecursionError) as error:
             problems = (str(error),)
         if problems:
-            rospy.logwarn('of the saved settings is left out: %s', '; '.join(problems)[:500])
+            rospy.logwarn('left out of the saved settings: %s', '; '.join(problems)[:500])
 
     def shutdown_plugin(self):
         """Stop the robots before the plugin goes."""

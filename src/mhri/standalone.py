@@ -16,7 +16,7 @@ from mhri.presenters.screen_host import ScreenHost
 from mhri.presenters.settings_file import SettingsError, SettingsFile
 from mhri.ros.screen.backend import ScreenBackend
 
-# How soon the number of a new robot is kept: it is to survive a program that is killed, too.
+# How soon the number of a new robot is saved: it must survive even a killed program.
 KEEP_NUMBERS_MS = 1000
 
 
@@ -95,7 +95,7 @@ class Standalone:
             self._numbers_timer.start()
 
     def restore(self, afresh=False):
-        """Take over the settings of the last run, as far as they can be used.
+        """Take over the settings of the last run, as far as they are usable.
 
         :param afresh: only the numbers of the robots, which are theirs for good
         """
@@ -113,7 +113,7 @@ class Standalone:
         except (SettingsError, ValueError) as error:
             problems.append(str(error))
         if problems:
-            rospy.logwarn('of the saved settings is left out: %s (the file is kept as %s)',
+            rospy.logwarn('left out of the saved settings: %s (the file is kept as %s)',
                           '; '.join(problems)[:500], self._settings.keep_aside())
         if not placed:
             self.window.showMaximized()
@@ -126,7 +126,7 @@ class Standalone:
         self._remember = False
         self._robots_at_first = self.host.operator.selection.robots
         panel = self.host.screen
-        # The mux tells a mode and limits by itself, so that their values do not say who chose them.
+        # The mux sets a mode and limits by itself, so their values do not tell who chose them.
         for signal_ in (panel.mode_requested, panel.limits_requested, panel.together_requested):
             signal_.connect(self._on_change)
 
@@ -155,7 +155,7 @@ class Standalone:
         try:
             self._settings.write(settings)
         except SettingsError as error:
-            rospy.logwarn('the settings are not kept: %s', error)
+            rospy.logwarn('the settings are not saved: %s', error)
 
     def run(self, app):
         """Work until the window is closed; nothing of it may be used after that."""

@@ -110,7 +110,7 @@ def test_without_a_cloud_it_says_so(view, operator, binding, cloud, topic):
         view.show_value(cloud)
     operator.click(view.rviz_button)
     assert not Frame.made and not view.rviz_button.isChecked() and view.canvas.isVisible()
-    assert view.status_label.text() == 'RViz shows clouds as they are sent: none has come'
+    assert view.status_label.text() == 'RViz shows clouds as sent: none has come yet'
     del held
 
 
@@ -122,5 +122,5 @@ def test_a_binding_that_fails_leaves_the_drawn_cloud(view, operator, binding, mo
     view.show_value(CLOUD)
     operator.click(view.rviz_button)
     assert view.canvas.isVisible() and not view.rviz_button.isChecked()
-    assert view.status_label.text() == 'RViz cannot be shown here: no OpenGL'
+    assert view.status_label.text() == 'cannot show RViz here: no OpenGL'
     del held

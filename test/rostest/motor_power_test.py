@@ -197,7 +197,7 @@ class MotorPowerTest(unittest.TestCase):
     def test_without_the_message_package_it_says_so_and_does_nothing(self):
         power = self.power(mhri={'motor_power': {'topic': 'power', 'type': 'no_such_msgs/Power'}})
         self.assertFalse(power.available)
-        self.assertEqual(power.problem, 'its motor power cannot be cut: no_such_msgs is '
+        self.assertEqual(power.problem, 'cannot cut its motor power: no_such_msgs is '
                          'not installed here')
         for act in (power.cut, power.restore):
             self.at_once(act)

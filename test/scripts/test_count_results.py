@@ -59,6 +59,6 @@ def test_failures_are_named(tmp_path):
     done = subprocess.run([sys.executable, str(PROGRAM), str(tmp_path), 'gui'],
                           stdout=subprocess.PIPE, universal_newlines=True)
     assert done.stdout.splitlines()[:3] == [
-        'FAILED gui: did not run to its end',
+        'FAILED gui: did not finish',
         'FAILED a.xml: c.bad: the reason',
         'FAILED a.xml: c.worse: the error']

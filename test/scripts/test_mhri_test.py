@@ -99,10 +99,10 @@ def test_bad_tests_are_all_counted(package):
               and '.xml: ' in line]
     for name in ('test_bad', 'MISSING-pytest-gui-test_crash', 'faults_timed-test_import',
                  'pytest-faults_timed-test_none.xml: no test ran', 'rosunit-bad',
-                 'rosunit-crash.xml: is not a whole result file'):
+                 'rosunit-crash.xml: is not a complete result file'):
         assert [line for line in failed if name in line], (name, output)
     assert output.splitlines()[-1] == '7 passed, 6 failed, 1 skipped', output
-    assert 'ending what was left running' in output and 'sleep 600' in output
+    assert 'ending a leftover process' in output and 'sleep 600' in output
 
 
 def test_results_of_the_last_run_do_not_count(package):
@@ -189,8 +189,8 @@ def test_interrupted_run_leaves_nothing(package):
     (['--only'], "there is no group ''"),
     (['--only', 'nothing'], "there is no group 'nothing'"),
     (['--only', 'unit gui'], "there is no group 'unit gui'"),
-    (['--jobs'], "--jobs: '' is no number"),
-    (['--jobs', '0'], "--jobs: '0' is no number"),
+    (['--jobs'], "--jobs: '' is not a number"),
+    (['--jobs', '0'], "--jobs: '0' is not a number"),
     (['unit'], "'unit' is not an option"),
 ])
 def test_wrong_arguments_are_refused(checkout, arguments, said):

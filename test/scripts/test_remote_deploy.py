@@ -97,7 +97,7 @@ def test_what_is_not_as_it_was_sent_is_said(robot, damage, names):
     robot.program(robot.tools / 'ln', '#!/bin/sh\n/usr/bin/ln "$@" && {}\n'.format(damage))
     status, output = robot.deploy()
     assert status == 1
-    assert 'what is on 192.0.2.7 is not what was sent ({})'.format(names) in output
+    assert 'the files on 192.0.2.7 differ from those sent ({})'.format(names) in output
     assert 'check its disk' in output and 'checked: ' not in output
     (robot.tools / 'ln').unlink()
     status, output = robot.deploy()
@@ -108,4 +108,4 @@ def test_what_is_not_as_it_was_sent_is_said(robot, damage, names):
 def test_link_that_was_not_made_is_said(robot):
     robot.program(robot.tools / 'ln', '#!/bin/sh\nexit 0\n')
     status, output = robot.deploy()
-    assert status == 1 and 'is not what was sent ({})'.format(LINK) in output
+    assert status == 1 and 'differ from those sent ({})'.format(LINK) in output

@@ -321,7 +321,7 @@ def test_robot_is_recorded_on_the_host(lab, operator):
 def test_second_robot_of_a_name_is_refused(lab, operator):
     terminal = lab.connect('bot2', '--type', 'turtlebot3')
     assert terminal.process.wait(LONG_S) == 1
-    wait_for(lambda: 'bot2 runs already, from this robot' in terminal.text(), 10, 'the word')
+    wait_for(lambda: 'bot2 already runs, from this robot' in terminal.text(), 10, 'the word')
     done = subprocess.run(
         [str(HOST_SCRIPTS / 'connect_turtlebot.sh'), machines.USER, lab.robots['bot2'].ip, 'bot1',
          '--port', str(lab.system.port), '--type', 'turtlebot3'], env=lab.env,

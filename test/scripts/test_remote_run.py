@@ -108,7 +108,7 @@ def await_topics(process, master, *topics):
 
 def test_turtlebot2_with_all_that_belongs_to_it(remote, master):
     master.setParam('/test', '/bot1/label', 'of the host')
-    process = remote.start('bot1', '--type', 'turtlebot2')
+    process = remote.start('bot1', '--type', 'turtlebot2', '--brake', '--back-after', '10')
     await_topics(process, master, '/bot1/odom', '/bot1/camera/rgb/image_raw',
                  '/bot1/cmd_vel_mux/input/teleop', '/bot1/mobile_base/commands/velocity')
     wait_for(lambda: publishers(master, '/bot1/teleop/input') == ['/bot1/mhri_guard'], START_S,
@@ -118,14 +118,16 @@ def test_turtlebot2_with_all_that_belongs_to_it(remote, master):
     assert subscribers(master, '/bot1/mobile_base/commands/velocity') == ['/bot1/mobile_base']
     assert parameter(master, '/bot1/robot_type') == 'turtlebot2'
     assert parameter(master, '/bot1/mobile_base/odom_frame') == 'bot1/odom'
-    assert parameter(master, '/bot1/mhri_guard/max_linear_mps') == 0.65
+    asked = {'max_linear_mps': 0.65, 'radius_m': 0.18, 'brake': True, 'back_after_s': 10}
+    assert {key: parameter(master, '/bot1/mhri_guard/' + key) for key in asked} == asked
+    assert subscribers(master, '/bot1/scan') == ['/bot1/mhri_guard']
     assert parameter(master, '/bot1/camera/driver/rgb_frame_id') == 'bot1/camera_rgb_optical_frame'
     assert 'ROS_MASTER_URI=http://127.0.0.1:{}'.format(remote.system.port) in process.output()
     assert 'TurtleBot7' not in str(master.getSystemState('/test')), 'ROS_NAMESPACE is taken away'
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=LONG_S) == 130, process.output()
     assert remote.running() == []
-    assert 'left running' not in process.output()
+    assert 'leftover process' not in process.output()
     assert [name for name in master.getParamNames('/test')[2] if name.startswith('/bot1/')] == [
         '/bot1/label'], 'what the robot brought goes with it'
 
@@ -184,13 +186,13 @@ def test_robot_joins_again_when_mhri_is_started_anew(remote, master):
     await_topics(process, master, '/bot1/odom')
     wait_for(lambda: parameter(master, '/bot1/mhri_remote'), 30, 'the note', poll_s=0.1)
     remote.system.kill(remote.system.master)
-    wait_for(lambda: 'does not answer any more' in process.output(), LONG_S, 'word of the silence',
+    wait_for(lambda: 'no longer answers' in process.output(), LONG_S, 'word of the silence',
              poll_s=0.1)
     remote.system.start_master()
     await_topics(process, master, '/bot1/odom', '/bot1/cmd_vel_mux/input/teleop')
     wait_for(lambda: parameter(master, '/bot1/robot_type') == 'turtlebot2', START_S, 'its type',
              poll_s=0.1)
-    assert 'mhri was started anew' in process.output()
+    assert 'mhri was restarted' in process.output()
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=LONG_S) == 130
     assert remote.running() == []
@@ -200,7 +202,7 @@ def test_a_name_that_is_taken_is_refused_and_a_leftover_is_not(remote, master):
     first = remote.start('bot1', '--type', 'turtlebot2', '--no-camera')
     await_topics(first, master, '/bot1/odom')
     status, output = remote.run('bot1', '--type', 'turtlebot2')
-    assert status == 1 and 'bot1 runs already' in output
+    assert status == 1 and 'bot1 already runs' in output
     assert first.poll() is None and publishers(master, '/bot1/odom')
     for pid in remote.running():
         os.kill(pid, signal.SIGKILL)
@@ -246,7 +248,7 @@ def free_port():
     (['--launch', '/no/where/none.launch'], {}, 'there is no file /no/where/none.launch; one of'),
     (['--launch', 'turtlebot_bringup/none.launch'], {}, 'none.launch'),
     (['--type', 'turtlebot2', '--ip', '203.0.113.9'], {},
-     '203.0.113.9 is none of the addresses of this robot'),
+     '203.0.113.9 is not an address of this robot'),
 ])
 def test_what_is_missing_on_the_robot_is_said(remote, arguments, environment, said):
     if 'ONLY' in environment:

@@ -64,7 +64,7 @@ def check_refused(checkout, uri, names):
     status, output = checkout.run('--sim', '1', '--master', uri)
     assert status == 1, output
     last = output.strip().splitlines()[-1]
-    assert 'mhri runs at {} already: {} on this computer'.format(uri, names) in last
+    assert 'mhri already runs at {}: {} on this computer'.format(uri, names) in last
     port = int(uri.rsplit(':', 1)[1])
     assert 'Close that panel' in last and ':{}'.format(port + 1) in last
     assert checkout.called('roslaunch') == []

@@ -26,7 +26,7 @@ import pytest
     (['--ip', '300.1.1.1'], "'300.1.1.1' is not an IPv4 address"),
     (['--ip', '1.2.3'], "'1.2.3'"),
     (['--ip', '1.2.3.4.5'], "'1.2.3.4.5'"),
-    (['--ip', '010.1.1.1'], 'has leading zeros, which not every program reads alike: write 10.1'),
+    (['--ip', '010.1.1.1'], 'has leading zeros, which programs read differently: write 10.1'),
     (['--ip', 'fe80::1'], "'fe80::1'"),
     (['--ip', '`touch hacked`'], "'`touch hacked`'"),
     (['--ip', '127.0.0.1\n'], '--ip: a control character'),
@@ -73,12 +73,12 @@ import pytest
     (['automatic_switching:=1'], "automatic_switching: '1' is not true or false"),
     (['sim:=13'], "sim: '13' is not a number from 0 to 12"),
     (['sim:=many'], "sim: 'many'"),
-    (['--sim', '3', 'turtlebot4'], "'turtlebot4' cannot be simulated; the types that can be are "
+    (['--sim', '3', 'turtlebot4'], "cannot simulate 'turtlebot4'; the types to simulate are "
      'turtlebot2, turtlebot3, turtlebot3_burger, turtlebot3_waffle, turtlebot3_waffle_pi'),
-    (['--sim', '3', 'turtlebot2 turtlebot4 turtlebot5'], "'turtlebot4', 'turtlebot5' cannot"),
-    (['--sim', '3', '--sim-types', 'generic'], "'generic' cannot be simulated"),
-    (['--demo', '--sim-types', ' '], "'' cannot be simulated"),
-    (['sim:=3', 'sim_types:=turtlebot4'], "'turtlebot4' cannot be simulated"),
+    (['--sim', '3', 'turtlebot2 turtlebot4 turtlebot5'], "cannot simulate 'turtlebot4', 'turtlebot5'"),
+    (['--sim', '3', '--sim-types', 'generic'], "cannot simulate 'generic'"),
+    (['--demo', '--sim-types', ' '], "cannot simulate ''"),
+    (['sim:=3', 'sim_types:=turtlebot4'], "cannot simulate 'turtlebot4'"),
 ])
 def test_wrong_arguments_are_refused(checkout, arguments, said):
     status, output = checkout.run(*arguments)
@@ -146,7 +146,7 @@ def test_a_bare_machine_is_asked_again_when_all_is_installed(checkout, tmp_path,
         checkout.script.write_text(script.replace(
             'command -v python3', '[ ! -e "{}/yaml.py" ]'.format(missing)))
     status, output = checkout.run('--sim', '3', 'turtlebot4', PYTHONPATH=str(missing))
-    assert status == 2 and "'turtlebot4' cannot be simulated" in output
+    assert status == 2 and "cannot simulate 'turtlebot4'" in output
     assert checkout.called('dpkg-query') and checkout.called('roslaunch') == []
 
 

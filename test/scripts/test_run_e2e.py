@@ -118,7 +118,7 @@ def test_demo_drives_three_robots_without_hands(start, tmp_path):
     assert status == 0, run.output
     for robot in ('bot1', 'bot2', 'bot3'):
         assert re.search(r'\b{}\b'.format(robot), run.output), run.output
-    assert 'the demo went well' in run.output
+    assert 'the demo succeeded' in run.output
     picture = cv2.imread(str(tmp_path / 'drive.png'))
     assert picture is not None and picture.shape[0] >= 400 and picture.shape[1] >= 600
     assert picture.std() > 5, 'the picture shows something'
@@ -168,7 +168,7 @@ def test_ctrl_c_takes_everything_down(start, master):
     assert 'there is no display: the panel runs under Xvfb' in run.output
     run.process.send_signal(signal.SIGINT)
     assert run.wait(30) == 130, run.output
-    assert 'left running' not in run.output
+    assert 'leftover process' not in run.output
 
 
 def test_end_of_the_panel_ends_everything(start, master):
@@ -213,7 +213,7 @@ def test_second_host_on_one_master_is_refused(start, master):
     first = node_uri(proxy, '/mux')
     second = start('--sim', '1', '--master', uri)
     assert second.wait(60) == 1, second.output
-    assert 'mhri runs at {} already: /mux on this computer'.format(uri) in second.output
+    assert 'mhri already runs at {}: /mux on this computer'.format(uri) in second.output
     assert node_uri(proxy, '/mux') == first
     assert publishers(proxy, '/bot1/odom') == []
 

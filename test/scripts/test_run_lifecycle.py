@@ -150,7 +150,7 @@ def test_what_roslaunch_leaves_behind_is_ended(checkout):
     status, output = checkout.run(
         *HERE, FAKE_ROSLAUNCH='setsid sleep 60 >/dev/null 2>&1 & disown; exit 0')
     assert status == 0
-    assert 'ending what was left running' in output and 'sleep 60' in output
+    assert 'ending a leftover process' in output and 'sleep 60' in output
     assert children_with(str(checkout.calls_file)) == []
 
 
@@ -176,7 +176,7 @@ def test_no_panel_needs_no_display(checkout):
 
 
 @pytest.mark.parametrize('result, status, said', [
-    ('ok', 0, 'the demo went well'),
+    ('ok', 0, 'the demo succeeded'),
     ('bot1 did not stop', 1, 'the demo failed: bot1 did not stop'),
     (None, 1, 'the demo failed: it ended without a result'),
 ])

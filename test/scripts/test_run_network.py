@@ -133,7 +133,7 @@ def test_port_taken_by_something_else(checkout, no_master):
     uri = 'http://127.0.0.1:{}'.format(no_master)
     status, output = checkout.run('--master', uri)
     assert status == 1
-    assert 'something that is not a ROS master has ' + uri in output and '--master' in output
+    assert 'something other than a ROS master uses ' + uri in output and '--master' in output
     assert 'end it' not in output
     assert checkout.called('roslaunch') == []
 
@@ -144,7 +144,7 @@ def test_master_that_does_not_answer(checkout):
         uri = 'http://127.0.0.1:{}'.format(server.getsockname()[1])
         status, output = checkout.run('--master', uri)
     assert status == 1
-    assert uri + ' takes the connection and does not answer' in output and 'ss -ltnp' in output
+    assert uri + ' takes the connection but does not answer' in output and 'ss -ltnp' in output
     assert ' end ' not in output and checkout.called('roslaunch') == []
 
 

@@ -3,16 +3,28 @@
 """The rule of the guard on the robot, under Python 3 and, where it is to be had, Python 2.7."""
 import ast
 import json
+import math
 import os
 from pathlib import Path
+import random
 import subprocess
 import sys
 
+import numpy as np
+from play_guard import load
 import pytest
+
+from mhri.core.driving import brake
+from mhri.core.driving.limits import Velocity
+from mhri.core.robots.mocap import Pose
 
 HERE = Path(__file__).resolve().parent
 PATH = HERE.parents[1] / 'utils' / 'remote' / 'mhri_guard'
 ROS = {'rospy', 'geometry_msgs.msg', 'std_msgs.msg'}
+# For its brake and the way back, where they are asked for.
+ROS_TO_LOOK = {'sensor_msgs.msg', 'nav_msgs.msg'}
+
+GUARD = load(str(PATH))
 
 # What stands right of "=" is the answer.
 SCRIPTS = {
@@ -213,6 +225,157 @@ SCRIPTS = {
         0.05 close = none''',
     'a robot that stands is told nothing at the end': '''
         0.00 close = none''',
+    'without a scan there is no way forward, and a crawl back': '''
+        with {"brake": true}
+        0.00 echo a = -:0:*
+        0.01 A:1:a 0.3 0.2 = 0 0.2
+        0.02 A:2:a -0.3 0.2 = -0.1 0.2
+        0.03 see 5.0
+        0.04 A:3:a 0.3 0 = 0 0
+        0.05 move 0 0 0
+        0.06 see 5.0
+        0.07 A:4:a 0.3 0 = 0.3 0
+        0.30 A:5:a 0.3 0 = 0.3 0
+        0.36 tick = none
+        0.37 tick = 0 0
+        0.42 tick = none
+        0.43 A:6:a 0 0.4 = 0 0.4''',
+    'odometry that is old makes a scan worth nothing': '''
+        with {"brake": true}
+        0.00 echo a = -:0:*
+        0.00 move 0 0 0
+        0.51 see 5.0
+        0.52 A:1:a 0.3 0 = 0 0''',
+    'a scan brakes what is held, and what is free again goes on': '''
+        with {"brake": true}
+        0.00 echo a = -:0:*
+        0.00 move 0 0 0
+        0.00 see 5.0
+        0.01 A:1:a 0.3 0.1 = 0.3 0.1
+        0.05 see 0.25
+        0.05 tick = none
+        0.07 tick = 0 0.1
+        0.12 tick = none
+        0.13 A:2:a -0.3 0.1 = -0.3 0.1
+        0.14 see 5.0
+        0.15 A:3:a 0.3 0.1 = 0.3 0.1
+        0.46 tick = 0 0''',
+    'what is too near to be seen is remembered': '''
+        with {"brake": true}
+        0.00 echo a = -:0:*
+        0.00 move 0 0 0
+        0.00 see 0.3
+        0.10 move 0.2 0 0
+        0.10 see inf
+        0.11 A:1:a 0.3 0 = 0 0
+        0.12 A:2:a -0.3 0 = -0.3 0
+        0.20 move 0 0 0
+        0.20 see inf
+        0.21 A:3:a 0.3 0 = 0.3 0''',
+    'a robot that is not heard any more goes back along its trail': '''
+        with {"back": [10, 5.0, 0.1]}
+        0.00 echo a = -:0:*
+        0.00 move 0 0 0
+        0.01 heard a = none
+        0.02 move 0.2 0 0
+        0.03 move 0.4 0 0
+        10.00 move 0.4 0 0
+        10.00 see inf
+        10.00 tick = none
+        10.01 tick = 0 0.4
+        10.02 tick = none
+        10.10 move 0.4 0 180
+        10.11 tick = 0.1 0
+        10.20 move 0.2 0 180
+        10.20 tick = 0.1 0
+        10.25 move 0.02 0 180
+        10.26 tick = 0 0
+        10.30 tick = none
+        60.00 tick = none''',
+    'it stops at once when it is heard, and wants a centred stick': '''
+        with {"back": [10, 5.0, 0.1]}
+        0.00 echo a = -:0:*
+        0.00 move 0 0 0
+        0.01 A:1:a 0.2 0 = 0.2 0
+        0.02 move 0.5 0 180
+        0.31 tick = 0 0
+        10.00 move 0.5 0 180
+        10.00 see inf
+        10.00 tick = none
+        10.02 tick = 0.1 0
+        10.03 echo b = A:1:*
+        10.04 heard a = none
+        10.05 heard b = 0 0
+        10.06 A:2:b 0.2 0 = none came_back
+        10.07 A:3:b 0 0 = 0 0
+        10.08 A:4:b 0.2 0 = 0.2 0''',
+    'a command is heard as well, and a stop holds it where it is': '''
+        with {"back": [10, 5.0, 0.1]}
+        0.00 echo a = -:0:*
+        0.00 move 0 0 0
+        0.01 heard a = none
+        0.02 move 0.5 0 180
+        10.00 move 0.5 0 180
+        10.00 see inf
+        10.02 tick = 0.1 0
+        10.03 echo b = -:0:*
+        10.04 A:1:b 0.2 0 = 0 0 came_back
+        10.05 echo c = -:0:*
+        20.20 move 0.5 0 180
+        20.20 see inf
+        20.21 tick = 0.1 0
+        20.22 Z!:1: 0 0 = 0 0
+        20.30 tick = none
+        40.00 move 0.5 0 180
+        40.00 see inf
+        40.01 tick = none''',
+    'never heard, or told that the sender ends: it stays': '''
+        with {"back": [10, 5.0, 0.1]}
+        0.00 echo a = -:0:*
+        0.00 move 0 0 0
+        0.02 move 0.5 0 180
+        20.00 move 0.5 0 180
+        20.00 see inf
+        20.00 tick = none
+        20.01 echo b = -:0:*
+        20.02 heard b = none
+        20.03 heard = none
+        40.00 move 0.5 0 180
+        40.00 see inf
+        40.01 tick = none''',
+    'no way back without a scan, nor through what is in it, nor further than was said': '''
+        with {"back": [1, 0.3, 0.1]}
+        0.00 echo a = -:0:*
+        0.00 move 0 0 0
+        0.01 heard a = none
+        0.02 move 1.0 0 180
+        1.02 tick = none
+        1.03 move 1.0 0 180
+        1.04 tick = none
+        1.10 see 0.25
+        1.11 tick = none
+        1.20 see inf
+        1.21 tick = 0.1 0
+        1.30 move 0.8 0 180
+        1.31 tick = 0.1 0
+        1.52 tick = 0 0
+        1.60 see inf
+        1.61 tick = 0.1 0
+        1.70 move 0.69 0 180
+        1.71 tick = 0 0
+        1.80 see inf
+        1.81 tick = none''',
+    'a guard that ends on the way back gives a zero': '''
+        with {"back": [1, 5.0, 0.1]}
+        0.00 echo a = -:0:*
+        0.00 move 0 0 0
+        0.01 heard a = none
+        0.02 move 1.0 0 180
+        1.03 move 1.0 0 180
+        1.03 see inf
+        1.04 tick = 0.1 0
+        1.05 close = 0 0
+        1.20 tick = none''',
 }
 
 
@@ -270,17 +433,66 @@ def answers(request):
 @pytest.mark.parametrize('name', SCRIPTS)
 def test_the_rule(answers, name):
     lines, expected = lines_of(name)
-    told = [line for line in lines if not line.startswith('with ')]
+    told = [line for line in lines
+            if line.split()[0] != 'with' and line.split()[1] not in ('move', 'see')]
     assert list(zip(told, answers[name])) == list(zip(told, expected))
     assert len(told) == len(expected)
 
 
-def test_it_needs_nothing_else_of_ros_and_nothing_of_mhri():
+def imported(nodes):
+    """Return the names of all modules that are imported."""
     names = set()
-    for node in ast.walk(ast.parse(PATH.read_text())):
+    for node in nodes:
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             names.add(node.module)
-    assert names - {'__future__', 'binascii', 'collections', 'ctypes', 'math', 'os', 're', 'sys',
+    return names
+
+
+def test_it_needs_nothing_else_of_ros_and_nothing_of_mhri():
+    tree = ast.parse(PATH.read_text())
+    names = imported(ast.walk(tree))
+    assert imported(tree.body) == names - ROS_TO_LOOK != names
+    assert names - ROS_TO_LOOK - {'__future__', 'binascii', 'collections', 'ctypes', 'math', 'os', 're', 'sys',
                     'threading', 'time'} == ROS
+
+
+@pytest.mark.parametrize('seed', range(300))
+def test_it_brakes_as_the_host_does(seed):
+    """Random points and commands: the same velocity, to the last digits."""
+    dice = random.Random(seed)
+    points = [(dice.uniform(-2.0, 2.0), dice.uniform(-2.0, 2.0))
+              for _ in range(dice.choice((0, 1, 3, 40)))]
+    wanted = dice.uniform(-1.0, 1.0), dice.choice((0.0, dice.uniform(-2.0, 2.0)))
+    age = dice.choice((None, 0.0, 0.1, 0.29, 0.31))
+    told = GUARD['braked'](wanted, points, 0.2, age)
+    expected = brake.braked(Velocity(*wanted), np.array(points).reshape(-1, 2), 0.2, age)
+    assert told == pytest.approx((expected.linear_mps, expected.angular_rad_s), abs=1e-9)
+
+
+def test_its_figures_are_those_of_the_host():
+    for name in ('SCAN_OLD_S', 'MARGIN_M', 'BRAKES_MPS2', 'REACTION_S', 'CRAWL_MPS', 'KEEP_M'):
+        assert GUARD[name] == getattr(brake, name)
+
+
+@pytest.mark.parametrize('step', [2 * math.pi / 360, -2 * math.pi / 360])
+@pytest.mark.parametrize('seed', range(20))
+def test_it_sees_and_remembers_what_the_host_does(seed, step):
+    """Random scans from random places; what the brake then allows hardly differs."""
+    dice = random.Random(seed)
+    mine, host = GUARD['Sight'](0.2), brake.Surroundings()
+    for number in range(5):
+        pose = dice.uniform(-0.2, 0.2), dice.uniform(-0.2, 0.2), dice.uniform(-3.0, 3.0)
+        ranges = [dice.choice((float('nan'), 0.0, dice.uniform(0.3, 3.0))) for _ in range(240)]
+        first = dice.uniform(-3.0, 0.0)
+        mine.move(pose, number)
+        mine.see(ranges, first, step, 0.45, 10.0, number)
+        seen = np.array([far if 0.45 <= far <= 10.0 else math.nan for far in ranges])
+        begin = first if step > 0.0 else first + 239 * step
+        host.see(brake.Scan(seen if step > 0.0 else seen[::-1], begin, abs(step), 0.45, 10.0),
+                 Pose(*pose))
+        wanted = dice.uniform(-0.6, 0.6), dice.uniform(-1.0, 1.0)
+        expected = brake.braked(Velocity(*wanted), host.around(Pose(*pose)), 0.2, 0.0)
+        assert mine.allow(wanted, number) == pytest.approx(
+            (expected.linear_mps, expected.angular_rad_s), abs=0.03)

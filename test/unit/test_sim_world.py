@@ -303,7 +303,7 @@ def file_for_all(path, aside):
 
 @pytest.mark.parametrize('lay, reason', [
     (link_to_a_file, 'symbolic links'), (second_name, 'another name'), (file_for_all, 'mode 666'),
-    (lambda path, aside: os.mkfifo(path, 0o600), 'no ordinary file'),
+    (lambda path, aside: os.mkfifo(path, 0o600), 'not an ordinary file'),
     (lambda path, aside: os.mkdir(path), 'directory')])
 def test_what_is_no_file_of_this_user_alone_is_refused(tmp_path, clock, lay, reason):
     path, aside = world_path('trap', str(tmp_path)), tmp_path / 'aside'

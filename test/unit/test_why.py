@@ -17,6 +17,7 @@ BOT = RobotView('bot3', link=LIVE, age_s=0.01, selected=True, obeys='operator', 
 PANEL = PanelView(ros=ROS_CONNECTED, sources=SOURCES, mode='joy', robots=(BOT,))
 AHEAD, LEFT, REST = (1.0, 0.0), (0.0, 0.5), (0.0, 0.0)
 PAD = {'mode': 'ps3joy'}
+HELD = {'mode': 'ps3joy', 'pushed': True}
 PUSHED = {'mode': 'ps3joy', 'asked': (0.3, 0.0)}
 
 # Changes of the panel, of the robot, the stick, and what is said.
@@ -31,6 +32,7 @@ SAID = {
     'no mux': ({'mode': None}, {}, AHEAD, 'what decides who drives is not running'),
     'gates silent': ({'answers': False}, {}, AHEAD, 'the drive service does not answer'),
     'not selected': ({}, {'selected': False}, AHEAD, 'not selected: press 3 to drive it'),
+    'not selected, by pad': (HELD, {'selected': False}, REST, 'not selected: press 3 to drive it'),
     'no key': ({}, {'selected': False, 'number': 10}, AHEAD, 'not selected: check it in the list'),
     'on a task': ({}, {'selected': False, 'obeys': 'task'}, AHEAD, 'on a task: press 3 to take it'),
     'on a known task': ({}, {'selected': False, 'task': TaskView('Square')}, AHEAD,
@@ -43,10 +45,12 @@ SAID = {
                    {}, REST, 'PS3 Controller: nobody publishes'),
     'pad not heard yet': ({**PUSHED, 'waits_for': 'source'}, {}, REST,
                           'nothing is heard from PS3 Controller yet'),
-    'dead-man': ({**PAD, 'waits_for': 'dead_man'}, {}, REST, 'hold the dead-man button to drive'),
-    'pedal': ({**PAD, 'waits_for': 'enabling'}, {}, REST, 'press the enabling pedal to drive'),
+    'dead-man': ({**HELD, 'waits_for': 'dead_man'}, {}, REST, 'hold the dead-man button to drive'),
+    'pedal': ({**HELD, 'waits_for': 'enabling'}, {}, REST, 'press the enabling pedal to drive'),
     'neutral': ({'waits_for': 'neutral'}, {}, AHEAD, CENTRE),
-    'neutral of a pad': ({**PAD, 'waits_for': 'neutral'}, {}, REST, CENTRE),
+    'stop all, by pad': ({**HELD, 'stop_all': True, 'waits_for': 'release'}, {}, REST, 'STOP ALL'),
+    'gone, by pad': (HELD, {'link': GONE}, REST, 'switched off or out of reach'),
+    'neutral of a pad': ({**HELD, 'waits_for': 'neutral'}, {}, REST, CENTRE),
     'silent': ({}, {'link': SILENT, 'note': 'nothing for 3.2 s'}, AHEAD,
                'it has sent nothing for 3.2 s'),
     'gone': ({}, {'link': GONE, 'note': 'switched off or out of reach'}, AHEAD, 'switched off or'),
@@ -72,7 +76,8 @@ SILENCE = {
     'it moves': ({}, {'moving': True, 'sent_mps': 0.3}, AHEAD),
     'it moves by pad': (PUSHED, {'moving': True, 'sent_mps': 0.3}, REST),
     'the pad rests': (PAD, {}, REST),
-    'the pad rests, another robot': ({**PAD, 'waits_for': 'dead_man'}, {'selected': False}, REST),
+    'the pad rests, its button, too': ({**PAD, 'waits_for': 'dead_man'}, {}, REST),
+    'own stick held, as the mux has it': ({'pushed': True}, {}, REST),
     'on its way': ({}, {}, AHEAD),
     'no odometry': ({}, {'linear_mps': None, 'sent_mps': 0.3}, AHEAD),
     'centred': ({'waits_for': 'neutral'}, {}, REST),

@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What mhri_run.sh asks before it starts anything.
+"""Answers what mhri_run.sh asks before it starts anything.
 
 Usage: before_start.py master URI             prints master, silent, other or nothing
        before_start.py running URI            prints the mux and the panel that run on a master
-       before_start.py reaches ADDRESS        prints yes where this computer reaches itself there
+       before_start.py reaches ADDRESS        prints yes if this computer reaches itself there
        before_start.py arguments FILE [ARG:=VALUE]...
-                                              prints what is wrong with arguments of a launch file
+                                              prints what is wrong with a launch file's arguments
 
-Works without ROS: what needs YAML is left out as long as that is not installed.
+Works without ROS; skips what needs YAML if that is not installed.
 """
 import difflib
 import os
@@ -24,20 +24,20 @@ import xmlrpc.client
 
 CALLER = '/mhri_run'
 PATIENCE_S = 3.0
-# Who serves or publishes all of these is one. By what it publishes it is told from a node that has
-# its port by now.
+# A node that serves or publishes all of these is one. What it publishes tells it from a node that
+# has taken its port.
 MUX_SERVICE, MUX_TOPIC = '/mux/set_stop_all', '/robot_controller/twist'
 PANEL_TOPICS = ('/mux_in/mode_select', '/robot_controller/robot_select')
 CHOICES = {'gui': ('auto', 'rqt', 'standalone', 'none')}
 INPUTS = ('joy', 'pedal', 'voice', 'none')
 MOST_ROBOTS = 12
 ROBOT = re.compile(r'[A-Za-z0-9_/]+\Z')
-# The launch file puts these between quotes, and what ends a quote could add options.
+# The launch file quotes these, and a quote in them could add options.
 QUOTED = ('screenshot', 'demo_result')
 
 
 def what_is_at(uri):
-    """Return 'master', 'silent', 'other' or 'nothing': what is at the address of a master."""
+    """Return 'master', 'silent', 'other' or 'nothing': what answers at a master's address."""
     place = urllib.parse.urlsplit(uri)
     try:
         socket.create_connection((place.hostname, place.port)).close()
@@ -55,7 +55,7 @@ def what_is_at(uri):
 def candidates(state):
     """Return {name: topic} of the nodes that a master knows as muxes and panels.
 
-    :param state: what getSystemState tells: publishers, subscribers, services
+    :param state: the value of getSystemState: publishers, subscribers, services
     """
     published, _, services = (dict(part) for part in state)
     panels = set.intersection(*(set(published.get(topic, ())) for topic in PANEL_TOPICS))
@@ -74,15 +74,15 @@ def is_here(host):
 
 
 def running(uri):
-    """Return which muxes and panels run on a master, and where, as text; '' where none answers.
+    """Return which muxes and panels run on a master, and where, as text; '' if none answers.
 
-    What was killed stays registered: a node counts only where it says itself that it publishes what
-    such a node does. All are asked at once, for three seconds at most.
+    A killed node stays registered: a node counts only if it says itself that it publishes what a
+    mux or a panel does. All are asked at once, for at most three seconds.
     """
     try:
         master = xmlrpc.client.ServerProxy(uri)
         known = candidates(master.getSystemState(CALLER)[2])
-    except Exception:  # a master that cannot be asked is roslaunch's to complain of
+    except Exception:  # roslaunch will complain about a master that does not answer
         return ''
     places = {}
 
@@ -109,7 +109,7 @@ def running(uri):
 
 
 def reaches(address):
-    """Tell whether this computer reaches itself at an address (one that is translated, say)."""
+    """Tell whether this computer reaches itself at an address (e.g. behind a router's NAT)."""
     token = uuid.uuid4().bytes
     with socket.create_server(('', 0)) as server:
         try:
@@ -121,7 +121,7 @@ def reaches(address):
 
 
 def read_yaml(path):
-    """Return what is in a YAML file; None where it cannot be read, which its reader then says."""
+    """Return the content of a YAML file; None if unreadable, which its real reader will report."""
     try:
         import yaml
         with open(path, encoding='utf-8') as stream:
@@ -131,17 +131,17 @@ def read_yaml(path):
 
 
 def simulated_types(resource):
-    """Return the names that --sim takes, or None where they are not known."""
+    """Return the type names that --sim takes, or None if unknown."""
     try:
         bodies = sorted(read_yaml(os.path.join(resource, 'sim', 'bodies.yaml'))['bodies'])
     except (TypeError, KeyError):
         return None
-    # turtlebot.launch takes it for a Burger.
+    # turtlebot.launch takes this one for a Burger.
     return sorted(bodies + ['turtlebot3']) if 'turtlebot3_burger' in bodies else bodies
 
 
 def source_names(path):
-    """Return the names of the sources that a mux file lists, or None where they are not known."""
+    """Return the names of the sources in a mux file, or None if unknown."""
     try:
         return [source['name'] for source in read_yaml(path)['sources']]
     except (TypeError, KeyError):
@@ -149,7 +149,7 @@ def source_names(path):
 
 
 def one_of(words):
-    """Return words as they are said: 'a, b or c'."""
+    """Return words as a phrase: 'a, b or c'."""
     return ' or '.join(filter(None, [', '.join(words[:-1]), words[-1]]))
 
 
@@ -172,7 +172,7 @@ def wrong_value(name, value, default, resource, mux_config):
     elif name == 'sim_types':
         allowed, given = simulated_types(resource), value.split() or ['']
         wrong = [word for word in given if word not in (allowed or given)]
-        return wrong and "'{}' cannot be simulated; the types that can be are {}".format(
+        return wrong and "cannot simulate '{}'; the types to simulate are {}".format(
             "', '".join(wrong), ', '.join(allowed))
     wrong = [word for word in given if word not in (allowed or given)]
     return wrong and "{}: '{}' is not {}".format(
@@ -182,7 +182,7 @@ def wrong_value(name, value, default, resource, mux_config):
 def wrong_argument(path, words):
     """Return what is wrong with the first wrong one of ARG:=VALUE, or None.
 
-    :param path: of the launch file; what it reads is in ``resource`` beside its folder
+    :param path: of the launch file; the files it reads are in ``resource`` beside its folder
     """
     known = {arg.get('name'): arg.get('default') for arg in ElementTree.parse(path).findall('arg')
              if arg.get('value') is None}

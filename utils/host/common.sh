@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 # shellcheck shell=bash
-# What the scripts of this folder share: messages, arguments, packages, the workspace, a display
+# Shared by the scripts in this folder: messages, arguments, packages, the workspace, a display
 # without a screen. Sourced, never run.
 
 REPO=$(cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
 # shellcheck source-path=SCRIPTDIR source=../remote/turtle_arguments.sh
 . "$REPO/utils/remote/turtle_arguments.sh"
 WS="$REPO/build/.ws"
-# The tests point these elsewhere to see what happens on other systems.
+# The tests point these elsewhere to try other systems.
 OS_RELEASE=${MHRI_OS_RELEASE:-/etc/os-release}
 NOETIC=${MHRI_NOETIC:-/opt/ros/noetic}
 RUN_ID="mhri-$$-$RANDOM$RANDOM"
@@ -16,7 +16,7 @@ SCRATCH=
 XVFB_PID=
 PACKAGES=()
 
-# The system's python3 has to be the first: ROS is not installed for any other.
+# The system's python3 must come first: ROS is not installed for any other.
 [ "$(command -v python3)" = /usr/bin/python3 ] || export PATH="/usr/bin:$PATH"
 
 DEBIAN_RUN=(
@@ -37,7 +37,7 @@ DEBIAN_TEST=(
   python3-flake8-docstrings python3-mccabe python3-pip python3-psutil catkin-lint shellcheck
   xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server openssl iproute2 nftables
 )
-# For the fast group of the tests alone; so called on Ubuntu, too.
+# Only for the fast group of tests; Ubuntu uses the same names.
 FAST=(
   python3-catkin-pkg python3-evdev python3-flake8 python3-mccabe python3-numpy python3-opencv
   python3-pip python3-pyaudio python3-pytest python3-rospkg python3-yaml util-linux
@@ -56,10 +56,10 @@ UBUNTU_TEST=(
 say() { printf 'mhri: %s\n' "$(unarmed "$*")"; }
 warn() { printf 'mhri: %s\n' "$(unarmed "$*")" >&2; }
 die() { warn "$*"; exit 1; }
-# A wrong command line: exit status 2, and nothing has been started.
+# A wrong command line: exit status 2, before anything starts.
 usage_error() { warn "$(brief "$*") (--help lists every option)"; exit 2; }
 
-# Prints debian or ubuntu, or ends with what is supported.
+# Prints debian or ubuntu, or dies with a list of what is supported.
 os_family() {
   local system
   # shellcheck disable=SC1090 # known at run time only
@@ -75,7 +75,7 @@ os_family() {
   esac
 }
 
-# missing_packages NAME...: prints those that are not installed, one a line.
+# missing_packages NAME...: prints those that are not installed, one per line.
 missing_packages() {
   local name
   for name in "$@"; do
@@ -85,41 +85,41 @@ missing_packages() {
   done
 }
 
-# as_root COMMAND...: runs it, through sudo where that is needed.
+# as_root COMMAND...: runs it, through sudo if needed.
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; return; fi
   command -v sudo >/dev/null ||
-    die "administrator rights are needed and there is no sudo; ask an administrator to run: $*"
+    die "this needs administrator rights, and there is no sudo; ask an administrator to run: $*"
   say "asking for administrator rights (sudo) to run: $*"
   sudo "$@"
 }
 
-# install_packages NAME...: installs what is missing; with nothing missing, neither apt nor sudo nor
-# the network is touched.
+# install_packages NAME...: installs what is missing; with nothing missing, it uses neither apt nor
+# sudo nor the network.
 install_packages() {
   local missing
   mapfile -t missing < <(missing_packages "$@")
   [ "${#missing[@]}" -gt 0 ] || return 0
-  say "these packages are missing and will be installed with apt: ${missing[*]}"
+  say "installing missing packages with apt: ${missing[*]}"
   as_root apt-get update ||
-    warn "the package lists could not be renewed; going on with the lists that are here"
+    warn "could not update the package lists; going on with the present ones"
   as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends \
     "${missing[@]}" ||
     die "apt could not install what is missing (${missing[*]}): see its message above"
 }
 
-# install_rosdeps: on Ubuntu, what package.xml asks for.
+# install_rosdeps: on Ubuntu, installs what package.xml asks for.
 install_rosdeps() {
   local keys=(--from-paths "$REPO" --ignore-src --rosdistro noetic)
   if rosdep check "${keys[@]}" >/dev/null 2>&1; then return 0; fi
-  say "packages named in package.xml are missing and will be installed with rosdep"
+  say "installing missing packages of package.xml with rosdep"
   [ -f /etc/ros/rosdep/sources.list.d/20-default.list ] || as_root rosdep init
   rosdep update --rosdistro noetic
-  # rosdep calls sudo itself where it is needed.
+  # rosdep itself calls sudo if needed.
   rosdep install "${keys[@]}" -r -y || die "rosdep could not install everything: see above"
 }
 
-# install_missing run|test|fast: everything that kind of start needs.
+# install_missing run|test|fast: installs everything that this purpose needs.
 install_missing() {
   local family
   family=$(os_family)
@@ -140,7 +140,8 @@ install_missing() {
   fi
 }
 
-# source_setup FILE: catkin's setup files read variables that may not be set.
+# source_setup FILE: sources it without set -u, as catkin's setup files read variables that may not
+# be set.
 source_setup() {
   set +u
   # shellcheck disable=SC1090 # known at run time only
@@ -148,24 +149,24 @@ source_setup() {
   set -u
 }
 
-# nothing_changed STAMP: true where a build of the devel space would find nothing to do. Python,
-# launch and resource files are used from where they are, so they need no build.
+# nothing_changed STAMP: true if a build of the devel space would find nothing to do. Python, launch
+# and resource files are used in place, so they need no build.
 nothing_changed() {
   local inputs=(CMakeLists.txt package.xml setup.py action msg srv scripts)
   if [ ! -f "$1" ] || [ "$(cat "$1")" != "$REPO" ]; then return 1; fi
   [ -z "$(cd "$REPO" && find "${inputs[@]}" -newer "$1" -print -quit)" ]
 }
 
-# needs_plain_path WHO: ends where the checkout's path is too much for WHO.
+# needs_plain_path WHO: dies if WHO cannot cope with the checkout's path.
 needs_plain_path() {
   [[ $REPO != *[[:space:]]* ]] ||
     die "$1 cannot work in a path with a space in it: move the checkout ($REPO)"
 }
 
 # build_workspace TESTING [MAKE_TARGET]: builds this checkout in its own workspace; TESTING is ON or
-# OFF. The workspace is in build, which rosrun leaves out where it searches a package, and hidden,
-# which roslaunch leaves out: either would find every file of the package twice. The checkout itself is
-# its source folder: a link to it in there would be a loop for whoever searches the package.
+# OFF. The workspace is in build, which rosrun skips when it searches a package, and hidden, which
+# roslaunch skips: either would find every file of the package twice. The checkout itself is its
+# source folder: a link to it in there would be a loop for whoever searches the package.
 build_workspace() {
   local testing=$1 target=${2:-} stamp="$WS/built" log="$WS/build.log"
   mkdir -p "$WS" 2>/dev/null ||
@@ -176,36 +177,36 @@ build_workspace() {
     exec {BUILD_LOCK}>&-
     return 0
   fi
-  # Stamped with the time of the start: what is saved during the build is built next time.
+  # Stamped with the time of the start: files saved during the build are built next time.
   printf '%s' "$REPO" >"$stamp.new"
-  # CMake refuses a build folder that was made for another place (a copied or moved checkout), or
-  # through a link in src, as it once was.
+  # CMake refuses a build folder made for another place (a copied or moved checkout), or through a
+  # link in src, as older versions had.
   if [ -e "$WS/src" ] || { [ -f "$WS/place" ] && [ "$(cat "$WS/place")" != "$REPO" ]; }; then
     rm -rf "$WS/src" "$WS/build" "$WS/devel" "$WS/install" "$stamp"
   fi
   printf '%s' "$REPO" >"$WS/place"
-  # A workspace set up for the tests stays so: a start in the middle of a test run must not take
-  # its targets away.
+  # A workspace set up for the tests stays so: a start in the middle of a test run must not remove
+  # its targets.
   if grep -qs '^CATKIN_ENABLE_TESTING:[A-Z]*=ON' "$WS/build/CMakeCache.txt"; then testing=ON; fi
   say "building in $WS (log: $log)"
-  # With a master's address already set, catkin does not bake the default one into the environment
-  # that it gives to the tests.
+  # If a master's address is already set, catkin does not bake the default one into the tests'
+  # environment.
   (cd -P "$WS" && ROS_MASTER_URI=${ROS_MASTER_URI:-http://127.0.0.1:11311} catkin_make \
     --source "$REPO" -DPYTHON_EXECUTABLE=/usr/bin/python3 "-DCATKIN_ENABLE_TESTING=$testing" \
     ${target:+"$target"}) >"$log" 2>&1 {BUILD_LOCK}>&- || {
     tail -n 40 "$log" >&2
-    die "the build failed; the whole log is $log"
+    die "the build failed; the full log is $log"
   }
   mv "$stamp.new" "$stamp"
   exec {BUILD_LOCK}>&-
 }
 
-# make_scratch: a private folder for this run, SCRATCH; clean_up removes it.
+# make_scratch: makes a private folder for this run, SCRATCH; clean_up removes it.
 make_scratch() { SCRATCH=$(mktemp -d "${TMPDIR:-/tmp}/mhri.XXXXXX"); }
 
-# start_xvfb: a display in memory on a free number, in DISPLAY; only this run has its key. The number
-# is chosen here: with -displayfd a server takes no lock, and one that starts while another ends may
-# lose its socket to it.
+# start_xvfb: starts a display in memory on a free number, in DISPLAY; only this run has its key.
+# The number is chosen here: with -displayfd a server takes no lock, and one that starts while
+# another ends may lose its socket.
 start_xvfb() {
   local cookie attempt
   cookie=$(mcookie)
@@ -215,8 +216,8 @@ start_xvfb() {
     export DISPLAY=":$((10000 + RANDOM % 40000))"
     : >"$XAUTHORITY"
     xauth -q add "$DISPLAY" . "$cookie"
-    # In a session of its own, so that Ctrl-C does not end the display before the panel has sent its
-    # last zero; and ended by the kernel should this script be killed.
+    # In its own session, so that Ctrl-C does not end the display before the panel has sent its last
+    # zero; the kernel ends it should this script be killed.
     setsid setpriv --pdeathsig TERM Xvfb "$DISPLAY" -screen 0 1920x1080x24 -nolisten tcp \
       -auth "$XAUTHORITY" >"$SCRATCH/xvfb.log" 2>&1 &
     XVFB_PID=$!
@@ -228,7 +229,7 @@ start_xvfb() {
   die "Xvfb did not start in $attempt attempts: $(tail -n 3 "$SCRATCH/xvfb.log" | tr '\n' ' ')"
 }
 
-# xvfb_answers: waits until the display that was started can be used; false where it ended.
+# xvfb_answers: waits until the new display is usable; false if it ended.
 xvfb_answers() {
   local deadline=$((SECONDS + 20))
   while [ "$SECONDS" -lt "$deadline" ] && kill -0 "$XVFB_PID" 2>/dev/null; do
@@ -240,14 +241,14 @@ socket.socket(socket.AF_UNIX).connect("/tmp/.X11-unix/X" + sys.argv[1])' "${DISP
   return 1
 }
 
-# end_leftovers: ends what this run started and did not end itself, known by its mark; prints each.
+# end_leftovers: ends what this run started and left running, known by its mark; prints each.
 end_leftovers() {
   local entry pid
   for entry in /proc/[0-9]*/environ; do
     pid=${entry#/proc/}
     pid=${pid%/environ}
     if [ "$pid" != "$$" ] && grep -qzsxF "MHRI_RUN_ID=$RUN_ID" "$entry"; then
-      warn "ending what was left running: $pid $(tr '\0' ' ' 2>/dev/null <"/proc/$pid/cmdline")"
+      warn "ending a leftover process: $pid $(tr '\0' ' ' 2>/dev/null <"/proc/$pid/cmdline")"
       kill -KILL "$pid" 2>/dev/null || true
     fi
   done

@@ -29,7 +29,7 @@ the robot's password unless ssh has a key for it.
 
   Passed on to the robot; see 'turtle_remote.sh --help':
   --type TYPE, --model MODEL, --launch FILE, --setup FILE, --ip ADDR, --port PORT, --no-camera,
-  --no-smoother, --no-guard
+  --no-smoother, --no-guard, --brake, --back-after SECONDS
 
 Exit status: 2 wrong option, 255 ssh could not connect or lost the robot, else that of
 turtle_remote.sh: 1 could not start or the robot's launch ended, 129, 130 or 143 ended from here.
@@ -52,9 +52,12 @@ MODEL=
 LAUNCH=
 IP=
 PORT=11311
+GUARD=true
+BRAKE=false
+BACK_AFTER=
 PASSED_ON=()
 
-# What runs on the robot, as sh. $0 is USER@IP, $1 the folder in the home.
+# Runs on the robot, as sh. $0 is USER@IP, $1 the folder in the home.
 # shellcheck disable=SC2016 # the dollars are the robot's
 START='if [ ! -f "$1/turtle_remote.sh" ]; then
 echo "mhri: this robot has no ~/$1/turtle_remote.sh: run turtlebot_deploy.sh $0 on the host" >&2
@@ -78,7 +81,10 @@ parse_arguments() {
         printf -v "${option^^}" %s "$text"
         PASSED_ON+=("$1" "$text")
         shift ;;
-      --no-camera | --no-smoother | --no-guard) PASSED_ON+=("$1") ;;
+      --back-after) BACK_AFTER=$(value "$@"); PASSED_ON+=("$1" "$BACK_AFTER"); shift ;;
+      --no-guard) GUARD=false PASSED_ON+=("$1") ;;
+      --brake) BRAKE=true PASSED_ON+=("$1") ;;
+      --no-camera | --no-smoother) PASSED_ON+=("$1") ;;
       -*) usage_error "there is no option $1" ;;
       *) words+=("$1") ;;
     esac
@@ -98,15 +104,16 @@ check_arguments() {
   [ -z "$HOST_IP" ] || check_ip --host-ip "$HOST_IP" 192.168.0.103
   check_ssh_port "$SSH_PORT"
   check_folder "$FOLDER"
-  # The robot checks them again, but after the login. Nothing that a shell could read as more than a
-  # word gets there.
+  # The robot checks them again, but only after the login. Nothing that a shell could read as more
+  # than one word may get there.
   check_robot
+  check_guard
   for text in "${PASSED_ON[@]}"; do
     [[ $text =~ ^[A-Za-z0-9_./~+-]+$ ]] || usage_error "'$text' cannot be passed on to the robot"
   done
 }
 
-# choose_address: HOST_IP, by the rule that the robot has for its own.
+# choose_address: sets HOST_IP, by the rule that the robot uses for its own.
 choose_address() {
   local all=() address v4=()
   [ -z "$HOST_IP" ] || return 0
@@ -123,11 +130,11 @@ main() {
   parse_arguments "$@"
   check_arguments
   choose_address
-  # Plain words and one text in single quotes: every login shell reads that alike.
+  # Plain words and one text in single quotes: every login shell reads those alike.
   command="exec sh -c '$START' $ROBOT_USER@$ROBOT_IP $FOLDER $HOST_IP $NAME ${PASSED_ON[*]}"
   say "starting $NAME on $ROBOT_IP; this computer is $HOST_IP. Ctrl-C ends it"
-  # -tt: the robot sees the end of this terminal. Two minutes without an answer: an outage shorter
-  # than that ends nothing.
+  # -tt: the robot notices when this terminal closes. Two minutes without an answer: a shorter
+  # outage ends nothing.
   exec ssh -tt -o ConnectTimeout=10 -o ServerAliveInterval=15 -o ServerAliveCountMax=8 \
     ${SSH_PORT:+-p "$SSH_PORT"} -l "$ROBOT_USER" -- "$ROBOT_IP" "$command"
 }

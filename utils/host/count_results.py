@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Prints what failed in a folder of JUnit result files, and as its last line the plain count.
+"""Prints the failures in a folder of JUnit result files and, as the last line, the plain count.
 
 Usage: count_results.py FOLDER [GROUP_THAT_DID_NOT_RUN]...
 
-Ends with 1 where anything failed or nothing ran. Stricter than ``catkin_test_results``, which
-passes over files that are not whole and files without a test: here each of these is a failed test.
+Exits with 1 if anything failed or nothing ran. Stricter than ``catkin_test_results``, which skips
+broken files and files without a test: here each of these counts as a failed test.
 """
 import glob
 import os
@@ -19,7 +19,7 @@ def read_results(path):
     try:
         cases = list(ElementTree.parse(path).getroot().iter('testcase'))
     except (ElementTree.ParseError, OSError) as error:
-        return [(name, 'is not a whole result file: {}'.format(error))], 0
+        return [(name, 'is not a complete result file: {}'.format(error))], 0
     if not cases:
         return [(name, 'no test ran')], 0
     ran, skipped = [], 0
@@ -34,15 +34,14 @@ def read_results(path):
         else:
             ran.append((test, None))
     if name.startswith('rostest-'):
-        # The frame around test nodes, each of which has a file of its own: it counts where a node
-        # did not get so far.
+        # The frame around test nodes, each with its own file: it counts if a node got no further.
         ran = [item for item in ran if item[1]]
     return ran, skipped
 
 
 def main(folder, not_run):
     """Print the count of a folder; return the exit status."""
-    ran, skipped = [(group, 'did not run to its end') for group in not_run], 0
+    ran, skipped = [(group, 'did not finish') for group in not_run], 0
     for path in sorted(glob.glob(os.path.join(folder, '*.xml'))):
         found, left_out = read_results(path)
         ran += found

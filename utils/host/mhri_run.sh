@@ -100,7 +100,7 @@ check_arguments() {
   [[ $SIM_TYPES =~ ^[a-z0-9_\ ]*$ ]] ||
     usage_error "--sim: '$SIM_TYPES' is not a list of robot types: names with spaces between"
   [ -z "$SIM_TYPES" ] || [ -n "$SIM" ] || "$DEMO" ||
-    usage_error "--sim-types says of what type the robots of --sim N are: give --sim as well"
+    usage_error "--sim-types lists the types for the robots of --sim N: give --sim as well"
   [ -z "$IP" ] || check_ip --ip "$IP" 192.168.0.103
   [[ -z $MASTER || $MASTER =~ ^http://[A-Za-z0-9]([A-Za-z0-9.-]*)?:[0-9]{1,5}/?$ ]] ||
     usage_error "--master: '$MASTER' is not an address such as http://192.168.0.103:11311"
@@ -109,7 +109,7 @@ check_arguments() {
     usage_error "--master: there is no port ${MASTER##*:}"
   fi
   if "$DEMO" && [ -n "$IP$MASTER" ]; then
-    usage_error "--demo runs on this machine alone, with a master of its own:" \
+    usage_error "--demo runs on this machine alone, with its own master:" \
       "leave out --ip and --master"
   fi
   [ -z "$PICTURE" ] || "$DEMO" || usage_error "--screenshot goes with --demo"
@@ -125,8 +125,8 @@ look() {
   python3 "$REPO/utils/host/before_start.py" "$@"
 }
 
-# roslaunch takes any argument for right, so that without this a misspelled enabling:=pedal would
-# start without the pedal.
+# roslaunch accepts any argument, so without this a misspelled enabling:=pedal would start without
+# the pedal.
 check_launch_arguments() {
   local wrong args=("${LAUNCH_ARGS[@]}")
   [ -z "$SIM_TYPES" ] || args+=("sim_types:=$SIM_TYPES")
@@ -134,7 +134,7 @@ check_launch_arguments() {
   [ -z "$wrong" ] || usage_error "$wrong"
 }
 
-# A picture that cannot be written is said before the drive, not after it.
+# Reports a picture that cannot be written before the drive, not after it.
 check_picture() {
   local folder
   "$DEMO" || return 0
@@ -148,7 +148,7 @@ check_picture() {
 
 is_loopback() { [[ $1 == localhost || $1 == 127.* ]]; }
 
-# own_addresses: sets all (what this computer has) and v4 (those ROS 1 can use) of the caller.
+# own_addresses: sets the caller's all (this computer's addresses) and v4 (those ROS 1 can use).
 own_addresses() {
   local address
   read -r -a all < <(hostname -I) || true
@@ -157,8 +157,9 @@ own_addresses() {
   done
 }
 
-# check_own_address: roslaunch says of somebody else's address, after all has been built, that it
-# cannot contact its own server. One that a router passes on to this computer is right, though.
+# check_own_address: given somebody else's address, roslaunch would only say after the build that it
+# cannot contact its own server. An address that a router forwards to this computer is right,
+# though.
 check_own_address() {
   local all=() v4=()
   if is_loopback "$IP"; then return 0; fi
@@ -167,7 +168,7 @@ check_own_address() {
     usage_error "--ip: $IP is not an address of this computer; it has" "${v4[@]}" 127.0.0.1
 }
 
-# choose_address: sets IP where --ip did not.
+# choose_address: sets IP if --ip did not.
 choose_address() {
   local master_host=${MASTER#http://} all=() v4=()
   master_host=${master_host%:*}
@@ -197,13 +198,13 @@ with socket.socket() as sock:
     print(sock.getsockname()[1])'
 }
 
-# A second mux would take the robots from the first, and its panel would be left with nothing.
+# A second mux would take the robots from the first, and leave its panel with nothing.
 check_alone() {
   local running
   running=$(look running "$MASTER")
   [ -z "$running" ] ||
-    die "mhri runs at $MASTER already: $running. Close that panel first (where there is none: Ctrl-C" \
-      "in the terminal it was started from), or start a second system, with a master of its own:" \
+    die "mhri already runs at $MASTER: $running. Close that panel first (if there is none: Ctrl-C" \
+      "in the terminal it was started from), or start a second system with its own master:" \
       "--master http://$IP:$((10#${MASTER##*:} + 1))"
 }
 
@@ -214,9 +215,9 @@ check_master() {
     master)
       check_alone
       say "a ROS master runs at $MASTER: joining it" ;;
-    other) die "something that is not a ROS master has $MASTER: see what it is, there, with $who," \
+    other) die "something other than a ROS master uses $MASTER: see there what it is with $who," \
       "or choose another port with --master http://$IP:11312" ;;
-    silent) die "$MASTER takes the connection and does not answer within 3 s: a ROS master that is" \
+    silent) die "$MASTER takes the connection but does not answer within 3 s: a ROS master that is" \
       "overloaded or hangs, or something else. Robots may depend on it: see what it is, there," \
       "with $who and top, and try again; or choose another port with --master http://$IP:11312" ;;
     nothing)
@@ -235,7 +236,7 @@ choose_network() {
   check_master
 }
 
-# An installed copy of this script has its setup file above it and nothing to build.
+# An installed copy of this script has its setup file above it, and nothing to build.
 prepare_code() {
   local installed="$REPO/../../setup.bash"
   if [ ! -f "$REPO/CMakeLists.txt" ] && [ -f "$installed" ]; then
@@ -260,9 +261,9 @@ prepare_display() {
     "XAUTHORITY=$XAUTHORITY DISPLAY=$DISPLAY import -window root picture.png (from imagemagick)"
 }
 
-# Sends one signal, however often it was asked: roslaunch then ends its nodes in order, the mux and
-# the panel sending their zeros, and forces those that do not end. SIGTERM, since a shell starts
-# what runs in the background with SIGINT ignored.
+# Sends one signal, however often it is called: roslaunch then ends its nodes in order, while the
+# mux and the panel send their zeros, and kills those that do not end. SIGTERM, since a shell starts
+# background jobs with SIGINT ignored.
 stop() {
   if [ -n "$STOPPED_WITH" ]; then return; fi
   STOPPED_WITH=$1
@@ -278,8 +279,8 @@ launch() {
     args+=("demo:=true" "screenshot:=$PICTURE" "demo_result:=$SCRATCH/demo_result")
   fi
   say "ROS_MASTER_URI=$ROS_MASTER_URI ROS_IP=$ROS_IP ROS_HOSTNAME=$ROS_HOSTNAME"
-  # A session of its own: Ctrl-C in the terminal reaches this script alone, which passes it on once.
-  # Should this script be killed, the kernel does.
+  # In its own session: Ctrl-C in the terminal reaches only this script, which passes it on once.
+  # Should this script be killed, the kernel passes it on.
   MHRI_RUN_ID=$RUN_ID MHRI_PANEL_STATUS="$SCRATCH/panel_status" \
     setsid setpriv --pdeathsig TERM roslaunch mhri mhri.launch "${args[@]}" &
   LAUNCH_PID=$!
@@ -291,7 +292,7 @@ launch() {
   return "${STOPPED_WITH:-$status}"
 }
 
-# roslaunch ends with 0 whatever the panel ended with.
+# roslaunch ends with 0, whatever the panel's exit status.
 check_panel() {
   local status=0
   [ ! -s "$SCRATCH/panel_status" ] || status=$(cat "$SCRATCH/panel_status")
@@ -302,7 +303,7 @@ demo_verdict() {
   local verdict=
   [ ! -f "$SCRATCH/demo_result" ] || verdict=$(cat "$SCRATCH/demo_result")
   [ "$verdict" = ok ] || die "the demo failed: ${verdict:-it ended without a result}"
-  say "the demo went well; its pictures are $PICTURE and four beside it"
+  say "the demo succeeded; its pictures are $PICTURE and four beside it"
 }
 
 main() {
@@ -318,7 +319,7 @@ main() {
   trap 'stop 130' INT
   trap 'stop 143' TERM HUP
   prepare_code
-  # Once more, for a machine that had no Python or no YAML before.
+  # Again, for a machine that had no Python or no YAML before.
   check_launch_arguments
   choose_network
   prepare_display

@@ -7,7 +7,7 @@ set -euo pipefail
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 GROUPS_IN_ORDER=(lint unit oldest scripts rostest gui faults bench)
-# Targets whose files may run at the same time (the longest first), and those that measure times or
+# Targets whose files may run at the same time (the longest first), and those that measure time or
 # share a screen, which run alone.
 CALM=(scripts_calm rostest_calm faults_calm oldest unit lint)
 TIMED=(rostest_timed scripts_timed faults_timed gui bench)
@@ -55,7 +55,7 @@ parse_arguments() {
         ONLY+=("$2")
         shift ;;
       --jobs)
-        [[ ${2:-} =~ ^[1-9][0-9]?$ ]] || usage_error "--jobs: '${2:-}' is no number from 1 to 99"
+        [[ ${2:-} =~ ^[1-9][0-9]?$ ]] || usage_error "--jobs: '${2:-}' is not a number from 1 to 99"
         JOBS=$2
         shift ;;
       -*) usage_error "there is no option $1" ;;
@@ -67,7 +67,7 @@ parse_arguments() {
   if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 4 ? $(nproc) : 4)); fi
 }
 
-# Tools that Debian and Ubuntu do not package, in the workspace, at fixed versions.
+# Installs in the workspace, at fixed versions, the tools that Debian and Ubuntu do not package.
 install_tools() {
   local tools=(vermin==1.6.0 mypy==1.14.1 mypy_extensions==1.0.0 typing_extensions==4.12.2
     tomli==2.0.1)
@@ -83,7 +83,7 @@ install_tools() {
   fi
 }
 
-# The tests see nothing of the operator's: no master, no screen, no ~/.ros.
+# Keeps the operator's master, screen and ~/.ros out of the tests.
 isolate() {
   unset ROS_HOSTNAME ROS_NAMESPACE WAYLAND_DISPLAY
   export ROS_IP=127.0.0.1 ROS_MASTER_URI=http://127.0.0.1:9 ROS_HOME="$SCRATCH/ros"
@@ -91,8 +91,8 @@ isolate() {
   start_xvfb
 }
 
-# run JOBS GROUP...: their targets, JOBS at a time; a make that fails is a failed test too, since then
-# something did not run. Says how long it took.
+# run JOBS GROUP...: runs their targets, JOBS at a time, and says how long it took. A make that
+# fails counts as a failed test, since then something did not run.
 run() {
   local status=0 jobs=$1 started=$SECONDS targets=() command
   shift
@@ -101,7 +101,7 @@ run() {
   if [ "$1" != fast ]; then
     targets=("${@/#/run_tests_mhri_}")
     command=(make --no-print-directory -C "$WS/build" "-j$jobs" --keep-going)
-    # What runs at the same time is printed one after the other.
+    # Print what runs at the same time one after the other.
     if [ "$jobs" -gt 1 ]; then command+=(--output-sync=target); fi
     command+=("${targets[@]}")
   fi
@@ -109,14 +109,14 @@ run() {
   RUN_PID=$!
   wait "$RUN_PID" || status=$?
   RUN_PID=
-  # The fast group says by 1 that a test failed; a target of make ends well whatever its tests say.
+  # The fast group exits with 1 if a test failed; a make target ends with 0 whatever its tests say.
   [ "$status" = 0 ] || [ "$*/$status" = fast/1 ] || NOT_RUN+=("$*")
   TIMES+=("$* $((SECONDS - started)) s")
   say "tests: $* took $((SECONDS - started)) s"
   end_leftovers
 }
 
-# run_all: the chosen groups.
+# run_all: runs the chosen groups.
 run_all() {
   local target calm=() timed=()
   for target in "${CALM[@]}"; do
@@ -133,7 +133,7 @@ run_all() {
   for target in "${timed[@]}"; do run 1 "$target"; done
 }
 
-# wanted GROUP: it was asked for.
+# wanted GROUP: true if it was asked for.
 wanted() { [[ " ${ONLY[*]} " == *" $1 "* ]]; }
 
 stop() {
@@ -141,13 +141,13 @@ stop() {
   exit 130
 }
 
-# has_fast: python3 has what the fast group imports.
+# has_fast: true if python3 has what the fast group imports.
 has_fast() {
   PYTHONPATH="$WS/tools" python3 -c 'import catkin_pkg, cv2, evdev, flake8, flake8_docstrings, mccabe
 import numpy, pyaudio, pytest, rospkg, yaml' 2>/dev/null
 }
 
-# The fast group alone: no build, no screen, and where Python has what it needs, no apt.
+# Runs only the fast group: no build, no screen and, if Python has what it needs, no apt.
 run_fast() {
   mkdir -p "$RESULTS" 2>/dev/null || die "cannot write to $REPO: the results go to build/.ws"
   rm -rf "$RESULTS"

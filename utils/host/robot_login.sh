@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 # shellcheck shell=bash
-# What connect_turtlebot.sh and turtlebot_deploy.sh share: checks of what goes to ssh and, through
+# Shared by connect_turtlebot.sh and turtlebot_deploy.sh: checks of what goes to ssh and, through
 # it, to a shell on the robot. Sourced after common.sh, never run.
 
 # check_login USER IP
@@ -11,7 +11,7 @@ check_login() {
   check_ip IP "$2" 192.168.0.7
 }
 
-# check_ssh_port PORT: empty is right, too.
+# check_ssh_port PORT: empty is fine, too.
 check_ssh_port() {
   [ -n "$1" ] || return 0
   check_port --ssh-port "$1"

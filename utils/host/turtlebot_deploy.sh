@@ -30,8 +30,8 @@ HELP
 }
 
 SOURCE="$REPO/utils/remote"
-# On the robot the TurtleBot2 has its launch file by the name of the 2016 guide, too: as a link, which
-# this computer has not, since launch/mhri.launch has the name here.
+# On the robot the TurtleBot2's launch file also has the name of the 2016 guide, as a link; not on
+# this computer, where launch/mhri.launch has that name.
 LINK=mhri.launch
 LINK_TO=mhri_turtlebot2.launch
 ROBOT_USER=
@@ -40,8 +40,8 @@ SSH_PORT=
 FOLDER=mhri
 SOCKET=
 
-# What runs on the robot, as sh: any robot has that. $1 is the folder in the home, $2 the link, $3
-# where it leads. Of a link counts where it leads, of another file what is in it.
+# Runs on the robot, as sh: any robot has that. $1 is the folder in the home, $2 the link, $3 its
+# target. Links compare by target, other files by content.
 # shellcheck disable=SC2016 # the dollars are the robot's
 LIST='cd 2>/dev/null || exit 1
 [ -d "$1" ] || exit 0
@@ -54,7 +54,7 @@ sum=$(sha256sum <"$file") || exit 1
 else continue; fi
 printf "%s %s %s\n" "${sum%% *}" "$kind" "$file"
 done'
-# Unpacks beside the folder and moves file by file, which replaces each in one step.
+# Unpacks beside the files and moves them one by one, which replaces each in one step.
 # shellcheck disable=SC2016 # the dollars are the robot's
 RECEIVE='cd || exit 1
 mkdir -p "$1" || exit 1
@@ -88,13 +88,13 @@ parse_arguments() {
   ROBOT_IP=${words[0]##*@}
 }
 
-# on_robot PROGRAM [ARG]: runs one of the programs above, over the connection that is open.
+# on_robot PROGRAM [ARG]: runs one of the programs above, over the open connection.
 on_robot() {
   ssh -S "$SOCKET" -o ControlMaster=no -l "$ROBOT_USER" ${SSH_PORT:+-p "$SSH_PORT"} \
     -- "$ROBOT_IP" "exec sh -c '$1' sh $FOLDER $LINK $LINK_TO"
 }
 
-# listing: checksum, x or -, and name of each file here, one a line.
+# listing: prints checksum, x or -, and name of each file here, one per line.
 listing() {
   local file sum kind
   for file in "$SOURCE"/*; do
@@ -106,8 +106,8 @@ listing() {
   done
 }
 
-# differing THERE: the names of the files here, and of the link, that the robot's listing does not
-# have as they are.
+# differing THERE: prints the names of the files here, and of the link, that differ from the robot's
+# listing.
 differing() {
   local line
   while IFS= read -r line; do
@@ -120,8 +120,8 @@ differing() {
 
 connect() {
   SOCKET="$SCRATCH/ssh"
-  # The connection that the next ones go through; with ssh's own questions: a password, or whether
-  # the key of a new robot is right. Should this script be killed, it ends by itself.
+  # The connection that carries the next ones; here ssh asks its own questions: the password, or
+  # whether a new robot's key is right. Should this script be killed, it ends by itself.
   ssh -M -S "$SOCKET" -o ControlPersist=20 -o ConnectTimeout=10 \
     -l "$ROBOT_USER" ${SSH_PORT:+-p "$SSH_PORT"} -- "$ROBOT_IP" true ||
     die "ssh could not log in to $ROBOT_USER@$ROBOT_IP: see its message above. A robot that is" \
@@ -141,20 +141,20 @@ deploy() {
     die "cannot read ~/$FOLDER on $ROBOT_IP: see the message above"
   mapfile -t files < <(differing "$there")
   if [ "${#files[@]}" = 0 ]; then
-    say "$ROBOT_IP has all $(listing | wc -l) files as they are here: nothing to send"
+    say "$ROBOT_IP has all $(listing | wc -l) files, unchanged: nothing to send"
     return
   fi
   say "sending to $ROBOT_IP:$FOLDER: ${files[*]}"
   for file in "${files[@]}"; do [ "$file" = "$LINK" ] || sent+=("$file"); done
-  # With -T there may be no file at all, where it is the link that is missing.
+  # With -T the list of files may be empty, if only the link is missing.
   tar -c -C "$SOURCE" --owner=0 --group=0 --mode=go-w -T /dev/null -- "${sent[@]}" |
     on_robot "$RECEIVE" ||
     die "could not write to ~/$FOLDER on $ROBOT_IP: see the message above (is its disk full?)"
   there=$(on_robot "$LIST") || die "cannot read ~/$FOLDER on $ROBOT_IP again"
   mapfile -t files < <(differing "$there")
   [ "${#files[@]}" = 0 ] ||
-    die "what is on $ROBOT_IP is not what was sent (${files[*]}): check its disk and try again"
-  say "checked: $ROBOT_IP has all $(listing | wc -l) files as they are here"
+    die "the files on $ROBOT_IP differ from those sent (${files[*]}): check its disk and try again"
+  say "checked: $ROBOT_IP has all $(listing | wc -l) files, unchanged"
 }
 
 main() {

@@ -2,25 +2,26 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 # Runs the panel for mhri.launch: until_closed.sh REQUIRED COMMAND...
-# When it was closed and is required (true), this asks roslaunch to end and stays until it is ended by
-# it: roslaunch calls every required process that ends by itself a process that died. A panel that
-# failed is left to roslaunch to name. Writes the panel's exit status to $MHRI_PANEL_STATUS, if set.
+# If it is required (true) and was closed, this asks roslaunch to end and stays until roslaunch ends
+# it: roslaunch reports every required process that ends by itself as one that died. It leaves it to
+# roslaunch to report a panel that failed. Writes the panel's exit status to $MHRI_PANEL_STATUS, if
+# set.
 set -u
 required=$1
 shift
 told=false
-# Runs when the panel has ended, which gets the same signal.
+# Runs once the panel, which gets the same signal, has ended.
 trap 'told=true' INT TERM HUP
-# Should this be killed, the panel is closed.
+# Closes the panel should this script be killed.
 setpriv --pdeathsig TERM "$@"
 status=$?
 [ -z "${MHRI_PANEL_STATUS:-}" ] || echo "$status" >"$MHRI_PANEL_STATUS"
 if [ "$required" = true ] && ! "$told" && [ "$status" = 0 ]; then
   asked=$SECONDS
-  # Where roslaunch is gone, its number may be another's by now.
+  # If roslaunch is gone, its number may be another's by now.
   read -r _ _ _ parent _ </proc/$$/stat
   if [ "$parent" = "$PPID" ] && kill -TERM "$PPID"; then
-    # In short steps: the signal that ends this may come before the first.
+    # In short steps: the signal that ends this may come before the first step.
     until "$told" || [ "$SECONDS" -gt "$((asked + 20))" ]; do sleep 0.1; done
   fi
 fi

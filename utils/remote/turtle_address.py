@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""turtle_address.py OPTION TARGET ADDRESS...: that of ADDRESS... which TARGET reaches us at.
+"""turtle_address.py OPTION TARGET ADDRESS...: prints the ADDRESS at which TARGET reaches us.
 
-What turtle_remote.sh and connect_turtlebot.sh ask; no operator calls it. OPTION is the caller's
-own, with which the operator names an address. Exit status 1, and one line that says what is wrong,
-where none or several would do. Needs the standard library alone; runs under Python 2.7, too.
+For turtle_remote.sh and connect_turtlebot.sh; operators do not call it. OPTION is the caller's
+option with which the operator names an address. Exit status 1, and one line that says what is
+wrong, if none or several would do. Needs only the standard library; runs under Python 2.7, too.
 """
 import contextlib
 import socket
@@ -15,7 +15,7 @@ import sys
 
 
 class Problem(Exception):
-    """There is no address, or no telling which; the text says what mends it."""
+    """There is no address, or no telling which; the text names the remedy."""
 
 
 def number(address):
@@ -30,7 +30,7 @@ def number(address):
 
 
 def prefix_lengths():
-    """Return {own address: length of its network's prefix in bits}, as far as ``ip`` says."""
+    """Return {own address: length of its network's prefix in bits}, as far as ``ip`` tells."""
     try:
         text = subprocess.check_output(['ip', '-o', '-4', 'addr', 'show']).decode()
     except (OSError, subprocess.CalledProcessError):
@@ -44,7 +44,7 @@ def prefix_lengths():
 
 
 def way_out(target):
-    """Return the address from which this computer would speak to a target, or None."""
+    """Return the address from which this computer would talk to a target, or None."""
     with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as probe:
         try:
             probe.connect((target, 9))
@@ -57,13 +57,13 @@ def choose_address(target, own, lengths, out, option):
     """Return the one of our addresses at which a target reaches us.
 
     :param own: our IPv4 addresses, as ``hostname -I`` has them
-    :param lengths: {address: prefix length}; an address that is not in it counts as of a /24
+    :param lengths: {address: prefix length}; an address not in it counts as in a /24
     :param out: the address the system would use towards the target, or None
     :param option: the option with which the operator names one, e.g. ``--ip``
     :raises Problem: there is none, or several would do
     """
     number(target)
-    # The system speaks to its own addresses, 127.0.0.1 among them, from the same one.
+    # The system talks to each of its own addresses, even 127.0.0.1, from that same address.
     if out == target or target in own:
         return target
     if not own:
@@ -85,7 +85,7 @@ def choose_address(target, own, lengths, out, option):
 
 
 def main(*arguments):
-    """Print the address; end with what is wrong where there is none."""
+    """Print the address; if there is none, exit with what is wrong."""
     if len(arguments) < 2:
         sys.exit('mhri: usage: turtle_address.py OPTION TARGET ADDRESS...')
     option, target, own = arguments[0], arguments[1], arguments[2:]

@@ -1,21 +1,21 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 # shellcheck shell=bash
-# What turtle_remote.sh and the scripts of utils/host share: checks of their arguments. Sourced,
-# never run; usage_error is the script's. Works with the bash of Ubuntu 16.04.
+# Shared by turtle_remote.sh and the scripts of utils/host: checks of their arguments. Sourced,
+# never run; usage_error is the script's own. Works with the bash of Ubuntu 16.04.
 
-# unarmed TEXT: without control characters, which would do something to a terminal.
+# unarmed TEXT: prints it without control characters, which a terminal would obey.
 unarmed() { printf '%s' "${1//[[:cntrl:]]/?}"; }
 
-# brief TEXT: of what somebody typed as much as fits into a line or two, in ASCII.
+# brief TEXT: prints as much of what somebody typed as fits into a line or two, in ASCII.
 brief() {
   local LC_ALL=C text=$1
   [ "${#text}" -le 500 ] || text="${text:0:300} ... ${text: -170}"
   printf '%s' "${text//[^[:print:]]/?}"
 }
 
-# valid_ip TEXT: whether it is an IPv4 address. Not with leading zeros, which some programs leave out
-# and others take for octal: 010.1.1.1 would be 10.1.1.1 here and 8.1.1.1 there.
+# valid_ip TEXT: true if it is an IPv4 address. Not with leading zeros, which some programs drop and
+# others take for octal: 010.1.1.1 would be 10.1.1.1 here and 8.1.1.1 there.
 valid_ip() {
   local part octets
   [[ $1 =~ ^(0|[1-9][0-9]{0,2})(\.(0|[1-9][0-9]{0,2})){3}$ ]] || return 1
@@ -23,23 +23,23 @@ valid_ip() {
   for part in "${octets[@]}"; do [ "$part" -le 255 ] || return 1; done
 }
 
-# check_ip WHAT TEXT EXAMPLE: ends where TEXT is no IPv4 address.
+# check_ip WHAT TEXT EXAMPLE: a usage error if TEXT is not an IPv4 address.
 check_ip() {
   local plain=$2
   if valid_ip "$2"; then return; fi
   [ "${#plain}" -le 40 ] || plain=
   while [[ $plain =~ ^(.*\.)?0+([0-9].*)$ ]]; do plain=${BASH_REMATCH[1]}${BASH_REMATCH[2]}; done
   if valid_ip "$plain"; then
-    usage_error "$1: '$2' has leading zeros, which not every program reads alike: write $plain"
+    usage_error "$1: '$2' has leading zeros, which programs read differently: write $plain"
   fi
   usage_error "$1: '$2' is not an IPv4 address such as $3"
 }
 
-# value OPTION [VALUE]: the value of an option, or the error that there is none.
+# value OPTION [VALUE]: prints the value of an option; a usage error if there is none.
 value() {
   case "${2:-}" in
     '' | -*) usage_error "$1 needs a value" ;;
-    # One at the end would be lost on the way to the variable, and with it the check.
+    # One at the end would be lost on the way to the variable, before any check.
     *[[:cntrl:]]*) usage_error "$1: a control character is in '$2'" ;;
   esac
   [ "${#2}" -le 512 ] || usage_error "$1: '$2' is too long: at most 512 characters"
@@ -63,8 +63,17 @@ check_port() {
   fi
 }
 
-# check_robot: what there is of TYPE, MODEL, LAUNCH, IP and PORT, before anything is started or sent.
-# TYPE becomes one of a robot's template, and PORT a plain number.
+# check_guard: BRAKE and BACK_AFTER, beside GUARD.
+check_guard() {
+  [[ -z $BACK_AFTER || $BACK_AFTER =~ ^[1-9][0-9]{0,3}$ && $BACK_AFTER -le 3600 ]] ||
+    usage_error "--back-after: '$BACK_AFTER' is no whole number of seconds from 1 to 3600"
+  if ! "$GUARD" && { "$BRAKE" || [ -n "$BACK_AFTER" ]; }; then
+    usage_error "--brake and --back-after are done by mhri_guard: leave out --no-guard"
+  fi
+}
+
+# check_robot: checks what is given of TYPE, MODEL, LAUNCH, IP and PORT before anything starts or is
+# sent. TYPE becomes the name of a template, and PORT a plain number.
 check_robot() {
   [[ -z $TYPE || $TYPE =~ ^[a-z][a-z0-9_]{0,31}$ ]] ||
     usage_error "--type: '$TYPE' is not a robot type such as turtlebot2"
@@ -78,7 +87,7 @@ check_robot() {
   check_type
 }
 
-# check_type: TYPE and MODEL fit together, and with --launch.
+# check_type: checks that TYPE, MODEL and --launch go together.
 check_type() {
   local model
   case "$TYPE" in

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 # shellcheck shell=bash
-# For turtle_remote.sh: which ROS is on this robot, what kind of robot it is, and which launch files
-# start it. Sourced, never run.
+# For turtle_remote.sh: finds this robot's ROS, its kind, and the launch files that start it.
+# Sourced, never run.
 # shellcheck disable=SC2034 # what is set here is used there
 
 PYTHON=
@@ -12,8 +12,8 @@ GUARD_PYTHON=
 GUARD_TOPIC=cmd_vel
 GUARD_LIMITS=()
 
-# What operators put into ~/.bashrc, which a shell that is not interactive does not read. Only these
-# variables are taken over, and only where they are not set.
+# Reads what operators put into ~/.bashrc, which a non-interactive shell skips. Takes over only
+# these variables, and only if they are not set.
 read_bashrc() {
   local names=() name line
   for name in TURTLEBOT3_MODEL LDS_MODEL TURTLEBOT_BASE TURTLEBOT_BATTERY TURTLEBOT_STACKS \
@@ -31,7 +31,7 @@ read_bashrc() {
   )
 }
 
-# package NAME: prints its folder; false where ROS or the package is not there.
+# package NAME: prints its folder; false if ROS or the package is missing.
 package() {
   "$PYTHON" -c 'import sys, rospkg
 try:
@@ -40,12 +40,12 @@ except rospkg.ResourceNotFound:
     sys.exit(1)' "$1" 2>/dev/null
 }
 
-# find_python: one that finds ROS packages; false where ROS is not there, or only partly.
+# find_python: sets PYTHON to one that finds ROS packages; false if ROS is missing, or incomplete.
 find_python() {
   local python
   command -v roslaunch >/dev/null || return 1
   [ -z "$PYTHON" ] || return 0
-  # Nodes ask the path for python3.
+  # Nodes look for python3 in the path.
   [ "$(command -v python3)" = /usr/bin/python3 ] || export PATH="/usr/bin:$PATH"
   for python in python3 python; do
     if "$python" -c 'import rospkg' >/dev/null 2>&1; then PYTHON=$python; return; fi
@@ -53,7 +53,7 @@ find_python() {
   return 1
 }
 
-# has_robot: whether what the robot needs can be found now.
+# has_robot: true if everything the robot needs is found now.
 has_robot() {
   find_python || return 1
   case "$TYPE" in
@@ -64,7 +64,7 @@ has_robot() {
   esac
 }
 
-# find_launch: LAUNCH as a full path where it is a file; what else it can be is PACKAGE/FILE.launch.
+# find_launch: makes LAUNCH a full path if it is a file; else it must be PACKAGE/FILE.launch.
 find_launch() {
   local where=
   [ -n "$LAUNCH" ] || return 0
@@ -97,20 +97,20 @@ prepare_ros() {
   esac
 }
 
-# missing_package NAME [BEFORE]: ends with the remedy; BEFORE is what else was looked for.
+# missing_package NAME [BEFORE]: dies with the remedy; BEFORE says what else was looked for.
 missing_package() {
   die "${2:-}there is no package $1 here: install it, or name the setup.bash of the workspace with" \
     "it with --setup FILE"
 }
 
-# choose_type: by what is installed, where --type did not say.
+# choose_type: by what is installed, unless --type said.
 choose_type() {
   local two=false three=false
   [ -z "$TYPE" ] || return 0
   if package turtlebot_bringup >/dev/null; then two=true; fi
   if package turtlebot3_bringup >/dev/null; then three=true; fi
   if "$two" && "$three"; then
-    die "both turtlebot_bringup and turtlebot3_bringup are here: say which robot this is with" \
+    die "turtlebot_bringup and turtlebot3_bringup are both installed: say which this is with" \
       "--type turtlebot2 or --type turtlebot3"
   fi
   if "$two" && [ -n "$MODEL" ]; then
@@ -122,7 +122,7 @@ choose_type() {
   say "this is a $TYPE, by what is installed"
 }
 
-# prepare_launch: BASE_LAUNCH and CAMERA_LAUNCH, with their arguments.
+# prepare_launch: sets BASE_LAUNCH and CAMERA_LAUNCH, with their arguments.
 prepare_launch() {
   case "$TYPE" in
     turtlebot2) prepare_turtlebot2 ;;
@@ -139,10 +139,11 @@ prepare_launch() {
       "them, or leave the guard out with --no-guard"
 }
 
-# find_guard_python: one that has what the guard imports. ROS up to Melodic has it for Python 2.
+# find_guard_python: sets GUARD_PYTHON to one with the guard's imports; up to Melodic that is Python
+# 2.
 find_guard_python() {
   for GUARD_PYTHON in "$PYTHON" python3 python; do
-    # Not where this was started: a rospy.py may lie there.
+    # Not in the working folder: a rospy.py may lie there.
     if (cd / && "$GUARD_PYTHON" -c 'import rospy, geometry_msgs.msg') >/dev/null 2>&1; then
       return
     fi
@@ -150,17 +151,19 @@ find_guard_python() {
   return 1
 }
 
-# limit_guard LINEAR ANGULAR: what this robot can do at most [m/s, rad/s], as its type on the host
-# has it.
-limit_guard() { GUARD_LIMITS=("_max_linear_mps:=$1" "_max_angular_rad_s:=$2"); }
+# limit_guard LINEAR ANGULAR RADIUS: this robot's greatest speeds [m/s, rad/s], and the disc around
+# all of it [m], as in its type on the host.
+limit_guard() {
+  GUARD_LIMITS=("_max_linear_mps:=$1" "_max_angular_rad_s:=$2" "_radius_m:=$3")
+}
 
 prepare_turtlebot2() {
   local folder
   folder=$(package turtlebot_bringup) || missing_package turtlebot_bringup
   GUARD_TOPIC=teleop/input
-  limit_guard 0.65 3.14
+  limit_guard 0.65 3.14 0.18
   if "$SMOOTHER" && ! package yocs_velocity_smoother >/dev/null; then
-    warn "there is no package yocs_velocity_smoother: the robot will jerk more than it needs to"
+    warn "there is no package yocs_velocity_smoother: the robot will jerk more than necessary"
     SMOOTHER=false
   fi
   "$SMOOTHER" || GUARD_TOPIC=cmd_vel_mux/input/teleop
@@ -180,15 +183,15 @@ prepare_turtlebot3() {
     die "which TurtleBot3 is this? TURTLEBOT3_MODEL is '$MODEL': give --model burger, waffle or" \
       "waffle_pi"
   export TURTLEBOT3_MODEL=$MODEL
-  if [ "$MODEL" = burger ]; then limit_guard 0.22 2.84; else limit_guard 0.26 1.82; fi
+  if [ "$MODEL" = burger ]; then limit_guard 0.22 2.84 0.22; else limit_guard 0.26 1.82 0.22; fi
   if [ -z "$LDS_MODEL" ] &&
     grep -qsF 'env LDS_MODEL' "$folder/launch/turtlebot3_lidar.launch"; then
     die "LDS_MODEL is not set: put 'export LDS_MODEL=LDS-01' (or LDS-02, see the label on the" \
       "lidar) into ~/.bashrc on this robot"
   fi
   BASE_LAUNCH=("$HERE/mhri_turtlebot3.launch" "name:=$NAME" "model:=$MODEL")
-  # The Burger has no camera. That of the Waffle Pi comes with its base from 1.2.6 of
-  # turtlebot3_bringup on, and has a launch file of its own before.
+  # The Burger has no camera. The Waffle Pi's starts with its base since turtlebot3_bringup 1.2.6,
+  # and has its own launch file before that.
   if [ "$MODEL" = waffle ] && [ -f "$folder/launch/turtlebot3_realsense.launch" ] &&
     package realsense_camera >/dev/null; then
     CAMERA_LAUNCH=("$HERE/mhri_turtlebot3_sensor.launch" "name:=$NAME")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What turtle_remote.sh asks of the network; no operator calls it.
+"""Checks the network for turtle_remote.sh; operators do not call it.
 
 turtle_check.py host HOST PORT OWN NAME     checks the master, both ways, and that NAME is free
 turtle_check.py claim HOST PORT NAME TOKEN  notes there that NAME runs from here
@@ -10,8 +10,8 @@ turtle_check.py watch HOST PORT NAME TOKEN  ends when the host has a new master,
 turtle_check.py release HOST PORT NAME TOKEN  takes back the note, and all parameters of NAME since
 turtle_check.py hold COMMAND...             becomes COMMAND; the kernel ends it with its parent
 
-Exit status 1, and one line that says what is wrong and what mends it, where something is. Needs the
-standard library alone; runs under the Python 2.7 of older robots, too.
+Exit status 1 if something is wrong, and one line that says what, and the remedy. Needs only the
+standard library; runs under the Python 2.7 of older robots, too.
 """
 import ctypes
 import errno
@@ -41,7 +41,7 @@ LONGEST = 500
 # From Linux's prctl.h.
 PR_SET_PDEATHSIG = 1
 CALLER = '/mhri_remote'
-# The host's own nodes, by which it is seen what address it gives them.
+# The host's own nodes, which show what address it gives them.
 HOST_NODES = ('/rosout', '/mux', '/mhri_panel')
 WATCH_EVERY_S = 2.0
 RUN_ID_TIMEOUT_S = 3.0
@@ -55,11 +55,11 @@ WHO = "sudo ss -ltnp 'sport = :{0}'"
 
 
 class Problem(Exception):
-    """Something is wrong; the text says what, and what mends it."""
+    """Something is wrong; the text says what, and the remedy."""
 
 
 def say(text):
-    """Tell the operator a line; a terminal that is gone is no reason to fail."""
+    """Tell the operator a line; a closed terminal is no reason to fail."""
     text = ''.join(char if ' ' <= char <= '~' else '?' for char in str(text))
     if len(text) > LONGEST:
         text = '{0} ... {1}'.format(text[:LONGEST - 200], text[-190:])
@@ -93,9 +93,9 @@ def number(text):
 
 
 def connect(host, port):
-    """Return nothing where a connection is accepted.
+    """Return if the port accepts a connection.
 
-    :raises Problem: it is not, with the reason
+    :raises Problem: it does not, with the reason
     """
     try:
         socket.create_connection((host, port), TIMEOUT_S).close()
@@ -107,7 +107,7 @@ def connect(host, port):
         if error.errno == errno.ECONNREFUSED:
             raise Problem('{0} answers, but no ROS master runs on its port {1}: start mhri on the '
                           'host first (mhri_run.sh --ip {0})'.format(host, port))
-        raise Problem('there is no way from here to {0} ({1}): is this robot on the same network? '
+        raise Problem('no route leads from here to {0} ({1}): is this robot on its network? '
                       'Try: ping {0}'.format(host, error.strerror))
 
 
@@ -121,8 +121,8 @@ def master_at(host, port):
     try:
         is_master = proxy.getPid(CALLER)[0] == 1
     except (OSError, socket.error):
-        # It may be the master of robots that are driven: nobody shall end it on our word.
-        raise Problem('{0} takes the connection at its port {1} and does not answer within '
+        # It may be the master of driven robots: nobody should end it on our word.
+        raise Problem('{0} takes the connection at its port {1} but does not answer within '
                       '{2:.0f} s: the ROS master there is overloaded or hangs, or something else '
                       'has the port. Other robots may depend on it: see on the host what it is, '
                       'with {3} and top, and try again'.format(
@@ -137,7 +137,7 @@ def master_at(host, port):
 
 
 def answer(call, *arguments):
-    """Return the value of a master's call, or None where it says no or nothing."""
+    """Return the value of a master's call, or None if it refuses or does not answer."""
     try:
         code, _, value = call(CALLER, *arguments)
     except FAILURES:
@@ -146,7 +146,7 @@ def answer(call, *arguments):
 
 
 def check_way_back(master, host, own, name):
-    """Have the master call us back, at the address that our nodes will have.
+    """Make the master call us back, at the address that our nodes will have.
 
     :raises Problem: it does not get through, or the address is not ours
     """
@@ -167,7 +167,7 @@ def check_way_back(master, host, own, name):
         master.subscribeParam(caller, api, key)
         master.setParam(CALLER, key, 1)
         if not called.wait(TIMEOUT_S):
-            # One that has ended meanwhile calls nobody back, and this says so.
+            # A master that has ended meanwhile calls nobody back; this call shows it.
             master.getPid(CALLER)
             raise Problem('{0} does not reach this robot at {1}: does a firewall here stop it '
                           '(sudo ufw status), or is another address meant (--ip ADDR)?'.format(
@@ -180,7 +180,7 @@ def check_way_back(master, host, own, name):
 
 
 def place(master, node):
-    """Return (host name, port) that a node is registered with, or None."""
+    """Return the (host name, port) of a node's registration, or None."""
     uri = answer(master.lookupNode, node)
     parts = urlsplit(uri) if uri else None
     return (parts.hostname, parts.port) if parts and parts.hostname and parts.port else None
@@ -196,7 +196,7 @@ def check_names_of_host(master, host, own):
         if where is None:
             continue
         if (where[0] == 'localhost' or where[0].startswith('127.')) and host != own:
-            raise Problem('the nodes on the host are for itself alone ({0} is at {1}): end mhri '
+            raise Problem('only the host itself can reach its nodes ({0} is at {1}): end mhri '
                           'there and start it with mhri_run.sh --ip {2}'.format(
                               node, where[0], host))
         try:
@@ -208,9 +208,9 @@ def check_names_of_host(master, host, own):
 
 
 def check_name(master, own, name):
-    """Check that no other robot is called as this one: ROS would end the nodes of one of them.
+    """Check that no other robot has this one's name: ROS would end the nodes of one of them.
 
-    :raises Problem: one is
+    :raises Problem: one has
     """
     state = master.getSystemState(CALLER)[2]
     nodes = set(node for kind in state for _, users in kind for node in users
@@ -235,17 +235,17 @@ def check_name(master, own, name):
         thread.join(2 * TIMEOUT_S)
     for where in sorted(alive):
         if where[0] == own:
-            raise Problem('{0} runs already, from this robot ({1}): end that first'.format(
+            raise Problem('{0} already runs, from this robot ({1}): end that first'.format(
                 name, places[where]))
         raise Problem('the name {0} is taken: {1} runs at {2}; end that, or give this robot '
                       'another name'.format(name, places[where], where[0]))
 
 
 def settle_run_id(master):
-    """Give a bare rosmaster the number of its run, as roscore does.
+    """Give a bare rosmaster a run id, as roscore does.
 
-    Of two roslaunch that start at once and find none, one fails. A roscore that has just begun gets
-    the time to set its own.
+    If two roslaunch start at once and find none, one fails. A roscore that has just started gets
+    time to set its own.
     """
     for _ in range(RUN_ID_TRIES):
         if answer(master.getParam, '/run_id') is not None:
@@ -255,7 +255,7 @@ def settle_run_id(master):
 
 
 def check_host(host, port, own, name):
-    """Check all that the robot needs of the host.
+    """Check everything that the robot needs from the host.
 
     :raises Problem: something is wrong
     """
@@ -266,12 +266,12 @@ def check_host(host, port, own, name):
         check_name(master, own, name)
         settle_run_id(master)
     except FAILURES:
-        raise Problem('the master at {0} stopped answering while it was asked: see that mhri runs '
+        raise Problem('the master at {0} stopped answering during the checks: see that mhri runs '
                       'there (mhri_run.sh --ip {0}), then start this robot again'.format(host))
 
 
 def outermost(name, kept):
-    """Return the shortest beginning of a name under which nothing is kept, None if it is itself."""
+    """Return the shortest prefix of a name with nothing to keep, None if the name is kept."""
     parts = name.split('/')
     for length in range(2, len(parts) + 1):
         whole = '/'.join(parts[:length])
@@ -281,7 +281,7 @@ def outermost(name, kept):
 
 
 class Claim(object):
-    """The note at the master that a robot runs from here; a new master does not have it.
+    """The note at the master that a robot runs from here; a new master lacks it.
 
     :param token: says which run of turtle_remote.sh it is
     """
@@ -296,9 +296,9 @@ class Claim(object):
         return '/{0}/{1}'.format(self._name, last)
 
     def make(self):
-        """Note it, and which parameters the robot has there already: those stay behind it.
+        """Note it, and which parameters the robot already has there: those stay afterwards.
 
-        Of a run that was killed the list is there still, and holds on.
+        The list of a killed run is still there, and stays valid.
 
         :raises Problem: the master does not answer
         """
@@ -321,12 +321,12 @@ class Claim(object):
         return code == 1 and value == self._token
 
     def give_up(self):
-        """Take back the note, and what the robot brought: no robot is called so then."""
+        """Take back the note, and what the robot brought: its name is free then."""
         if not self.state():
             return
         found = answer(self._master.getParam, self._key('mhri_remote_found')) or []
         names = self._parameters()
-        # What an operator says of the robot, while it runs, too.
+        # Also what an operator sets for the robot while it runs.
         found += [name for name in names if name.startswith(self._key('mhri/'))]
         for name in set(outermost(name, found) for name in names) - {None}:
             answer(self._master.deleteParam, name)
@@ -341,7 +341,7 @@ class Claim(object):
             if state is None:
                 silent += 1
                 if silent == 2:
-                    say('{0} does not answer any more; this robot waits for it'.format(self._host))
+                    say('{0} no longer answers; this robot waits for it'.format(self._host))
             elif silent:
                 if silent > 1:
                     say('{0} answers again'.format(self._host))
@@ -349,7 +349,7 @@ class Claim(object):
 
 
 def end_with_parent():
-    """Have the kernel end this process (SIGTERM) when its parent ends."""
+    """Let the kernel end this process (SIGTERM) when its parent ends."""
     parent = os.getppid()
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, int(signal.SIGTERM), 0, 0, 0)
     if os.getppid() != parent:
@@ -357,16 +357,16 @@ def end_with_parent():
 
 
 def hold(command):
-    """Become a command in a session of its own, which ends with our parent."""
+    """Become a command in its own session, which ends with our parent."""
     os.setsid()
     end_with_parent()
-    # A shell starts what runs in the background with this ignored, and it would stay so.
+    # A shell starts background jobs with this signal ignored, and it would stay so.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     os.execvp(command[0], command)
 
 
 def watch(host, port, name, token):
-    """Watch that the host knows that the robot runs from here."""
+    """Watch whether the host knows that the robot runs from here."""
     os.setsid()
     end_with_parent()
     Claim(host, port, name, token).watch()

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 # Starts a robot and joins it to the host; runs on the robot; --help is the manual.
-# Works with the bash of Ubuntu 16.04: there an empty array counts as not set.
+# Works with the bash of Ubuntu 16.04, where an empty array counts as unset.
 set -eo pipefail
 
 HERE=$(cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
@@ -36,6 +36,11 @@ Robot
   --no-smoother        TurtleBot2: leave out the velocity smoother
   --no-guard           do not start mhri_guard, which drops late commands, stops the robot when none
                        arrive, and holds a stop-all on the robot when the network is lost
+  --brake              mhri_guard slows down for what the laser meets in the way, to a stop before
+                       it; without laser data there is no way forward
+  --back-after SECONDS once mhri was not heard for so long (1 to 3600), mhri_guard drives the robot
+                       back along its trail, slowly and braking, until it is heard again, 5 m at
+                       most. Only where a robot may drive while nobody looks
 
 Network
   --ip ADDR            this robot's address. Default: the one from 'hostname -I' on the host's
@@ -67,6 +72,8 @@ LAUNCH=
 CAMERA=true
 SMOOTHER=true
 GUARD=true
+BRAKE=false
+BACK_AFTER=
 IP=
 PORT=11311
 SETUP=
@@ -77,7 +84,7 @@ CAMERA_PID=
 GUARD_PID=
 WATCH_PID=
 
-# A terminal that is gone must not keep the robot from being ended.
+# A closed terminal must not keep the robot from ending.
 say() { printf 'mhri: %s\n' "$(unarmed "$*")" 2>/dev/null || true; }
 warn() { printf 'mhri: %s\n' "$(unarmed "$*")" >&2 || true; }
 die() { warn "$*"; exit 1; }
@@ -94,6 +101,8 @@ parse_arguments() {
       --no-camera) CAMERA=false ;;
       --no-smoother) SMOOTHER=false ;;
       --no-guard) GUARD=false ;;
+      --brake) BRAKE=true ;;
+      --back-after) BACK_AFTER=$(value "$@"); shift ;;
       --ip) IP=$(value "$@"); shift ;;
       --port) PORT=$(value "$@"); shift ;;
       --setup) SETUP=$(value "$@"); shift ;;
@@ -112,10 +121,11 @@ check_arguments() {
   check_ip HOST_IP "$HOST_IP" 192.168.0.103
   check_name "$NAME"
   check_robot
+  check_guard
   [ -z "$SETUP" ] || [ -f "$SETUP" ] || usage_error "--setup: there is no file '$SETUP'"
 }
 
-# choose_network: this robot's address, and what ROS goes by.
+# choose_network: sets this robot's address and the ROS variables.
 choose_network() {
   local all=() address v4=()
   read -r -a all < <(hostname -I) || true
@@ -125,19 +135,19 @@ choose_network() {
   if [ -z "$IP" ]; then
     IP=$("$PYTHON" "$HERE/turtle_address.py" --ip "$HOST_IP" "${v4[@]}") || exit 1
   elif [[ " ${v4[*]} 127.0.0.1 " != *" $IP "* ]]; then
-    die "--ip: $IP is none of the addresses of this robot (${v4[*]:-it has none})"
+    die "--ip: $IP is not an address of this robot (${v4[*]:-it has none})"
   fi
   export ROS_MASTER_URI="http://$HOST_IP:$PORT" ROS_IP=$IP ROS_HOSTNAME=$IP
   unset ROS_NAMESPACE
   say "ROS_MASTER_URI=$ROS_MASTER_URI ROS_IP=$ROS_IP ROS_HOSTNAME=$ROS_HOSTNAME"
 }
 
-# held COMMAND...: runs it in a session of its own, so that Ctrl-C reaches this script alone, which
-# passes it on once; should this script be killed, the kernel does.
+# held COMMAND...: runs it in its own session, so that Ctrl-C reaches only this script, which passes
+# it on once; should this script be killed, the kernel does.
 held() { exec env "MHRI_REMOTE_ID=$TOKEN" "$PYTHON" "$HERE/turtle_check.py" hold "$@"; }
 
 start_all() {
-  # Before anything sets a parameter: it notes which there are.
+  # Before anything sets a parameter: it notes the present ones.
   "$PYTHON" "$HERE/turtle_check.py" claim "$HOST_IP" "$PORT" "$NAME" "$TOKEN" || exit 1
   held roslaunch "${BASE_LAUNCH[@]}" </dev/null &
   BASE_PID=$!
@@ -147,7 +157,7 @@ start_all() {
   fi
   if "$GUARD"; then
     ROS_NAMESPACE="/$NAME" held "$GUARD_PYTHON" "$HERE/mhri_guard" "_command:=$GUARD_TOPIC" \
-      "${GUARD_LIMITS[@]}" </dev/null &
+      "_brake:=$BRAKE" "_back_after_s:=${BACK_AFTER:-0}" "${GUARD_LIMITS[@]}" </dev/null &
     GUARD_PID=$!
   fi
   "$PYTHON" "$HERE/turtle_check.py" watch "$HOST_IP" "$PORT" "$NAME" "$TOKEN" </dev/null &
@@ -156,13 +166,13 @@ start_all() {
 
 running() { [ -n "$1" ] && kill -0 "$1" 2>/dev/null; }
 
-# nap: a second that a signal cuts short.
+# nap: waits a second; a signal cuts it short.
 nap() {
   sleep 1 &
   wait $! || true
 }
 
-# end_all: asks what was started to end, waits, and ends by force what did not.
+# end_all: asks everything started to end, waits, and kills what did not.
 end_all() {
   local pid deadline=$((SECONDS + 25)) pids=("$GUARD_PID" "$BASE_PID" "$CAMERA_PID" "$WATCH_PID")
   for pid in "${pids[@]}"; do
@@ -175,14 +185,14 @@ end_all() {
   BASE_PID='' CAMERA_PID='' GUARD_PID='' WATCH_PID=''
 }
 
-# end_leftovers: what this run started and did not end itself, known by its mark.
+# end_leftovers: kills what this run started and left running, known by its mark.
 end_leftovers() {
   local entry pid
   for entry in /proc/[0-9]*/environ; do
     pid=${entry#/proc/}
     pid=${pid%/environ}
     if [ "$pid" != "$$" ] && grep -qzsxF "MHRI_REMOTE_ID=$TOKEN" "$entry"; then
-      warn "ending what was left running: $pid $(tr '\0' ' ' 2>/dev/null <"/proc/$pid/cmdline")"
+      warn "ending a leftover process: $pid $(tr '\0' ' ' 2>/dev/null <"/proc/$pid/cmdline")"
       kill -KILL "$pid" 2>/dev/null || true
     fi
   done
@@ -201,7 +211,8 @@ clean_up() {
   "$PYTHON" "$HERE/turtle_check.py" release "$HOST_IP" "$PORT" "$NAME" "$TOKEN" || true
 }
 
-# check_parts: whether the robot still runs; the camera and the guard are told of, once.
+# check_parts: restarts after a new start of the host; dies if base or guard ended; reports the
+# camera once.
 check_parts() {
   local status=0
   if ! running "$BASE_PID"; then
@@ -213,10 +224,10 @@ check_parts() {
     CAMERA_PID=
   fi
   if [ -n "$GUARD_PID" ] && ! running "$GUARD_PID"; then
-    die "mhri_guard has ended: without it this robot is not to be driven as a guarded one"
+    die "mhri_guard has ended: this robot must not be driven as a guarded one without it"
   fi
   if ! running "$WATCH_PID"; then
-    say "mhri was started anew on $HOST_IP: starting $NAME anew"
+    say "mhri was restarted on $HOST_IP: restarting $NAME"
     end_all
     "$PYTHON" "$HERE/turtle_check.py" host "$HOST_IP" "$PORT" "$IP" "$NAME" || exit 1
     start_all

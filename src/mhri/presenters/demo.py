@@ -44,7 +44,7 @@ class Hands:
         """
         found = (window or self._panel).findChild(QWidget, name)
         if found is None:
-            raise DemoFailed('there is no {} to be seen'.format(name))
+            raise DemoFailed('there is no visible {}'.format(name))
         return found
 
     def click(self, name, window=None):
@@ -219,7 +219,7 @@ class Demo(QObject):
 
     @staticmethod
     def _views_open(tile):
-        """Return a condition: the switches of a tile are below its header, and it is drawn."""
+        """Return a condition: a tile's switches are below its header, and the tile is drawn."""
         return lambda: tile.switches.mapTo(tile, QPoint(0, 0)).y() >= tile.header.height() \
             and not any(cover.isVisible() for cover in tile.findChildren(StaleCover))
 
@@ -257,7 +257,7 @@ class Demo(QObject):
         hands.click('check_' + three)
         yield 'the panel to ask for a centred stick', self._reads(CENTRE)
         yield '{} to stand still'.format(one), self._rests(one)
-        self._say('{} does not leap: the stick has to be centred first'.format(three))
+        self._say('{} does not leap: the stick must be centred first'.format(three))
         hands.let_go()
         yield 'the panel to be ready', self._reads(READY)
         yield '{} and {} to move'.format(two, three), self._hold(

@@ -81,7 +81,7 @@ class DrawGuard:
         if now - self._logged_at >= LOG_EVERY_S:
             self._logged_at = now
             # Without rospy's own throttle, which needs a node: there may be none yet.
-            rospy.logerr('%s cannot be drawn: %s\n%s', self._name, reason[:500],
+            rospy.logerr('cannot draw %s: %s\n%s', self._name, reason[:500],
                          traceback.format_exc(limit=-6)[-2000:])
 
     def end(self):

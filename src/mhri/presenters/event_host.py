@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Joins what changes on the screen with the event list, the bottom line and the tones.
+"""Joins changes on the screen with the event list, the bottom line and the tones.
 
 Everything here runs on the GUI thread; a child process plays the tones.
 """
@@ -59,7 +59,7 @@ class EventHost(QObject):
         self._begin.timeout.connect(self._speaker.start)
 
     def start(self):
-        """Prepare the sound, in a while."""
+        """Prepare the sound, a little later."""
         self._begin.start()
 
     def show(self, view):

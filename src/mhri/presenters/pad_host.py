@@ -99,7 +99,7 @@ class PadHost(QObject):
     def _on_end(self, *_):
         """Start reading again if the process failed, or was still ending when it was wanted."""
         if self.page.isVisible() and not self._closed:
-            self._dialogue.on_line({'kind': 'absent', 'reason': 'the reading of the pad ended'})
+            self._dialogue.on_line({'kind': 'absent', 'reason': 'the program for the pad ended'})
             self._restart_timer.start()
 
     def _read(self):
@@ -144,7 +144,7 @@ class PadHost(QObject):
             write_profile(path, text, replace)
             used = choose_profile(pad_profiles(), *pad)[0].name
         except FileExistsError:
-            self._written.emit(False, '{} is there already.'.format(path), True)
+            self._written.emit(False, '{} exists already.'.format(path), True)
         except (OSError, ConfigError) as error:
             self._written.emit(False, 'cannot write {}: {}'.format(
                 path, getattr(error, 'strerror', None) or error), False)

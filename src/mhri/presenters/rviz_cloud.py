@@ -71,9 +71,9 @@ class RvizCloud:
             return
         topic = self._feed.topic()
         if not topic or self._view.frame_id is None:
-            self._view.refuse_rviz('RViz shows clouds as they are sent: none has come')
+            self._view.refuse_rviz('RViz shows clouds as sent: none has come yet')
             return
         try:
             self._view.show_instead(make_frame(topic, self._view.frame_id))
         except Exception as error:  # another program's library: anything can be missing
-            self._view.refuse_rviz('RViz cannot be shown here: {}'.format(error))
+            self._view.refuse_rviz('cannot show RViz here: {}'.format(error))

@@ -16,7 +16,7 @@ MOST_BYTES = 1_000_000
 
 
 class SettingsError(Exception):
-    """The file cannot be used; the text names it, the reason and where the copy is."""
+    """The file is unusable; the text names it, the reason and the place of the copy."""
 
 
 def default_path():
@@ -26,7 +26,7 @@ def default_path():
 
 
 def _no_number(word):
-    raise ValueError('{} is no number of JSON'.format(word))
+    raise ValueError('{} is not a JSON number'.format(word))
 
 
 class SettingsFile:
@@ -66,7 +66,7 @@ class SettingsFile:
             return ''
         with os.fdopen(handle, 'rb') as stream:
             if not stat.S_ISREG(os.fstat(handle).st_mode):
-                raise OSError(errno.EINVAL, 'it is no ordinary file')
+                raise OSError(errno.EINVAL, 'it is not an ordinary file')
             data = stream.read(MOST_BYTES + 1)
         if len(data) > MOST_BYTES:
             raise ValueError('larger than {} bytes'.format(MOST_BYTES))

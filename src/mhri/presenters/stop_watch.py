@@ -27,7 +27,7 @@ class StopWatch(QObject):
     :param master_uri: the master of the mux
     """
 
-    #: what the watch did while nobody here could: a sentence
+    #: what the watch did while this screen could not: a sentence
     said = Signal(str)
 
     def __init__(self, master_uri, parent=None):

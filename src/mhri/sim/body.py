@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A differential-drive body: what a velocity command does to it, and what its wheels measure."""
+"""A differential-drive body: how it obeys a velocity command, and what its wheels measure."""
 from dataclasses import dataclass
 import math
 
@@ -46,14 +46,14 @@ def parse_bodies(text, origin):
 
 
 class Bumper:
-    """How much room a round body has.
+    """How much room there is around a round body.
 
-    What stands still is asked for only where it may be near: a distance once measured tells for
-    some way around that nothing is.
+    It asks for fixed things only if they may be near: a distance once measured rules them out for
+    some way around.
 
     :param radius_m: of the body
-    :param distance: function (x, y) -> metres to the nearest thing that never moves
-    :param others: function () -> array (n, 3) of x, y, radius [m] of what does
+    :param distance: function (x, y) -> metres to the nearest fixed thing
+    :param others: function () -> array (n, 3) of x, y, radius [m] of what moves
     """
 
     _NEAR_M = 0.02
@@ -65,9 +65,9 @@ class Bumper:
         self._measured = (0.0, 0.0, -math.inf)
 
     def room(self, x, y):
-        """Return the gap [m] between the body, were it at x, y, and what it would meet first.
+        """Return the gap [m] between the body, if it were at x, y, and what it would meet first.
 
-        It is < 0 if they overlap, and never more than the true one.
+        The gap is < 0 if they overlap, and never more than the true one.
         """
         measured_x, measured_y, distance = self._measured
         still = distance - math.hypot(x - measured_x, y - measured_y)
@@ -89,7 +89,7 @@ class Body:
     ``v, w`` the speeds [m/s, rad/s]. At rest the wheel noise is exactly zero: encoders do not tick.
 
     :param body_type: :class:`BodyType`
-    :param limits: :class:`mhri.core.robots.robot_types.Limits`, the most the motors do
+    :param limits: :class:`mhri.core.robots.robot_types.Limits`, the most that the motors do
     :param bumper: :class:`Bumper`
     :param random: :class:`random.Random`
     """
@@ -113,14 +113,14 @@ class Body:
         self._powered = True
 
     def set_power(self, powered):
-        """Give the motors power, or take it; with it given back they stand until commanded."""
+        """Switch the power of the motors; switched on again, they stand until commanded."""
         self._powered = powered
         self._order = (0.0, 0.0, -math.inf)
 
     def command(self, v, w, now):
-        """Take in a velocity command [m/s, rad/s]; one that is not finite is refused.
+        """Accept a velocity command [m/s, rad/s]; refuse one that is not finite.
 
-        It may be given on another thread than the one that steps.
+        Call it on any thread, not only the one that steps.
 
         :returns: whether it was accepted
         """
@@ -129,7 +129,7 @@ class Body:
         if not self._powered:
             return True
         limits = self._limits
-        # One assignment, so that a step never sees half of a command.
+        # One assignment, so that a step never sees half a command.
         self._order = (max(-limits.linear_mps, min(limits.linear_mps, v)),
                        max(-limits.angular_rad_s, min(limits.angular_rad_s, w)), now)
         return True
@@ -152,8 +152,8 @@ class Body:
     def _move(self, dt):
         """Move the truth along the arc of this step, unless something is in the way.
 
-        Two robots can meet within one step, or one be started inside another: out of there leads
-        every way that makes more room.
+        Two robots can meet within one step, or one can start inside another: then every move that
+        makes more room is allowed.
         """
         self.blocked = False
         middle = self.yaw + 0.5 * self.w * dt

@@ -3,8 +3,8 @@
 """What a camera on a simulated robot sees: colours and depth, drawn from the floor plan.
 
 The camera is level, in the robot's middle, and looks ahead. Everything in the building stands
-upright, so one ray for each column of the picture is enough; rays are so long that they advance
-1 m along the optical axis, and their parameter is the z-depth at once.
+upright, so one ray per column of the picture is enough; each ray vector advances 1 m along the
+optical axis, so its parameter is the z-depth.
 """
 from collections import namedtuple
 import math
@@ -17,7 +17,7 @@ from mhri.sim import textures
 WIDTH, HEIGHT = 640, 480
 HORIZONTAL_FOV_RAD = math.radians(60.0)
 FOCAL_PX = 0.5 * WIDTH / math.tan(0.5 * HORIZONTAL_FOV_RAD)
-# Of the middle between the pixels; a pixel's centre has whole numbers.
+# The middle of the picture, between pixels; a pixel's centre is at whole numbers.
 CENTRE_X_PX, CENTRE_Y_PX = 0.5 * (WIDTH - 1), 0.5 * (HEIGHT - 1)
 CAMERA_HEIGHT_M = 0.3
 DEPTH_MAX_M = 10.0
@@ -28,10 +28,10 @@ _BAND_RATIO = 1.2
 # So that no ray slips out between two walls that share a corner.
 _OVERLAP = 1e-9
 _NOTHING_MM = 65535
-# Walls are drawn in strips of so many columns: each with no more rows than it needs.
+# Walls are drawn in strips of so many columns, each with no more rows than it needs.
 _STRIP = 80
 _CEILING = (236, 236, 232)
-# Where the light comes from on cylinders, (right, forward) as the camera sees it.
+# Direction of the light on cylinders, (right, forward) as seen by the camera.
 _LIGHT = (-0.55, -0.835)
 
 View = namedtuple('View', 'x y yaw wall_m wall_share wall cylinders')
@@ -46,14 +46,14 @@ out [m] (near: inf where it is hidden), how lit it is there (0 to 1), height [m]
 class Camera:
     """Draws frames of one plan.
 
-    One thread at a time: the buffers of a frame are those of the last.
+    One thread at a time: frames share their buffers.
 
     :param plan: :class:`mhri.sim.plan.Plan`
     """
 
     def __init__(self, plan):
         self._wall_height_m = plan.wall_height_m
-        # One that looks over the walls would see what is behind them.
+        # A camera that looks over the walls would see what is behind them.
         self.height_m = min(CAMERA_HEIGHT_M, 0.75 * plan.wall_height_m)
         self._floor_colour = plan.floor_colour
         self._wall_colour = plan.wall_colour
@@ -96,8 +96,8 @@ class Camera:
         return View(x, y, yaw, wall_m, share * self._length[wall], wall, cylinders)
 
     def _walls(self, start, along):
-        """Return of each column the nearest wall: z-depth, share of the way along it, number."""
-        # What is behind the camera is not worth a ray.
+        """Return the nearest wall of each column: z-depth, share of the way along it, number."""
+        # Walls behind the camera are not worth a ray.
         ahead = np.flatnonzero(np.maximum(start[:, 1], start[:, 1] + along[:, 1]) > 0.0)
         if not len(ahead):
             return np.full(WIDTH, np.inf), np.zeros(WIDTH), np.zeros(WIDTH, int)
@@ -115,10 +115,10 @@ class Camera:
         return wall_m, share, ahead[nearest]
 
     def _cylinders(self, centres, radii, looks, wall_m):
-        """Return the cylinders that are seen, farthest first."""
+        """Return the visible cylinders, farthest first."""
         power = (centres ** 2).sum(axis=1) - radii ** 2
         found = []
-        # By the length of the tangent, round things that do not overlap hide each other rightly.
+        # Sorted by the length of the tangent, separate round things hide each other correctly.
         for index in np.argsort(-power):
             (right, ahead), radius = centres[index], radii[index]
             if power[index] <= 0.0 or ahead < -radius:
@@ -145,7 +145,7 @@ class Camera:
     def depth(self, view):
         """Return the z-depth [mm] of each pixel, uint16 (480, 640), 0 beyond 10 m.
 
-        Walls, floor, ceiling and cylinders, each exact to the rounding.
+        Walls, floor, ceiling and cylinders are exact but for rounding.
         """
         picture = np.minimum(self._plane_mm, _millimetres(view.wall_m))
         for cylinder in view.cylinders:
@@ -154,7 +154,7 @@ class Camera:
         return picture
 
     def _deepen(self, picture, cylinder):
-        """Put a cylinder into its columns of a depth picture, where it is the nearest."""
+        """Draw a cylinder into its columns of a depth picture, where it is the nearest thing."""
         top_m = cylinder.height_m - self.height_m
         near = _millimetres(cylinder.near_m)
         with np.errstate(divide='ignore'):
@@ -174,7 +174,7 @@ class Camera:
         np.minimum(part, side, out=part)
 
     def _first_row(self, top_m, distances):
-        """Return the first row in which something that high above the camera can be seen."""
+        """Return the first row that shows things so high above the camera."""
         nearest = distances.min() if top_m >= 0.0 else distances.max()
         return int(np.clip(CENTRE_Y_PX - FOCAL_PX * top_m / nearest, 0, HEIGHT - 1))
 
@@ -220,7 +220,7 @@ class Camera:
                           dst=picture[begin + shift:end + shift], borderMode=cv2.BORDER_REPLICATE)
 
     def _paint(self, picture, texture, texels_per_m, across, distances, height_m):
-        """Draw an upright surface: its texels where it is, and nothing above and below.
+        """Draw an upright surface: its texels, and nothing above or below.
 
         :param across: column of the texture for each column of the picture
         :param distances: z-depth of each column [m], inf where there is nothing
@@ -231,7 +231,7 @@ class Camera:
                            0, HEIGHT))
         if last <= first:
             return
-        # A texel outside the texture leaves the picture as it is: that cuts the edges out.
+        # A texel outside the texture leaves the picture as it is: that cuts off the edges.
         across = np.where(np.isfinite(distances), across, -10.0).astype(np.float32)
         reach = (np.minimum(distances, _FAR_M) * texels_per_m).astype(np.float32)
         down = self._down32[first:last] * reach
@@ -258,10 +258,10 @@ class Camera:
 
 
 class _Looks:
-    """The textures of a camera's plan: made when the first picture is wanted.
+    """The textures of a camera's plan, made when the first picture is wanted.
 
     The floor is cut into bands of rows, each with a texture for its distance; the arrays named
-    ``band_*`` have one row for each row of the picture on which floor can be seen.
+    ``band_*`` have one row for each picture row that can show floor.
     """
 
     def __init__(self, camera):
@@ -293,5 +293,5 @@ class _Looks:
 
 
 def _millimetres(metres):
-    """Return metres as uint16 millimetres; what does not fit is as far as can be."""
+    """Return metres as uint16 millimetres, limited to the largest."""
     return np.rint(np.minimum(metres * 1000.0, _NOTHING_MM)).astype(np.uint16)

@@ -10,8 +10,8 @@
 - ``<cloud>`` ``sensor_msgs/PointCloud2``, 640x480, 5 Hz: depth and colour as points
 - ``camera_info`` beside each ``sensor_msgs/CameraInfo``, at the rate of the picture
 
-All in the frame ``<robot>/camera_rgb_optical_frame``. What nobody subscribes is neither drawn nor
-encoded.
+All in the frame ``<robot>/camera_rgb_optical_frame``. It neither draws nor encodes what nobody
+subscribes to.
 """
 import threading
 import time
@@ -29,14 +29,14 @@ RGB_HZ = 30
 DEPTH_EVERY = 2
 # Ten megabytes each.
 CLOUD_EVERY = 6
-# No frame takes longer, but on a machine that is overloaded.
+# No frame takes longer, except on an overloaded machine.
 FRAME_S = 0.5
 JPEG_QUALITY = 80
 DEPTH_FORMATS = ('png', 'rvl')
 
 
 class _Stream:
-    """The topics of one kind of picture: raw, compressed, and what the camera is like."""
+    """The topics of one kind of picture: raw, compressed, and camera info."""
 
     def __init__(self, topic, transport, encoding, frame_id, compress):
         self._compress = compress
@@ -49,16 +49,16 @@ class _Stream:
         self._frame_id = frame_id
 
     def wanted(self):
-        """Tell whether anybody subscribes a picture."""
+        """Tell whether anybody subscribes to a picture."""
         return self._raw.get_num_connections() + self._compressed.get_num_connections() > 0
 
     def publish_info(self, stamp):
-        """Say what the camera is like."""
+        """Send the camera info."""
         if self._info.get_num_connections():
             self._info.publish(self._stamped(self._info_msg, stamp))
 
     def publish(self, pixels, stamp):
-        """Send a picture in every way that somebody subscribes."""
+        """Send a picture on every topic that has a subscriber."""
         if self._raw.get_num_connections():
             self._image.step = pixels.strides[0]
             self._image.data = pixels.tobytes()
@@ -74,7 +74,7 @@ class _Stream:
 
 
 class _Cloud:
-    """The topic of the cloud: organised, as depth_image_proc makes one of a Kinect's pictures."""
+    """The topic of the cloud, organised as depth_image_proc makes it from a Kinect's pictures."""
 
     def __init__(self, topic, frame_id):
         self._publisher = rospy.Publisher(topic, PointCloud2, queue_size=1)
@@ -86,7 +86,7 @@ class _Cloud:
         self._message.header.frame_id = frame_id
 
     def wanted(self):
-        """Tell whether anybody subscribes it."""
+        """Tell whether anybody subscribes to it."""
         return self._publisher.get_num_connections() > 0
 
     def publish(self, depth, rgb, stamp):
@@ -114,12 +114,12 @@ class SimCamera:
     """Publishes what the camera of one robot sees, on a thread of its own.
 
     :param name: the robot; also the prefix of its frame
-    :param template: :class:`RobotType`; a kind without topic is not published
+    :param template: :class:`RobotType`; kinds without a topic are not published
     :param plan: :class:`mhri.sim.plan.Plan`
     :param pose_source: function () -> (x, y, yaw) of the robot [m, m, rad], called on the thread
     :param others_source: function () -> the other robots, as :meth:`mhri.sim.world.World.others`
     :param depth_format: 'png' or 'rvl', of ``compressedDepth``
-    :raises ValueError: another depth format
+    :raises ValueError: unknown depth format
     """
 
     def __init__(self, name, template, plan, pose_source, others_source, depth_format='png'):
@@ -142,20 +142,20 @@ class SimCamera:
     def start(self):
         """Begin; it ends with the node, or with :meth:`stop`."""
         if self._rgb or self._depth or self._cloud:
-            # OpenCV's own threads would spin on every core, in the way of the physics' next step.
+            # OpenCV's own threads would spin on every core and delay the next step of the physics.
             cv2.setNumThreads(1)
             rospy.on_shutdown(self.stop)
             self._thread = threading.Thread(target=self._run, name='camera', daemon=True)
             self._thread.start()
 
     def stop(self):
-        """End, and wait for the frame that is under way: the topics may close afterwards."""
+        """End, and wait for the frame under way: the topics may close afterwards."""
         self._done.set()
         if self._thread not in (None, threading.current_thread()):
             self._thread.join(FRAME_S)
 
     def _run(self):
-        """Publish at absolute times; frames that could not be made in time are left out."""
+        """Publish at absolute times; skip frames that would be late."""
         period_s = 1.0 / RGB_HZ
         due, tick = time.monotonic(), 0
         try:
@@ -165,13 +165,12 @@ class SimCamera:
                 tick += 1 + missed
                 due += period_s * (1 + missed)
         except rospy.ROSException:
-            # The topics close while a slow frame is under way, a little before rospy says that it
-            # is shut down.
+            # The topics may close during a slow frame, a little before rospy reports its shutdown.
             if not (self._done.is_set() or rospy.is_shutdown()):
                 raise
 
     def _frame(self, with_depth, with_cloud):
-        """Draw and send what is due and wanted, all of one moment."""
+        """Draw and send what is due and wanted, all from one moment."""
         due = [stream for stream, is_due in ((self._rgb, True), (self._depth, with_depth))
                if stream and is_due]
         wanted = [stream for stream in due if stream.wanted()]

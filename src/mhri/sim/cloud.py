@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The point cloud that a simulated robot's camera makes of what it sees."""
+"""The point cloud from a simulated robot's camera."""
 import numpy as np
 
 from mhri.sim.camera import CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, WIDTH
@@ -13,7 +13,7 @@ _DOWN = ((np.arange(HEIGHT) - CENTRE_Y_PX) / FOCAL_PX).astype(np.float32)[:, Non
 
 
 def cloud_of(depth_mm, rgb):
-    """Return the points of a picture, (480, 640) of :data:`LAYOUT`, NaN if there is no depth.
+    """Return the points of a picture, (480, 640) of :data:`LAYOUT`, NaN where there is no depth.
 
     x is to the right, y down, z ahead (REP-103, optical frames).
 

@@ -4,8 +4,8 @@
 
 Publishes odometry at 50 Hz, IMU at 100 Hz, laser scan at 10 Hz, ``/tf`` at 50 Hz and, where the
 template has one, the battery at 1 Hz; on request also the true pose at 50 Hz as a motion capture
-system would tell it (``/vrpn_client_node/<robot>/pose``, frame ``world``). Reads every velocity
-topic of the template, and what takes the power from its motors. Frames are ``<robot>/odom``,
+system would report it (``/vrpn_client_node/<robot>/pose``, frame ``world``). Reads every velocity
+topic of the template, and the switch of its motor power. Frames are ``<robot>/odom``,
 ``<robot>/base_link``, ``<robot>/imu_link`` and ``<robot>/laser`` (REP-105).
 """
 import math
@@ -34,11 +34,11 @@ BATTERY_LIFE_S = 2.5 * 3600.0
 
 
 class PowerSwitch:
-    """What takes the power from its motors: the topic or service that the template names.
+    """The switch of its motor power: the topic or service that the template names.
 
     :param robot: its name
-    :param spec: :class:`mhri.core.robots.robot_hardware.MotorPowerSpec`, None if it has none
-    :param set_power: called with True for power, False for none
+    :param spec: :class:`mhri.core.robots.robot_hardware.MotorPowerSpec`, None if there is none
+    :param set_power: called with True for on, False for off
     """
 
     def __init__(self, robot, spec, set_power):
@@ -53,7 +53,7 @@ class PowerSwitch:
         try:
             rospy.Subscriber(name, message_class(spec.kind), self._on_message, queue_size=1)
         except MessageMissing as error:
-            rospy.loginfo('%s: no switch for the power of its motors: %s', robot, error)
+            rospy.loginfo('%s: no switch for its motor power: %s', robot, error)
 
     def _on_call(self, request):
         self._set_power(request.data)
@@ -66,7 +66,7 @@ class PowerSwitch:
 
 
 class SimRobot:
-    """Publishes what a body and its sensors say, and hands it the commands.
+    """Publishes what a body and its sensors say, and passes commands to it.
 
     :param name: the robot; also the prefix of its frames
     :param template: :class:`mhri.core.robots.robot_types.RobotType`
@@ -102,7 +102,7 @@ class SimRobot:
             rospy.Subscriber(prefix + topic, Twist, self._on_twist, queue_size=1, tcp_nodelay=True)
 
     def _make_messages(self):
-        """Fill once what does not change from message to message."""
+        """Make the messages, with all that never changes."""
         name = self._name
         self._odom = Odometry(child_frame_id=name + '/base_link')
         self._odom.header.frame_id = name + '/odom'
@@ -137,22 +137,21 @@ class SimRobot:
             rospy.logwarn_throttle(1.0, 'refused a velocity that is not finite')
 
     def run(self):
-        """Live until shutdown, in steps of 10 ms; steps that were missed are skipped."""
+        """Live until shutdown, in steps of 10 ms; skip missed steps."""
         ticks, ending = Ticks(1.0 / RATE_HZ), threading.Event()
         rospy.on_shutdown(ending.set)
         try:
             while not (ending.is_set() or rospy.is_shutdown()):
                 self._step(*ticks.wait())
         except rospy.ROSException:
-            # The topics close while a step is under way, a little before rospy says that it is shut
-            # down.
+            # The topics may close during a step, a little before rospy reports its shutdown.
             if not (ending.is_set() or rospy.is_shutdown()):
                 raise
         finally:
             self._world.leave()
 
     def _step(self, tick, now, took):
-        """Move, and publish what is due; a process that was stopped for long makes no leap."""
+        """Move, and publish what is due; no leap after a long pause of the process."""
         body, dt = self._body, min(took, MAX_STEP_S)
         body.step(dt, now)
         self._world.publish(body.x, body.y, body.yaw)

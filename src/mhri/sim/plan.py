@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The floor plan that all simulated robots share: walls, landmarks, places to start from."""
+"""The floor plan that all simulated robots share: walls, landmarks, start poses."""
 from dataclasses import dataclass
 import math
 from typing import Tuple
@@ -28,7 +28,7 @@ class Landmark:
 class Plan:
     """Walls as an array (n, 4) of x1, y1, x2, y2 [m]; landmarks; start poses (x, y, yaw).
 
-    Walls are thin, all of one height [m] and colour; the floor has a colour too.
+    Walls are thin and share one height [m] and colour; the floor has a colour, too.
     """
 
     name: str
@@ -45,7 +45,7 @@ class Plan:
                         dtype=float).reshape(-1, 3)
 
     def distance(self, x, y):
-        """Return the way to the nearest wall or landmark [m], < 0 inside a landmark."""
+        """Return the distance to the nearest wall or landmark [m], < 0 inside a landmark."""
         start, along = self.walls[:, :2], self.walls[:, 2:] - self.walls[:, :2]
         to_point = np.array((x, y)) - start
         length2 = np.maximum((along ** 2).sum(axis=1), 1e-12)
@@ -67,7 +67,7 @@ def disc_distance(discs, x, y):
 def read_colour(section, key):
     """Return the (red, green, blue) of a key, each a whole number from 0 to 255.
 
-    :raises ConfigError: it is something else
+    :raises ConfigError: it is anything else
     """
     row = section.take(key)
     if not (isinstance(row, list) and len(row) == 3 and all(
@@ -77,7 +77,7 @@ def read_colour(section, key):
 
 
 def _rows(section, key, value):
-    """Return a list that has something in it."""
+    """Return a value that must be a list with at least one item."""
     if not isinstance(value, list) or not value:
         raise section.error(key, 'expected a list, got {!r}'.format(value))
     return value

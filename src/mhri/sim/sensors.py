@@ -12,7 +12,7 @@ class ImuSensor:
     """A MEMS inertial unit: white noise and a constant bias on every axis.
 
     ``yaw`` is the integral of the measured yaw rate, so it drifts, as the orientation of a real
-    unit without a compass does. Noise is given as standard deviation of one sample at 100 Hz.
+    unit without a compass does. Noise is the standard deviation of one sample at 100 Hz.
 
     :param random: :class:`random.Random`
     """
@@ -43,7 +43,7 @@ class ImuSensor:
 class Laser:
     """A planar scanner in the robot's middle: rays counter-clockwise from straight ahead.
 
-    A ray along a wall does not meet it; one that starts inside a disc meets it at once.
+    A ray along a wall misses it; one that starts inside a disc hits it at once.
 
     :param walls: array (n, 4) of x1, y1, x2, y2 [m]
     :param random: :class:`numpy.random.Generator`
@@ -63,7 +63,7 @@ class Laser:
         self._random = random
 
     def distances(self, x, y, yaw, discs):
-        """Return the true distance along each ray [m], inf where nothing is met.
+        """Return the true distance along each ray [m], inf if it hits nothing.
 
         :param discs: array (n, 3) of x, y, radius [m]
         """

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the surfaces of the simulated building look like: small pictures, made once.
 
-All are uint8 (h, w, 3) in the order red, green, blue. Light and blur of a distance are painted in,
-so that drawing a frame is nothing but looking up.
+All are uint8 (h, w, 3) in the order red, green, blue. Light and blur for a distance are painted in,
+so that drawing a frame only looks texels up.
 """
 import math
 
@@ -25,7 +25,7 @@ _CYLINDER_ROWS = 160
 
 
 def light(distance_m):
-    """Return how bright a surface is at a distance, 1 at the camera, less farther off."""
+    """Return the brightness of a surface at a distance, 1 at the camera, less farther away."""
     return 1.0 / (1.0 + 0.035 * distance_m)
 
 
@@ -36,7 +36,7 @@ def level_of(distance_m):
 
 
 def _blurred(picture, sigma):
-    """Return a picture blurred; one that repeats stays without a seam from left to right."""
+    """Return a picture blurred; a repeating one stays seamless from left to right."""
     if sigma < 0.3:
         return picture
     pad = int(3.0 * sigma) + 1
@@ -65,7 +65,7 @@ def wall_texture(height_m, colour):
     """Return (texture, texels per metre upwards, width of a tile) of a wall.
 
     The tiles stand side by side, :data:`WALL_LEVELS` distances for each of :data:`WALL_SHADES`
-    directions of the wall; each is one :data:`WALL_PERIOD_M` wide, and one column of the next.
+    directions of the wall; each is one :data:`WALL_PERIOD_M` wide, plus one column of the next.
     """
     rows = int(round(min(_WALL_TEXELS_HIGH, height_m * _WALL_TEXELS_PER_M))) + 1
     texels_per_m = (rows - 1) / height_m
@@ -76,7 +76,7 @@ def wall_texture(height_m, colour):
             distance = _NEAREST_LEVEL_M * _LEVEL_RATIO ** level
             soft = _blurred(tile, 0.45 * distance * texels_per_m / 554.0)
             tiles.append(np.pad(soft, ((0, 0), (0, 1), (0, 0)), 'wrap') * shade * light(distance))
-    # One column more, since the last of a texture is never reached.
+    # One column more, since drawing never reaches the last of a texture.
     tiles.append(tiles[-1][:, -1:])
     return np.hstack(tiles).astype(np.uint8), texels_per_m, tile.shape[1]
 
@@ -84,7 +84,7 @@ def wall_texture(height_m, colour):
 def floor_texture(colour, distance_m, blur_m):
     """Return (texture, texels per metre) of the floor up to a distance.
 
-    A checker of squares half a period wide, a period's corner in the middle, blurred over
+    A chequerboard of squares half a period wide, a period's corner in the middle, blurred over
     ``blur_m`` and as bright as at that distance; wide enough for every heading and place within a
     period.
     """
@@ -104,7 +104,7 @@ def floor_texture(colour, distance_m, blur_m):
 
 
 def cylinder_texture(colour):
-    """Return the side of a cylinder: from unlit on its left to lit, and from top to foot."""
+    """Return the side of a cylinder: unlit on the left to lit on the right, top to foot."""
     lit = np.linspace(0.0, 1.0, _SHADE_STEPS)[None, :, None]
     side = (0.42 + 0.58 * lit) * np.array(colour, float) + 26.0 * lit ** 6
     side = np.repeat(side, _CYLINDER_ROWS, axis=0)

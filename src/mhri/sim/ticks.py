@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""When a simulated robot does what: steps at absolute times, and what is due at which of them."""
+"""The timetable of a simulated robot: steps at absolute times, and what is due at each."""
 import time
 
 
 class Ticks:
-    """A clock of equal steps at absolute times: it does not drift, and steps missed are skipped.
+    """A clock of equal steps at absolute times: it does not drift, and skips missed steps.
 
     :param step_s: the length of a step [s]
     :param clock: monotonic seconds
@@ -32,9 +32,9 @@ class Ticks:
 
 
 class Due:
-    """Tells which of the ticks are the turn of something that comes at every n-th of them.
+    """Tells at which ticks something is due that comes at every n-th.
 
-    Where ticks are skipped, the turn that was missed is taken at the next one.
+    If ticks are skipped, it is due at the next one.
     """
 
     def __init__(self, every):
@@ -42,7 +42,7 @@ class Due:
         self._next = 0
 
     def at(self, number):
-        """Tell whether it is due at the tick of this number, which only ever grows."""
+        """Tell whether it is due at the tick of this number; numbers only ever grow."""
         if number < self._next:
             return False
         self._next = number - number % self._every + self._every

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The bodies of all simulated robots of one building, shared without ROS.
 
-A file in shared memory, one slot for each robot: what a laser, a bumper or a camera meets must not
-need a topic that no real robot has. A robot that is killed stays where it was, as a body, until its
-slot is taken by a robot of its name or has not been written for :data:`GHOST_S`.
+A file in shared memory with one slot per robot: lasers, bumpers and cameras must not need a topic
+that no real robot has. A killed robot stays where it was, as a body, until a robot of its name
+takes its slot or nobody has written to the slot for :data:`GHOST_S`.
 """
 import errno
 import fcntl
@@ -27,12 +27,12 @@ _SLOT = np.dtype([('name', 'S{}'.format(MAX_LENGTH)), ('owner', '<u8'), ('x', '<
 _OWNER = struct.Struct('<Q')
 _POSE = struct.Struct('<4d')
 _SIZE = SLOTS * _SLOT.itemsize
-# What opening says of a symbolic link, somebody else's file, a folder, and a socket.
+# The errors of opening a symbolic link, somebody else's file, a folder, and a socket.
 _NOT_OURS = frozenset((errno.ELOOP, errno.EACCES, errno.EPERM, errno.EISDIR, errno.ENXIO))
 
 
 class WorldRefused(OSError):
-    """What is in the place of the shared file is not a file of this user alone; says what to do."""
+    """The shared file is not this user's own; the text says what to do."""
 
 
 class WorldFull(Exception):
@@ -45,17 +45,17 @@ def _file_problem(status):
     :param status: its ``os.stat_result``
     """
     if not stat.S_ISREG(status.st_mode):
-        return 'it is no ordinary file'
+        return 'it is not an ordinary file'
     if status.st_uid != os.getuid():
         return 'it belongs to another user ({})'.format(status.st_uid)
     if status.st_mode & (stat.S_IWGRP | stat.S_IWOTH):
-        return 'others may write it (mode {:o})'.format(stat.S_IMODE(status.st_mode))
+        return 'others can write to it (mode {:o})'.format(stat.S_IMODE(status.st_mode))
     # None: the last robot has just removed it.
-    return 'it has another name elsewhere' if status.st_nlink > 1 else ''
+    return 'it has another name elsewhere (a hard link)' if status.st_nlink > 1 else ''
 
 
 def world_path(key, folder=None):
-    """Return the file of a world; robots with one key (and one layout of the file) meet."""
+    """Return the file of a world; robots with the same key (and file layout) meet."""
     if folder is None:
         folder = '/dev/shm' if os.path.isdir('/dev/shm') else tempfile.gettempdir()
     digest = hashlib.sha256('{} {} {}'.format(key, SLOTS, _SLOT).encode('utf-8')).hexdigest()[:16]
@@ -65,15 +65,15 @@ def world_path(key, folder=None):
 class World:
     """One robot's place in the shared file.
 
-    Of two robots with one name the one that publishes has the place; a robot that was asleep for
-    so long that its place was given away takes another one.
+    Of two robots with one name the one that publishes has the place; a robot that slept so long
+    that it lost its place takes another one.
 
     :param path: from :func:`world_path`
-    :param body_type: :class:`mhri.sim.body.BodyType`, which the others are to see
+    :param body_type: :class:`mhri.sim.body.BodyType` that the others see
     :param clock: seconds since some time common to all processes (``time.monotonic`` on Linux)
     :raises WorldFull: no slot is left
-    :raises WorldRefused: the file is not one of this user alone
-    :raises OSError: the file cannot be used
+    :raises WorldRefused: the file is not this user's own
+    :raises OSError: the file is unusable
     """
 
     def __init__(self, path, name, body_type, clock):
@@ -93,9 +93,9 @@ class World:
             fcntl.flock(self._file, fcntl.LOCK_UN)
 
     def _open_locked(self):
-        """Return the open file, locked; one that the last robot has removed is no world.
+        """Return the open file, locked; one that the last robot just removed does not count.
 
-        The folder is everybody's: what lies there may be a trap.
+        The folder is everybody's: a file in it may be a trap.
 
         :raises WorldRefused: it is
         """
@@ -131,7 +131,7 @@ class World:
             raise WorldFull('the simulated building has room for {} robots'.format(SLOTS))
         slot = int(own[0] if len(own) else free[0])
         body = self._body_type
-        # Out of sight until it says where it is.
+        # Invisible until it says where it is.
         slots[slot] = (self._name, self._owner, 1e9, 1e9, 0.0, self._clock(), body.radius_m,
                        body.height_m, body.colour, 0)
         self._slot = slot
@@ -156,12 +156,12 @@ class World:
 
     def _there(self):
         """Return which slots hold a robot, or the body of one that was killed."""
-        # Another process may write while this one looks: its stamp is then later than our clock.
+        # Another process may write while this one looks: then its stamp is later than our time.
         age = np.abs(self._clock() - self._slots['stamp'])
         return (self._slots['owner'] != 0) & (age <= GHOST_S)
 
     def others(self):
-        """Return what can be seen of the other robots: a structured array, a copy.
+        """Return what the other robots look like: a structured array, a copy.
 
         Its fields: ``x, y`` [m], ``yaw`` [rad], ``radius, height`` [m], ``colour`` (3 times 0 to
         255), ``name``.
@@ -176,7 +176,7 @@ class World:
         return np.column_stack((rows['x'], rows['y'], rows['radius']))
 
     def leave(self):
-        """Take this robot out, unless its place is another's by now; the last removes the file."""
+        """Remove this robot, unless its place is another's by now; the last removes the file."""
         fcntl.flock(self._file, fcntl.LOCK_EX)
         try:
             if self._owned():

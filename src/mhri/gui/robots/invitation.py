@@ -39,11 +39,9 @@ class Invitation(QWidget):
         self._result.setTextFormat(Qt.PlainText)
         self.look_button = QPushButton(LOOK, self)
         self.look_button.setObjectName('invitation_look_button')
-        self.look_button.setFont(theme.larger(font, 1.2, bold=True))
         self.look_button.setFocusPolicy(Qt.TabFocus)
         touch = theme.touch_size(self)
-        self.look_button.setMinimumSize(
-            theme.text_width(self.look_button.font(), LOOK) + 2 * touch, round(1.5 * touch))
+        self.look_button.setMinimumHeight(round(1.5 * touch))
         column = QVBoxLayout(self)
         column.setSpacing(touch // 2)
         column.addStretch(1)
@@ -53,6 +51,17 @@ class Invitation(QWidget):
         column.addWidget(self._result)
         column.addWidget(self._labels[2])
         column.addStretch(1)
+
+    def resizeEvent(self, event):  # noqa: N802
+        """Write the button as large as the width allows."""
+        super().resizeEvent(event)
+        font, touch = theme.base_font(self.font()), theme.touch_size(self)
+        for size, space in ((1.2, 2 * touch), (1.0, touch // 2)):
+            self.look_button.setFont(theme.larger(font, size, bold=True))
+            width = theme.text_width(self.look_button.font(), LOOK) + space
+            if width <= self.width() - touch:
+                break
+        self.look_button.setMinimumWidth(width)
 
     def show_result(self, text, busy):
         """Say what came of looking; ``busy`` while it looks."""

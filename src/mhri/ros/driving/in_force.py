@@ -100,9 +100,9 @@ class InForce:
                 self._look(api)
             except MasterError as error:
                 # Without a master the known node stays in force.
-                rospy.logdebug('who serves %s cannot be asked now: %s', self._service, error)
+                rospy.logdebug('cannot ask now who serves %s: %s', self._service, error)
             except Exception as error:  # without this thread a newer server would not be believed
-                rospy.logerr_throttle(10.0, 'who serves {} could not be asked: {}'.format(
+                rospy.logerr_throttle(10.0, 'could not ask who serves {}: {}'.format(
                     self._service, repr(error)[:300]))
             self._done.wait(ASK_S)
 

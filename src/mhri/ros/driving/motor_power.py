@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""One robot's motor power: cut and restored by a topic or a service of the robot."""
+"""Cuts and restores one robot's motor power, by a topic or a service of the robot."""
 import io
 import threading
 import time
@@ -116,7 +116,7 @@ class MotorPower:
         try:
             self._way = self._make_way(robot_type.motor_power)
         except MessageMissing as error:
-            self.problem = 'its motor power cannot be cut: {}'.format(error)
+            self.problem = 'cannot cut its motor power: {}'.format(error)
         # The master may hang, and must not delay a cut.
         self._notes = Worker('motor power notes ' + robot, idle_s=3600.0)
         if self._way is not None:
@@ -126,7 +126,7 @@ class MotorPower:
     def _make_way(self, spec):
         """Return the topic or service of a spec; None if the type names none."""
         if spec is None:
-            self.problem = 'its type names nothing that takes the power from its motors'
+            self.problem = 'its type names no way to cut the power of its motors'
             return None
         return PowerService(topic_of(self._robot, spec.name)) if spec.service else PowerTopic(
             self._robot, spec)
@@ -218,7 +218,7 @@ class MotorPower:
         try:
             was_cut = rospy.get_param(self._parameter(), False) is True
         except (OSError, rospy.ROSException) as error:
-            rospy.logdebug('%s: the master cannot be asked: %s', self._robot, error)
+            rospy.logdebug('%s: cannot ask the master: %s', self._robot, error)
             return
         with self._changed:
             if was_cut and not self._rule.state:
@@ -233,7 +233,7 @@ class MotorPower:
             elif rospy.has_param(self._parameter()):
                 rospy.delete_param(self._parameter())
         except (OSError, KeyError, rospy.ROSException) as error:
-            rospy.logdebug('%s: the master cannot be told: %s', self._robot, error)
+            rospy.logdebug('%s: cannot tell the master: %s', self._robot, error)
 
     def close(self):
         """Leave the power as it is, and unregister the topic (blocking: it asks the master)."""

@@ -14,8 +14,9 @@ Interfaces (all global names; units SI):
   ``/robot_controller/task_twist`` (``mhri/TeamTwist``), ``/mux/mode`` (``mhri/ControlMode``,
   latched), ``/mux/speed_limit`` (``geometry_msgs/Twist``, latched), ``/mux/waits_for``
   (``std_msgs/String``, latched: '' or one of release, source, neutral, enabling, dead_man),
+  ``/mux/pushed`` (``std_msgs/Bool``, latched: whether the active source's stick is held),
   ``/mux/advice`` (``std_msgs/String``, latched: a sentence, or ''), ``/mux/dead_man``
-  (``std_msgs/Bool``, latched: whether dead-man buttons have to be held) and ``/panel_in/request``
+  (``std_msgs/Bool``, latched: whether dead-man buttons must be held) and ``/panel_in/request``
   (``mhri/PanelRequest``: what the pad's buttons ask of the panel)
 - serves ``/mux/set_stop_all`` (``std_srvs/SetBool``)
 - parameters: ``~config`` (path of the sources' YAML, default ``resource/mux.yaml``), ``~enabling``,
@@ -52,8 +53,8 @@ from mhri.ros.driving.task_mux import TaskMux
 from mhri.ros.graph.rospy_inside import caller_of, PromptPublisher
 from mhri.ros.worker import Worker
 
-# The mux repeats its stop-all so often, and asks the master so often [s]; a master that hangs is
-# lost after no more than the second and the third together.
+# How often the mux repeats its stop-all and asks the master, and how long it waits for an answer
+# [s]; a hanging master is lost after at most the second and the third together.
 BEAT_S = 0.5
 MASTER_PERIOD_S = 0.25
 MASTER_PATIENCE_S = 1.1
@@ -79,7 +80,7 @@ class Mux:
         self._pulse = Pulse(clock())
         self._next_beat = 0.0
         self._changed = threading.Condition(threading.RLock())
-        self._said_waiting = None
+        self._said_waiting = self._said_pushed = None
         self._closing = False
         self._service = None
         self._twist = PromptPublisher('/robot_controller/twist', Twist)
@@ -87,6 +88,7 @@ class Mux:
         self._stop = rospy.Publisher('/robot_controller/stop_all', Bool, queue_size=10, latch=True)
         self._limit = rospy.Publisher('/mux/speed_limit', Twist, queue_size=10, latch=True)
         self._waits = rospy.Publisher('/mux/waits_for', String, queue_size=10, latch=True)
+        self._pushed = rospy.Publisher('/mux/pushed', Bool, queue_size=1, latch=True)
         self._dead_man = rospy.Publisher('/mux/dead_man', Bool, queue_size=1, latch=True)
         self._ask = rospy.Publisher('/panel_in/request', PanelRequest, queue_size=10,
                                     tcp_nodelay=True)
@@ -169,10 +171,14 @@ class Mux:
         if velocity is not None:
             publish = self._twist.publish_urgent if velocity.is_zero() else self._twist.publish
             publish(to_twist(velocity.linear_mps, velocity.angular_rad_s))
-        waiting = self._arbiter.waits_for(self._clock())
+        now = self._clock()
+        waiting, pushed = self._arbiter.waits_for(now), self._arbiter.pushed(now)
         if waiting != self._said_waiting:
             self._said_waiting = waiting
             self._waits.publish(data=waiting)
+        if pushed != self._said_pushed:
+            self._said_pushed = pushed
+            self._pushed.publish(data=pushed)
         self._changed.notify()
 
     def _awake(self, now):
@@ -212,7 +218,7 @@ class Mux:
     def _read(self, source, message, device, frame):
         """Return (function of the time that gives a message to the arbiter, pressed actions).
 
-        :raises JoyRefused: its profile cannot be used
+        :raises JoyRefused: its profile is unusable
         """
         if source.kind == TWIST:
             vectors = [(vector.x, vector.y, vector.z)

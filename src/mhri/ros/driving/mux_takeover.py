@@ -27,7 +27,7 @@ def end_other_muxes():
         for name in services.get(STOP_SERVICE, []):
             uri = api.node_uri(name)
             if name != rospy.get_name() and uri:
-                rospy.logwarn('another mux is running as %s: it is asked to end', name)
+                rospy.logwarn('another mux is running as %s: asking it to end', name)
                 _end(api, name, uri)
     except (MasterError,) + ERRORS as error:
         rospy.logwarn('an older mux may still be running: %s', error)

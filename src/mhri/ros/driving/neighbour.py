@@ -24,8 +24,8 @@ _LOOK_S = 0.1
 _LEARN_AGAIN_S = 1.0
 # A watch that runs this late was stopped itself, and knows nothing about the other node.
 _OWN_SLEEP_S = 0.5
-# In between may be a shell that restarts it, what the shell runs it by, and a process that stands
-# by (:mod:`mhri.ros.stand_by`).
+# Between it and roslaunch there may be a shell that restarts it, the command that the shell runs,
+# and a process that stands by (:mod:`mhri.ros.stand_by`).
 _GENERATIONS = 4
 _LAUNCHERS = ('roslaunch', 'rostest')
 
@@ -116,7 +116,7 @@ def process_of(uri, caller_id, timeout_s=0.5):
         code, _, pid = proxy.getPid(caller_id)
     except ERRORS as error:
         raise OSError('{} does not answer: {}'.format(uri, error))
-    # In a container of its own it may have the address and not the number.
+    # In its own container it may share the address but not the process number.
     process = Process(pid) if code == 1 and isinstance(pid, int) else None
     return process if process and process.listens_at(parts.port) else None
 
@@ -208,12 +208,12 @@ class Neighbour:
             uri = MasterApi(rospy.get_name(), timeout_s=0.5).node_uri(caller)
             self._process = process_of(uri, rospy.get_name()) if uri else None
         except (MasterError, OSError, ValueError) as error:
-            # Asked again, where it was known before as well: it may just be starting.
+            # Ask again, even if it was known before: it may just be starting.
             self._process = self._known = None
             rospy.logdebug('%s: %s', caller, error)
             return
         self._known = caller
-        # What was asked may have taken long: that is no silence of the one that answered.
+        # Asking may have taken long: that does not count as silence.
         with self._lock:
             self._looked_at = self._clock()
 

@@ -12,7 +12,7 @@ from mhri.ros.graph.look import robot_facts
 from mhri.ros.graph.master_api import MasterApi, MasterError
 
 ROBOTS_PARAMETER = '/mhri/robots'
-# What was ever checked, for the next gates: a robot that was driven needs their zero, even if it
+# Every robot ever checked, for the next gates: a robot that was driven needs their zero, even if it
 # was unchecked meanwhile.
 DRIVEN_PARAMETER = '/mhri_gates/robots'
 PERIOD_S = 1.0
@@ -62,7 +62,7 @@ class Roster:
         return self
 
     def check(self, names):
-        """Take note of the checked robots; returns at once."""
+        """Note the checked robots; returns at once."""
         self._checked = frozenset(names)
         if not self._checked <= set(self._open):
             self._changed.set()
@@ -78,7 +78,7 @@ class Roster:
                 rospy.logdebug('cannot look at the robots now: %s', error)
             except Exception as error:  # without this thread no robot would ever be added
                 rospy.logerr_throttle(
-                    10.0, 'the robots could not be looked at: {}'.format(repr(error)[:300]))
+                    10.0, 'could not look at the robots: {}'.format(repr(error)[:300]))
 
     def _look(self):
         """Open and close gates as needed.
