@@ -215,6 +215,8 @@ class TaskHost:
 
     def carry_on(self, robot):
         """Put a robot back on the task that it was taken from, or that was stopped."""
+        if any(robot in start.goal.robots for start in self._waiting):
+            return
         goal = self._client.left(robot)
         if goal is None or self._client.of(robot) is not None:
             self._screen.show_look_result('{} has no task to continue'.format(robot))
