@@ -211,12 +211,13 @@ class MapHost(QObject):
             before if 'asked to go' in before else '', text))))
         self._tasks.start(key, robots, parameters)
 
-    def hear(self, kind, text):
-        """Show what has become of a task.
+    def hear(self, kind, text, robot):
+        """Show what has become of a task; what it says on its way is for the events.
 
         :param kind: a key of :data:`mhri.core.events.events.KINDS`
         """
-        self.pane.show_answer(text, KINDS[kind][0] == CALM)
+        if kind != 'task.said':
+            self.pane.show_answer(': '.join(filter(None, (robot, text))), KINDS[kind][0] == CALM)
 
     def _end(self, robots):
         """End the tasks of robots."""

@@ -13,7 +13,7 @@ import time
 from geometry_msgs.msg import Point32, Pose2D
 import rospy
 
-from mhri.core.map.scene import MapMark, Placing, PlacesView, TaskView
+from mhri.core.map.scene import MapMark, Placing, PlacesView, UnderWay
 from mhri.core.robots.mocap import Pose
 from mhri.core.screen.text import tidy_text
 from mhri.msg import Places, TaskList
@@ -80,7 +80,7 @@ class PlacesClient:
         self._places = places_view(message), self._clock()
 
     def _on_list(self, message):
-        self._runs = tuple(TaskView(run.task, run.parameters, tuple(
+        self._runs = tuple(UnderWay(run.task, run.parameters, tuple(
             robot.robot for robot in run.robots)) for run in message.runs)
 
     def view(self):
@@ -94,7 +94,7 @@ class PlacesClient:
         return replace(view, robots=robots, answers=passed_s <= SILENT_S)
 
     def runs(self):
-        """Return the tasks that are under way, :class:`TaskView` values."""
+        """Return the tasks that are under way, :class:`UnderWay` values."""
         return self._runs if self.view().answers else ()
 
     def set_place(self, robot, pose, on_answer):

@@ -65,8 +65,7 @@ class ScreenBackend:
         self._asked = AskedAndDone()
         self._mux = self._watch = self._requests = self._diagnostics = self._devices = None
         self._first_limits = self._first_mode = None
-        self._pressed = False
-        self._stopped_by_gates = False
+        self._pressed = self._stopped_by_gates = False
         self._stop_note = ''
         self._ros = ROS_STARTING
         self._closing = threading.Event()
