@@ -98,8 +98,8 @@ class Mhri:
             rospy.set_param('/{}/robot_type'.format(name), 'turtlebot2' if streaming else 'generic')
         settings = os.path.join(system.home, 'screen.json')
         with open(settings, 'w', encoding='utf-8') as stream:
-            json.dump({'state': {'brake': brake, 'looks': {name: {'views': ['imu', 'rgb']} for name in names}}},
-                      stream)
+            looks = {name: {'views': ['imu', 'rgb']} for name in names}
+            json.dump({'state': {'brake': brake, 'looks': looks}}, stream)
         panel = system.node('panel', '--settings', settings, '--select', ' '.join(names))
         self.receiver = Receiver(['/{}/{}'.format(
             name, 'teleop/input' if streaming else 'cmd_vel') for name in names])
@@ -346,8 +346,8 @@ def run(robots, table, streaming, brake, short):
         if streaming:
             compare_streaming(mhri, chain, robots, events, table, short)
         else:
-            compare({'mhri, obstacle brake on' if brake else 'mhri (mux, gates)': mhri, 'topic_tools (mux, relay)': chain}, robots, events,
-                    table)
+            title = 'mhri, obstacle brake on' if brake else 'mhri (mux, gates)'
+            compare({title: mhri, 'topic_tools (mux, relay)': chain}, robots, events, table)
         rospy.signal_shutdown('measured')
 
 
