@@ -381,6 +381,20 @@ def test_a_narrow_bottom_line_says_what_happens(application, operator):
     assert label.shown_text() == 'no robot selected'
 
 
+@pytest.mark.parametrize('size', [(794, 700), (1024, 600), SMALL, LARGE])
+def test_every_page_of_the_drawer_has_its_tab_in_sight(scene, size):
+    made = scene(size, 3)
+    for title in ('Tasks', 'Events', 'Doctor', 'Pad'):
+        made.screen.arrangement.add_page(title, QWidget())
+    tabs = made.show().tabs
+    assert {'Robots', 'Screen', 'Tasks', 'Events', 'Doctor', 'Pad'} <= {
+        tabs.tabText(index) for index in range(tabs.count())}
+    for index in range(tabs.count()):
+        room = tabs.tabRect(index)
+        assert tabs.rect().contains(room), tabs.tabText(index)
+        assert theme.text_width(tabs.font(), tabs.tabText(index)) <= room.width()
+
+
 def test_the_scan_lies_in_a_corner_and_leaves_the_picture_large(scene):
     made = scene(SMALL, 1)
     screen = made.show()

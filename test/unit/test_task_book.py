@@ -154,7 +154,7 @@ def test_a_goal_that_comes_to_nothing_is_refused_in_words(how):
         book.tick(ANSWER_S)
         assert kinds_of(book) == []
         book.tick(ANSWER_S + 0.1)
-        words = 'square not started: what runs the tasks has not answered'
+        words = 'square not started: the task service has not answered'
     assert book.take_news() == [('task.refused', 'bot1', words)]
     book.tick(100.0)
     assert kinds_of(book) == []

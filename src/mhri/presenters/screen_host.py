@@ -125,7 +125,8 @@ class ScreenHost(QObject):
         """
         self.operator.selection.numbers.meet((*robots, *selected))
         for name in dict.fromkeys((*robots, *selected)):
-            self._add(name)
+            if name not in self.operator.selection.robots:
+                self._add(name)
         if selected:
             self._select(list(selected))
         if self.operator.selection.robots:

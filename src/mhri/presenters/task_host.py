@@ -144,7 +144,7 @@ class TaskHost:
         if was_there and not there:
             self._note('tasks.silent', self._tasks.problem, '')
         elif there and was_there is False:
-            self._note('tasks.back', 'what runs the tasks is there again', '')
+            self._note('tasks.back', 'the task service is back', '')
         if there or was_there is not None:
             self._was_there = there
         strangers = self._client.strangers.words(STRANGER_S)

@@ -176,7 +176,7 @@ class TaskBook:
         """Let time pass: what is not answered is said."""
         for goal_id, (goal, asked_s) in tuple(self._asked.items()):
             if now_s - asked_s > ANSWER_S:
-                self._refuse(goal, 'what runs the tasks has not answered')
+                self._refuse(goal, 'the task service has not answered')
                 # Should it begin after all, it is shown as any other.
                 del self._asked[goal_id]
         for run_id, since_s in tuple(self._leaving.items()):
