@@ -286,4 +286,4 @@ def test_setup_file_is_named_or_found(remote, master):
     found.write_text(setup)
     status, output = remote.run('bot1', **bare)
     assert status == 1 and 'using {}'.format(found) in output
-    assert 'both turtlebot_bringup' in output
+    assert 'are both installed' in output
