@@ -4,8 +4,8 @@
 
 Publishes odometry at 50 Hz, IMU at 100 Hz, laser scan at 10 Hz, ``/tf`` at 50 Hz and, where the
 template has one, the battery at 1 Hz; on request also the true pose at 50 Hz as a motion capture
-system would report it (``/vrpn_client_node/<robot>/pose``, frame ``world``). Reads every velocity
-topic of the template, and the switch of its motor power. Frames are ``<robot>/odom``,
+system would tell it (``/vrpn_client_node/<robot>/pose``, frame ``world``). Reads every velocity
+topic of the template, and what takes the power from its motors. Frames are ``<robot>/odom``,
 ``<robot>/base_link``, ``<robot>/imu_link`` and ``<robot>/laser`` (REP-105).
 """
 import math
@@ -102,7 +102,7 @@ class SimRobot:
             rospy.Subscriber(prefix + topic, Twist, self._on_twist, queue_size=1, tcp_nodelay=True)
 
     def _make_messages(self):
-        """Make the messages, with all that never changes."""
+        """Fill once what does not change from message to message."""
         name = self._name
         self._odom = Odometry(child_frame_id=name + '/base_link')
         self._odom.header.frame_id = name + '/odom'
