@@ -16,8 +16,8 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 from support.hostile import is_long, seed_of  # noqa: E402
 from support.rough_world import DT_S, random_drive, random_goals, ROUGH  # noqa: E402
 
-DRIVES, COMPARED, GOALS = (200, 200, 100) if is_long() else (40, 14, 20)
-DRIVE_S = 25.0
+DRIVES, COMPARED, GOALS = (200, 200, 100) if is_long() else (28, 14, 12)
+DRIVE_S = 25.0 if is_long() else 15.0
 # A robot that turns no more and drives no more says why, before so long [s].
 SILENT_S = 3.0
 

@@ -95,6 +95,14 @@ def test_a_pad_by_its_name_from_the_list_to_the_robot_and_the_page(session, joy,
     shown(session, PS3)
     joy.do('set', number=pad, axes={0: 0.0, 1: 0.0}, buttons={L1: 1})
     session.until(lambda: operator.view().status.endswith('ready'), what='the pad to be centred')
+    says = session.host.windows['bot1'].hud
+    joy.do('set', number=pad, axes={0: 0.0, 1: 0.0}, buttons={L1: 0})
+    session.until(lambda: 'hold the dead-man button' in operator.view().status, what='the line')
+    assert says.sentence == '', 'nobody has pushed the stick'
+    joy.do('set', number=pad, axes={1: -1.0}, buttons={L1: 0})
+    session.until(lambda: says.sentence == 'hold the dead-man button to drive', what='the tile')
+    joy.do('set', number=pad, axes={0: 0.0, 1: 0.0}, buttons={L1: 1})
+    session.until(lambda: operator.view().status.endswith('ready'), what='the pad to be centred')
     joy.do('set', number=pad, axes={1: -1.0})
     session.until(lambda: operator.robot_view('bot1').moving, what='bot1 to drive')
     calibrate(session, socket)

@@ -9,43 +9,20 @@ import threading
 import time
 import unittest
 
-from geometry_msgs.msg import PoseStamped
 import rospy
 import rostest
 from sensor_msgs.msg import LaserScan
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
+from drive_tools import Hall, Hand, PATIENCE_S  # noqa: E402
 from gates_case import GatesCase, ZERO  # noqa: E402
 from mhri.core.driving.brake import CRAWL_MPS  # noqa: E402
 from mhri.msg import GroupSpeed, RobotGate  # noqa: E402
-from rostest_tools import Recorder  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
 
-# The wall to the east of the hall, and the body of bot1 [m].
-WALL_M, RADIUS_M = 12.0, 0.177
 SPEED_MPS = 0.6
-STANDS_S = 1.5
-PATIENCE_S = 60.0
-
-
-class Hand:
-    """Holds the stick: says the same 20 times a second, as the mux does."""
-
-    def __init__(self, mux, linear, angular=0.0):
-        self._done = threading.Event()
-        self._thread = threading.Thread(target=self._run, args=(mux, linear, angular), daemon=True)
-        self._thread.start()
-
-    def _run(self, mux, linear, angular):
-        while not self._done.wait(0.05):
-            mux.say(linear, angular)
-
-    def let_go(self):
-        """Say nothing any more."""
-        self._done.set()
-        self._thread.join()
 
 
 class Brake(GatesCase):
@@ -54,9 +31,7 @@ class Brake(GatesCase):
     def setUpClass(cls):
         super().setUpClass()
         cls.group = rospy.Publisher('/gates_in/group_speed', GroupSpeed, queue_size=1, latch=True)
-        cls.places = Recorder('/vrpn_client_node/bot1/pose', PoseStamped,
-                              lambda message: message.pose.position.x)
-        cls.places.wait(lambda where: True, patience_s=PATIENCE_S)
+        cls.hall = Hall('bot1', 0.177)
 
     def tearDown(self):
         self.ask(False)
@@ -72,14 +47,6 @@ class Brake(GatesCase):
         self.addCleanup(hand.let_go)
         return hand
 
-    def rests(self):
-        """Wait until bot1 has stood still for a while; return its gap to the wall [m]."""
-        def still():
-            lately = [item.value for item in self.places.since(time.monotonic() - STANDS_S)]
-            return len(lately) > 10 and max(lately) - min(lately) < 0.002
-        wait_for(still, PATIENCE_S, 'the robot to stand', poll_s=0.1)
-        return WALL_M - self.places.last() - RADIUS_M
-
     def bot1(self):
         """Check the simulated robot and centre the stick."""
         end = VelocityEnd('/bot1/teleop/input')
@@ -91,17 +58,17 @@ class Brake(GatesCase):
     def drive_to(self, x):
         """Drive bot1 back to a place, whatever the brake."""
         hand = self.hold(-0.4)
-        wait_for(lambda: self.places.last() < x, PATIENCE_S, 'the way back', poll_s=0.02)
+        self.hall.places.wait(lambda now: now < x, time.monotonic(), PATIENCE_S)
         hand.let_go()
         self.mux.say(0.0)
-        self.rests()
+        self.hall.rests()
 
     def test_a_wall_is_met_without_the_brake_and_not_with_it(self):
         self.bot1()
         self.ask(False)
         hand = self.hold(SPEED_MPS)
-        self.places.wait(lambda x: x > 11.0, patience_s=PATIENCE_S)
-        without = self.rests()
+        self.hall.places.wait(lambda x: x > 11.0, patience_s=PATIENCE_S)
+        without = self.hall.rests()
         hand.let_go()
         self.mux.say(0.0)
         self.drive_to(9.5)
@@ -112,8 +79,8 @@ class Brake(GatesCase):
         slows = self.state.wait_robot('bot1', lambda gate: gate.brake == RobotGate.BRAKE_SLOWS,
                                       'the brake to act', PATIENCE_S)
         self.assertGreater(slows.free_way_m, 0.0)
-        within = self.rests()
-        nearest = WALL_M - RADIUS_M - max(item.value for item in self.places.since(begun))
+        within = self.hall.rests()
+        nearest = self.hall.least_gap(begun)
         hand.let_go()
         print('MEASURED gap to the wall at {} m/s: {:.3f} m without the brake, {:.3f} m with it, '
               'never less than {:.3f} m'.format(SPEED_MPS, without, within, nearest))

@@ -100,6 +100,9 @@ class Joy(unittest.TestCase):
             number = self.node.attach(PS3)
             self.node.resume()
             wait_until(lambda: pad().name == PS3, 'not open', 25.0)
+            other = self.node.attach('Lab rat pad')
+            wait_until(lambda: pad().there == (PS3, 'Lab rat pad'), 'the other pad is not told')
+            self.node.detach(other)
             self.node.detach(number)
             wait_until(lambda: pad().absent, 'not gone')
         self.node.process.popen.kill()
@@ -229,7 +232,7 @@ class Joy(unittest.TestCase):
             rospy.set_param('/mhri_joy/device', device)
             self._expect('profile:ps3' if value == 0.5 else 'profile:generic', value, device)
         rospy.set_param('/mhri_joy/device', 'nowhere')
-        wait_until(lambda: "no 'nowhere' among 0: Lab rat pad" in self.node.words(), 'not said')
+        wait_until(lambda: "'nowhere' is not connected" in self.node.words(), 'not said')
         self.node.joys.wait_silence(0.5)
         self.assertEqual(self.node.joys.last().axes[1], 0.0)
 

@@ -192,6 +192,11 @@ def test_wrong_command_lines_say_what_is_wrong(run, script, arguments, said):
     (['--model', 'burger', '--launch', 'a/b.launch'], '--model goes with --type turtlebot3'),
     (['--launch', 'a b.launch'], "--launch: 'a b.launch' is neither a path nor"),
     (['--ip', 'here'], "--ip: 'here' is not an IPv4 address such as 192.168.0.7"),
+    (['--back-after', '0'], "--back-after: '0' is no whole number of seconds from 1 to 3600"),
+    (['--back-after', '010'], "--back-after: '010' is no whole number"),
+    (['--back-after', '3601'], "--back-after: '3601' is no whole number"),
+    (['--brake', '--no-guard'], 'leave out --no-guard'),
+    (['--no-guard', '--back-after', '10'], 'leave out --no-guard'),
 ])
 def test_what_the_robot_would_refuse_is_refused_before_the_login(run, arguments, said):
     is_refused(run, 'connect', RIGHT['connect'] + arguments, said)
@@ -213,12 +218,13 @@ def test_help_is_the_manual(run, script, flag):
 
 def test_what_goes_to_ssh(run):
     status, output = run('connect', *RIGHT['connect'], '--host-ip', '192.0.2.1', '--ssh-port',
-                         '222', '--type', 'crawler', '--launch', 'a/b.launch', '--no-guard')
+                         '222', '--type', 'crawler', '--launch', 'a/b.launch', '--no-camera',
+                         '--brake', '--back-after', '10')
     assert status == 0, output
     call = '\n'.join(run.calls())
     assert call.startswith('ssh -tt ') and ' -p 222 -l turtle -- 192.0.2.7 exec sh -c ' in call
     assert call.endswith(' turtle@192.0.2.7 mhri 192.0.2.1 bot1 --type crawler '
-                         '--launch a/b.launch --no-guard')
+                         '--launch a/b.launch --no-camera --brake --back-after 10')
     assert 'StrictHostKeyChecking' not in call and 'UserKnownHostsFile' not in call
 
 

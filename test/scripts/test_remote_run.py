@@ -108,7 +108,7 @@ def await_topics(process, master, *topics):
 
 def test_turtlebot2_with_all_that_belongs_to_it(remote, master):
     master.setParam('/test', '/bot1/label', 'of the host')
-    process = remote.start('bot1', '--type', 'turtlebot2')
+    process = remote.start('bot1', '--type', 'turtlebot2', '--brake', '--back-after', '10')
     await_topics(process, master, '/bot1/odom', '/bot1/camera/rgb/image_raw',
                  '/bot1/cmd_vel_mux/input/teleop', '/bot1/mobile_base/commands/velocity')
     wait_for(lambda: publishers(master, '/bot1/teleop/input') == ['/bot1/mhri_guard'], START_S,
@@ -118,7 +118,9 @@ def test_turtlebot2_with_all_that_belongs_to_it(remote, master):
     assert subscribers(master, '/bot1/mobile_base/commands/velocity') == ['/bot1/mobile_base']
     assert parameter(master, '/bot1/robot_type') == 'turtlebot2'
     assert parameter(master, '/bot1/mobile_base/odom_frame') == 'bot1/odom'
-    assert parameter(master, '/bot1/mhri_guard/max_linear_mps') == 0.65
+    asked = {'max_linear_mps': 0.65, 'radius_m': 0.18, 'brake': True, 'back_after_s': 10}
+    assert {key: parameter(master, '/bot1/mhri_guard/' + key) for key in asked} == asked
+    assert subscribers(master, '/bot1/scan') == ['/bot1/mhri_guard']
     assert parameter(master, '/bot1/camera/driver/rgb_frame_id') == 'bot1/camera_rgb_optical_frame'
     assert 'ROS_MASTER_URI=http://127.0.0.1:{}'.format(remote.system.port) in process.output()
     assert 'TurtleBot7' not in str(master.getSystemState('/test')), 'ROS_NAMESPACE is taken away'

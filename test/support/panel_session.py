@@ -41,6 +41,7 @@ class PanelSession:
         self.system.node('gates')
         for words in launches:
             self.system.launch(*words)
+        self.bring()
         self.app = QApplication.instance() or QApplication(['panel'])
         self.host = ScreenHost(ScreenBackend(['panel']))
         self.operator = self.host.operator
@@ -50,6 +51,9 @@ class PanelSession:
         self.host.start(robots)
         self.until(lambda: all(self._is_known(name) for name in robots), START_S, 'live robots')
         self.until(lambda: self.operator.view().mode, START_S, 'the mux')
+
+    def bring(self):
+        """Start what else there shall be, once there is a master."""
 
     def _is_known(self, name):
         """Tell whether a robot is live, as what it is: it may be seen before its type is known."""

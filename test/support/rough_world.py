@@ -11,7 +11,8 @@ import random
 
 import numpy as np
 
-from mhri.core.driving.brake import braked, Scan
+from mhri.core.driving.brake import Scan
+from mhri.core.driving.stick_brake import StickBrake
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
 from mhri.core.tasks.base import ENDS, RUNNING, Step, Task, way, wrapped
@@ -66,6 +67,7 @@ class RoughRobot(Robot):
         self.laser.NOISE_M = rough.noise_m
         self._chance = random.Random(seed)
         self._under_way = []
+        self.eye = None
         self.closest_m = math.inf
 
     def sense(self, now_s, tick):
@@ -74,11 +76,15 @@ class RoughRobot(Robot):
         if tick % rough.every == 0 and self._chance.random() >= rough.lost:
             ranges = self.laser.scan(self.body.x, self.body.y, self.body.yaw,
                                      self._world.seen_by(self.name))
-            self._under_way.append((tick + rough.late, self._scan(ranges), self.odometry()))
+            self._under_way.append((tick + rough.late, self._scan(ranges)))
         while self._under_way and self._under_way[0][0] <= tick:
-            _, scan, odometry = self._under_way.pop(0)
-            self.seen.see(scan, odometry)
+            scan = self._under_way.pop(0)[1]
+            # Where the robot was at the time of the scan nobody knows.
+            self.seen.see(scan, self.odometry())
             self.scan_at = now_s
+            if self.eye is not None:
+                self.eye.move(self.odometry())
+                self.eye.see(scan, now_s)
 
     def _scan(self, ranges):
         scan = self._world.scan_of(self, ranges)
@@ -138,18 +144,22 @@ class Wander(Task):
 
 
 class Stick:
-    """Instead of a run: what the stick says goes through the brake alone, as in the gates."""
+    """Instead of a run: what a stick says goes through the brake alone, as in the gates."""
 
     state = RUNNING
 
     def __init__(self, robot, wander):
         self._robot, self._wander = robot, wander
+        robot.eye = StickBrake(robot.kind.radius_m, True)
+        robot.eye.ask(True)
 
     def tick(self, facts):
         """Return the velocity that the robot is given."""
         wanted = self._wander.step(None).velocity
-        return braked(wanted, facts.senses.points, self._robot.task_body.radius_m, facts.scan_age_s) \
-            if facts.has_laser else wanted
+        if not facts.has_laser:
+            return wanted
+        self._robot.eye.move(self._robot.odometry())
+        return self._robot.eye.allow(wanted, facts.now_s)
 
 
 def free_places(chance, walls_m, discs, count, apart_m=0.8):

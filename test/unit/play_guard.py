@@ -8,17 +8,22 @@ Usage: play_guard.py GUARD <SCRIPTS.json >ANSWERS.json; a script is a list of li
     0.01 A:1:a 0.3 0.1            a command; the token stands as it is where no echo has that name
     0.31 tick
     0.40 close
+    0.41 move 1.0 0.0 180         where the robot is by its odometry [m, m, degrees]
+    0.42 see 0.5                  a scan that meets something so far ahead, and nothing elsewhere
+    0.43 heard a                  the sender is there; "heard" alone: it ends
 
-Before them a line "with", and arguments of Guard as JSON. The answer to a line is what the robot is
+Before them a line "with", and arguments of Guard as JSON: "brake" is true for one, "back" are the
+arguments of WayBack without the first. The answer to a line is what the robot is
 given, as "0.3 0.1", "none" for nothing, and why a command is not obeyed; to an echo its frame_id
 with "*" for the part of the token that another run would not repeat.
 """
 import json
+import math
 import sys
 import types
 
 STAND_INS = {'rospy': (), 'geometry_msgs': (), 'geometry_msgs.msg': ('Twist', 'TwistStamped'),
-             'std_msgs': (), 'std_msgs.msg': ('Header',)}
+             'std_msgs': (), 'std_msgs.msg': ('Header', 'String')}
 
 
 def load(path):
@@ -47,7 +52,10 @@ def play(names, lines):
     if lines[0].startswith('with '):
         options = json.loads(lines[0][5:])
         lines = lines[1:]
-    guard = names['Guard']('run', **options)
+    sight = names['Sight'](0.2)
+    brake = sight if options.pop('brake', False) else None
+    back = names['WayBack'](sight, *options.pop('back')) if 'back' in options else None
+    guard = names['Guard']('run', brake=brake, back=back, **options)
     faults = {value: name.lower() for name, value in names.items()
               if name.isupper() and isinstance(value, str)}
     tokens = {}
@@ -59,6 +67,15 @@ def play(names, lines):
             said = guard.echo_id(now)
             tokens[words[2]] = said.rstrip('!').split(':')[2]
             answers.append(said.replace(tokens[words[2]], '*'))
+        elif what == 'move':
+            pose = float(words[2]), float(words[3]), math.radians(float(words[4]))
+            sight.move(pose, now)
+            if back:
+                back.move(pose)
+        elif what == 'see':
+            sight.see([float(words[2])] + [float('inf')] * 359, 0.0, 0.017453293, 0.1, 10.0, now)
+        elif what == 'heard':
+            answers.append(written(guard.on_heard(tokens[words[2]] if words[2:] else '', now)))
         elif what in ('tick', 'close'):
             answers.append(written(getattr(guard, what)(now)))
         else:

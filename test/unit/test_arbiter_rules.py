@@ -91,6 +91,20 @@ def test_dead_man_released_means_zero():
     assert rig.arbiter.waits_for(rig.now) == ''
 
 
+def test_whether_the_stick_is_held_whatever_becomes_of_it():
+    rig = rig_in(DRIVING)
+    assert rig.arbiter.pushed(rig.now)
+    rig.joy(FORWARD, RELEASED)
+    assert rig.arbiter.pushed(rig.now)
+    rig.joy(NEUTRAL, RELEASED)
+    assert not rig.arbiter.pushed(rig.now)
+    rig.note(rig.arbiter.engage_stop_all(rig.now))
+    rig.joy(FORWARD)
+    assert rig.arbiter.pushed(rig.now)
+    rig.run(60.0)
+    assert not rig.arbiter.pushed(rig.now), 'it has been silent since'
+
+
 @pytest.mark.parametrize('centred_with', [HELD, RELEASED])
 def test_dead_man_pressed_on_a_deflected_stick_moves_nothing(centred_with):
     """A thumb that finds the button, whether or not it was held while the stick was centred."""

@@ -3,233 +3,29 @@
 """The rule of the guard on the robot, under Python 3 and, where it is to be had, Python 2.7."""
 import ast
 import json
+import math
 import os
 from pathlib import Path
+import random
 import subprocess
 import sys
 
+from guard_scripts import SCRIPTS
+import numpy as np
+from play_guard import load
 import pytest
+
+from mhri.core.driving import brake
+from mhri.core.driving.limits import Velocity
+from mhri.core.robots.mocap import Pose
 
 HERE = Path(__file__).resolve().parent
 PATH = HERE.parents[1] / 'utils' / 'remote' / 'mhri_guard'
 ROS = {'rospy', 'geometry_msgs.msg', 'std_msgs.msg'}
+# For its brake and the way back, where they are asked for.
+ROS_TO_LOOK = {'sensor_msgs.msg', 'nav_msgs.msg'}
 
-# What stands right of "=" is the answer.
-SCRIPTS = {
-    'a command that answers an echo is obeyed': '''
-        0.00 echo a = -:0:*
-        0.02 A:1:a 0.3 0.1 = 0.3 0.1
-        0.02 echo b = A:1:*
-        0.07 A:2:a 0.2 0 = 0.2 0
-        0.12 A:9:b 0.1 0 = 0.1 0''',
-    'a command that answers no echo is dropped': '''
-        0.00 echo a = -:0:*
-        0.02 A:1: 0.3 0 = none late
-        0.02 A:1:never 0.3 0 = none late
-        0.02 A:1: 0 0 = none late
-        0.02 A:1:a 0.3 0 = 0.3 0''',
-    'the age of a command is that of its token': '''
-        0.00 echo a = -:0:*
-        0.10 echo b = -:0:*
-        0.99 A:1:a 0.3 0 = 0.3 0
-        1.00 A:2:a 0.2 0 = none late
-        1.09 A:3:b 0.1 0 = 0.1 0
-        9.00 A:4:b 0.1 0 = none late''',
-    'how old it may be can be said': '''
-        with {"answer_s": 0.5}
-        0.00 echo a = -:0:*
-        0.49 A:1:a 0.3 0 = 0.3 0
-        0.50 A:2:a 0.2 0 = none late''',
-    'the lease ends in one zero and silence': '''
-        0.00 echo a = -:0:*
-        0.01 A:1:a 0.3 0.1 = 0.3 0.1
-        0.30 tick = none
-        0.31 tick = 0 0
-        0.32 tick = none
-        0.40 A:2:a 0.3 0.1 = 0.3 0.1
-        0.69 tick = none
-        0.70 tick = 0 0''',
-    'a dropped command does not lengthen the lease': '''
-        with {"lease_s": 0.5}
-        0.00 echo a = -:0:*
-        0.90 A:1:a 0.3 0 = 0.3 0
-        1.39 A:2:a 0.3 0 = none late
-        1.40 tick = 0 0''',
-    'a repeated command is dropped, the lease is not lengthened': '''
-        0.00 echo a = -:0:*
-        0.01 A:5:a 0.3 0 = 0.3 0
-        0.20 A:5:a 0.3 0 = none repeated
-        0.21 A:4:a 0.3 0 = none repeated
-        0.31 tick = 0 0
-        0.32 A:5:a 0.3 0 = none repeated
-        0.33 A:6:a 0.3 0 = 0.3 0''',
-    'a recording played again moves nothing': '''
-        0.00 echo a = -:0:*
-        0.01 A:1:a 0.3 0 = 0.3 0
-        0.06 A:2:a 0.3 0 = 0.3 0
-        0.36 tick = 0 0
-        0.40 A:1:a 0.3 0 = none repeated
-        0.45 A:2:a 0.3 0 = none repeated
-        60.0 A:1:a 0.3 0 = none repeated
-        60.1 A:3:a 0.3 0 = none late
-        60.2 B:3:a 0.3 0 = none late''',
-    'a new session needs a young token, and the old one does not come back': '''
-        0.00 echo a = -:0:*
-        0.01 A:7:a 0.3 0 = 0.3 0
-        0.90 echo b = A:7:*
-        1.10 B:1:a 0.1 0 = none late
-        1.10 A:8:b 0.2 0 = 0.2 0
-        1.11 B:2:b 0.1 0 = 0.1 0
-        1.12 A:9:b 0.2 0 = none replaced
-        1.13 echo c = B:2:*
-        1.14 A:10:c 0 0 = none replaced
-        1.15 B:3:c 0.1 0 = 0.1 0''',
-    'what is no frame_id is dropped': '''
-        0.00 echo a = -:0:*
-        0.01 map 0.3 0 = none unreadable
-        0.01 A:-1:a 0.3 0 = none unreadable
-        0.01 A:1:a:a 0.3 0 = none unreadable
-        0.01 Ä:1:a 0.3 0 = none unreadable
-        0.01 A:1e3:a 0.3 0 = none unreadable
-        0.01 :1:a 0.3 0 = none unreadable''',
-    'a stop is obeyed however late, by whomever, and holds': '''
-        0.00 echo a = -:0:*
-        0.01 A:5:a 0.3 0 = 0.3 0
-        5.00 A!:6:a 0.3 0 = 0 0
-        5.00 echo b = A:6:*!
-        5.01 A:7:b 0.3 0 = none stopped
-        5.10 echo c = A:6:*!
-        5.11 A:8:c 0 0 = 0 0
-        5.12 echo d = A:8:*
-        5.13 A:9:d 0.3 0 = 0.3 0
-        5.14 Z!:1: 0 0 = 0 0
-        5.15 echo e = A:9:*!
-        5.16 A:10:d 0 0 = none late
-        5.17 A:11:e 0 0 = 0 0
-        5.18 echo f = A:11:*''',
-    'a stop needs no echo': '''
-        0.00 A!:1: 0 0 = 0 0
-        0.01 echo a = A:1:*!
-        0.02 A:2:a 0.3 0 = none stopped
-        0.03 A:3:a 0 0 = 0 0
-        0.04 echo b = A:3:*''',
-    'stops that stood in the network are answered once': '''
-        0.00 echo a = -:0:*
-        5.00 A!:1:a 0 0 = 0 0
-        5.00 A!:2:a 0 0 = none
-        5.00 echo b = A:2:*!
-        5.01 A!:3:b 0 0 = 0 0
-        5.02 Z!:1: 0 0 = none
-        5.03 A:4:b 0 0 = 0 0''',
-    'a stop survives the loss of the link': '''
-        0.00 echo a = -:0:*
-        0.01 A!:1:a 0 0 = 0 0
-        0.05 echo b = A:1:*!
-        0.40 tick = none
-        3600 tick = none
-        3600 A:2:b 0 0 = none late
-        3600 echo c = A:1:*!
-        3601 A:3:c 0.3 0 = none late
-        3601 echo d = A:1:*!
-        3601 A:4:d 0.3 0 = none stopped
-        3601 A:5:d 0 0 = 0 0
-        3601 A:6:d 0.3 0 = 0.3 0''',
-    'what was under way before the stop cannot release it': '''
-        0.00 echo a = -:0:*
-        0.01 A!:1:a 0 0 = 0 0
-        0.01 A:2:a 0 0 = none late
-        0.02 B:1:a 0 0 = none late
-        0.03 echo b = A:1:*!
-        0.04 A!:3:b 0 0 = 0 0
-        0.05 A:4:b 0 0 = 0 0''',
-    'a stop with a lower number stops until the next that answers': '''
-        0.00 echo a = -:0:*
-        0.01 A:9:a 0.3 0 = 0.3 0
-        0.02 A!:4:a 0 0 = 0 0
-        0.03 echo b = A:9:*!
-        0.04 A:5:b 0 0 = none repeated
-        0.05 A:10:b 0 0 = 0 0
-        0.06 A:11:b 0.3 0 = 0.3 0''',
-    'a session that was replaced can stop, and nothing else': '''
-        0.00 echo a = -:0:*
-        0.01 A:1:a 0.3 0 = 0.3 0
-        0.02 B:1:a 0.2 0 = 0.2 0
-        0.03 A!:2:a 0 0 = 0 0
-        0.04 echo b = B:1:*!
-        0.05 A:3:b 0 0 = none replaced
-        0.06 B:2:b 0 0 = 0 0''',
-    'a velocity that cannot be is a zero, and releases nothing': '''
-        0.00 echo a = -:0:*
-        0.01 A:1:a 0.3 0 = 0.3 0
-        0.02 A:2:a nan 0 = 0 0 no_velocity
-        0.03 A:3:a 0.1 inf = 0 0 no_velocity
-        0.04 A:4:a -1e9 0 = 0 0 no_velocity
-        0.05 A!:5:a nan nan = 0 0
-        0.06 echo b = A:5:*!
-        0.07 A:6:b nan 0 = none stopped
-        0.08 A:7:b 0 nan = none stopped
-        0.09 echo c = A:5:*!''',
-    'a limit on speed keeps the curvature': '''
-        with {"speeds": [0.5, 1.0]}
-        0.00 echo a = -:0:*
-        0.01 A:1:a 0.4 -0.9 = 0.4 -0.9
-        0.02 A:2:a 1.0 1.0 = 0.5 0.5
-        0.03 A:3:a -0.5 4.0 = -0.125 1
-        0.04 A:4:a -2.0 8.0 = -0.25 1''',
-    'a limit on one of the two': '''
-        with {"speeds": [0.0, 1.0]}
-        0.00 echo a = -:0:*
-        0.01 A:1:a 4.0 0.5 = 4 0.5
-        0.02 A:2:a 4.0 2.0 = 2 1''',
-    'speed grows as the limit on acceleration has it, and goes at once': '''
-        with {"gains": [1.6, 0.0], "lease_s": 0.25}
-        8.00000 echo a = -:0:*
-        8.00000 A:1:a 0.2 2.0 = 0.08 2
-        8.01000 tick = none
-        8.03125 tick = 0.13 2
-        8.06250 tick = 0.18 2
-        8.09375 tick = 0.2 2
-        8.12500 tick = none
-        8.12500 A:2:a 0.02 2.0 = 0.02 2
-        8.15625 A:3:a -1.0 2.0 = -0.05 2
-        8.18750 A:4:a 0 0 = 0 0
-        8.21875 tick = none
-        8.21875 A:5:a -1.0 0 = -0.05 0
-        8.25000 A!:6:a 0 0 = 0 0
-        8.28125 tick = none''',
-    'a lease ends on the way to a velocity, too': '''
-        with {"gains": [0.1, 0.1], "lease_s": 0.1}
-        9.00 echo a = -:0:*
-        9.00 A:1:a 1.0 0.0 = 0.005 0
-        9.05 tick = 0.01 0
-        9.10 tick = 0 0
-        9.12 tick = none''',
-    'the end is a zero for a robot that is driven, and the last word': '''
-        0.00 echo a = -:0:*
-        0.01 A:1:a 0.3 0 = 0.3 0
-        0.02 close = 0 0
-        0.03 A:2:a 0.3 0 = none ending
-        0.04 A!:3:a 0 0 = none ending
-        0.05 close = none''',
-    'a robot that stands is told nothing at the end': '''
-        0.00 close = none''',
-}
-
-
-def backlog(stall_s):
-    """A link stalls while the stick is held; then all comes at once, and the link is as before."""
-    lines = ['0.00 echo a = -:0:*']
-    for number in range(1, int(20 * stall_s) + 1):
-        late = ' = none late' if stall_s >= 1.0 else ' = 0.3 0'
-        lines.append('{} A:{}:a 0.3 0{}'.format(stall_s, number, late))
-    lines += ['{} echo b = {}'.format(stall_s, 'A:{}:*'.format(number) if stall_s < 1.0 else
-                                      '-:0:*'),
-              '{} A:{}:b 0.2 0 = 0.2 0'.format(stall_s + 0.05, number + 1)]
-    return '\n'.join(lines)
-
-
-SCRIPTS.update({'a backlog of {} s'.format(stall_s): backlog(stall_s)
-                for stall_s in (0.5, 0.95, 1.0, 2.0, 15.0, 600.0)})
+GUARD = load(str(PATH))
 
 
 def lines_of(name):
@@ -270,17 +66,66 @@ def answers(request):
 @pytest.mark.parametrize('name', SCRIPTS)
 def test_the_rule(answers, name):
     lines, expected = lines_of(name)
-    told = [line for line in lines if not line.startswith('with ')]
+    told = [line for line in lines
+            if line.split()[0] != 'with' and line.split()[1] not in ('move', 'see')]
     assert list(zip(told, answers[name])) == list(zip(told, expected))
     assert len(told) == len(expected)
 
 
-def test_it_needs_nothing_else_of_ros_and_nothing_of_mhri():
+def imported(nodes):
+    """Return the names of all modules that are imported."""
     names = set()
-    for node in ast.walk(ast.parse(PATH.read_text())):
+    for node in nodes:
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             names.add(node.module)
-    assert names - {'__future__', 'binascii', 'collections', 'ctypes', 'math', 'os', 're', 'sys',
+    return names
+
+
+def test_it_needs_nothing_else_of_ros_and_nothing_of_mhri():
+    tree = ast.parse(PATH.read_text())
+    names = imported(ast.walk(tree))
+    assert imported(tree.body) == names - ROS_TO_LOOK != names
+    assert names - ROS_TO_LOOK - {'__future__', 'binascii', 'collections', 'ctypes', 'math', 'os', 're', 'sys',
                     'threading', 'time'} == ROS
+
+
+@pytest.mark.parametrize('seed', range(300))
+def test_it_brakes_as_the_host_does(seed):
+    """Random points and commands: the same velocity, to the last digits."""
+    dice = random.Random(seed)
+    points = [(dice.uniform(-2.0, 2.0), dice.uniform(-2.0, 2.0))
+              for _ in range(dice.choice((0, 1, 3, 40)))]
+    wanted = dice.uniform(-1.0, 1.0), dice.choice((0.0, dice.uniform(-2.0, 2.0)))
+    age = dice.choice((None, 0.0, 0.1, 0.29, 0.31))
+    told = GUARD['braked'](wanted, points, 0.2, age)
+    expected = brake.braked(Velocity(*wanted), np.array(points).reshape(-1, 2), 0.2, age)
+    assert told == pytest.approx((expected.linear_mps, expected.angular_rad_s), abs=1e-9)
+
+
+def test_its_figures_are_those_of_the_host():
+    for name in ('SCAN_OLD_S', 'MARGIN_M', 'BRAKES_MPS2', 'REACTION_S', 'CRAWL_MPS', 'KEEP_M'):
+        assert GUARD[name] == getattr(brake, name)
+
+
+@pytest.mark.parametrize('step', [2 * math.pi / 360, -2 * math.pi / 360])
+@pytest.mark.parametrize('seed', range(20))
+def test_it_sees_and_remembers_what_the_host_does(seed, step):
+    """Random scans from random places; what the brake then allows hardly differs."""
+    dice = random.Random(seed)
+    mine, host = GUARD['Sight'](0.2), brake.Surroundings()
+    for number in range(5):
+        pose = dice.uniform(-0.2, 0.2), dice.uniform(-0.2, 0.2), dice.uniform(-3.0, 3.0)
+        ranges = [dice.choice((float('nan'), 0.0, dice.uniform(0.3, 3.0))) for _ in range(240)]
+        first = dice.uniform(-3.0, 0.0)
+        mine.move(pose, number)
+        mine.see(ranges, first, step, 0.45, 10.0, number)
+        seen = np.array([far if 0.45 <= far <= 10.0 else math.nan for far in ranges])
+        begin = first if step > 0.0 else first + 239 * step
+        host.see(brake.Scan(seen if step > 0.0 else seen[::-1], begin, abs(step), 0.45, 10.0),
+                 Pose(*pose))
+        wanted = dice.uniform(-0.6, 0.6), dice.uniform(-1.0, 1.0)
+        expected = brake.braked(Velocity(*wanted), host.around(Pose(*pose)), 0.2, 0.0)
+        assert mine.allow(wanted, number) == pytest.approx(
+            (expected.linear_mps, expected.angular_rad_s), abs=0.03)

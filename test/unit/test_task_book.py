@@ -4,9 +4,10 @@
 from dataclasses import replace
 
 import pytest
+import yaml
 
 from mhri.core.events.events import KINDS
-from mhri.core.screen.task_book import ANSWER_S, Goal, RESULT_S, TaskBook
+from mhri.core.screen.task_book import ANSWER_S, Goal, RESULT_S, TaskBook, with_team
 from mhri.core.screen.task_views import KindView, Progress, RunView, TasksView, TaskView
 from mhri.core.screen.task_words import (
     carry_on_line, ended_line, for_whom, interrupted_line, NOT_RUNNING, start_problem, task_line,
@@ -110,7 +111,20 @@ def test_a_member_of_a_team_is_continued_alone_with_its_place_kept():
     book.hear_list(SQUARE, (RunView('a', 'goto', '{x: 1}', two),), 0.0)
     book.hear_feedback('a', (ON, *ended('taken_over', robot='bot2')))
     assert book.of('bot1') and not book.of('bot2')
-    assert book.left('bot2') == Goal('goto', ('bot2',), '{x: 1}', ('bot1', 'bot2'))
+    left = book.left('bot2')
+    assert (left.key, left.robots) == ('goto', ('bot2',))
+    assert yaml.safe_load(left.parameters) == {'x': 1, 'team': ['bot1', 'bot2']}
+    # And once more, when it is alone.
+    book.hear_list(SQUARE, (RunView('b', 'goto', left.parameters, (two[1],)),), 1.0)
+    book.hear_feedback('b', ended('taken_over', robot='bot2'))
+    assert yaml.safe_load(book.left('bot2').parameters)['team'] == ['bot1', 'bot2']
+
+
+@pytest.mark.parametrize('parameters', ['{x: 1', '[1]', ''])
+def test_parameters_that_cannot_be_read_are_left_as_they_are(parameters):
+    assert with_team(parameters, ('bot1',)) == parameters
+    if parameters:
+        assert with_team(parameters, ('bot1', 'bot2')) == parameters
 
 
 def test_a_late_list_does_not_bring_back_what_has_ended(book):
@@ -140,7 +154,7 @@ def test_a_goal_that_comes_to_nothing_is_refused_in_words(how):
         book.tick(ANSWER_S)
         assert kinds_of(book) == []
         book.tick(ANSWER_S + 0.1)
-        words = 'square not started: what runs the tasks has not answered'
+        words = 'square not started: the task service has not answered'
     assert book.take_news() == [('task.refused', 'bot1', words)]
     book.tick(100.0)
     assert kinds_of(book) == []

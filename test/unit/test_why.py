@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from mhri.core.screen.brake_view import BrakeView, brake_words, guard_words, standing_words
 from mhri.core.screen.task_views import TaskView
 from mhri.core.screen.views import (
     ControlView, DeviceView, GONE, LIVE, PanelView, ROS_CONNECTED, ROS_CUT_OFF, ROS_NO_MASTER,
@@ -17,6 +18,7 @@ BOT = RobotView('bot3', link=LIVE, age_s=0.01, selected=True, obeys='operator', 
 PANEL = PanelView(ros=ROS_CONNECTED, sources=SOURCES, mode='joy', robots=(BOT,))
 AHEAD, LEFT, REST = (1.0, 0.0), (0.0, 0.5), (0.0, 0.0)
 PAD = {'mode': 'ps3joy'}
+HELD = {'mode': 'ps3joy', 'pushed': True}
 PUSHED = {'mode': 'ps3joy', 'asked': (0.3, 0.0)}
 
 # Changes of the panel, of the robot, the stick, and what is said.
@@ -31,6 +33,7 @@ SAID = {
     'no mux': ({'mode': None}, {}, AHEAD, 'what decides who drives is not running'),
     'gates silent': ({'answers': False}, {}, AHEAD, 'the drive service does not answer'),
     'not selected': ({}, {'selected': False}, AHEAD, 'not selected: press 3 to drive it'),
+    'not selected, by pad': (HELD, {'selected': False}, REST, 'not selected: press 3 to drive it'),
     'no key': ({}, {'selected': False, 'number': 10}, AHEAD, 'not selected: check it in the list'),
     'on a task': ({}, {'selected': False, 'obeys': 'task'}, AHEAD, 'on a task: press 3 to take it'),
     'on a known task': ({}, {'selected': False, 'task': TaskView('Square')}, AHEAD,
@@ -43,10 +46,12 @@ SAID = {
                    {}, REST, 'PS3 Controller: nobody publishes'),
     'pad not heard yet': ({**PUSHED, 'waits_for': 'source'}, {}, REST,
                           'nothing is heard from PS3 Controller yet'),
-    'dead-man': ({**PAD, 'waits_for': 'dead_man'}, {}, REST, 'hold the dead-man button to drive'),
-    'pedal': ({**PAD, 'waits_for': 'enabling'}, {}, REST, 'press the enabling pedal to drive'),
+    'dead-man': ({**HELD, 'waits_for': 'dead_man'}, {}, REST, 'hold the dead-man button to drive'),
+    'pedal': ({**HELD, 'waits_for': 'enabling'}, {}, REST, 'press the enabling pedal to drive'),
     'neutral': ({'waits_for': 'neutral'}, {}, AHEAD, CENTRE),
-    'neutral of a pad': ({**PAD, 'waits_for': 'neutral'}, {}, REST, CENTRE),
+    'stop all, by pad': ({**HELD, 'stop_all': True, 'waits_for': 'release'}, {}, REST, 'STOP ALL'),
+    'gone, by pad': (HELD, {'link': GONE}, REST, 'switched off or out of reach'),
+    'neutral of a pad': ({**HELD, 'waits_for': 'neutral'}, {}, REST, CENTRE),
     'silent': ({}, {'link': SILENT, 'note': 'nothing for 3.2 s'}, AHEAD,
                'it has sent nothing for 3.2 s'),
     'gone': ({}, {'link': GONE, 'note': 'switched off or out of reach'}, AHEAD, 'switched off or'),
@@ -57,6 +62,10 @@ SAID = {
     'hardware stop': ({}, {'hardware_stop': True}, AHEAD, 'its own emergency stop is pressed'),
     'power off': ({}, {'power': 'cut'}, AHEAD, 'motor power cut'),
     'power failed': ({}, {'power': 'failed: no service'}, AHEAD, 'motor power failed: no service'),
+    'brake': ({}, {'brake': BrakeView('slows', 0.1)}, AHEAD,
+              'brake: something is in the way: back away or turn'),
+    'brake without a scan': ({}, {'brake': BrakeView('no_scan')}, AHEAD,
+                             'brake: no laser data: back away, or switch the brake off'),
     'joins': ({}, {'waits': True, 'stands': 'joining'}, AHEAD, CENTRE),
     'limits zero': ({'limits': (0.0, 0.0)}, {}, AHEAD, 'the speed limit is 0: raise it'),
     'one limit zero': ({'limits': (0.0, 1.0)}, {}, AHEAD, 'the speed limit is 0: raise it'),
@@ -72,7 +81,8 @@ SILENCE = {
     'it moves': ({}, {'moving': True, 'sent_mps': 0.3}, AHEAD),
     'it moves by pad': (PUSHED, {'moving': True, 'sent_mps': 0.3}, REST),
     'the pad rests': (PAD, {}, REST),
-    'the pad rests, another robot': ({**PAD, 'waits_for': 'dead_man'}, {'selected': False}, REST),
+    'the pad rests, its button, too': ({**PAD, 'waits_for': 'dead_man'}, {}, REST),
+    'own stick held, as the mux has it': ({'pushed': True}, {}, REST),
     'on its way': ({}, {}, AHEAD),
     'no odometry': ({}, {'linear_mps': None, 'sent_mps': 0.3}, AHEAD),
     'centred': ({'waits_for': 'neutral'}, {}, REST),
@@ -110,3 +120,20 @@ def test_it_is_said_once_it_has_been_so_for_a_moment():
     assert said(motors, 2.0) == '', 'another reason has its own moment'
     assert said(motors, 2.0 + MOTORS_S - 0.01) == ''
     assert said(motors, 2.0 + MOTORS_S) == NO_ANSWER
+
+
+@pytest.mark.parametrize('brake, words', [
+    (BrakeView(), ''), (BrakeView('on'), ''),
+    (BrakeView('slows', 0.62), 'brake: slows for something 0.6 m ahead'),
+    (BrakeView('slows'), 'brake: slows for something ahead'),
+    (BrakeView('no_scan'), 'brake: no laser data, no way forward'),
+    (BrakeView('cannot'), 'no brake: it has no laser')])
+def test_what_the_brake_does_in_words(brake, words):
+    assert brake_words(brake) == words
+    assert bool(standing_words(brake)) == brake.holds
+
+
+def test_what_a_guard_does_by_itself_in_words():
+    assert guard_words(BrakeView('on')) == ''
+    assert guard_words(BrakeView('on', on_robot=True, back_after_s=10.0)) == \
+        'brakes by itself, goes back alone after 10 s without a link'

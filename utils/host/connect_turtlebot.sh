@@ -29,7 +29,7 @@ the robot's password unless ssh has a key for it.
 
   Passed on to the robot; see 'turtle_remote.sh --help':
   --type TYPE, --model MODEL, --launch FILE, --setup FILE, --ip ADDR, --port PORT, --no-camera,
-  --no-smoother, --no-guard
+  --no-smoother, --no-guard, --brake, --back-after SECONDS
 
 Exit status: 2 wrong option, 255 ssh could not connect or lost the robot, else that of
 turtle_remote.sh: 1 could not start or the robot's launch ended, 129, 130 or 143 ended from here.
@@ -52,6 +52,9 @@ MODEL=
 LAUNCH=
 IP=
 PORT=11311
+GUARD=true
+BRAKE=false
+BACK_AFTER=
 PASSED_ON=()
 
 # Runs on the robot, as sh. $0 is USER@IP, $1 the folder in the home.
@@ -78,7 +81,10 @@ parse_arguments() {
         printf -v "${option^^}" %s "$text"
         PASSED_ON+=("$1" "$text")
         shift ;;
-      --no-camera | --no-smoother | --no-guard) PASSED_ON+=("$1") ;;
+      --back-after) BACK_AFTER=$(value "$@"); PASSED_ON+=("$1" "$BACK_AFTER"); shift ;;
+      --no-guard) GUARD=false PASSED_ON+=("$1") ;;
+      --brake) BRAKE=true PASSED_ON+=("$1") ;;
+      --no-camera | --no-smoother) PASSED_ON+=("$1") ;;
       -*) usage_error "there is no option $1" ;;
       *) words+=("$1") ;;
     esac
@@ -101,6 +107,7 @@ check_arguments() {
   # The robot checks them again, but only after the login. Nothing that a shell could read as more
   # than one word may get there.
   check_robot
+  check_guard
   for text in "${PASSED_ON[@]}"; do
     [[ $text =~ ^[A-Za-z0-9_./~+-]+$ ]] || usage_error "'$text' cannot be passed on to the robot"
   done

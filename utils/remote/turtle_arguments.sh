@@ -63,6 +63,15 @@ check_port() {
   fi
 }
 
+# check_guard: BRAKE and BACK_AFTER, beside GUARD.
+check_guard() {
+  [[ -z $BACK_AFTER || $BACK_AFTER =~ ^[1-9][0-9]{0,3}$ && $BACK_AFTER -le 3600 ]] ||
+    usage_error "--back-after: '$BACK_AFTER' is no whole number of seconds from 1 to 3600"
+  if ! "$GUARD" && { "$BRAKE" || [ -n "$BACK_AFTER" ]; }; then
+    usage_error "--brake and --back-after are done by mhri_guard: leave out --no-guard"
+  fi
+}
+
 # check_robot: checks what is given of TYPE, MODEL, LAUNCH, IP and PORT before anything starts or is
 # sent. TYPE becomes the name of a template, and PORT a plain number.
 check_robot() {

@@ -151,14 +151,17 @@ find_guard_python() {
   return 1
 }
 
-# limit_guard LINEAR ANGULAR: this robot's greatest speeds [m/s, rad/s], as in its type on the host.
-limit_guard() { GUARD_LIMITS=("_max_linear_mps:=$1" "_max_angular_rad_s:=$2"); }
+# limit_guard LINEAR ANGULAR RADIUS: this robot's greatest speeds [m/s, rad/s], and the disc around
+# all of it [m], as in its type on the host.
+limit_guard() {
+  GUARD_LIMITS=("_max_linear_mps:=$1" "_max_angular_rad_s:=$2" "_radius_m:=$3")
+}
 
 prepare_turtlebot2() {
   local folder
   folder=$(package turtlebot_bringup) || missing_package turtlebot_bringup
   GUARD_TOPIC=teleop/input
-  limit_guard 0.65 3.14
+  limit_guard 0.65 3.14 0.18
   if "$SMOOTHER" && ! package yocs_velocity_smoother >/dev/null; then
     warn "there is no package yocs_velocity_smoother: the robot will jerk more than necessary"
     SMOOTHER=false
@@ -180,7 +183,7 @@ prepare_turtlebot3() {
     die "which TurtleBot3 is this? TURTLEBOT3_MODEL is '$MODEL': give --model burger, waffle or" \
       "waffle_pi"
   export TURTLEBOT3_MODEL=$MODEL
-  if [ "$MODEL" = burger ]; then limit_guard 0.22 2.84; else limit_guard 0.26 1.82; fi
+  if [ "$MODEL" = burger ]; then limit_guard 0.22 2.84 0.22; else limit_guard 0.26 1.82 0.22; fi
   if [ -z "$LDS_MODEL" ] &&
     grep -qsF 'env LDS_MODEL' "$folder/launch/turtlebot3_lidar.launch"; then
     die "LDS_MODEL is not set: put 'export LDS_MODEL=LDS-01' (or LDS-02, see the label on the" \

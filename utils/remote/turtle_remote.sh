@@ -36,6 +36,11 @@ Robot
   --no-smoother        TurtleBot2: leave out the velocity smoother
   --no-guard           do not start mhri_guard, which drops late commands, stops the robot when none
                        arrive, and holds a stop-all on the robot when the network is lost
+  --brake              mhri_guard slows down for what the laser meets in the way, to a stop before
+                       it; without laser data there is no way forward
+  --back-after SECONDS once mhri was not heard for so long (1 to 3600), mhri_guard drives the robot
+                       back along its trail, slowly and braking, until it is heard again, 5 m at
+                       most. Only where a robot may drive while nobody looks
 
 Network
   --ip ADDR            this robot's address. Default: the one from 'hostname -I' on the host's
@@ -67,6 +72,8 @@ LAUNCH=
 CAMERA=true
 SMOOTHER=true
 GUARD=true
+BRAKE=false
+BACK_AFTER=
 IP=
 PORT=11311
 SETUP=
@@ -94,6 +101,8 @@ parse_arguments() {
       --no-camera) CAMERA=false ;;
       --no-smoother) SMOOTHER=false ;;
       --no-guard) GUARD=false ;;
+      --brake) BRAKE=true ;;
+      --back-after) BACK_AFTER=$(value "$@"); shift ;;
       --ip) IP=$(value "$@"); shift ;;
       --port) PORT=$(value "$@"); shift ;;
       --setup) SETUP=$(value "$@"); shift ;;
@@ -112,6 +121,7 @@ check_arguments() {
   check_ip HOST_IP "$HOST_IP" 192.168.0.103
   check_name "$NAME"
   check_robot
+  check_guard
   [ -z "$SETUP" ] || [ -f "$SETUP" ] || usage_error "--setup: there is no file '$SETUP'"
 }
 
@@ -147,7 +157,7 @@ start_all() {
   fi
   if "$GUARD"; then
     ROS_NAMESPACE="/$NAME" held "$GUARD_PYTHON" "$HERE/mhri_guard" "_command:=$GUARD_TOPIC" \
-      "${GUARD_LIMITS[@]}" </dev/null &
+      "_brake:=$BRAKE" "_back_after_s:=${BACK_AFTER:-0}" "${GUARD_LIMITS[@]}" </dev/null &
     GUARD_PID=$!
   fi
   "$PYTHON" "$HERE/turtle_check.py" watch "$HOST_IP" "$PORT" "$NAME" "$TOKEN" </dev/null &

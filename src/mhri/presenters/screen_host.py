@@ -19,6 +19,7 @@ from mhri.core.screen.why import WhyStill
 from mhri.presenters.doctor_host import DoctorHost
 from mhri.presenters.draw_guard import DrawGuard
 from mhri.presenters.event_host import EventHost
+from mhri.presenters.map_host import MapHost
 from mhri.gui.screen.screen import ScreenWidget
 from mhri.presenters.pad_host import PadHost
 from mhri.presenters.requests_host import RequestsHost
@@ -59,7 +60,8 @@ class ScreenHost(QObject):
         self.events = EventHost(operator.recordings.status, self.screen)
         self.doctor = DoctorHost(operator, self.screen)
         self.pad = PadHost(operator, self.screen, parent=self)
-        self.tasks = TaskHost(operator, self.screen, self._select, self.events.note)
+        self.tasks = TaskHost(operator, self.screen, self._select, self._note_task)
+        self.map = MapHost(operator, self.screen, self.tasks)
         self._connect()
 
     @property
@@ -123,7 +125,8 @@ class ScreenHost(QObject):
         """
         self.operator.selection.numbers.meet((*robots, *selected))
         for name in dict.fromkeys((*robots, *selected)):
-            self._add(name)
+            if name not in self.operator.selection.robots:
+                self._add(name)
         if selected:
             self._select(list(selected))
         if self.operator.selection.robots:
@@ -160,6 +163,7 @@ class ScreenHost(QObject):
         self.events.show(view)
         self._tell_budget()
         self.pad.show_view(view)
+        self.map.show_view(view)
         for kind, value in self.operator.take_events():
             if kind == 'found':
                 self._show_found(value)
@@ -183,6 +187,11 @@ class ScreenHost(QObject):
         if note and not self._over_budget:
             self.events.note('camera.budget', note)
         self._over_budget = bool(note)
+
+    def _note_task(self, kind, text, robot):
+        """Take in what has become of a task: an event, and the answer to what the map asked."""
+        self.events.note(kind, text, robot)
+        self.map.hear(kind, text, robot)
 
     def _feel_losses(self, view):
         """Shake the pad when a selected robot is lost."""
@@ -274,7 +283,8 @@ class ScreenHost(QObject):
                  'limits': list(self.operator.view().limits), 'windows': places, 'torn_off': torn,
                  'together': self.operator.view().together,
                  'brake': self.operator.view().brake, 'looks': looks,
-                 'panel': self.screen.save_settings(), 'events': self.events.save_settings()}
+                 'panel': self.screen.save_settings(), 'events': self.events.save_settings(),
+                 'map': self.map.save_settings()}
         return usable_state(state)[0]
 
     def restore_state(self, state):
@@ -298,6 +308,7 @@ class ScreenHost(QObject):
                                  state.get('torn_off', ()))
         self.screen.restore_settings(state.get('panel', {}))
         self.events.restore_settings(state.get('events', {}))
+        self.map.restore_settings(state.get('map', {}))
         return problems
 
     def close(self, forget=False):
@@ -317,3 +328,4 @@ class ScreenHost(QObject):
         self._stop_watch.close()
         self.pad.close()
         self.tasks.close(forget)
+        self.map.close()

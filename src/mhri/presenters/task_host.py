@@ -102,9 +102,12 @@ class TaskHost:
         for news in self._client.take_news():
             self._hear(news)
         self._watch()
+        due = self._pace.due()
+        if due:
+            self._shown.clear()
         self._view = view = replace(view, robots=tuple(map(self._with_task, view.robots)))
-        if self._pace.due():
-            self._show(view)
+        if due:
+            self._show_page(view)
         self._send_due()
         return view
 
@@ -122,9 +125,8 @@ class TaskHost:
             return robot
         return replace(robot, task=task, carry_on=self._tasks.label(left.key) if left else '')
 
-    def _show(self, view):
-        """Renew all words."""
-        self._shown.clear()
+    def _show_page(self, view):
+        """Show all tasks, and for whom one would be started."""
         whom = self._whom()
         self.page.show_tasks(self._tasks, [robot for robot in view.robots if robot.name in whom],
                              [robot.name for robot in view.robots])
@@ -142,7 +144,7 @@ class TaskHost:
         if was_there and not there:
             self._note('tasks.silent', self._tasks.problem, '')
         elif there and was_there is False:
-            self._note('tasks.back', 'what runs the tasks is there again', '')
+            self._note('tasks.back', 'the task service is back', '')
         if there or was_there is not None:
             self._was_there = there
         strangers = self._client.strangers.words(STRANGER_S)
@@ -152,16 +154,14 @@ class TaskHost:
 
     # What the operator does.
 
-    def start(self, key, robots, parameters, team=()):
+    def start(self, key, robots, parameters):
         """Put robots on a task; those that are checked are unchecked first.
 
         :param key: key of the task
         :param robots: their names
         :param parameters: {name: value}; what is left out has its default
-        :param team: robots among which their places are counted, by default they themselves
         """
-        self._begin(Goal(key, tuple(robots), yaml.safe_dump(parameters, default_flow_style=True),
-                         tuple(team)))
+        self._begin(Goal(key, tuple(robots), yaml.safe_dump(parameters, default_flow_style=True)))
 
     def _begin(self, goal):
         problem = start_problem(self._view, self._tasks, goal.robots)

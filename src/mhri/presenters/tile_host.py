@@ -161,7 +161,8 @@ class TileHost:
     def _draw_camera(self, camera, feed):
         """Ask for pictures of the size and rate this tile needs, and show the newest."""
         width, height = self.window.camera_size()
-        large = self.window.header.large
+        # A picture that gave its place to the map is still driven by.
+        large = self.window.header.large or self.window.full_rate
         settings = self._operator.settings
         thumbnail_hz = settings.thumbnail_hz
         if large:

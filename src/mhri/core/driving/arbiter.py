@@ -36,8 +36,7 @@ WAIT_NEUTRAL = 'wait_neutral'
 READY = 'ready'
 DRIVING = 'driving'
 
-REPEAT_HZ = 20.0
-ZEROS_S = 0.5
+REPEAT_HZ, ZEROS_S = 20.0, 0.5
 # An enabling pedal not heard for this long counts as released.
 ENABLING_TIMEOUT_S = 0.25
 _PERIOD_S = 1.0 / REPEAT_HZ
@@ -63,8 +62,7 @@ class Arbiter:
         self._stick_at = -math.inf
         self._device: object = None
         self._selected: FrozenSet[str] = frozenset()
-        self._enabling = config.enabling
-        self._enabled_at = -math.inf
+        self._enabling, self._enabled_at = config.enabling, -math.inf
         self._automatic = config.automatic_switching
         self._rested: Dict[str, object] = {}
         self._resting: Dict[str, Tuple[Wanted, object]] = {}
@@ -114,6 +112,10 @@ class Arbiter:
         if not self.enabled(now):
             return 'enabling'
         return '' if self._stick.held else 'dead_man'
+
+    def pushed(self, now: float) -> bool:
+        """Tell whether the stick of the active source is held, whatever becomes of it."""
+        return self._fresh(now) and not self._stick.neutral
 
     @property
     def cause(self) -> str:
@@ -385,8 +387,7 @@ class Arbiter:
 
     def _zeros(self, now: float) -> Velocity:
         """Begin the zeros."""
-        self._zeros_until = now + ZEROS_S
-        self._next_repeat = now + _PERIOD_S
+        self._zeros_until, self._next_repeat = now + ZEROS_S, now + _PERIOD_S
         return ZERO
 
     def _later_zero(self, now: float) -> Optional[Velocity]:

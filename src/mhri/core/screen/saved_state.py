@@ -6,8 +6,9 @@ A state is a dict of JSON values: ``robots`` (names), ``numbers`` ({robot: its o
 ``mode`` (a source), ``limits`` [m/s, rad/s], ``together``, ``brake``, ``windows`` ({robot:
 geometry}: where its tile was when it was torn off), ``torn_off`` (robots), ``looks`` ({robot: what
 its tile shows}) ``panel`` (``splitter``, ``drawer``, ``geometry``, ``layout``, ``theme``,
-``numbers``) and ``events`` (``sounds``). A geometry is [x, y, width, height, maximised] in pixels: a text that can
-be read, and no blob that Qt would have to trust.
+``numbers``), ``events`` (``sounds``) and ``map`` (``shown``, ``follow``, ``turn``, ``by_link``). A
+geometry is [x, y, width, height, maximised] in pixels: a text that can be read, and no blob that Qt
+would have to trust.
 """
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
 
@@ -202,6 +203,13 @@ def _read_panel(value: Any, problems: List[str], key: str) -> State:
     return _read_parts(value, _PANEL, problems, key + '.')
 
 
+def _read_map(value: Any, problems: List[str], key: str) -> State:
+    if not isinstance(value, dict):
+        _refuse('a dict')
+    flags = {name: _plain(_read_flag) for name in ('follow', 'turn', 'by_link')}
+    return _read_parts(value, {'shown': _plain(_read_word), **flags}, problems, key + '.')
+
+
 def _read_events(value: Any, problems: List[str], key: str) -> State:
     if not isinstance(value, dict):
         _refuse('a dict')
@@ -219,7 +227,8 @@ _STATE: Dict[str, _PartReader] = {
     'limits': _plain(read_limits), 'together': _plain(_read_flag),
     'brake': _plain(_read_flag),
     'windows': _by_robot(read_geometry), 'torn_off': _plain(_read_torn),
-    'looks': _by_robot(_read_look), 'panel': _read_panel, 'events': _read_events}
+    'looks': _by_robot(_read_look), 'panel': _read_panel, 'events': _read_events,
+    'map': _read_map}
 
 
 def _read_parts(value: State, readers: Dict[str, _PartReader], problems: List[str],

@@ -8,9 +8,13 @@ first that names it, and is over with its result.
 from dataclasses import dataclass, replace
 from typing import Dict, List, NamedTuple, Optional, Tuple
 
+import yaml
+
 from mhri.core.screen.task_views import KindView, Progress, RunView, TasksView, TaskView
 from mhri.core.screen.task_words import ended_line
-from mhri.core.tasks.base import BLOCKED, ENDS, LOST, STOPPED, TAKEN_OVER, TIMEOUT, WAITING
+from mhri.core.screen.text import tidy_text
+from mhri.core.tasks.base import (
+    BLOCKED, ENDS, LOST, STOPPED, TAKEN_OVER, TEAM, TIMEOUT, WAITING)
 
 # A goal without an answer, and a run that is listed no more without a result [s].
 ANSWER_S, RESULT_S = 5.0, 2.0
@@ -29,12 +33,22 @@ class News(NamedTuple):
 
 @dataclass(frozen=True)
 class Goal:
-    """What was, or is to be, asked for; places are counted in ``team``, as it was at first."""
+    """What was, or is to be, asked for; ``parameters`` is YAML."""
 
     key: str
     robots: Tuple[str, ...]
     parameters: str
-    team: Tuple[str, ...] = ()
+
+
+def with_team(parameters: str, robots: Tuple[str, ...]) -> str:
+    """Return parameters (YAML) by which a robot keeps its place among others, started alone."""
+    try:
+        values = yaml.safe_load(parameters or '{}')
+    except yaml.YAMLError:
+        return parameters
+    if len(robots) < 2 or not isinstance(values, dict):
+        return parameters
+    return str(yaml.safe_dump({TEAM: list(robots), **values}, default_flow_style=True))
 
 
 class TaskBook:
@@ -44,7 +58,6 @@ class TaskBook:
         self._kinds: Tuple[KindView, ...] = ()
         self._runs: Dict[str, RunView] = {}
         self._asked: Dict[str, Tuple[Goal, float]] = {}
-        self._goals: Dict[str, Goal] = {}
         # Since when a run is listed no more.
         self._leaving: Dict[str, float] = {}
         self._ended: Dict[str, None] = {}
@@ -90,10 +103,7 @@ class TaskBook:
     def _hear(self, run: RunView) -> None:
         """Take in the newest of a run, and report what has changed."""
         before = self._runs.get(run.id)
-        if before is None:
-            asked, _ = self._asked.pop(run.id, (None, 0.0))
-            names = tuple(robot.robot for robot in run.robots)
-            self._goals[run.id] = asked or Goal(run.key, names, run.parameters, names)
+        self._asked.pop(run.id, None)
         self._runs[run.id] = run
         old = {robot.robot: robot for robot in before.robots} if before else {}
         for robot in run.robots:
@@ -106,15 +116,17 @@ class TaskBook:
             self._left.pop(robot.robot, None)
             self._news.append(News('task.begun', robot.robot, label.lower() + ' started'))
         said = robot.said[len(old.said) if old else 0:]
-        self._news += [News('task.said', robot.robot, '{}: {}'.format(label.lower(), line))
-                       for line in said if line != robot.text or robot.state not in ENDS]
+        self._news += [
+            News('task.said', robot.robot, '{}: {}'.format(label.lower(), tidy_text(line)))
+            for line in said if line != robot.text or robot.state not in ENDS]
         if robot.state in ENDS and (old is None or old.state not in ENDS):
             self._news.append(News('task.' + robot.state, robot.robot,
                                    ended_line(label, robot.state, robot.text)))
             # Who got another task is on that, whichever is heard of first.
             if robot.state in _RESUMES and run.id not in self._cancelled \
                     and self.of(robot.robot) is None:
-                self._left[robot.robot] = replace(self._goals[run.id], robots=(robot.robot,))
+                self._left[robot.robot] = Goal(run.key, (robot.robot,), with_team(
+                    run.parameters, tuple(one.robot for one in run.robots)))
 
     def hear_result(self, run_id: str, text: str, robots: Tuple[Progress, ...],
                     cancelled: bool = False) -> None:
@@ -141,7 +153,7 @@ class TaskBook:
 
     def _end(self, run_id: str) -> None:
         """Forget a run, and that it was."""
-        for kept in (self._runs, self._asked, self._goals, self._leaving, self._cancelled):
+        for kept in (self._runs, self._asked, self._leaving, self._cancelled):
             kept.pop(run_id, None)
         self._ended[run_id] = None
         while len(self._ended) > _MOST_ENDED:
@@ -164,7 +176,7 @@ class TaskBook:
         """Let time pass: what is not answered is said."""
         for goal_id, (goal, asked_s) in tuple(self._asked.items()):
             if now_s - asked_s > ANSWER_S:
-                self._refuse(goal, 'what runs the tasks has not answered')
+                self._refuse(goal, 'the task service has not answered')
                 # Should it begin after all, it is shown as any other.
                 del self._asked[goal_id]
         for run_id, since_s in tuple(self._leaving.items()):

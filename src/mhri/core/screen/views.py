@@ -200,7 +200,8 @@ class PanelView:
     the gates are not heard, ``stop_taken`` true once they have said that the stop is in force.
     ``advice`` says what keeps the source that drives from doing so, and the remedy; '' for nothing.
     ``dead_man`` is false while the dead-man buttons of pads need not be held. ``asked`` is what the
-    mux commands now [m/s, rad/s], ``waits_for`` its word on what it waits for.
+    mux commands now [m/s, rad/s], ``waits_for`` its word on what it waits for, ``pushed`` whether
+    the stick of the source that drives is held.
     """
 
     ros: str = ROS_STARTING
@@ -226,3 +227,4 @@ class PanelView:
     stop_taken: bool = True
     asked: Tuple[float, float] = (0.0, 0.0)
     waits_for: str = ''
+    pushed: bool = False

@@ -29,14 +29,13 @@ _Stick = Tuple[float, float]
 def why_still(view: PanelView, robot: RobotView, stick: _Stick) -> str:
     """Return the sentence; '' while the robot moves, or while nobody asks it to.
 
-    A pad or pedal asks while the mux commands anything, or waits for somebody's hand or foot.
+    A pad or pedal asks while it is pushed, or the mux commands anything.
 
     :param view: :class:`mhri.core.screen.views.PanelView`
     :param robot: :class:`mhri.core.screen.views.RobotView`, one of its robots
     :param stick: how pointer or keys hold the stick of this screen
     """
-    asks = any(stick) or any(view.asked) or (
-        robot.selected and view.mode != VIRTUAL_JOYSTICK and view.waits_for in _WAITS)
+    asks = any(stick) or any(view.asked) or view.pushed and view.mode != VIRTUAL_JOYSTICK
     if not asks or robot.moving:
         return ''
     for rule in _RULES:

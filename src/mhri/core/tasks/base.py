@@ -25,6 +25,8 @@ ENDS = (DONE, TIMEOUT, BLOCKED, LOST, TAKEN_OVER, STOPPED, FAILED)
 
 NOWHERE = np.zeros((0, 2))
 MOST_CORNERS = 1000
+# The parameter that every task has: see Values.team.
+TEAM = 'team'
 
 
 @dataclass(frozen=True)
@@ -106,6 +108,16 @@ class Start:
         return self.team.index(self.robot)
 
 
+@dataclass(frozen=True)
+class Target:
+    """Where a robot is sent: a place [m], a heading [rad] or None, and in which frame that is."""
+
+    x_m: float
+    y_m: float
+    heading_rad: Optional[float] = None
+    by_odometry: bool = False
+
+
 class Task:
     """One robot's task: a subclass in a file of its own, and a row in :mod:`mhri.core.tasks.rows`.
 
@@ -155,8 +167,10 @@ FRAME = Field('frame', '', 'odom: by its own odometry, no place is needed; else 
 class Values:
     """The parameters of one task, read and checked."""
 
-    def __init__(self, values: Mapping[str, Value]) -> None:
+    def __init__(self, values: Mapping[str, Value], team: Tuple[str, ...] = ()) -> None:
         self._values = dict(values)
+        #: robots among which places are counted, where that is not who is started
+        self.team = team
 
     def number(self, name: str) -> float:
         """Return a number that is there."""
@@ -217,9 +231,18 @@ class TaskKind:
         """
         origin = 'task ' + self.key
         section = parse_yaml(parameters if parameters.strip() else '{}', origin)
-        values = Values({row.name: _value(section, row) for row in self.fields})
+        values = Values({row.name: _value(section, row) for row in self.fields}, _team(section))
         section.close()
         return values
+
+
+def _team(section: Section) -> Tuple[str, ...]:
+    """Return the robots among which places are counted: one that is sent on keeps its place."""
+    names = section.take(TEAM, [])
+    if not isinstance(names, list) or len(names) > MOST_CORNERS or len(set(
+            map(str, names))) < len(names) or not all(isinstance(name, str) for name in names):
+        raise section.error(TEAM, 'expected a list of robots, each once')
+    return tuple(names)
 
 
 def _value(section: Section, row: Field) -> Value:

@@ -32,8 +32,10 @@ _TABS = {int(Qt.Key_Tab): 1, int(Qt.Key_Backtab): -1}
 # Keys of the screen, and what they are for.
 COMMANDS = {int(Qt.Key_F1): 'keys', int(Qt.Key_F2): 'drawer', int(Qt.Key_F6): 'focus',
             int(Qt.Key_F11): 'full_screen',
-            int(Qt.Key_C): 'carry_on', int(Qt.Key_H): 'numbers',
+            int(Qt.Key_C): 'carry_on', int(Qt.Key_M): 'map', int(Qt.Key_H): 'numbers',
             int(Qt.Key_P): 'stills', int(Qt.Key_R): 'record'}
+# Keys of the map; the first of them without Shift.
+ZOOMS = {int(Qt.Key_Equal): 'closer', int(Qt.Key_Plus): 'closer', int(Qt.Key_Minus): 'wider'}
 
 _KEYS = frozenset((QEvent.KeyPress, QEvent.KeyRelease, QEvent.ShortcutOverride))
 # After one of these the releases of held keys may go to somebody else.
@@ -315,8 +317,9 @@ class DriveKeys(QObject):
             if key in _ARROWS and self._keeps_arrows(focus):
                 return None
             return lambda: self._press(_identity(event), direction)
-        if key in COMMANDS:
-            return lambda: self.command_pressed.emit(COMMANDS[key])
+        command = COMMANDS.get(key) or ZOOMS.get(key)
+        if command:
+            return lambda: self.command_pressed.emit(command)
         if key in _TABS:
             return (lambda: self.next_pressed.emit(_TABS[key])) if self._tabs_pictures(focus) \
                 else None

@@ -14,6 +14,7 @@ COMMAND_WORDS = {
     'drawer': 'open or close the panel at the left',
     'focus': 'go on to the panel, to the buttons below, and back to the pictures',
     'full_screen': 'fill the whole screen, or be a window again',
+    'map': 'map and picture change places',
     'numbers': 'show or hide the numbers over the pictures',
     'stills': 'save a still of every picture',
     'carry_on': 'continue the task that the robot you look at was taken from',
@@ -31,6 +32,7 @@ KEY_ROWS = (
     ('Enter', 'drive the robot you look at and no other; press the button in the frame'),
     ('Esc', 'hide these keys; then look at the robots that are driven'),
     ('T, held', 'talk, while the voice drives'),
+    ('+, -', 'zoom the map'),
 ) + tuple((QKeySequence(key).toString(), COMMAND_WORDS[command])
           for key, command in COMMANDS.items())
 TITLE = 'Keys'

@@ -28,6 +28,20 @@ def hud_lines(view):
             'heading {}'.format(words.compass_text(view.heading_rad))]
 
 
+def _wrapped(line, metrics, width):
+    """Return a line in as many as it takes in a width [px], broken between words."""
+    if metrics.horizontalAdvance(line) <= width:
+        return [line]
+    found = ['']
+    for word in line.split(' '):
+        longer = ' '.join(filter(None, (found[-1], word)))
+        if found[-1] and metrics.horizontalAdvance(longer) > width:
+            found.append(word)
+        else:
+            found[-1] = longer
+    return found
+
+
 class Hud(QWidget):
     """Words with a dark edge, readable on white and on black; clicks go through to the picture.
 
@@ -159,7 +173,9 @@ class Hud(QWidget):
                     lines += line.split(words.BETWEEN_FIGURES)
             if all(metrics.horizontalAdvance(line) <= width for line in lines):
                 break
-        return font, lines if self._large else lines[:1]
+        if self._large:
+            return font, [part for line in lines for part in _wrapped(line, metrics, width)]
+        return font, lines[:1]
 
     @staticmethod
     def _paint_line(painter, text, font, ink, x, y):

@@ -28,6 +28,8 @@ class LooksPage(QScrollArea):
     theme_chosen = Signal(str)
     #: whether the numbers over the pictures are to be seen
     numbers_chosen = Signal(bool)
+    #: whether the map is to be seen
+    map_chosen = Signal(bool)
     #: in or out of full screen
     full_screen_requested = Signal()
 
@@ -51,12 +53,15 @@ class LooksPage(QScrollArea):
         self._themes = self._choices(column, 'Colours', 'theme_', theme.THEMES)
         self.numbers_box = SwitchBox('Numbers over the pictures (H)', self)
         self.numbers_box.setObjectName('numbers_box')
+        self.map_box = SwitchBox('Map (M)', self)
+        self.map_box.setObjectName('map_box')
         self.full_screen_button = QPushButton('Full screen (F11)', self)
         self.full_screen_button.setObjectName('full_screen_button')
         self.full_screen_button.setFocusPolicy(Qt.TabFocus)
         self.full_screen_button.setMinimumHeight(theme.touch_size(self))
         column.addSpacing(self.fontMetrics().height() // 2)
         column.addWidget(self.numbers_box)
+        column.addWidget(self.map_box)
         column.addWidget(self.full_screen_button, 0, Qt.AlignLeft)
         column.addStretch(1)
 
@@ -83,6 +88,7 @@ class LooksPage(QScrollArea):
             for key, button in buttons.items():
                 button.clicked.connect(lambda *_, key=key, signal=signal: signal.emit(key))
         self.numbers_box.clicked.connect(self.numbers_chosen)
+        self.map_box.clicked.connect(self.map_chosen)
         self.full_screen_button.clicked.connect(self.full_screen_requested)
 
     def show_choices(self, layout, theme_name, numbers):

@@ -8,7 +8,7 @@ from python_qt_binding.QtWidgets import (
 
 from mhri.core.robots.numbers import LAST_KEY
 from mhri.core.screen import views
-from mhri.core.screen.brake_view import guard_words
+from mhri.core.screen.brake_view import brake_words, guard_words
 from mhri.core.screen.task_words import interrupted_line, task_lines
 from mhri.gui.screen import theme, words
 from mhri.gui.screen.labels import BatteryLine, Pill, plain_tip, Sign, TextLine
@@ -64,7 +64,7 @@ class BigCheckBox(QCheckBox):
 class RobotRow(QWidget):
     """Two lines of fixed height: identity and link; below it speed, then turn or what is wrong.
 
-    The speed is never replaced by a sentence; what is old is dimmed.
+    The speed gives way only to why a task waits; what is old is dimmed.
     """
 
     #: the check box was clicked: name, checked
@@ -210,6 +210,9 @@ class RobotRow(QWidget):
         self.recording.say(RECORDING if view.recording else '', filled=False)
         self.recording.setVisible(view.recording)
         self._offer_to_carry_on(view.carry_on)
+        # Who waits stands: the room is for the reason.
+        self.linear.setVisible(not (view.carry_on or view.on_task and view.task
+                                    and view.task.waits))
         tone = theme.TASK if view.on_task else theme.DRIVE if view.driven else None
         if tone != self._tone:
             self._tone = tone
@@ -218,8 +221,6 @@ class RobotRow(QWidget):
     def _offer_to_carry_on(self, label):
         """Offer to continue a task, '' for none."""
         self.carry_on_button.setVisible(bool(label))
-        # It stands, and there is not the room for both.
-        self.linear.setVisible(not label)
         if label:
             text = '{} {} of {}'.format(CARRY_ON, label.lower(), self.name)
             self.carry_on_button.setAccessibleName(text)
@@ -228,8 +229,9 @@ class RobotRow(QWidget):
     def _show_numbers(self, view):
         """Show what changes all the time."""
         self.age.show_text(words.link_age(view), theme.MUTED)
-        self.setToolTip('\n'.join(filter(None, (words.figures_text(view.figures),
-                                                guard_words(view.brake)))))
+        self.setToolTip('\n'.join(filter(None, (
+            words.figures_text(view.figures), brake_words(view.brake),
+            guard_words(view.brake)))))
         old = view.link != views.LIVE
         tone = theme.MUTED if old else theme.TEXT
         linear = words.linear_text(view.linear_mps)

@@ -58,6 +58,8 @@ class BotWindow(QWidget):
         super().__init__(parent)
         self.name = name
         self.torn_off = False
+        #: whether its picture is driven by, even if the map has its place
+        self.full_rate = True
         self._drive = None
         self._trouble = None
         self._link = None

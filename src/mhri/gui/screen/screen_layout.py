@@ -11,6 +11,7 @@ from python_qt_binding.QtWidgets import QBoxLayout, QLayout
 from mhri.core.screen.arrangement import AUTO, WORTH_MOVING
 from mhri.gui.look.looks_page import LAYOUTS, LooksPage, TITLE
 from mhri.gui.screen import theme
+from mhri.gui.screen.stage import MAP_BESIDE, MAP_CLOSED, MAP_LARGE
 
 ROBOTS, DRIVE = 'Robots', 'Drive'
 # Width of the drawer at first, in heights of a line.
@@ -50,6 +51,8 @@ class ScreenLayout(QObject):
         # It becomes as small as it is made: the parts give way before the screen does.
         screen.layout().setSizeConstraint(QLayout.SetNoConstraint)
         theme.apply(screen, self._theme)
+        # Within rqt it lies on a ground that has the colours of the desktop.
+        screen.setAutoFillBackground(True)
         screen.tabs.addTab(ROBOTS)
         screen.tabs.setExpanding(False)
         # Hidden at first, it would think that it has no tabs.
@@ -80,6 +83,8 @@ class ScreenLayout(QObject):
         self.looks.layout_chosen.connect(self.choose_layout)
         self.looks.theme_chosen.connect(self.choose_theme)
         self.looks.numbers_chosen.connect(self.show_numbers)
+        self.looks.map_chosen.connect(self.show_map)
+        screen.stage.map_changed.connect(self._show_choices)
         self.looks.full_screen_requested.connect(self.change_full_screen)
 
     def choose_layout(self, name):
@@ -105,6 +110,12 @@ class ScreenLayout(QObject):
         self._screen.stage.show_numbers(shown)
         self._show_choices()
 
+    def show_map(self, shown):
+        """Show the map beside the pictures, or large where there is no room there; or close it."""
+        stage = self._screen.stage
+        stage.show_map(MAP_CLOSED if not shown else
+                       MAP_BESIDE if stage.has_room_beside() else MAP_LARGE)
+
     def change_full_screen(self):
         """Go into full screen, or out of it."""
         window = self._screen.window()
@@ -112,6 +123,7 @@ class ScreenLayout(QObject):
 
     def _show_choices(self):
         self.looks.show_choices(self._layout, self._theme, self._screen.stage.numbers_shown)
+        self.looks.map_box.setChecked(self._screen.stage.map_state != MAP_CLOSED)
 
     @property
     def drawer_open(self):

@@ -10,6 +10,10 @@ from mhri.gui.driving.drive_keys import mark_drive_area
 from mhri.gui.robots.invitation import Invitation
 from mhri.gui.screen import theme
 
+# The map is not on show; is a small tile where there is room for one; is the large tile.
+MAP_CLOSED, MAP_BESIDE, MAP_LARGE = 'closed', 'beside', 'large'
+# Beside the pictures it has room on a stage of this size [heights of a line]; else it is behind M.
+_MAP_UNITS = (78.0, 38.0)
 _GAP_PX = 4
 # Least size of a small tile, in heights of a line: its name and a picture that can be made out.
 _LEAST_UNITS = (9.0, 6.5)
@@ -27,16 +31,20 @@ class Stage(QWidget):
     rearranged = Signal()
     #: "Look for Connected Bots", where there is no robot yet
     look_requested = Signal()
+    #: the map has come, gone, or changed places with the pictures
+    map_changed = Signal()
 
     def __init__(self, parent=None):
         super().__init__(parent)
         self._tiles = {}
         self._large = ()
         self._shapes = ()
-        self._driven = ()
+        self._driven = self._awaited = ()
         self._looked_at = ''
         self._style = AUTO
         self._float = None
+        self._map = None
+        self._map_state = MAP_CLOSED
         self._numbers_shown = True
         self._build()
         self._connect()
@@ -53,6 +61,12 @@ class Stage(QWidget):
     def _connect(self):
         """Hand on what is asked for while it is empty."""
         self._invitation.look_requested.connect(self.look_requested)
+
+    def show_awaited(self, names):
+        """Say, where there is no tile yet, whose ones will come: names of robots in the list."""
+        if tuple(names) != self._awaited:
+            self._awaited = tuple(names)
+            self._invitation.show_awaited(self._awaited)
 
     def show_look_result(self, text, busy=False):
         """Say what came of looking for robots, where there is none yet."""
@@ -72,6 +86,30 @@ class Stage(QWidget):
     def names(self):
         """Names of the robots whose tiles are on the stage, in order."""
         return tuple(name for name, tile in self._tiles.items() if not tile.torn_off)
+
+    def set_map(self, widget):
+        """Have a map, a :class:`mhri.gui.map.map_pane.MapPane`; :meth:`show_map` shows it."""
+        self._map = widget
+        widget.setParent(self)
+        widget.hide()
+        widget.done.connect(self.setFocus)
+        widget.swap_requested.connect(self.swap_map)
+
+    @property
+    def map_state(self):
+        """MAP_CLOSED, MAP_BESIDE or MAP_LARGE."""
+        return self._map_state
+
+    def show_map(self, state):
+        """Show the map large or beside the pictures, or close it."""
+        if state != self._map_state and self._map is not None:
+            self._map_state = state
+            self.refresh()
+            self.map_changed.emit()
+
+    def swap_map(self):
+        """Let map and pictures change places; one that is closed comes large."""
+        self.show_map(MAP_BESIDE if self._map_state == MAP_LARGE else MAP_LARGE)
 
     def show_tiles(self, tiles):
         """Have just these tiles: {name: :class:`BotWindow`}, in order."""
@@ -164,24 +202,45 @@ class Stage(QWidget):
         """Return the area that would be picture in a room of this size [px²]."""
         return self._arranged(width, height).picture_px
 
+    def has_room_beside(self, width=None, height=None):
+        """Tell whether the map has room beside the pictures, on a stage of this size [px]."""
+        unit = self.fontMetrics().height()
+        return (width or self.width()) >= _MAP_UNITS[0] * unit and \
+            (height or self.height()) >= _MAP_UNITS[1] * unit
+
+    def _with_map(self, large, small, the_map, width, height):
+        """Return what is large and what is small on a stage of this size, the map among it."""
+        if self._map_state == MAP_LARGE:
+            return (the_map,), large + small
+        if self._map_state == MAP_BESIDE and self.has_room_beside(width, height):
+            return large, small + (the_map,)
+        return large, small
+
     def _arranged(self, width, height):
-        count = len(self._large)
+        count = max(1, len(self._large))
         unit = self.fontMetrics().height()
         shapes = self._shapes or (USUAL_SHAPE,)
-        return arrange(width, height, shapes[:max(1, count)], shapes[max(1, count):],
+        large, small = self._with_map(shapes[:count], shapes[count:], USUAL_SHAPE, width, height)
+        return arrange(width, height, large, small,
                        tuple(round(units * unit) for units in _LEAST_UNITS), _GAP_PX)
 
     def _place(self):
         """Give each tile its rectangle."""
-        names = self._in_order()
+        tiles = tuple(self._tiles[name] for name in self._in_order())
         self._invitation.setVisible(not self._tiles)
         self._invitation.setGeometry(self.rect())
-        if not names:
+        count = len(self._large)
+        for index, tile in enumerate(tiles):
+            tile.full_rate = index < count
+        large, small = self._with_map(tiles[:count], tiles[count:], self._map, self.width(),
+                                      self.height()) if tiles else ((), ())
+        if self._map is not None and self._map not in large + small:
+            self._map.hide()
+        if not tiles:
             return
         found = self._arranged(self.width(), self.height())
-        for index, (name, box) in enumerate(zip(names, found.large + found.small)):
-            tile = self._tiles[name]
-            tile.show_large(index < len(self._large))
+        for index, (tile, box) in enumerate(zip(large + small, found.large + found.small)):
+            tile.show_large(index < len(large))
             tile.setGeometry(QRect(box.x, box.y, box.width, box.height))
             tile.show()
         self.place_float()
@@ -203,8 +262,12 @@ class Stage(QWidget):
         under, side, unit = None, 0, self.fontMetrics().height()
         if self._float is not None:
             tile = under = self._tiles.get(next(iter(self._large), ''))
-            room = self.rect() if tile is None else \
-                tile.picture_area().translated(tile.pos())
+            if self._map_state == MAP_LARGE and self._map is not None:
+                # Above the line at its foot.
+                under, room = None, self._map.geometry().adjusted(0, 0, 0, -2 * unit)
+            else:
+                room = self.rect() if tile is None else \
+                    tile.picture_area().translated(tile.pos())
             side = round(min(_FLOAT_UNITS * unit, _FLOAT_SHARE * min(room.width(), room.height())))
             self._float.setGeometry(room.right() - side - unit // 2,
                                     room.bottom() - side - unit // 2, side, side)

@@ -8,6 +8,7 @@ from mhri.gui.screen.labels import Sign, TextLine
 
 _SIGNS = {'calm': None, 'attention': (theme.TRIANGLE, theme.ATTENTION),
           'stopped': (theme.OCTAGON, theme.STOP)}
+_BETWEEN = '  \u2013  '
 
 
 class StatusLine(QWidget):
@@ -31,4 +32,8 @@ class StatusLine(QWidget):
     def show_status(self, text, level):
         """Show a sentence; the level is 'calm', 'attention' or 'stopped'."""
         self._sign.show_sign(_SIGNS[level])
-        self._line.show_text(text, shorter=words.beginnings(text, ('; ',)))
+        parts = text.split(_BETWEEN)
+        # Who drives by what can be seen elsewhere: what happens comes last and stays longest.
+        self._line.show_text(text, shorter=(
+            *(_BETWEEN.join(parts[begin:]) for begin in range(1, len(parts))),
+            *words.beginnings(text, ('; ', ': check ', ': look '))))

@@ -14,6 +14,7 @@ Interfaces (all global names; units SI):
   ``/robot_controller/task_twist`` (``mhri/TeamTwist``), ``/mux/mode`` (``mhri/ControlMode``,
   latched), ``/mux/speed_limit`` (``geometry_msgs/Twist``, latched), ``/mux/waits_for``
   (``std_msgs/String``, latched: '' or one of release, source, neutral, enabling, dead_man),
+  ``/mux/pushed`` (``std_msgs/Bool``, latched: whether the active source's stick is held),
   ``/mux/advice`` (``std_msgs/String``, latched: a sentence, or ''), ``/mux/dead_man``
   (``std_msgs/Bool``, latched: whether dead-man buttons must be held) and ``/panel_in/request``
   (``mhri/PanelRequest``: what the pad's buttons ask of the panel)
@@ -79,7 +80,7 @@ class Mux:
         self._pulse = Pulse(clock())
         self._next_beat = 0.0
         self._changed = threading.Condition(threading.RLock())
-        self._said_waiting = None
+        self._said_waiting = self._said_pushed = None
         self._closing = False
         self._service = None
         self._twist = PromptPublisher('/robot_controller/twist', Twist)
@@ -87,6 +88,7 @@ class Mux:
         self._stop = rospy.Publisher('/robot_controller/stop_all', Bool, queue_size=10, latch=True)
         self._limit = rospy.Publisher('/mux/speed_limit', Twist, queue_size=10, latch=True)
         self._waits = rospy.Publisher('/mux/waits_for', String, queue_size=10, latch=True)
+        self._pushed = rospy.Publisher('/mux/pushed', Bool, queue_size=1, latch=True)
         self._dead_man = rospy.Publisher('/mux/dead_man', Bool, queue_size=1, latch=True)
         self._ask = rospy.Publisher('/panel_in/request', PanelRequest, queue_size=10,
                                     tcp_nodelay=True)
@@ -169,10 +171,14 @@ class Mux:
         if velocity is not None:
             publish = self._twist.publish_urgent if velocity.is_zero() else self._twist.publish
             publish(to_twist(velocity.linear_mps, velocity.angular_rad_s))
-        waiting = self._arbiter.waits_for(self._clock())
+        now = self._clock()
+        waiting, pushed = self._arbiter.waits_for(now), self._arbiter.pushed(now)
         if waiting != self._said_waiting:
             self._said_waiting = waiting
             self._waits.publish(data=waiting)
+        if pushed != self._said_pushed:
+            self._said_pushed = pushed
+            self._pushed.publish(data=pushed)
         self._changed.notify()
 
     def _awake(self, now):

@@ -5,8 +5,8 @@
 Publishes ``/mux_in/mode_select`` (``mhri/ControlMode``) and ``/mux_in/speed_limit``
 (``geometry_msgs/Twist``, latched); while this screen drives also ``/mux_in/joy``
 (``sensor_msgs/Joy``) and ``/robot_controller/robot_select`` (``mhri/RobotSelect``, latched).
-Subscribes ``/mux/mode``, ``/mux/speed_limit``, ``/mux/waits_for``, ``/mux/advice``,
-``/mux/dead_man``, ``/robot_controller/stop_all``, ``/robot_controller/twist``, and believes only
+Subscribes ``/mux/mode``, ``/mux/speed_limit``, ``/mux/waits_for``, ``/mux/pushed``,
+``/mux/advice``, ``/mux/dead_man``, ``/robot_controller/stop_all``, ``/robot_controller/twist``, and believes only
 the mux in force (:mod:`mhri.ros.driving.in_force`). Calls ``/mux/set_stop_all`` on a thread of its
 own.
 """
@@ -53,6 +53,8 @@ class MuxClient:
         self.advice = ''
         #: whether the dead-man buttons of pads must be held
         self.dead_man = True
+        #: whether the stick of the active source is held
+        self.pushed = False
         self._pressed = pressed
         self._stopped = False
         self._proxy = None
@@ -69,6 +71,7 @@ class MuxClient:
                 ('/mux/mode', ControlMode, self._hear_mode),
                 ('/mux/speed_limit', Twist, self._on_limits),
                 ('/mux/waits_for', String, self._on_waits),
+                ('/mux/pushed', Bool, self._on_pushed),
                 ('/mux/advice', String, self._on_advice),
                 ('/mux/dead_man', Bool, self._on_dead_man),
                 ('/robot_controller/stop_all', Bool, self._hear_stop),
@@ -125,6 +128,9 @@ class MuxClient:
 
     def _on_dead_man(self, message):
         self.dead_man = message.data
+
+    def _on_pushed(self, message):
+        self.pushed = message.data
 
     def state(self):
         """Return (mode, limits, waits_for) as last published by the mux; None without it."""

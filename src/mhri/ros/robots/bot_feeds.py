@@ -11,12 +11,12 @@ class BotFeeds:
     """The feeds of one robot's tile; the GUI thread asks, a worker opens and closes.
 
     :param robot: the robot's name
-    :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
+    :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`; kept as an attribute
     :param worker: :class:`mhri.ros.worker.Worker` for the calls that ask the master
     """
 
     def __init__(self, robot, robot_type, worker):
-        self._type = robot_type
+        self.robot_type = robot_type
         self._worker = worker
         made = {row.key: load(row.feed).of(robot, robot_type, row.key) for row in VIEW_ROWS}
         self._feeds = {key: feed for key, feed in made.items() if feed is not None}
@@ -26,7 +26,7 @@ class BotFeeds:
 
     def offers(self):
         """Return the keys of the views that a robot of this type can have."""
-        return frozenset(self._feeds) - {MOCAP} | ({RECORD} if self._type.imu else frozenset())
+        return frozenset(self._feeds) - {MOCAP} | ({RECORD} if self.robot_type.imu else frozenset())
 
     def want(self, keys):
         """Choose the views to feed from now on; returns at once."""

@@ -65,8 +65,7 @@ class ScreenBackend:
         self._asked = AskedAndDone()
         self._mux = self._watch = self._requests = self._diagnostics = self._devices = None
         self._first_limits = self._first_mode = None
-        self._pressed = False
-        self._stopped_by_gates = False
+        self._pressed = self._stopped_by_gates = False
         self._stop_note = ''
         self._ros = ROS_STARTING
         self._closing = threading.Event()
@@ -351,13 +350,13 @@ class ScreenBackend:
         view = PanelView(
             ros=self._state_of_ros(), mode=mode, brake=gates.brake if gates else self._brake,
             stop_all=self._stopped_by_gates or (self._mux.stopped if self._mux else self._pressed),
-            stop_note=self._stop_note,
-            limits=limits or self._first_limits or (0.5, 1.5), robots=robots, together=together,
-            pace=pace_words(robots, together, share), slowed=share < 1.0,
-            camera_bits_per_s=self._fleet.camera_bits_per_s(),
+            stop_note=self._stop_note, limits=limits or self._first_limits or (0.5, 1.5),
+            robots=robots, together=together, pace=pace_words(robots, together, share),
+            slowed=share < 1.0, camera_bits_per_s=self._fleet.camera_bits_per_s(),
             **(self._devices.view() if self._devices else {}),
             control=self._control(), answers=answers,
             stop_taken=answers and self._stopped_by_gates, asked=asked, waits_for=waits_for or '',
+            pushed=waits_for is not None and self._mux.pushed,
             **({'advice': self._mux.advice, 'dead_man': self._mux.dead_man} if self._mux else {}))
         status, level = status_line(view, waits_for, self.master_uri)
         return replace(view, status=status, status_level=level)

@@ -1,0 +1,64 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Several robots sent to one place: side by side there, not all on one point."""
+from itertools import permutations
+import math
+from typing import Callable, Dict, List, Mapping, Optional, Tuple
+
+from mhri.core.robots.mocap import Pose
+
+# From middle to middle, in radii of the largest.
+SPACING_RADII = 2.5
+# More than so many stand in several rows.
+_IN_A_ROW = 4
+# Every order of so many is tried; of more, each in turn takes the nearest place.
+_TRY_ALL = 6
+
+
+def _places(goal: Pose, count: int, spacing_m: float,
+            free: Callable[[float, float], bool]) -> List[Tuple[float, float]]:
+    """Return so many free places beside and behind a goal; it is the middle of the first row."""
+    across = (-math.sin(goal.heading_rad), math.cos(goal.heading_rad))
+    back = (-math.cos(goal.heading_rad), -math.sin(goal.heading_rad))
+    found: List[Tuple[float, float]] = []
+    in_row = min(count, _IN_A_ROW)
+    for row in range(2 * count + 2):
+        for number in range(in_row):
+            aside, behind = (number - (in_row - 1) / 2.0) * spacing_m, row * spacing_m
+            place = (goal.x_m + aside * across[0] + behind * back[0],
+                     goal.y_m + aside * across[1] + behind * back[1])
+            if len(found) < count and free(*place):
+                found.append(place)
+    return found
+
+
+def spread(goal: Pose, robots: Mapping[str, Optional[Pose]], radius_m: float,
+           free: Callable[[float, float], bool] = lambda x_m, y_m: True) -> Dict[str, Pose]:
+    """Return where each robot goes, all with the heading of the goal; the ways are short.
+
+    :param robots: where they are, None if nobody knows
+    :param radius_m: of the largest of them
+    :param free: tells whether a robot can stand at (x, y) [m]
+    :returns: robots for which there is no free place are left out
+    """
+    names = list(robots)
+    if len(names) == 1:
+        return {names[0]: goal}
+    places = _places(goal, len(names), SPACING_RADII * radius_m, free)
+
+    def way(name: str, place: Tuple[float, float]) -> float:
+        pose = robots[name]
+        return 0.0 if pose is None else math.hypot(place[0] - pose.x_m, place[1] - pose.y_m)
+
+    chosen: Dict[str, Tuple[float, float]]
+    if len(names) <= _TRY_ALL:
+        best = min(permutations(names, len(places)), key=lambda order: sum(
+            way(name, place) ** 2 for name, place in zip(order, places)))
+        chosen = dict(zip(best, places))
+    else:
+        chosen = {}
+        for place in places:
+            name = min((name for name in names if name not in chosen),
+                       key=lambda name: way(name, place))
+            chosen[name] = place
+    return {name: Pose(*chosen[name], goal.heading_rad) for name in names if name in chosen}
