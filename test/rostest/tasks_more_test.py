@@ -33,6 +33,7 @@ from support.fake_mux import FakeOperator, StateEar  # noqa: E402
 from turtlesim.msg import Pose as TurtlePose  # noqa: E402
 
 PATIENCE_S = 120.0
+LATE = 'its task did not reach it any more'
 ROBOTS = ('bot1', 'bot2', 'bot3', 'pond')
 
 
@@ -127,46 +128,58 @@ class TasksMore(unittest.TestCase):
         self.assertIsNotNone(goal.get_result(), goal.get_goal_status_text())
         return [(robot.state, robot.text) for robot in goal.get_result().robots]
 
-    def done(self, goal):
-        """Wait for the end, which has to be a good one; return the first sentence."""
-        ended = self.ends(goal)
+    def ended(self, robots, task, parameters=''):
+        """Do a task to its end; return as :meth:`ends` does.
+
+        Again where its commands came too late: on a busy machine that says nothing of the task.
+        """
+        for tries_left in reversed(range(5)):
+            ended = self.ends(self.start(robots, task, parameters))
+            if not (tries_left and LATE in ended[0][1]):
+                return ended
+
+    def done(self, robots, task, parameters=''):
+        """Do a task to its end, which has to be a good one; return the first sentence."""
+        ended = self.ended(robots, task, parameters)
         self.assertEqual([state for state, _ in ended], [TaskState.DONE] * len(ended), ended)
         return ended[0][1]
 
     def test_a_formation_keeps_its_spacing_in_a_bend(self):
-        self.done(self.start('bot1', 'goto', '{x: 3.0, y: 1.2, heading: 0.0}'))
-        self.done(self.start('bot2', 'goto', '{x: 2.2, y: 1.2, heading: 0.0}'))
-        formed = self.start('bot2', 'formation', '{leader: bot1, shape: column, spacing: 0.8}')
-        begun = time.monotonic()
-        self.done(self.start('bot1', 'patrol',
-                             '{route: [[4.2, 1.2], [4.6, 1.6], [4.6, 2.2]], rounds: 1, '
-                             'speed: 0.12}'))
-        wait_until(lambda: abs(self.gap() - 0.8) < 0.2, 'the spacing is {:.2f} m'.format(
-            self.gap()), PATIENCE_S)
+        for tries_left in reversed(range(4)):
+            self.done('bot1', 'goto', '{x: 3.0, y: 1.2, heading: 0.0}')
+            self.done('bot2', 'goto', '{x: 2.2, y: 1.2, heading: 0.0}')
+            begun = time.monotonic()
+            formed = self.start('bot2', 'formation', '{leader: bot1, shape: column, spacing: 0.8}')
+            self.done('bot1', 'patrol', '{route: [[4.2, 1.2], [4.6, 1.6], [4.6, 2.2]], rounds: 1, '
+                      'speed: 0.12}')
+            wait_until(lambda: formed.get_comm_state() == actionlib.CommState.DONE or abs(
+                self.gap() - 0.8) < 0.2, 'the spacing does not come back', PATIENCE_S)
+            formed.cancel()
+            ended = self.ends(formed)
+            if not (tries_left and LATE in ended[0][1]):
+                break
+        self.assertEqual(ended, [(TaskState.STOPPED, 'it was cancelled')])
         second = [item.value for item in self.places['bot2'].since(begun)]
         first = self.places['bot1'].since(begun)
-        gaps = [math.dist(item.value, place) for item, place in zip(
-            first, second[:len(first)])]
+        gaps = [math.dist(item.value, place) for item, place in zip(first, second)]
         print('formation: {:.2f} to {:.2f} m between the two'.format(min(gaps), max(gaps)))
         self.assertGreater(min(gaps), 0.45)
-        formed.cancel()
-        self.ends(formed)
 
     def gap(self):
         """Return the way between the two robots [m]."""
         return math.dist(self.places['bot1'].last(), self.places['bot2'].last())
 
     def test_a_drive_of_a_bag_is_replayed_within_015_m(self):
-        self.done(self.start('bot2', 'goto', '{x: 2.0, y: 2.6}'))
-        self.done(self.start('bot1', 'goto', '{x: 3.0, y: 1.2, heading: 0.0}'))
+        self.done('bot2', 'goto', '{x: 2.0, y: 2.6}')
+        self.done('bot1', 'goto', '{x: 3.0, y: 1.2, heading: 0.0}')
         begun = time.monotonic()
-        self.done(self.start('bot1', 'patrol', '{route: [[4.0, 1.2], [4.6, 1.9]], rounds: 1}'))
+        self.done('bot1', 'patrol', '{route: [[4.0, 1.2], [4.6, 1.9]], rounds: 1}')
         path = os.path.join(tempfile.mkdtemp(), 'drive.bag')
         with rosbag.Bag(path, 'w') as bag:
             for item in self.odometry.since(begun):
                 bag.write('/bot1/odom', item.value, item.value.header.stamp)
         for words in ('{{bag: {}, begin: there}}', '{{bag: {}, topic: /bot1/odom, begin: there}}'):
-            said = self.done(self.start('bot1', 'replay', words.format(path)))
+            said = self.done('bot1', 'replay', words.format(path))
             print('replay:', said)
             off = [float(most) for most in re.findall(r'([\d.]+) m at most', said)]
             self.assertEqual(len(off), 2, said)
@@ -179,18 +192,18 @@ class TasksMore(unittest.TestCase):
             self.assertIn(why, ended[0][1])
 
     def test_marks_and_the_fence(self):
-        self.done(self.start('bot2', 'goto', '{x: 2.0, y: 2.6}'))
+        self.done('bot2', 'goto', '{x: 2.0, y: 2.6}')
         self.assertTrue(self.set_mark('dock', True, Pose2D(3.6, 1.8, 0.0)).success)
         self.assertTrue(self.set_fence([Point32(x, y, 0.0) for x, y in (
             (2.4, 0.4), (4.4, 0.4), (4.4, 2.6), (2.4, 2.6))]).success)
-        self.done(self.start('bot1', 'return', '{mark: dock}'))
+        self.done('bot1', 'return', '{mark: dock}')
         self.assertLess(math.dist(self.places['bot1'].last(), (3.6, 1.8)), 0.2)
         self.assertIn('there are: dock', self.ends(
             self.start('bot1', 'return', '{mark: door}'))[0][1])
         self.assertEqual(self.ends(self.start('bot1', 'goto', '{x: 5.0, y: 1.8}')), [
             (TaskState.FAILED, 'its goal lies outside of the fence')])
         begun = time.monotonic()
-        ended = self.ends(self.start('bot1', 'square', '{side: 3.0}'))
+        ended = self.ended('bot1', 'square', '{side: 3.0}')
         self.assertEqual(ended, [(TaskState.BLOCKED, 'for 5 s: it is at the fence')])
         furthest = max(item.value[0] for item in self.places['bot1'].since(begun))
         print('fence at 4.40 m: the middle of the robot came to {:.2f} m'.format(furthest))
@@ -222,7 +235,9 @@ class TasksMore(unittest.TestCase):
         self.assertEqual([item.value for item in self.commands.since(0.0)
                           if rests(item.value)][3:], [], 'zeros are in the way of its navigation')
         self.navigation.end('succeeded')
-        self.assertRegex(self.done(goal), 'it is there by its own navigation')
+        ended = self.ends(goal)
+        self.assertEqual(ended[0][0], TaskState.DONE)
+        self.assertIn('it is there by its own navigation', ended[0][1])
         goal = self.sent()
         self.navigation.end('aborted')
         self.assertEqual(self.ends(goal), [
@@ -257,13 +272,12 @@ class TasksMore(unittest.TestCase):
 
     def test_a_turtle_does_what_its_topics_allow(self):
         x, y, _ = self.turtle.last()
-        self.done(self.start('pond', 'goto', '{{x: {}, y: {}, frame: odom, speed: 1.0}}'.format(
-            x + 1.0, y + 0.5)))
+        self.done('pond', 'goto', '{{x: {}, y: {}, frame: odom, speed: 1.0}}'.format(
+            x + 1.0, y + 0.5))
         self.assertLess(math.dist(self.turtle.last()[:2], (x + 1.0, y + 0.5)), 0.2)
-        self.assertIn('by odometry', self.done(self.start('pond', 'square',
-                                                          '{side: 1.0, speed: 1.0}')))
-        self.done(self.start('pond', 'replay', '{seconds: 600, speed: 1.0}'))
-        self.done(self.start('pond', 'return', '{distance: 1.0, speed: 1.0}'))
+        self.assertIn('by odometry', self.done('pond', 'square', '{side: 1.0, speed: 1.0}'))
+        self.done('pond', 'replay', '{seconds: 600, speed: 1.0}')
+        self.done('pond', 'return', '{distance: 1.0, speed: 1.0}')
         ended = self.ends(self.start('pond', 'follow', '{leader: bot1}'))
         self.assertEqual(ended[0][0], TaskState.FAILED)
 
