@@ -126,7 +126,7 @@ class Standalone:
         self._remember = False
         self._robots_at_first = self.host.operator.selection.robots
         panel = self.host.screen
-        # The mux sets a mode and limits by itself, so their values do not tell who chose them.
+        # The mux publishes a mode and limits by itself, so their values do not tell who chose them.
         for signal_ in (panel.mode_requested, panel.limits_requested, panel.together_requested):
             signal_.connect(self._on_change)
 

@@ -59,9 +59,9 @@ def make_hostile(folder):
         'long name': (folder + '/' + 'n' * 300, 'the name is too long'),
         'long name with its ending': (folder + '/' + 'n' * 250, 'the name is too long'),
         'long path': (folder + '/n' * 3000, 'the name is too long'),
-        'deep path': (folder + '/n' * 1500, 'too many folders'),
-        'nul': (folder + '/a\0b', 'a character that no name may have'),
-        'half a character': (folder + '/\ud800', 'a character that no name may have'),
+        'deep path': (folder + '/n' * 1500, 'nested too deeply'),
+        'nul': (folder + '/a\0b', 'a character that no name can have'),
+        'half a character': (folder + '/\ud800', 'a character that no name can have'),
         'a variable that is not set': ('$MHRI_NOT_SET/x', '$MHRI_NOT_SET is not set'),
         'somebody': ('~nobody/x', '~name is not known'),
     }

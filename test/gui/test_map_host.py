@@ -287,6 +287,15 @@ def test_several_are_spread_out(session):
     assert 'bot1: ' in session.pane.line.text() and 'bot2: ' in session.pane.line.text()
 
 
+def test_news_of_tasks_are_told(session):
+    session.map.hear('task.begun', 'go to started', 'bot1')
+    assert session.pane.line.text() == 'bot1: go to started'
+    session.map.hear('task.said', 'corner 1 reached', 'bot1')
+    assert session.pane.line.text() == 'bot1: go to started'
+    session.map.hear('task.refused', 'go to not started: it is lost', '')
+    assert session.pane.line.tone == theme.ATTENTION
+
+
 def test_route_leader_and_end(session):
     press_m(session)
     session.take(gesture.ROUTE)

@@ -326,7 +326,7 @@ class WatchdogTest(unittest.TestCase):
         process = self.clinic.patient('/bot1/base', '--publish', 'odom', ODOMETRY, '--obey',
                                       'cmd_vel')
         _, report = self.clinic.examine('bot1', '--watchdog', '--yes')
-        self.assertIn('odometry says nothing', wrong(report)['watchdog_unknown']['problem'])
+        self.assertIn('sends no odometry', wrong(report)['watchdog_unknown']['problem'])
         self.assertNotIn('told 0.3', open(process.log).read())
 
 

@@ -205,7 +205,7 @@ class MotorPowerTest(unittest.TestCase):
 
     def test_a_type_that_names_nothing_or_a_wrong_field_says_so(self):
         for parameters, words in (
-                ({}, 'its type names nothing'),
+                ({}, 'its type names no way'),
                 ({'mhri': {'motor_power': {'topic': 'power', 'field': 'state'}}}, 'no field state'),
                 ({'mhri': {'motor_power': {'topic': 'power', 'type': 'std_msgs/UInt8', 'cut': -1}}},
                  'std_msgs/UInt8: ')):

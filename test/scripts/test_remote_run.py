@@ -238,7 +238,7 @@ def free_port():
      'there is no package turtlebot_bringup here'),
     ([], {'ROS_PACKAGE_PATH': '/nowhere'},
      'there is no package turtlebot_bringup or turtlebot3_bringup here'),
-    ([], {}, 'both turtlebot_bringup and turtlebot3_bringup are here'),
+    ([], {}, 'turtlebot_bringup and turtlebot3_bringup are both installed'),
     (['--model', 'burger'], {'ONLY': 'turtlebot_bringup'},
      "--model burger is a TurtleBot3's, and there is only turtlebot_bringup here: leave --model"),
     (['--launch', 'no_such_package/x.launch'], {}, 'there is no package no_such_package here'),
@@ -282,10 +282,10 @@ def test_setup_file_is_named_or_found(remote, master):
     bare = {'ROS_PACKAGE_PATH': remote.system.env.get('ROS_PACKAGE_PATH', '')}
     (remote.folder / 'my.bash').write_text(setup)
     status, output = remote.run('bot1', '--setup', 'my.bash', **bare)
-    assert status == 1 and 'both turtlebot_bringup and turtlebot3_bringup are here' in output
+    assert status == 1 and 'turtlebot_bringup and turtlebot3_bringup are both installed' in output
     found = remote.folder / 'catkin_ws' / 'devel' / 'setup.bash'
     found.parent.mkdir(parents=True)
     found.write_text(setup)
     status, output = remote.run('bot1', **bare)
     assert status == 1 and 'using {}'.format(found) in output
-    assert 'both turtlebot_bringup' in output
+    assert 'are both installed' in output

@@ -75,7 +75,8 @@ import pytest
     (['sim:=many'], "sim: 'many'"),
     (['--sim', '3', 'turtlebot4'], "cannot simulate 'turtlebot4'; the types to simulate are "
      'turtlebot2, turtlebot3, turtlebot3_burger, turtlebot3_waffle, turtlebot3_waffle_pi'),
-    (['--sim', '3', 'turtlebot2 turtlebot4 turtlebot5'], "cannot simulate 'turtlebot4', 'turtlebot5'"),
+    (['--sim', '3', 'turtlebot2 turtlebot4 turtlebot5'],
+     "cannot simulate 'turtlebot4', 'turtlebot5'"),
     (['--sim', '3', '--sim-types', 'generic'], "cannot simulate 'generic'"),
     (['--demo', '--sim-types', ' '], "cannot simulate ''"),
     (['sim:=3', 'sim_types:=turtlebot4'], "cannot simulate 'turtlebot4'"),

@@ -195,7 +195,7 @@ def test_panel_that_fails_ends_everything_and_is_told(start, master):
 def test_simulated_robots_need_no_network(start, tmp_path):
     run = start('--sim', '2', 'gui:=none', before=NO_NETWORK)
     wait_for(lambda: 'bot2' in run.output and 'process[mux' in run.output, 'the robots')
-    assert 'installed with' not in run.output
+    assert 'installing missing' not in run.output
     [pid] = [pid for pid in children_with(run.mark) if is_script(pid)]
     os.kill(pid, signal.SIGINT)
     assert run.wait(30) == 130, run.output

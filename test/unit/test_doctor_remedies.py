@@ -48,7 +48,7 @@ def test_node_that_lives_is_not_taken_off_the_master(host, state, where, words):
         seen_at(base=where)(world)
     finding = [item for item in world.wrong() if item.check.startswith(('node', 'host'))][0]
     assert words.format(BOT_IP) in finding.remedy
-    assert 'y: it takes dead nodes' not in finding.remedy
+    assert 'y: it removes dead nodes' not in finding.remedy
 
 
 def test_computer_known_by_two_names():

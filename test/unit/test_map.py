@@ -12,7 +12,7 @@ from mhri.core.map.canvas import (
 from mhri.core.map.grid import Grid
 from mhri.core.map.scene import (
     goals_of, in_frame, map_robot, MapMark, MapRobot, own_pose, Placing, Scene, UnderWay)
-from mhri.core.map.spread import spread, SPACING_RADII
+from mhri.core.map.spread import has_room, spread, SPACING_RADII
 from mhri.core.map.track import Track
 from mhri.core.map.trail import GOOD, link_grade, LOST, SLOW, Trail
 from mhri.core.robots.mocap import Pose
@@ -190,6 +190,19 @@ def test_nobody_is_sent_to_where_nobody_can_stand():
     found = spread(Pose(0.0, 0.0, 0.0), robots, 0.2, lambda x_m, y_m: y_m < 0.1)
     assert len(found) == 3 and all(pose.y_m < 0.1 for pose in found.values())
     assert spread(Pose(0.0, 0.0, 0.0), robots, 0.2, lambda x_m, y_m: False) == {}
+
+
+def test_nobody_is_sent_into_a_wall():
+    cells = np.zeros((40, 40), np.int8)
+    cells[:, 20] = 100
+    for origin in (Pose(-1.0, -1.0, 0.0), Pose(1.0, -1.0, math.pi / 2.0)):
+        grid = Grid(0.05, origin, cells)
+        # The wall is one cell wide, along an axis from the middle.
+        along_y = origin.heading_rad == 0.0
+        for off, room in ((0.0, False), (0.2, False), (0.3, True), (-0.2, False), (-0.27, True)):
+            place = (off, 0.3) if along_y else (0.3, off)
+            assert has_room(grid, *place, 0.25) == room, (origin, off)
+        assert has_room(grid, 50.0, -50.0, 0.25)
 
 
 # What is drawn.

@@ -34,7 +34,7 @@ def shown(value: object) -> str:
 
 def _cut(text: str, most: int, tail: int) -> str:
     """Return a printable text of ``most`` characters at most, its last ``tail`` kept."""
-    if len(text) > 2 * most:  # before the look at each character
+    if len(text) > 2 * most:  # before each character is checked
         text = text[:most] + text[-most:]
     text = ''.join(char if char.isprintable() else char.encode('unicode_escape').decode('ascii')
                    for char in text)

@@ -328,4 +328,4 @@ class ScreenHost(QObject):
         self._stop_watch.close()
         self.pad.close()
         self.tasks.close(forget)
-        self.map.close()
+        self.map.close(forget)

@@ -76,8 +76,8 @@ def _decode_colours(fmt: str, kind: str, data: Data, full: Size, factor: int) ->
 def _is_rgb_order(fmt: str) -> bool:
     """Tell whether the writer of a png handed over RGB where the coder takes BGR.
 
-    The plugin reads a png of 'rgb8' so if it does not say 'compressed bgr8'; it trusts a jpeg's own
-    header, whatever the format says.
+    The plugin assumes so for a png of 'rgb8' whose format does not say 'compressed bgr8'; it trusts
+    a jpeg's own header, whatever the format says.
     """
     encoding, _, rest = fmt.partition(';')
     return encoding.startswith('rgb') and 'compressed' in rest and 'bgr' not in rest

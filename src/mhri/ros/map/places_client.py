@@ -64,16 +64,16 @@ class PlacesClient:
         self._places = (PlacesView(), -math.inf)
         self._runs = ()
         self._force = None
+        self._topics = []
         self._worker = Worker('map_calls').start()
 
     def open(self):
         """Listen from now on (blocking: it asks the master)."""
         if self._force is None:
             self._force = InForce(_PLACE)
-            self._force.subscribe('/mhri_tasks/places', Places, self._on_places, queue_size=1,
-                                  tcp_nodelay=True)
-            self._force.subscribe('/mhri_tasks/list', TaskList, self._on_list, queue_size=1,
-                                  tcp_nodelay=True)
+            self._topics = [self._force.subscribe(*row, queue_size=1, tcp_nodelay=True) for row in (
+                ('/mhri_tasks/places', Places, self._on_places),
+                ('/mhri_tasks/list', TaskList, self._on_list))]
             self._force.start()
 
     def _on_places(self, message):
@@ -135,6 +135,11 @@ class PlacesClient:
         self._worker.stop()
         if self._force is not None:
             self._force.stop()
+
+    def unregister(self):
+        """Unregister every topic (blocking: it asks the master)."""
+        for topic in self._topics:
+            topic.unregister()
 
 
 def _message(pose):
