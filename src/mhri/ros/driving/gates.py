@@ -330,7 +330,8 @@ class Gates:
         self._each(lambda gate: gate.tick(now))
         if self._slow_with_link:
             self._keep_together()
-        states = [(gate.rule.obeys, gate.rule.stands, gate.brake()[0]) for gate in self._gates.values()]
+        states = [(gate.rule.obeys, gate.rule.stands, gate.brake()[0])
+                  for gate in self._gates.values()]
         if states != self._states:
             self._states = states
             self.on_change()
