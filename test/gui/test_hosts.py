@@ -7,8 +7,10 @@ import types
 
 import pytest
 from python_qt_binding.QtCore import QPoint, QRect
+from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication, QWidget
 
+from mhri.gui.screen import geometry
 from mhri.presenters.screen_host import ScreenHost
 from mhri.ros.screen.backend import ScreenBackend
 from mhri.standalone import Standalone
@@ -17,6 +19,28 @@ from mhri.standalone import Standalone
 @pytest.fixture(scope='module', autouse=True)
 def app():
     yield QApplication.instance() or QApplication(['panel'])
+
+
+class Monitor:
+    """One of several."""
+
+    def __init__(self, area):
+        self.area = area
+
+    def geometry(self):
+        return self.area
+
+    availableGeometry = geometry  # noqa: N815
+
+
+class Monitors:
+    """Stands in for ``QGuiApplication``: what is plugged in."""
+
+    def __init__(self, plugged):
+        self._plugged = plugged
+
+    def screens(self):
+        return self._plugged
 
 
 def tear_off(host):
@@ -46,6 +70,41 @@ def check_restored(host):
     host.tiles.make('bot1')
     assert host.windows['bot1'].torn_off
     assert host.windows['bot1'].window().pos() == QPoint(321, 123)
+
+
+def test_a_tile_whose_monitor_is_gone_is_on_the_screen_again():
+    """Not in a window that nobody sees, nor in one over the pictures."""
+    first = used_host()
+    window, tile = first.windows['bot1'].window(), first.windows['bot1']
+    window.setGeometry(QRect(9000, 100, 400, 300))
+    state = json.loads(json.dumps(first.save_state()))
+    QApplication.instance().screenRemoved.emit(None)
+    for _ in range(600):
+        if not tile.torn_off:
+            break
+        QTest.qWait(50)
+    assert not tile.torn_off and tile.parentWidget() is first.screen.stage
+    first.close()
+    second = ScreenHost(ScreenBackend())
+    second.restore_state(state)
+    second.tiles.make('bot1')
+    assert not second.windows['bot1'].torn_off
+    second.close()
+
+
+def test_a_tile_is_torn_off_to_the_other_monitor(monkeypatch):
+    screens = [Monitor(QRect(0, 0, 1280, 720)), Monitor(QRect(1280, 0, 1000, 500))]
+    monkeypatch.setattr(geometry, 'QGuiApplication', Monitors(screens))
+    main, window = QWidget(), QWidget()
+    main.setGeometry(QRect(100, 100, 800, 500))
+    window.resize(800, 640)
+    geometry.place_on_another_screen(window, main)
+    assert screens[1].area.contains(window.geometry()) and window.height() == 500
+    assert geometry.in_sight([1300, 0, 800, 400, False])
+    assert not geometry.in_sight([2200, 0, 800, 400, False])
+    del screens[1]
+    geometry.place_on_another_screen(window, main)
+    assert window.x() > 1200, 'left where it is'
 
 
 def test_state_survives_as_json():

@@ -5,12 +5,12 @@ import math
 
 import numpy as np
 import pytest
-from python_qt_binding.QtCore import QPoint, QPointF, Qt
+from python_qt_binding.QtCore import QEvent, QPoint, QPointF, Qt
 from python_qt_binding.QtGui import QColor, QPalette, QWheelEvent
 from python_qt_binding.QtWidgets import QApplication, QPushButton
-from support.maps import BOT1, BOT2, drag, LOOSE, map_pane, SCENE
+from support.maps import BOT1, BOT2, drag, LOOSE, map_pane, move, pixel, SCENE
 
-from mhri.core.map.canvas import Canvas
+from mhri.core.map.canvas import Canvas, place_words
 from mhri.core.map.grid import Grid
 from mhri.core.map.scene import Goal, MapMark, MapRobot, Scene
 from mhri.core.map.trail import GOOD, LOST, Trail
@@ -150,7 +150,7 @@ def test_more_than_four_are_counted_and_silence_is_said(pane):
 
 
 def test_what_a_place_rests_on_is_in_the_tip(pane):
-    assert pane.view.tip(BOT2) == '2 bot2: on a task\nplaced by tf'
+    assert pane.view.tip(BOT2) == '2 bot2: patrol\nplaced by tf'
 
 
 # How it is looked at.
@@ -163,6 +163,14 @@ def test_the_wheel_zooms_about_the_pointer(pane):
     after = pane.view.canvas
     assert after.px_per_m > 1.4 * before.px_per_m
     assert after.world(200, 150) == pytest.approx(before.world(200, 150), abs=0.02)
+
+
+def test_the_place_under_the_pointer_is_said(pane, operator):
+    move(pane.view, pixel(pane, 1.0, -0.5), Qt.NoButton)
+    at = pixel(pane, 1.0, -0.5)
+    assert pane.place_label.text() == place_words(*pane.view.canvas.world(at.x(), at.y()))
+    QApplication.sendEvent(pane.view, QEvent(QEvent.Leave))
+    assert pane.place_label.text() == ''
 
 
 def test_buttons_zoom_and_everything_comes_back(pane, operator):

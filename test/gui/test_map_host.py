@@ -10,7 +10,7 @@ from python_qt_binding.QtCore import Qt
 from support.maps import click, drag, pixel
 
 from mhri.core.map import gesture
-from mhri.core.map.scene import Placing, PlacesView, TaskView
+from mhri.core.map.scene import Placing, PlacesView, UnderWay
 from mhri.core.robots.mocap import Pose
 from mhri.core.screen import views
 from mhri.core.screen.saved_state import usable_state
@@ -287,6 +287,15 @@ def test_several_are_spread_out(session):
     assert 'bot1: ' in session.pane.line.text() and 'bot2: ' in session.pane.line.text()
 
 
+def test_news_of_tasks_are_told(session):
+    session.map.hear('task.begun', 'go to started', 'bot1')
+    assert session.pane.line.text() == 'bot1: go to started'
+    session.map.hear('task.said', 'corner 1 reached', 'bot1')
+    assert session.pane.line.text() == 'bot1: go to started'
+    session.map.hear('task.refused', 'go to not started: it is lost', '')
+    assert session.pane.line.tone == theme.ATTENTION
+
+
 def test_route_leader_and_end(session):
     press_m(session)
     session.take(gesture.ROUTE)
@@ -321,7 +330,7 @@ def test_each_act_is_answered(session, answer, said):
 
 
 def test_goals_of_tasks_are_shown(session):
-    session.places.tasks = (TaskView('goto', '{x: 3.0, y: 0.5}', ('bot1',)),)
+    session.places.tasks = (UnderWay('goto', '{x: 3.0, y: 0.5}', ('bot1',)),)
     press_m(session)
     assert session.pane.view.scene.goals[0].route == ((3.0, 0.5),)
 

@@ -11,6 +11,7 @@ from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QAbstractButton, QComboBox, QLabel, QLineEdit
 
 from mhri.core.screen import views
+from mhri.core.screen.brake_view import BrakeView
 from mhri.gui.screen import theme
 from mhri.gui.screen.screen import ScreenWidget
 
@@ -208,13 +209,13 @@ def test_tab_order_is_the_reading_order(panel, operator, application, four_robot
     panel.robot_list.activate('bot1')
     panel.look_button.setFocus(Qt.TabFocusReason)
     seen = ['look_button']
-    for _ in range(16):
+    for _ in range(17):
         operator.hit(application.focusWidget(), Qt.Key_Tab)
         seen.append(application.focusWidget().objectName())
     assert seen == ['look_button', 'doctor_button', 'name_edit', 'add_button', 'robot_list',
                     'check_bot1', 'check_bot2', 'check_bot3', 'check_bot4', 'all_button',
                     'none_button', 'record_button', 'remove_button', 'mode_combo', 'linear_slider',
-                    'angular_slider', 'together_box']
+                    'angular_slider', 'together_box', 'brake_box']
 
 
 def test_settings_survive_json_and_those_of_another_version_do_no_harm(panel, operator, ui_dir):
@@ -338,6 +339,27 @@ def test_staying_together_is_asked_for_and_shown(panel, operator, heard, four_ro
     assert asked == [True, False]
     panel.show_view(replace(four_robots, pace='50 % of the speed', slowed=True))
     assert label.text() == '50 % of the speed'
+
+
+def test_the_brake_is_asked_for_and_shown(panel, operator, heard, four_robots):
+    asked = heard(panel.speed_limits.brake_requested)
+    box = panel.speed_limits.brake_box
+    panel.show_view(four_robots)
+    assert not box.isChecked()
+    operator.click(box)
+    panel.show_view(replace(four_robots, brake=True))
+    assert asked == [True] and box.isChecked()
+    operator.click(box)
+    assert asked == [True, False]
+
+
+def test_a_row_says_what_the_guard_does_by_itself(panel, four_robots):
+    first, *others = four_robots.robots
+    guarded = replace(first, guarded=True,
+                      brake=BrakeView('on', on_robot=True, back_after_s=10.0))
+    panel.show_view(replace(four_robots, robots=(guarded, *others)))
+    row = panel.robot_list.row(first.name)
+    assert 'brakes by itself, goes back alone after 10 s' in row.toolTip()
 
 
 def test_a_row_warns_of_its_link_and_tells_the_figures(panel, operator, four_robots):

@@ -3,6 +3,7 @@
 """A row says what the gates say of its robot, and nothing where they say nothing."""
 import pytest
 
+from mhri.core.driving.stick_brake import WORDS
 from mhri.core.screen.views import LIVE, ProofView, RobotView, SILENT, UNANSWERED
 from mhri.msg import RobotGate
 from mhri.ros.driving.gates_client import is_driven, round_trip_s, STANDS_WORDS
@@ -38,6 +39,15 @@ def view(**values):
     (view(note='slow link', slow=True), gate(0.1, obeys=RobotGate.TASK), True,
      {'note': 'slow link'}),
     (view(), gate(guarded=True), True, {'guarded': True}),
+    (view(), gate(brake=RobotGate.BRAKE_SLOWS, free_way_m=0.6), True,
+     {'note': 'brake: slows for something 0.6 m ahead', 'slow': True}),
+    (view(), gate(brake=RobotGate.BRAKE_CANNOT), True,
+     {'note': 'no brake: it has no laser', 'slow': False}),
+    (view(note='slow link', slow=True), gate(brake=RobotGate.BRAKE_CANNOT), True,
+     {'note': 'slow link'}),
+    (view(), gate(back_after_s=10.0), True,
+     {'note': 'goes back alone after 10 s without a link', 'slow': False}),
+    (view(), gate(0.1, back_after_s=10.0), True, {'note': ''}),
     (view(), gate(power='cut'), True, {'note': 'motor power cut', 'slow': True}),
     (view(hardware_stop=True), gate(), True,
      {'note': 'its own emergency stop is pressed', 'slow': True}),
@@ -56,6 +66,11 @@ def test_a_row(before, said, answers, expected):
 def test_every_reason_to_stand_has_words():
     assert set(STANDS_WORDS) == {RobotGate.STOPPED, RobotGate.NOT_HEARD, RobotGate.JOINING}
     assert RobotGate.JOINING == 'joining', 'without a comment'
+
+
+def test_the_words_of_the_brake_are_those_of_its_rule():
+    assert WORDS == ('', RobotGate.BRAKE_ON, RobotGate.BRAKE_SLOWS, RobotGate.BRAKE_NO_SCAN,
+                     RobotGate.BRAKE_CANNOT)
 
 
 def test_what_is_not_known_is_none():

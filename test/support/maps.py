@@ -13,7 +13,8 @@ from mhri.gui.screen import theme
 
 BOT1 = MapRobot('bot1', 1, Pose(0.0, 0.0, 0.0), looked_at=True, state='standing',
                 text='placed by hand')
-BOT2 = MapRobot('bot2', 2, Pose(2.0, 1.0, 1.0), state='on a task', text='placed by tf')
+BOT2 = MapRobot('bot2', 2, Pose(2.0, 1.0, 1.0), state='patrol', text='placed by tf',
+                task='Patrol')
 LOOSE = MapRobot('bot3', 3, None, state='standing', text='not placed: place it by hand')
 SCENE = Scene('map', (BOT1, BOT2, LOOSE))
 

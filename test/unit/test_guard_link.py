@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from mhri.core.driving import guard_link
-from mhri.core.driving.guard_link import format_id, GuardLink, parse_id
+from mhri.core.driving.guard_link import (
+    format_id, GuardLink, GuardState, parse_id, read_state)
 from play_guard import load
 
 GUARD = load(str(Path(__file__).resolve().parents[2] / 'utils' / 'remote' / 'mhri_guard'))
@@ -164,3 +165,27 @@ def test_a_stop_in_the_backlog_of_a_cut_is_found():
 
 def test_three_echoes_in_a_row_may_be_lost():
     assert 3 * GUARD['ECHO_S'] < guard_link.ECHO_S <= 4 * GUARD['ECHO_S']
+
+
+@pytest.mark.parametrize('text, state', [
+    ('', GuardState()), ('back_after:10', GuardState(back_after_s=10.0)),
+    ('brake:slows way:0.6 back_after:2.5', GuardState('slows', 0.6, 2.5)),
+    ('brake:tomorrow', GuardState('no_scan')), ('back_after:1.2.3 way', GuardState()),
+    ('x' * 10000, GuardState())])
+def test_what_a_guard_says_of_itself(text, state):
+    found = read_state(text)
+    assert (found.brake, found.back_after_s) == (state.brake, state.back_after_s)
+    assert found.free_way_m == pytest.approx(state.free_way_m, nan_ok=True)
+
+
+def test_the_guard_says_it_so():
+    sight = GUARD['Sight'](0.2)
+    guard = GUARD['Guard']('run', brake=sight, back=GUARD['WayBack'](sight, 10.0))
+    assert read_state(guard.state(0.0)).brake == 'no_scan'
+    sight.move((0.0, 0.0, 0.0), 0.0)
+    sight.see([0.8], 0.0, 0.1, 0.1, 10.0, 0.0)
+    assert read_state(guard.state(0.1)).brake == 'on'
+    sight.allow((0.6, 0.0), 0.1)
+    state = read_state(guard.state(0.1))
+    assert (state.brake, state.back_after_s) == ('slows', 10.0)
+    assert state.free_way_m == pytest.approx(0.6, abs=0.05)

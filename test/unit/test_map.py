@@ -11,11 +11,12 @@ from mhri.core.map.canvas import (
     Canvas, known_corners, LEAST_PX_PER_M, length_words, MOST_PX_PER_M, place_words, scale_bar)
 from mhri.core.map.grid import Grid
 from mhri.core.map.scene import (
-    goals_of, in_frame, map_robot, MapMark, MapRobot, own_pose, Placing, Scene, TaskView)
-from mhri.core.map.spread import spread, SPACING_RADII
+    goals_of, in_frame, map_robot, MapMark, MapRobot, own_pose, Placing, Scene, UnderWay)
+from mhri.core.map.spread import has_room, spread, SPACING_RADII
 from mhri.core.map.track import Track
 from mhri.core.map.trail import GOOD, link_grade, LOST, SLOW, Trail
 from mhri.core.robots.mocap import Pose
+from mhri.core.screen.task_views import TaskView
 from mhri.core.screen.views import GONE, LinkFigures, LIVE, RobotView
 
 
@@ -191,6 +192,19 @@ def test_nobody_is_sent_to_where_nobody_can_stand():
     assert spread(Pose(0.0, 0.0, 0.0), robots, 0.2, lambda x_m, y_m: False) == {}
 
 
+def test_nobody_is_sent_into_a_wall():
+    cells = np.zeros((40, 40), np.int8)
+    cells[:, 20] = 100
+    for origin in (Pose(-1.0, -1.0, 0.0), Pose(1.0, -1.0, math.pi / 2.0)):
+        grid = Grid(0.05, origin, cells)
+        # The wall is one cell wide, along an axis from the middle.
+        along_y = origin.heading_rad == 0.0
+        for off, room in ((0.0, False), (0.2, False), (0.3, True), (-0.2, False), (-0.27, True)):
+            place = (off, 0.3) if along_y else (0.3, off)
+            assert has_room(grid, *place, 0.25) == room, (origin, off)
+        assert has_room(grid, 50.0, -50.0, 0.25)
+
+
 # What is drawn.
 
 def test_a_goal_is_pressed_dragged_and_let_go():
@@ -268,6 +282,18 @@ def test_a_robot_that_is_nowhere_says_why(view, placing, text):
     assert robot.pose is None and text in robot.text
 
 
+@pytest.mark.parametrize('more, word, task', [
+    ({}, 'standing', ''), ({'moving': True}, 'moving', ''), ({'selected': True}, 'selected', ''),
+    ({'selected': True, 'driven': True}, 'driving', ''),
+    ({'obeys': 'task', 'driven': True}, 'on a task', 'task'),
+    ({'task': TaskView('Patrol')}, 'patrol', 'Patrol'),
+    ({'task': TaskView('Go to', waits=True)}, 'go to waits', 'Go to')])
+def test_the_state_of_a_robot_is_a_word(more, word, task):
+    view = RobotView(**{**vars(VIEW), **more})
+    robot = map_robot(view, Placing(Pose(0.0, 0.0, 0.0), ''), 0.2, False)
+    assert (robot.state, robot.task, robot.trouble) == (word, task, '')
+
+
 def test_numbers_that_are_none_are_no_pose():
     assert own_pose(RobotView('bot1', x_m=math.nan, y_m=0.0, heading_rad=0.0)) is None
 
@@ -290,12 +316,12 @@ def test_points_are_turned_into_the_frame():
 
 def test_goals_are_read_from_the_parameters_of_tasks():
     goals, leaders = goals_of((
-        TaskView('goto', '{x: 1.0, y: -2, heading: 0.5}', ('bot1',)),
-        TaskView('patrol', '{route: [[0, 0], [1, 0], [1, 1]]}', ('bot2', 'bot3')),
-        TaskView('follow', '{leader: bot1}', ('bot4', 'bot5')),
-        TaskView('goto', '{x: 1.0, y: 2.0, frame: odom}', ('bot6',)),
-        TaskView('square', '{side: 1.0}', ('bot7',)), TaskView('x', '{x: [', ('bot8',)),
-        TaskView('x', '{route: [[a, 0]], x: .nan, y: 0}', ('bot9',))))
+        UnderWay('goto', '{x: 1.0, y: -2, heading: 0.5}', ('bot1',)),
+        UnderWay('patrol', '{route: [[0, 0], [1, 0], [1, 1]]}', ('bot2', 'bot3')),
+        UnderWay('follow', '{leader: bot1}', ('bot4', 'bot5')),
+        UnderWay('goto', '{x: 1.0, y: 2.0, frame: odom}', ('bot6',)),
+        UnderWay('square', '{side: 1.0}', ('bot7',)), UnderWay('x', '{x: [', ('bot8',)),
+        UnderWay('x', '{route: [[a, 0]], x: .nan, y: 0}', ('bot9',))))
     assert [(goal.robots, goal.route, goal.heading_rad, goal.closed) for goal in goals] == [
         (('bot1',), ((1.0, -2.0),), 0.5, False),
         (('bot2', 'bot3'), ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0)), None, True)]

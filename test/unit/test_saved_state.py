@@ -9,7 +9,7 @@ from mhri.core.screen.saved_state import usable_state
 
 GOOD = {
     'robots': ['bot2', 'rover_7'], 'numbers': {'bot2': 2, 'rover_7': 1, 'bot10': 12},
-    'mode': 'ps3joy', 'limits': [0.3, 0.8], 'together': True,
+    'mode': 'ps3joy', 'limits': [0.3, 0.8], 'together': True, 'brake': True,
     'windows': {'bot2': [10, -20, 800, 560, False]},
     'looks': {'bot2': {'views': ['imu', 'rgb'], 'graph': {'quantity': 'gyro', 'window_s': 5},
                        'recording': {'extras': ['scan']}, 'splitter': [300, 200, 100],
@@ -35,7 +35,7 @@ def test_what_was_kept_comes_back_whole():
     ('numbers', {'bot1': True}), ('numbers', {'bot1': 1.0}), ('numbers', {'bot1': 10 ** 6}),
     ('numbers', {'bot1': 2, 'bot2': 2}), ('numbers', {'a%d' % n: n + 1 for n in range(5000)}),
     ('mode', 5), ('mode', 'x' * 1_000_000), ('mode', 'a\x00b'), ('mode', ['joy']),
-    ('together', 1), ('together', 'yes'), ('windows', []), ('looks', 'x'), ('panel', [1]),
+    ('brake', 1), ('together', 1), ('together', 'yes'), ('windows', []), ('looks', 'x'), ('panel', [1]),
     ('events', True)])
 def test_a_part_that_cannot_be_used_is_left_out_and_named(key, value):
     state, problems = usable_state({**GOOD, key: value})

@@ -177,7 +177,10 @@ ENDINGS = [
     (dict(stands='not_heard'), LOST, 'does not hear it'),
     (dict(known=False), LOST, 'does not hear it'),
     (dict(odometry_age_s=0.6), LOST, 'nothing from its odometry for 0.6 s'),
-    (dict(place_age_s=0.7), LOST, 'nothing from motion capture for 0.7 s'),
+    (dict(place_age_s=0.7, place_text='by tf, which'), LOST,
+     'its place is not known any more: by tf, which'),
+    (dict(place_age_s=None, place_text='it is not placed'), LOST,
+     'its place is not known any more: it is not placed'),
     (dict(battery=0.1), FAILED, 'its battery is at 10 %')]
 
 
@@ -195,6 +198,19 @@ def test_what_ends_a_task_ends_it_with_a_zero_for_good(facts, state, words):
     for _ in range(20):
         world.step()
         assert robot.last.is_zero() and robot.run.state == state
+
+
+def test_a_place_that_is_corrected_by_far_holds_the_robot_for_a_moment():
+    world = World()
+    robot = world.add('bot1')
+    robot.begin(BY_KEY['goto'], '{x: 3, y: 0}', 0.0)
+    for _ in range(40):
+        world.step()
+    world.step(settling='its place was corrected by 1.2 m')
+    assert robot.last.is_zero() and robot.run.state == WAITING
+    assert robot.run.text == 'its place was corrected by 1.2 m'
+    world.until_ended()
+    assert robot.run.state == DONE
 
 
 def test_no_scan_no_way_and_it_is_said():

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from mhri.core.screen.brake_view import BrakeView, brake_words, guard_words, standing_words
 from mhri.core.screen.task_views import TaskView
 from mhri.core.screen.views import (
     ControlView, DeviceView, GONE, LIVE, PanelView, ROS_CONNECTED, ROS_CUT_OFF, ROS_NO_MASTER,
@@ -61,6 +62,10 @@ SAID = {
     'hardware stop': ({}, {'hardware_stop': True}, AHEAD, 'its own emergency stop is pressed'),
     'power off': ({}, {'power': 'cut'}, AHEAD, 'motor power cut'),
     'power failed': ({}, {'power': 'failed: no service'}, AHEAD, 'motor power failed: no service'),
+    'brake': ({}, {'brake': BrakeView('slows', 0.1)}, AHEAD,
+              'brake: something is in the way: back away or turn'),
+    'brake without a scan': ({}, {'brake': BrakeView('no_scan')}, AHEAD,
+                             'brake: no laser data: back away, or switch the brake off'),
     'joins': ({}, {'waits': True, 'stands': 'joining'}, AHEAD, CENTRE),
     'limits zero': ({'limits': (0.0, 0.0)}, {}, AHEAD, 'the speed limit is 0: raise it'),
     'one limit zero': ({'limits': (0.0, 1.0)}, {}, AHEAD, 'the speed limit is 0: raise it'),
@@ -115,3 +120,20 @@ def test_it_is_said_once_it_has_been_so_for_a_moment():
     assert said(motors, 2.0) == '', 'another reason has its own moment'
     assert said(motors, 2.0 + MOTORS_S - 0.01) == ''
     assert said(motors, 2.0 + MOTORS_S) == NO_ANSWER
+
+
+@pytest.mark.parametrize('brake, words', [
+    (BrakeView(), ''), (BrakeView('on'), ''),
+    (BrakeView('slows', 0.62), 'brake: slows for something 0.6 m ahead'),
+    (BrakeView('slows'), 'brake: slows for something ahead'),
+    (BrakeView('no_scan'), 'brake: no laser data, no way forward'),
+    (BrakeView('cannot'), 'no brake: it has no laser')])
+def test_what_the_brake_does_in_words(brake, words):
+    assert brake_words(brake) == words
+    assert bool(standing_words(brake)) == brake.holds
+
+
+def test_what_a_guard_does_by_itself_in_words():
+    assert guard_words(BrakeView('on')) == ''
+    assert guard_words(BrakeView('on', on_robot=True, back_after_s=10.0)) == \
+        'brakes by itself, goes back alone after 10 s without a link'

@@ -25,6 +25,7 @@ DEBIAN_RUN=(
   python3-rosbag python3-rosnode python3-rosparam python3-rosservice python3-rostopic rosbash
   ros-std-msgs ros-geometry-msgs ros-actionlib-msgs libactionlib-msgs-dev python3-actionlib
   python3-actionlib-msgs python3-std-msgs python3-geometry-msgs python3-sensor-msgs python3-nav-msgs python3-std-srvs
+  python3-move-base-msgs
   python3-tf2-msgs python3-rosgraph-msgs python3-diagnostic-msgs python3-diagnostic-updater
   python3-cv-bridge python3-python-qt-binding python3-pyqt5 python3-pyqtgraph python3-pygame
   python3-evdev python3-pocketsphinx pocketsphinx-en-us python3-pyaudio

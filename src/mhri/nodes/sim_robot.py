@@ -5,8 +5,9 @@
 Parameters: ``robot_type`` and ``robot_model`` of the robot's namespace (its template), ``~plan``
 (path, default ``resource/sim/plan.yaml``), ``~x``, ``~y`` [m], ``~yaw`` [rad] (default: the plan's
 start place for the number at the end of the name), ``~depth_format`` (``png`` or
-``rvl``, of compressedDepth), ``~mocap`` (true: a motion capture system reports its pose), ``~seed``
-(whole number; default: random).
+``rvl``, of compressedDepth), ``~mocap`` (true: a motion capture system reports its pose),
+``~placed`` (true: tf has the place of its odometry in the frame ``map``), ``~map`` (true: it
+publishes the plan as ``/map``; one robot does), ``~seed`` (whole number; default: random).
 """
 import random
 import re
@@ -25,9 +26,11 @@ from mhri.ros import parameters
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
+from mhri.ros.map.map_source import publish_map
 from mhri.ros.resources import read_resource, read_text, resource_path, robot_types
 from mhri.sim.body import Body, Bumper, parse_bodies
 from mhri.sim.camera_node import DEPTH_FORMATS, SimCamera
+from mhri.sim.floor_map import grid_of_plan
 from mhri.sim.node import SimRobot
 from mhri.sim.plan import parse_plan
 from mhri.sim.sensors import ImuSensor, Laser
@@ -129,8 +132,10 @@ def build(name, of_robot):
                 chance)
     SimCamera(name, template, plan, lambda: (body.x, body.y, body.yaw), world.others,
               depth_format()).start()
+    if parameters.flag('~map', False):
+        publish_map(grid_of_plan(plan))
     return SimRobot(name, template, body, ImuSensor(chance), laser, world, plan.discs(),
-                    parameters.flag('~mocap', False))
+                    parameters.flag('~mocap', False), parameters.flag('~placed', False))
 
 
 def main():

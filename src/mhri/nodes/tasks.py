@@ -1,20 +1,39 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``tasks``: runs :class:`mhri.ros.tasks.tasks.Tasks` as ``/mhri_tasks``."""
+"""The executable ``tasks``: runs :class:`mhri.ros.tasks.tasks.Tasks` as ``/mhri_tasks``.
+
+Parameter: ``~map`` (path of a YAML file of map_server; it is published as ``/map``; default: none).
+"""
 import signal
 import sys
 
 from diagnostic_msgs.msg import DiagnosticStatus
 import rospy
 
+from mhri.core.config import ConfigError, short
+from mhri.ros import parameters
 from mhri.ros.diagnostics import publish_diagnostics
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.graph.rospy_inside import ended_by_hand
+from mhri.ros.map.map_source import load_map
 from mhri.ros.resources import robot_types
 from mhri.ros.tasks.exported import task_kinds
 from mhri.ros.tasks.tasks import Tasks
+
+
+def map_of_parameter():
+    """Return the :class:`Grid` of the file that ``~map`` names, None where it names none.
+
+    A file that cannot be used is said; robots can be on tasks without a map.
+    """
+    try:
+        path = parameters.text('~map', '')
+        return load_map(path) if path else None
+    except (ConfigError, OSError) as error:
+        rospy.logerr('there is no map: %s', short(error))
+        return None
 
 
 def main():
@@ -31,7 +50,7 @@ def main():
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     for error in errors:
         rospy.logwarn('a task is left out: %s', error)
-    tasks = Tasks(types, kinds)
+    tasks = Tasks(types, kinds, map_of_parameter())
     rospy.on_shutdown(tasks.close)
     MasterWatch().start()
     tasks.start()

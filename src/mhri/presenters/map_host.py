@@ -7,6 +7,7 @@ and nothing is drawn.
 """
 import math
 import queue
+import threading
 import time
 
 import numpy as np
@@ -14,7 +15,7 @@ from python_qt_binding.QtCore import QObject, QTimer
 
 from mhri.core.events.events import CALM, KINDS
 from mhri.core.map.scene import composed, goals_of, in_frame, map_robot, own_pose, Scene
-from mhri.core.map.spread import spread
+from mhri.core.map.spread import has_room, spread
 from mhri.core.map.track import Track
 from mhri.core.map.trail import link_grade, Trail
 from mhri.core.robots.mocap import Pose
@@ -62,6 +63,7 @@ class MapHost(QObject):
         self._scans = MapScans(operator.do)
         self._places = places or PlacesClient()
         self._watched = False
+        self._grid = None
         self._timer = QTimer(self)
         self._timer.setInterval(DRAW_MS)
         screen.stage.set_map(self.pane)
@@ -129,6 +131,7 @@ class MapHost(QObject):
                           if robot.pose is not None})
         grid = self._map.take()
         if grid is not None:
+            self._grid = grid
             self.pane.view.show_grid(grid)
         goals, leaders = goals_of(self._places.runs())
         self.pane.show_scene(Scene(places.frame, tuple(robots), goals, leaders, places.marks,
@@ -193,12 +196,18 @@ class MapHost(QObject):
             return
         if not aimed:
             pose = _away(pose, [there for there in poses.values() if there is not None])
-        goals = spread(pose, poses, max(robot.radius_m for robot in robots.values()))
+        radius_m, grid = max(robot.radius_m for robot in robots.values()), self._grid
+        goals = spread(pose, poses, radius_m, lambda x_m, y_m: grid is None or has_room(
+            grid, x_m, y_m, radius_m))
         for name, goal in goals.items():
             x_m, y_m = _rounded(goal.x_m, goal.y_m)
             self._start('goto', [name], {'x': x_m, 'y': y_m, **(
                 {'heading': round(goal.heading_rad, 4)} if aimed else {})},
                 'to x {:.2f} m, y {:.2f} m'.format(x_m, y_m), len(goals) > 1)
+        left = [name for name in poses if name not in goals]
+        if left:
+            self.pane.show_answer('{}no room there for {}'.format(
+                self.pane.line.text() + '; ' if goals else '', ' and '.join(left)), False)
 
     def _start(self, key, robots, parameters, words, more=False):
         """Start a task; its answer comes from whoever runs it."""
@@ -211,12 +220,13 @@ class MapHost(QObject):
             before if 'asked to go' in before else '', text))))
         self._tasks.start(key, robots, parameters)
 
-    def hear(self, kind, text):
-        """Show what has become of a task.
+    def hear(self, kind, text, robot):
+        """Show what has become of a task; what it says on its way is for the events.
 
         :param kind: a key of :data:`mhri.core.events.events.KINDS`
         """
-        self.pane.show_answer(text, KINDS[kind][0] == CALM)
+        if kind != 'task.said':
+            self.pane.show_answer(': '.join(filter(None, (robot, text))), KINDS[kind][0] == CALM)
 
     def _end(self, robots):
         """End the tasks of robots."""
@@ -245,11 +255,18 @@ class MapHost(QObject):
         else:
             self._screen.stage.show_map(MAP_CLOSED)
 
-    def close(self):
-        """Draw no more, and listen no more; returns at once."""
+    def close(self, forget=False):
+        """Draw no more; returns at once. ``forget`` as in the backend."""
         self._timer.stop()
         self._guard.end()
         self._places.close()
+        if forget:
+            threading.Thread(target=self._forget, name='forget_map', daemon=True).start()
+
+    def _forget(self):
+        """Unregister every topic (blocking)."""
+        for end in (self._scans.close, self._map.close, self._places.unregister):
+            end()
 
 
 def _rounded(x_m, y_m):

@@ -125,7 +125,8 @@ class ScreenHost(QObject):
         """
         self.operator.selection.numbers.meet((*robots, *selected))
         for name in dict.fromkeys((*robots, *selected)):
-            self._add(name)
+            if name not in self.operator.selection.robots:
+                self._add(name)
         if selected:
             self._select(list(selected))
         if self.operator.selection.robots:
@@ -190,7 +191,7 @@ class ScreenHost(QObject):
     def _note_task(self, kind, text, robot):
         """Take in what has become of a task: an event, and the answer to what the map asked."""
         self.events.note(kind, text, robot)
-        self.map.hear(kind, text)
+        self.map.hear(kind, text, robot)
 
     def _feel_losses(self, view):
         """Shake the pad when a selected robot is lost."""
@@ -327,4 +328,4 @@ class ScreenHost(QObject):
         self._stop_watch.close()
         self.pad.close()
         self.tasks.close(forget)
-        self.map.close()
+        self.map.close(forget)

@@ -9,9 +9,11 @@ import math
 import time
 
 from python_qt_binding.QtCore import QObject, QTimer, Signal
+from python_qt_binding.QtGui import QGuiApplication
 import rospy
 
-from mhri.gui.screen.geometry import geometry_of, restore_geometry
+from mhri.gui.screen.geometry import (
+    geometry_of, in_sight, place_on_another_screen, restore_geometry)
 from mhri.gui.screen.torn_off import TornOff
 from mhri.gui.screen.window_maker import WindowMaker
 from mhri.presenters.tile_host import TileHost
@@ -19,6 +21,7 @@ from mhri.ros.camera.camera_budget import CameraBudget
 
 # A large tile is as pressing as a small one that has waited so many times as long.
 LARGE_FIRST = 4.0
+MONITOR_MS = 500
 # More tiles than this help nobody: further robots are only in the list.
 MOST_TILES = 40
 
@@ -61,6 +64,12 @@ class TilesHost(QObject):
         self._stopped = False
         self._timer = QTimer(self)
         self._timer.timeout.connect(self.draw_next)
+        # The window manager may take a moment to move windows.
+        self._monitors = QTimer(self)
+        self._monitors.setSingleShot(True)
+        self._monitors.setInterval(MONITOR_MS)
+        self._monitors.timeout.connect(self._on_monitor_gone)
+        QGuiApplication.instance().screenRemoved.connect(self._on_screen_removed)
 
     def show_view(self, view):
         """Follow a :class:`PanelView`: make a tile that is missing, and draw all of them soon."""
@@ -75,6 +84,7 @@ class TilesHost(QObject):
             self.make(missing.name)
         self._stage.show_tiles({name: self.windows[name] for name in names
                                 if name in self.windows})
+        self._stage.show_awaited(names)
         now = time.monotonic()
         self._due = sorted((robot for robot in robots if robot.name in self.hosts),
                            key=lambda robot: self._pressing(robot.name, now))
@@ -136,7 +146,9 @@ class TilesHost(QObject):
         tile.show_view(view)
         if name in self._to_tear:
             self._to_tear.discard(name)
-            self.toggle_torn(name)
+            # Where its monitor is gone, the window would lie on the screen.
+            if name not in self._places or in_sight(self._places[name]):
+                self.toggle_torn(name)
 
     def _guarded(self, name, job, *args):
         """Do something with a robot's tile; replace a lab's own class by mhri's if it fails."""
@@ -164,10 +176,21 @@ class TilesHost(QObject):
             return
         window = self._torn[name] = TornOff(self.windows[name])
         window.closed.connect(self._on_closed)
-        if name in self._places:
-            restore_geometry(window, self._places[name])
+        if not (name in self._places and restore_geometry(window, self._places[name])):
+            place_on_another_screen(window, self._stage.window())
         window.show()
         self._stage.refresh()
+
+    def _on_screen_removed(self, _):
+        """See in a moment whose monitor that was."""
+        self._monitors.start()
+
+    def _on_monitor_gone(self):
+        """Put back the tiles whose windows have no monitor any more."""
+        for name in [name for name, window in self._torn.items()
+                     if not in_sight(geometry_of(window))]:
+            self._put_back(name)
+            self._tell('the monitor of {} has gone: it is back on this screen'.format(name))
 
     def _on_closed(self, name):
         """Put the tile back, and tell that its robot should no longer be driven."""
@@ -244,6 +267,8 @@ class TilesHost(QObject):
     def close(self):
         """Stop drawing and remove all tiles."""
         self._timer.stop()
+        QGuiApplication.instance().screenRemoved.disconnect(self._on_screen_removed)
+        self._monitors.stop()
         for name in list(self.windows):
             self._keep_look(name)
             self._discard(name)

@@ -4,8 +4,9 @@
 
 Publishes odometry at 50 Hz, IMU at 100 Hz, laser scan at 10 Hz, ``/tf`` at 50 Hz and, where the
 template has one, the battery at 1 Hz; on request also the true pose at 50 Hz as a motion capture
-system would report it (``/vrpn_client_node/<robot>/pose``, frame ``world``). Reads every velocity
-topic of the template, and the switch of its motor power. Frames are ``<robot>/odom``,
+system would tell it (``/vrpn_client_node/<robot>/pose``, frame ``world``), and where its odometry
+begins as a perfect localisation would (``/tf``, ``map`` to ``<robot>/odom``). Reads every velocity
+topic of the template, and what takes the power from its motors. Frames are ``<robot>/odom``,
 ``<robot>/base_link``, ``<robot>/imu_link`` and ``<robot>/laser`` (REP-105).
 """
 import math
@@ -20,6 +21,8 @@ from sensor_msgs.msg import BatteryState, Imu, LaserScan
 from std_srvs.srv import SetBool, SetBoolResponse
 from tf2_msgs.msg import TFMessage
 
+from mhri.core.map.places import composed, inverse
+from mhri.core.robots.mocap import Pose
 from mhri.core.robots.names import topic_of
 from mhri.ros.messages import message_class, MessageMissing, read_field
 from mhri.sim.sensors import ImuSensor
@@ -75,9 +78,11 @@ class SimRobot:
     :param world: :class:`mhri.sim.world.World`
     :param landmarks: array (n, 3) of x, y, radius [m]
     :param tracked: whether motion capture sees the robot
+    :param placed: whether tf says where its odometry begins in the frame map
     """
 
-    def __init__(self, name, template, body, imu, laser, world, landmarks, tracked=False):
+    def __init__(self, name, template, body, imu, laser, world, landmarks, tracked=False,
+                 placed=False):
         self._name = name
         self._body = body
         self._imu = imu
@@ -87,7 +92,7 @@ class SimRobot:
         self._begun = time.monotonic()
         self._odometry_due, self._scan_due, self._battery_due = (
             Due(every) for every in (ODOMETRY_EVERY, SCAN_EVERY, BATTERY_EVERY))
-        self._make_messages()
+        self._make_messages(placed)
         prefix = '/' + name + '/'
         self._odom_pub = rospy.Publisher(prefix + template.odometry[0], Odometry, queue_size=10)
         self._imu_pub = rospy.Publisher(prefix + template.imu[0], Imu, queue_size=10)
@@ -101,7 +106,7 @@ class SimRobot:
         for topic in template.command:
             rospy.Subscriber(prefix + topic, Twist, self._on_twist, queue_size=1, tcp_nodelay=True)
 
-    def _make_messages(self):
+    def _make_messages(self, placed):
         """Make the messages, with all that never changes."""
         name = self._name
         self._odom = Odometry(child_frame_id=name + '/base_link')
@@ -131,6 +136,10 @@ class SimRobot:
             transform.header.frame_id = '{}/{}'.format(name, parent)
             transform.transform.rotation.w = 1.0
             self._tf.transforms.append(transform)
+        self._origin = TransformStamped(child_frame_id=name + '/odom') if placed else None
+        if placed:
+            self._origin.header.frame_id = 'map'
+            self._tf.transforms.append(self._origin)
 
     def _on_twist(self, message):
         if not self._body.command(message.linear.x, message.angular.z, time.monotonic()):
@@ -196,7 +205,18 @@ class SimRobot:
             move = self._tf.transforms[0].transform.translation
             turn = self._tf.transforms[0].transform.rotation
             move.x, move.y, turn.z, turn.w = body.odom_x, body.odom_y, z, w
+            if self._origin is not None:
+                self._place_odometry()
             self._tf_pub.publish(self._tf)
+
+    def _place_odometry(self):
+        """Say where its odometry begins, drift and all."""
+        body, transform = self._body, self._origin.transform
+        origin = composed(Pose(body.x, body.y, body.yaw),
+                          inverse(Pose(body.odom_x, body.odom_y, body.odom_yaw)))
+        transform.translation.x, transform.translation.y = origin.x_m, origin.y_m
+        transform.rotation.z = math.sin(0.5 * origin.heading_rad)
+        transform.rotation.w = math.cos(0.5 * origin.heading_rad)
 
     def _publish_scan(self, stamp):
         body = self._body

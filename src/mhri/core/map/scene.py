@@ -57,7 +57,7 @@ class PlacesView:
 
 
 @dataclass(frozen=True)
-class TaskView:
+class UnderWay:
     """A task that is under way: its key, its parameters as YAML, its robots."""
 
     task: str
@@ -69,8 +69,9 @@ class TaskView:
 class MapRobot:
     """A robot as the map draws it; ``pose`` is None while it is not placed, or not heard.
 
-    ``state`` is a word of its state, ``trouble`` whether that needs a person, ``old`` whether its
-    place is not from now. ``points`` (n, 2) is what its laser has met, in the frame [m].
+    ``state`` is a word of its state, ``trouble`` the same where it needs a person, ``text`` what
+    its place rests on, ``task`` the name of what it does by itself, ``old`` whether its place is
+    not from now. ``points`` (n, 2) is what its laser has met, in the frame [m].
     """
 
     name: str
@@ -83,6 +84,7 @@ class MapRobot:
     state: str = ''
     trouble: str = ''
     text: str = ''
+    task: str = ''
     old: bool = False
     points: Optional[np.ndarray] = None
     trail: Optional[Trail] = None
@@ -171,10 +173,11 @@ def state_word(view: RobotView) -> Tuple[str, str]:
     """Return a word of a robot's state, and the same where it needs a person, else ''."""
     if view.link != LIVE:
         return view.link, view.link
+    if view.on_task:
+        return (view.task.label.lower() + (' waits' if view.task.waits else '') if view.task
+                else 'on a task'), ''
     if view.driven:
         return 'driving', ''
-    if view.obeys == 'task':
-        return 'on a task', ''
     return ('selected' if view.selected else 'standing' if not view.moving else 'moving'), ''
 
 
@@ -192,7 +195,8 @@ def map_robot(view: RobotView, placing: Optional[Placing], radius_m: float, look
     old = view.link != LIVE or placing is not None and (placing.age_s or 0.0) > OLD_S
     return MapRobot(
         view.name, view.number, pose, radius_m, view.selected, view.driven, looked_at, state,
-        trouble, _place_text(view, placing, own), bool(old),
+        trouble, _place_text(view, placing, own),
+        (view.task.label if view.task else 'task') if view.on_task else '', bool(old),
         points if pose is not None and view.link == LIVE else None, trail)
 
 
@@ -210,7 +214,7 @@ def _place_text(view: RobotView, placing: Optional[Placing], own: Optional[Pose]
     return words
 
 
-def goals_of(runs: Sequence[TaskView]) -> Tuple[Tuple[Goal, ...], Tuple[Tuple[str, str], ...]]:
+def goals_of(runs: Sequence[UnderWay]) -> Tuple[Tuple[Goal, ...], Tuple[Tuple[str, str], ...]]:
     """Return where robots on tasks go, and pairs (robot, its leader), as their parameters say."""
     goals: List[Goal] = []
     leaders: List[Tuple[str, str]] = []

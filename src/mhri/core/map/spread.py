@@ -5,6 +5,9 @@ from itertools import permutations
 import math
 from typing import Callable, Dict, List, Mapping, Optional, Tuple
 
+import numpy as np
+
+from mhri.core.map.grid import Grid, TAKEN_FROM
 from mhri.core.robots.mocap import Pose
 
 # From middle to middle, in radii of the largest.
@@ -13,6 +16,19 @@ SPACING_RADII = 2.5
 _IN_A_ROW = 4
 # Every order of so many is tried; of more, each in turn takes the nearest place.
 _TRY_ALL = 6
+
+
+def has_room(grid: Grid, x_m: float, y_m: float, radius_m: float) -> bool:
+    """Tell whether nothing is known to stand in a disc [m] on a map of cells."""
+    cos, sin = math.cos(grid.origin.heading_rad), math.sin(grid.origin.heading_rad)
+    ahead, left = x_m - grid.origin.x_m, y_m - grid.origin.y_m
+    column = (ahead * cos + left * sin) / grid.resolution_m - 0.5
+    row = (left * cos - ahead * sin) / grid.resolution_m - 0.5
+    reach = radius_m / grid.resolution_m
+    rows, columns = (slice(max(0, math.ceil(middle - reach)),
+                           max(0, math.floor(middle + reach) + 1)) for middle in (row, column))
+    down, across = np.nonzero(grid.cells[rows, columns] >= TAKEN_FROM)
+    return not np.any(np.hypot(down + rows.start - row, across + columns.start - column) <= reach)
 
 
 def _places(goal: Pose, count: int, spacing_m: float,

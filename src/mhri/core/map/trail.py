@@ -13,9 +13,8 @@ from mhri.core.screen.views import LinkFigures
 # How good a link is.
 GOOD, SLOW, LOST = 0, 1, 2
 LINK_WORDS = ('good link', 'slow link', 'no link')
-# How long ago it was: up to each of these [s], and longer.
+# How long ago it was, 0 to 2: up to each of these [s], and longer.
 AGES_S = (10.0, 60.0)
-AGE_WORDS = ('last 10 s', 'last minute', 'before')
 
 _MOST = 600
 _STEP_M, _TURN_M = 0.05, 0.5
@@ -95,8 +94,8 @@ class Trail:
     def pieces(self, by_link: bool, now_s: float) -> Iterator[Tuple[int, np.ndarray]]:
         """Yield (grade, places (n, 2) [m]) of pieces of one grade; each begins where one ended.
 
-        :param by_link: the grade is GOOD, SLOW or LOST; else how old it is, an index of
-            :data:`AGE_WORDS`
+        :param by_link: the grade is GOOD, SLOW or LOST; else how old it is, see
+            :data:`AGES_S`
         """
         piece: List[Tuple[float, float]] = []
         grade = -1

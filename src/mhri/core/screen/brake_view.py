@@ -49,7 +49,12 @@ def standing_words(brake: BrakeView) -> str:
 
 def guard_words(brake: BrakeView) -> str:
     """Return what the guard on a robot does by itself, '' for nothing."""
-    words = ['brakes by itself'] if brake.on_robot else []
-    if brake.back_after_s > 0.0:
-        words.append('goes back alone after {:g} s'.format(brake.back_after_s))
-    return ', '.join(words)
+    return ', '.join(filter(None, ('brakes by itself' if brake.on_robot else '',
+                                   back_words(brake))))
+
+
+def back_words(brake: BrakeView) -> str:
+    """Return that a robot would go back by itself, '' where it stays."""
+    if brake.back_after_s <= 0.0:
+        return ''
+    return 'goes back alone after {:g} s without a link'.format(brake.back_after_s)

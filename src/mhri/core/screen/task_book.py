@@ -176,7 +176,7 @@ class TaskBook:
         """Let time pass: what is not answered is said."""
         for goal_id, (goal, asked_s) in tuple(self._asked.items()):
             if now_s - asked_s > ANSWER_S:
-                self._refuse(goal, 'what runs the tasks has not answered')
+                self._refuse(goal, 'the task service has not answered')
                 # Should it begin after all, it is shown as any other.
                 del self._asked[goal_id]
         for run_id, since_s in tuple(self._leaving.items()):
@@ -198,5 +198,6 @@ class TaskBook:
             one.robot in robots and one.state not in ENDS for one in run.robots)]
 
     def left(self, robot: str) -> Optional[Goal]:
-        """Return what a robot could continue, None for nothing."""
-        return self._left.get(robot)
+        """Return what a robot could continue, None for nothing, and while it is asked for."""
+        asked = any(robot in goal.robots for goal, _ in self._asked.values())
+        return None if asked else self._left.get(robot)

@@ -6,11 +6,11 @@ from typing import Sequence, Tuple
 from mhri.core.screen.task_views import TasksView, TaskView
 from mhri.core.screen.views import PanelView, RobotView, UNANSWERED
 
-NOT_RUNNING = ('what runs the tasks is not running: it starts again within seconds where mhri was '
-               'started as a whole; else close this and start mhri again')
-NOT_ANSWERING = 'what runs the tasks does not answer: its robots stand'
+NOT_RUNNING = ('the task service is not running: it restarts within seconds; if it does not, start '
+               'mhri again')
+NOT_ANSWERING = 'the task service does not answer: robots on a task stand'
 # How a task that is continued goes on; any other begins anew.
-_GOES_ON = {'goto': 'goes on to its goal', 'return': 'goes on back along its trail',
+_GOES_ON = {'goto': 'goes on to its goal', 'return': 'goes on back',
             'follow': 'goes on behind its leader', 'formation': 'goes back to its place',
             'patrol': 'goes to the first corner of its route', 'hold': 'stands where it is now'}
 _ANEW = 'begins anew from where it stands'

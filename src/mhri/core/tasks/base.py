@@ -108,6 +108,16 @@ class Start:
         return self.team.index(self.robot)
 
 
+@dataclass(frozen=True)
+class Target:
+    """Where a robot is sent: a place [m], a heading [rad] or None, and in which frame that is."""
+
+    x_m: float
+    y_m: float
+    heading_rad: Optional[float] = None
+    by_odometry: bool = False
+
+
 class Task:
     """One robot's task: a subclass in a file of its own, and a row in :mod:`mhri.core.tasks.rows`.
 

@@ -6,8 +6,8 @@ from typing import Optional, Tuple
 
 from mhri.core.robots.mocap import Pose
 from mhri.core.tasks.base import (
-    beside, BLOCKED, DONE, FAILED, Field, FRAME, REQUIRED, Senses, Start, Step, Task, TaskKind,
-    Values, WAITING, way)
+    beside, BLOCKED, DONE, FAILED, Field, FRAME, REQUIRED, Senses, Start, Step, Target, Task,
+    TaskKind, Values, WAITING, way)
 from mhri.core.tasks.fence import is_inside
 from mhri.core.tasks.pilot import Pilot
 
@@ -80,12 +80,18 @@ def spread(place: Pose, start: Start) -> Tuple[float, float]:
     return beside(place, 0.0, aside)
 
 
-def make(values: Values, start: Start) -> Goto:
-    """Begin; a team stands side by side across its heading, the first one on the place."""
+def target_of(values: Values, start: Start) -> Target:
+    """Return where a robot of a team is sent: side by side across its heading."""
     heading = values.maybe('heading')
     place = spread(Pose(values.number('x'), values.number('y'), heading or 0.0), start)
-    return Goto(start, *place, heading,
-                values.number('speed'), by_odometry=values.by_odometry())
+    return Target(*place, heading_rad=heading, by_odometry=values.by_odometry())
+
+
+def make(values: Values, start: Start) -> Goto:
+    """Begin; a team stands side by side across its heading, the first one on the place."""
+    target = target_of(values, start)
+    return Goto(start, target.x_m, target.y_m, target.heading_rad, values.number('speed'),
+                by_odometry=target.by_odometry)
 
 
 ROW = TaskKind(

@@ -20,15 +20,19 @@ class Hold(Task):
     def __init__(self, seconds: float) -> None:
         self._seconds = seconds
         self._place: Optional[Pose] = None
+        self._captured = False
         self._begun_s = 0.0
         self._pushed = False
 
     def step(self, senses: Senses) -> Step:
         """Stand, and look whether that is so."""
-        # Not its place, which may be corrected while it stands.
-        pose = senses.captured or senses.odometry
         if self._place is None:
-            self._place, self._begun_s = pose, senses.now_s
+            self._captured, self._begun_s = senses.captured is not None, senses.now_s
+        # Not its place on the map, which may be corrected while it stands.
+        pose = senses.captured if self._captured else senses.odometry
+        self._place = self._place or pose
+        pose = pose or self._place
+        assert pose is not None and self._place is not None
         off_m = way(self._place, pose.x_m, pose.y_m)
         turn = abs(wrapped(pose.heading_rad - self._place.heading_rad))
         text = 'it stands'

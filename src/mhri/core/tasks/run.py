@@ -46,8 +46,10 @@ class Facts:
 
     ``answers`` is whether the gates are heard, ``known`` whether they know the robot, ``obeys`` and
     ``stands`` what they say of it. Ages [s] are None before anything was heard; ``place_age_s`` is
-    that of motion capture, 0 where that does not see the robot; ``has_laser`` is false for a type
-    without one, which has no brake. ``battery`` is in [0, 1], None where it is not known.
+    that of its place, 0 where the task needs none or it does not grow old, None where it is not
+    placed; ``place_text`` says the same in words; ``settling`` that its place was just corrected by
+    far, '' where it was not. ``has_laser`` is false for a type without one, which has no brake.
+    ``battery`` is in [0, 1], None where it is not known.
     """
 
     now_s: float
@@ -58,6 +60,8 @@ class Facts:
     stands: str = ''
     odometry_age_s: Optional[float] = None
     place_age_s: Optional[float] = 0.0
+    place_text: str = ''
+    settling: str = ''
     scan_age_s: Optional[float] = None
     has_laser: bool = True
     battery: Optional[float] = None
@@ -69,11 +73,13 @@ class RobotRun:
 
     :param timeout_s: 0 for none
     :param now_s: when it was asked for
+    :param placed: the robot has to be placed for it
     """
 
     def __init__(self, robot: str, task: Optional[Task], body: Body, timeout_s: float,
-                 now_s: float) -> None:
+                 now_s: float, placed: bool = False) -> None:
         self.robot = robot
+        self.placed = placed
         self._task = task
         self._body = body
         self._timeout_s = timeout_s
@@ -86,6 +92,11 @@ class RobotRun:
         self.ended_s = math.inf
         self._held_since: Optional[float] = None
         self._held_last = 0.0
+
+    @property
+    def drives(self) -> bool:
+        """Whether the robot shall have the velocities of :meth:`tick`."""
+        return True
 
     def end(self, state: str, text: str, now_s: float) -> None:
         """End it, unless it has ended."""
@@ -133,10 +144,11 @@ class RobotRun:
         """Return what is lost of a robot that was there."""
         if not facts.known or facts.stands == HELD or facts.stands == 'not_heard':
             return LOST, 'the drive service does not hear it any more'
-        for age_s, what in ((facts.odometry_age_s, 'its odometry'),
-                            (facts.place_age_s, 'motion capture')):
-            if age_s is None or age_s > OLD_S:
-                return LOST, 'nothing from {} for {:.1f} s'.format(what, age_s or 0.0)
+        if facts.odometry_age_s is None or facts.odometry_age_s > OLD_S:
+            return LOST, 'nothing from its odometry for {:.1f} s'.format(
+                facts.odometry_age_s or 0.0)
+        if _unplaced(facts):
+            return LOST, 'its place is not known any more: ' + facts.place_text
         if self.phase == JOINING and facts.now_s - self._phase_s > JOIN_S:
             return FAILED, 'its task does not reach it: is the enabling pedal pressed?'
         if self.phase == UNDER_WAY and facts.obeys != TASK:
@@ -144,7 +156,7 @@ class RobotRun:
         return None
 
     def _get_ready(self, facts: Facts) -> None:
-        missing = _unheard(facts)
+        missing = missing_senses(facts)
         if missing:
             self.text = 'waits for ' + missing
             return
@@ -172,14 +184,14 @@ class RobotRun:
         free = braked(step.velocity, senses.points, self._body.radius_m, facts.scan_age_s) \
             if facts.has_laser else braked(step.velocity, robots, self._body.radius_m, 0.0)
         velocity = kept_inside(free, senses.pose, senses.fence, self._body)
-        held = self._held(step, free, facts) or _at_fence(free, velocity)
+        held = facts.settling or self._held(step, free, facts) or _at_fence(free, velocity)
         self._mark(held, facts.now_s)
         self.state, self.text = (WAITING, held) if held else (RUNNING, step.text)
         patience_s = PASSED_AFTER_S if held.startswith(_LETS_PASS) else BLOCKED_AFTER_S
         if held and self._held_since is not None \
                 and facts.now_s - self._held_since > patience_s:
             self.end(BLOCKED, 'for {:g} s: {}'.format(patience_s, held), facts.now_s)
-        if self.phase == ENDED or held.startswith(_LETS_PASS):
+        if self.phase == ENDED or facts.settling or held.startswith(_LETS_PASS):
             return ZERO
         return velocity
 
@@ -219,12 +231,16 @@ def _at_fence(free: Velocity, velocity: Velocity) -> str:
     return 'it is at the fence' if held else ''
 
 
-def _unheard(facts: Facts) -> str:
+def _unplaced(facts: Facts) -> bool:
+    return facts.place_age_s is None or facts.place_age_s > OLD_S
+
+
+def missing_senses(facts: Facts) -> str:
     """Return what has not been heard yet, in words; '' where all is there."""
     for missing, words in (
             (not facts.known, 'the drive service to know it'),
             (facts.odometry_age_s is None or facts.odometry_age_s > OLD_S, 'its odometry'),
-            (facts.place_age_s is None or facts.place_age_s > OLD_S, 'motion capture to see it'),
+            (_unplaced(facts), 'its place: ' + facts.place_text),
             (facts.has_laser and (facts.scan_age_s is None or facts.scan_age_s > SCAN_OLD_S),
              'its laser'),
             (facts.senses is None, 'its sensors')):

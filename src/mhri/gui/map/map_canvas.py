@@ -9,7 +9,7 @@ from python_qt_binding.QtGui import QImage, QPainter
 from python_qt_binding.QtWidgets import QSizePolicy, QToolTip, QWidget
 
 from mhri.core.map import gesture
-from mhri.core.map.canvas import Canvas, known_corners
+from mhri.core.map.canvas import Canvas, known_corners, place_words
 from mhri.core.map.scene import Scene
 from mhri.gui.map import map_marks, map_paint
 from mhri.gui.screen.labels import plain_tip
@@ -40,6 +40,8 @@ class MapCanvas(QWidget):
     menu_requested = Signal(float, float, QPoint)
     #: another tool is in the hand, or a corner more
     tool_changed = Signal()
+    #: the place under the pointer in words, '' for none
+    pointed = Signal(str)
     #: it was painted
     painted = Signal()
     #: zoomed, dragged, following or turning
@@ -222,6 +224,7 @@ class MapCanvas(QWidget):
     def mouseMoveEvent(self, event):  # noqa: N802
         """Drag the map, or draw."""
         self._cursor = event.pos()
+        self.pointed.emit(place_words(*self._at(event.pos())))
         if self._pressed is not None:
             self.gesture.drag(*self._at(event.pos()), AIM_PX / self.canvas.px_per_m)
             if self.gesture.tool == gesture.LOOK:
@@ -296,6 +299,7 @@ class MapCanvas(QWidget):
     def leaveEvent(self, event):  # noqa: N802
         """Forget the pointer."""
         self._cursor = None
+        self.pointed.emit('')
         self.update()
 
     def resizeEvent(self, event):  # noqa: N802
@@ -355,8 +359,9 @@ class MapCanvas(QWidget):
                 map_paint.paint_robot(painter, self.canvas, palette, robot, self.font())
         cursor = None if self._cursor is None else self._at(self._cursor)
         map_marks.paint_drawn(painter, self.canvas, palette, self.gesture, cursor)
-        map_marks.paint_margin(painter, self.canvas, palette, self.font(),
-                               cursor if self._large else None)
+        map_marks.paint_scale(painter, self.canvas, palette, self.font())
+        if self._large and self._by_link:
+            map_marks.paint_legend(painter, self.canvas, palette, self.font())
         painter.end()
         self.painted.emit()
 

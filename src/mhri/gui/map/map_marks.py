@@ -4,11 +4,13 @@
 import math
 
 from python_qt_binding.QtCore import QPointF, Qt
-from python_qt_binding.QtGui import QPalette, QPen, QPolygonF
+from python_qt_binding.QtGui import QFontMetrics, QPalette, QPen, QPolygonF
 
-from mhri.core.map.canvas import length_words, place_words, scale_bar
+from mhri.core.map.canvas import length_words, scale_bar
 from mhri.core.map.gesture import FENCE
-from mhri.gui.map.map_paint import hue_of, paint_arrow, paint_fence, paint_words
+from mhri.core.map.trail import LINK_WORDS
+from mhri.gui.map.map_paint import (
+    hue_of, paint_arrow, paint_fence, paint_words, trail_ink)
 from mhri.gui.screen import theme
 
 
@@ -100,14 +102,13 @@ def paint_drawn(painter, canvas, palette, drawn, cursor):
             painter.drawEllipse(QPointF(*canvas.pixel(*corner)), 5.0, 5.0)
 
 
-def paint_margin(painter, canvas, palette, font, cursor):
-    """Paint the scale bar at the lower left, and in the lower right the place of the pointer.
-
-    :param cursor: (x, y) [m], None for none
-    """
-    paint_scale(painter, canvas, palette, font)
-    if cursor is not None:
-        text, font = place_words(*cursor), theme.number_font(font)
-        paint_words(painter, canvas.width - theme.text_width(font, text) - 9.0,
-                    canvas.height - 9.0, text, font, theme.colour(theme.TEXT, palette),
+def paint_legend(painter, canvas, palette, font):
+    """Say beside the scale what the colours of trails by link mean."""
+    metrics = QFontMetrics(font)
+    left, bottom = 9.0 + min(190.0, canvas.width / 3.0), canvas.height - 9.0
+    for grade, words in enumerate(LINK_WORDS):
+        painter.setPen(trail_ink(1, grade, True, palette))
+        painter.drawLine(QPointF(left, bottom - 4.0), QPointF(left + 24.0, bottom - 4.0))
+        paint_words(painter, left + 29.0, bottom, words, font, theme.colour(theme.TEXT, palette),
                     palette.color(QPalette.Base))
+        left += 29.0 + metrics.horizontalAdvance(words) + metrics.height()

@@ -35,7 +35,7 @@ def _robot_rows(pane, robot, others):
     if others:
         rows.append(('{} after {}'.format(_who(others), robot.name),
                      lambda: pane.leader_chosen.emit(others, robot.name)))
-    if robot.state == 'on a task':
+    if robot.task:
         rows.append(('End the task of {}'.format(robot.name),
                      lambda: pane.end_requested.emit([robot.name])))
     rows.append(('Place {} anew'.format(robot.name),

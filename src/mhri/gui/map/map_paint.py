@@ -229,15 +229,15 @@ def robot_word(robot):
         return '{} {}'.format(robot.name, robot.trouble)
     if robot.driven or robot.looked_at or robot.selected:
         return '{} {}'.format(robot.name, robot.state)
-    return robot.state if robot.state == 'on a task' else ''
+    return robot.state if robot.task else ''
 
 
 def _edge_ink(robot, palette):
     """Return the colour around a robot whose state is not the rule, else None."""
     if robot.trouble:
         return theme.colour(theme.STOP if robot.trouble == GONE else theme.ATTENTION, palette)
-    if robot.driven or robot.selected:
-        return theme.colour(theme.DRIVE, palette)
+    if robot.task or robot.driven or robot.selected:
+        return theme.colour(theme.TASK if robot.task else theme.DRIVE, palette)
     return theme.colour(theme.TEXT, palette) if robot.looked_at else None
 
 

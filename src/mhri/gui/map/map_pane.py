@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The map on the screen: tools above it, zoom at its side, and below it what came of an act."""
 from python_qt_binding.QtCore import QPoint, QSize, Qt, Signal
-from python_qt_binding.QtGui import QPainter
+from python_qt_binding.QtGui import QPainter, QPalette
 from python_qt_binding.QtWidgets import QHBoxLayout, QMenu, QPushButton, QVBoxLayout, QWidget
 
 from mhri.core.map import gesture
+from mhri.core.map.canvas import place_words
 from mhri.gui.map.map_canvas import MapCanvas
 from mhri.gui.map.map_menu import fit_rows, menu_rows
 from mhri.gui.map.map_strip import NameField, UnplacedStrip
@@ -23,7 +24,7 @@ NOBODY = 'Select a robot, or look at one: nobody is meant.'
 NO_MARK_NAME = 'The mark needs a name.'
 # Tools that mean robots.
 _FOR_ROBOTS = (gesture.GOTO, gesture.ROUTE, gesture.LEADER, gesture.PLACE)
-TRAILS = ('Trails: time', 'Trails: link')
+TRAILS = ('By time', 'By link')
 
 
 class MapPane(QWidget):
@@ -75,6 +76,9 @@ class MapPane(QWidget):
         self.view = MapCanvas(self)
         self.line = TextLine(self)
         self.line.setObjectName('map_line')
+        self.place_label = TextLine(self)
+        self.place_label.setFont(theme.number_font(self.font()))
+        self.place_label.fix_width(place_words(-888.88, -888.88))
         self.head = QWidget(self)
         row = QHBoxLayout(self.head)
         row.setContentsMargins(4, 4, 4, 0)
@@ -91,7 +95,11 @@ class MapPane(QWidget):
         column.setSpacing(3)
         column.addWidget(self.head)
         column.addWidget(self.view, 1)
-        column.addWidget(self.line)
+        foot = QHBoxLayout()
+        foot.setContentsMargins(8, 0, 8, 3)
+        foot.addWidget(self.line, 1)
+        foot.addWidget(self.place_label)
+        column.addLayout(foot)
         self._build_over()
 
     def _build_over(self):
@@ -108,7 +116,8 @@ class MapPane(QWidget):
         self.turn_button = self._button(
             'turn_button', 'Turn', column, 'ahead of the robot you look at is up', True)
         self.trails_button = self._button(
-            'trails_button', TRAILS[0], column, 'what the colour of a trail says')
+            'trails_button', TRAILS[0], column,
+            'what the colour of a trail says: when a robot was there, or how good its link was')
         self.strip = UnplacedStrip(self.view)
         self.name_field = NameField(self.view)
 
@@ -151,6 +160,7 @@ class MapPane(QWidget):
         self.view.menu_requested.connect(self._open_menu)
         self.view.tool_changed.connect(self._on_tool)
         self.view.view_changed.connect(self._show_choices)
+        self.view.pointed.connect(lambda text: self.place_label.show_text(text, theme.MUTED))
 
     def _restore(self):
         """Begin with no tool in the hand."""
@@ -179,7 +189,7 @@ class MapPane(QWidget):
             self.take(gesture.LOOK)
             self.name_field.hide()
         self.view.show_large(large)
-        for part in (self.head, self.line, self.side):
+        for part in (self.head, self.line, self.place_label, self.side):
             part.setVisible(large)
         self.setToolTip('' if large else 'click, or M: the map large')
         self.show_scene(self.view.scene)
@@ -199,7 +209,7 @@ class MapPane(QWidget):
         """Show which tool is in the hand, and what to do with it."""
         drawn = self.view.gesture
         for tool, button in self.tools.items():
-            button.setChecked(tool == drawn.tool)
+            _show_checked(button, tool == drawn.tool)
         self.done_button.setVisible(drawn.tool in gesture.CORNERS)
         self.done_button.setEnabled(not drawn.problem())
         self.cancel_button.setVisible(drawn.tool != gesture.LOOK)
@@ -211,8 +221,8 @@ class MapPane(QWidget):
 
     def _show_choices(self):
         """Show how the map is looked at."""
-        self.follow_button.setChecked(self.view.follows)
-        self.turn_button.setChecked(self.view.turns)
+        _show_checked(self.follow_button, self.view.follows)
+        _show_checked(self.turn_button, self.view.turns)
         self.trails_button.setText(TRAILS[self.view.by_link])
 
     # What is done.
@@ -340,3 +350,14 @@ class MapPane(QWidget):
         """Paint the ground of tools and line."""
         painter = QPainter(self)
         painter.fillRect(self.rect(), self.palette().window())
+
+
+def _show_checked(button, checked):
+    """Show a button checked, in a colour that a glance tells apart."""
+    button.setChecked(checked)
+    palette = QPalette()
+    if checked:
+        ground = theme.colour(theme.DRIVE, button.parentWidget().palette())
+        palette.setColor(QPalette.Button, ground)
+        palette.setColor(QPalette.ButtonText, theme.readable_on(ground))
+    button.setPalette(palette)

@@ -11,6 +11,9 @@ FIRST = 'Switch a robot on, then let mhri look for it.'
 LOOK = 'Look for Connected Bots'
 ELSE = 'Or type its name in the panel at the left and press "Add Bot". F2 opens the panel.'
 
+# How many robots that are awaited have their names said.
+MOST_NAMES = 3
+
 
 class Invitation(QWidget):
     """Three lines and a large button."""
@@ -32,6 +35,7 @@ class Invitation(QWidget):
             label.setFont(theme.larger(font, factor, bold=factor > 1.5))
             label.setAlignment(Qt.AlignCenter)
             label.setWordWrap(True)
+            label.setTextFormat(Qt.PlainText)
         self._result = QLabel(self)
         self._result.setFont(theme.larger(font, 1.1))
         self._result.setAlignment(Qt.AlignCenter)
@@ -62,6 +66,12 @@ class Invitation(QWidget):
             if width <= self.width() - touch:
                 break
         self.look_button.setMinimumWidth(width)
+
+    def show_awaited(self, names):
+        """Say which robots are in the list and have not been heard yet."""
+        self._labels[0].setText('Waiting for {}'.format(', '.join(names[:MOST_NAMES]) + (
+            ' and {} more'.format(len(names) - MOST_NAMES) if len(names) > MOST_NAMES else '')
+        ) if names else HEAD)
 
     def show_result(self, text, busy):
         """Say what came of looking; ``busy`` while it looks."""

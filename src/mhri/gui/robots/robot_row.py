@@ -8,7 +8,7 @@ from python_qt_binding.QtWidgets import (
 
 from mhri.core.robots.numbers import LAST_KEY
 from mhri.core.screen import views
-from mhri.core.screen.brake_view import guard_words
+from mhri.core.screen.brake_view import brake_words, guard_words
 from mhri.core.screen.task_words import interrupted_line, task_lines
 from mhri.gui.screen import theme, words
 from mhri.gui.screen.labels import BatteryLine, Pill, plain_tip, Sign, TextLine
@@ -229,8 +229,9 @@ class RobotRow(QWidget):
     def _show_numbers(self, view):
         """Show what changes all the time."""
         self.age.show_text(words.link_age(view), theme.MUTED)
-        self.setToolTip('\n'.join(filter(None, (words.figures_text(view.figures),
-                                                guard_words(view.brake)))))
+        self.setToolTip('\n'.join(filter(None, (
+            words.figures_text(view.figures), brake_words(view.brake),
+            guard_words(view.brake)))))
         old = view.link != views.LIVE
         tone = theme.MUTED if old else theme.TEXT
         linear = words.linear_text(view.linear_mps)
@@ -253,7 +254,7 @@ class RobotRow(QWidget):
         elif view.link != views.LIVE:
             self._show_trouble(None, view.note or words.LINK_WORDS[view.link])
         elif view.task is not None:
-            self._show_trouble(theme.TASK_WAITS if view.task.waits else theme.ON_TASK,
+            self._show_trouble(theme.TASK_WAITS if view.task.waits or view.slow else theme.ON_TASK,
                                *task_lines(view.task))
         elif view.carry_on and not view.note:
             self._show_trouble(None, interrupted_line(view.carry_on))

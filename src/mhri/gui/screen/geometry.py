@@ -36,6 +36,29 @@ def restore_geometry(window, geometry):
     return True
 
 
+def in_sight(geometry):
+    """Tell whether the middle of a window is on a screen that is there.
+
+    :param geometry: of :func:`geometry_of`
+    """
+    middle = QRect(*geometry[:4]).center()
+    return any(screen.geometry().contains(middle) for screen in QGuiApplication.screens())
+
+
+def place_on_another_screen(window, main):
+    """Put a new window on a screen where another one is not; leave it where there is none.
+
+    :param main: the other window
+    """
+    middle = main.geometry().center()
+    others = [screen.availableGeometry() for screen in QGuiApplication.screens()
+              if not screen.geometry().contains(middle)]
+    if others:
+        rect = QRect(others[0].topLeft(), window.size().boundedTo(others[0].size()))
+        rect.moveCenter(others[0].center())
+        window.setGeometry(rect)
+
+
 def _shared(area, rect):
     """Return how many pixels two rectangles have in common."""
     common = area.intersected(rect)

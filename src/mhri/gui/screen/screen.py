@@ -16,6 +16,7 @@ from mhri.gui.driving.leave_bar import LeaveBar
 from mhri.gui.screen.forms import load_form
 from mhri.gui.screen.labels import Sign, TextLine
 from mhri.gui.driving.mode_combo import ModeCombo
+from mhri.gui.look.page_tabs import PageTabs
 from mhri.gui.screen.pending import Pace
 from mhri.gui.screen.screen_layout import ScreenLayout
 from mhri.gui.screen.stage import Stage
@@ -33,8 +34,8 @@ STOP_RECORDING = 'Stop recording ({})'
 # What came of looking or recording is news for so long.
 RESULT_MS = 20000
 
-_WIDGETS = (ControlBar, EventButton, ModeCombo, RobotList, Sign, SpeedLimits, Stage, StatusLine,
-            StopBar, TextLine, VirtualJoystick)
+_WIDGETS = (ControlBar, EventButton, ModeCombo, PageTabs, RobotList, Sign, SpeedLimits, Stage,
+            StatusLine, StopBar, TextLine, VirtualJoystick)
 
 
 class ScreenWidget(QWidget):
@@ -130,8 +131,8 @@ class ScreenWidget(QWidget):
 
     def _connect(self):
         """Wire widgets to signals."""
-        self.look_button.clicked.connect(self._look)
-        self.stage.look_requested.connect(self._look)
+        self.look_button.clicked.connect(self.look_requested)
+        self.stage.look_requested.connect(self.look_requested)
         self._result_timer.timeout.connect(self.look_label.clear)
         self.doctor_button.clicked.connect(self.doctor_requested)
         self.add_button.clicked.connect(self._add)
@@ -206,9 +207,11 @@ class ScreenWidget(QWidget):
         """Say below the name field why a name was refused; '' clears it."""
         self.name_problem_label.show_text(text)
         self.name_problem_sign.show_sign((theme.TRIANGLE, theme.ATTENTION) if text else None)
+        for part, shown in ((self.name_problem_label, text), (self.look_label, not text)):
+            part.setVisible(bool(shown))
 
     def show_look_result(self, text, busy=False, shorter=()):
-        """Say beside the button for a while what came of looking; ``busy`` while it looks.
+        """Say below the name field for a while what came of looking; ``busy`` while it looks.
 
         :param shorter: what to say where there is no room, the longest first
         """
@@ -307,10 +310,6 @@ class ScreenWidget(QWidget):
         self.arrangement.restore_settings(settings)
         if 'geometry' in settings and self.isWindow():
             restore_geometry(self, settings['geometry'])
-
-    def _look(self):
-        """Ask to look for robots."""
-        self.look_requested.emit()
 
     def _on_name_edited(self, text):
         """Take back what was said about another name."""

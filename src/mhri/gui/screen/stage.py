@@ -39,7 +39,7 @@ class Stage(QWidget):
         self._tiles = {}
         self._large = ()
         self._shapes = ()
-        self._driven = ()
+        self._driven = self._awaited = ()
         self._looked_at = ''
         self._style = AUTO
         self._float = None
@@ -61,6 +61,12 @@ class Stage(QWidget):
     def _connect(self):
         """Hand on what is asked for while it is empty."""
         self._invitation.look_requested.connect(self.look_requested)
+
+    def show_awaited(self, names):
+        """Say, where there is no tile yet, whose ones will come: names of robots in the list."""
+        if tuple(names) != self._awaited:
+            self._awaited = tuple(names)
+            self._invitation.show_awaited(self._awaited)
 
     def show_look_result(self, text, busy=False):
         """Say what came of looking for robots, where there is none yet."""
@@ -257,7 +263,8 @@ class Stage(QWidget):
         if self._float is not None:
             tile = under = self._tiles.get(next(iter(self._large), ''))
             if self._map_state == MAP_LARGE and self._map is not None:
-                under, room = None, self._map.geometry()
+                # Above the line at its foot.
+                under, room = None, self._map.geometry().adjusted(0, 0, 0, -2 * unit)
             else:
                 room = self.rect() if tile is None else \
                     tile.picture_area().translated(tile.pos())

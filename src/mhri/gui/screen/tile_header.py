@@ -166,7 +166,8 @@ class TileHeader(QWidget):
         name.setMaximumWidth(natural)
         name.setMinimumWidth(1)
         self.number_label.fix_width(self.number_label.text() or '0')
-        for count in range(*((0, len(_LEFT_OUT) + 1) if self.large else (_OF_SMALL, len(_LEFT_OUT)))):
+        first, end = (0, len(_LEFT_OUT) + 1) if self.large else (_OF_SMALL, len(_LEFT_OUT))
+        for count in range(first, end):
             self._leave_out(_LEFT_OUT[:count])
             if self._needed(natural if count < _BEFORE_NAME else 1) <= self.width():
                 break

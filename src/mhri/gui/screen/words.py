@@ -5,7 +5,6 @@ import math
 import re
 
 from mhri.core.screen import views
-from mhri.core.screen.brake_view import guard_words
 
 UNKNOWN = '–'
 BETWEEN_FIGURES = '   '
@@ -161,12 +160,11 @@ def beginnings(text, marks=('; ', ': ', ' after '), most=0):
 
 
 def type_text(view):
-    """Return a robot's type, and what a guard on it does, e.g. "guarded TurtleBot2".
+    """Return a robot's type, and whether a guard stands on it, e.g. "guarded TurtleBot2".
 
     In this order, since what does not fit is cut off at the end.
     """
-    own = guard_words(view.brake)
-    return ('guarded ' if view.guarded else '') + view.type_label + (own and ', ' + own)
+    return ('guarded ' if view.guarded else '') + view.type_label
 
 
 def figures_text(figures):

@@ -13,7 +13,7 @@ import time
 from geometry_msgs.msg import Point32, Pose2D
 import rospy
 
-from mhri.core.map.scene import MapMark, Placing, PlacesView, TaskView
+from mhri.core.map.scene import MapMark, Placing, PlacesView, UnderWay
 from mhri.core.robots.mocap import Pose
 from mhri.core.screen.text import tidy_text
 from mhri.msg import Places, TaskList
@@ -64,23 +64,23 @@ class PlacesClient:
         self._places = (PlacesView(), -math.inf)
         self._runs = ()
         self._force = None
+        self._topics = []
         self._worker = Worker('map_calls').start()
 
     def open(self):
         """Listen from now on (blocking: it asks the master)."""
         if self._force is None:
             self._force = InForce(_PLACE)
-            self._force.subscribe('/mhri_tasks/places', Places, self._on_places, queue_size=1,
-                                  tcp_nodelay=True)
-            self._force.subscribe('/mhri_tasks/list', TaskList, self._on_list, queue_size=1,
-                                  tcp_nodelay=True)
+            self._topics = [self._force.subscribe(*row, queue_size=1, tcp_nodelay=True) for row in (
+                ('/mhri_tasks/places', Places, self._on_places),
+                ('/mhri_tasks/list', TaskList, self._on_list))]
             self._force.start()
 
     def _on_places(self, message):
         self._places = places_view(message), self._clock()
 
     def _on_list(self, message):
-        self._runs = tuple(TaskView(run.task, run.parameters, tuple(
+        self._runs = tuple(UnderWay(run.task, run.parameters, tuple(
             robot.robot for robot in run.robots)) for run in message.runs)
 
     def view(self):
@@ -94,7 +94,7 @@ class PlacesClient:
         return replace(view, robots=robots, answers=passed_s <= SILENT_S)
 
     def runs(self):
-        """Return the tasks that are under way, :class:`TaskView` values."""
+        """Return the tasks that are under way, :class:`UnderWay` values."""
         return self._runs if self.view().answers else ()
 
     def set_place(self, robot, pose, on_answer):
@@ -135,6 +135,11 @@ class PlacesClient:
         self._worker.stop()
         if self._force is not None:
             self._force.stop()
+
+    def unregister(self):
+        """Unregister every topic (blocking: it asks the master)."""
+        for topic in self._topics:
+            topic.unregister()
 
 
 def _message(pose):

@@ -16,7 +16,7 @@ from mhri.core.robots.link_quality import LinkQuality, link_warning
 from mhri.core.robots.names import topic_of
 from mhri.core.robots.stamp_age import delay_of, StampAge
 from mhri.core.robots.stop_proof import StopProof
-from mhri.core.screen.brake_view import brake_words, BrakeView
+from mhri.core.screen.brake_view import back_words, brake_words, BrakeView
 from mhri.core.screen.views import LIVE, RobotView, UNANSWERED
 from mhri.core.sensors.plausible import BATTERY, can_be
 from mhri.msg import RobotGate
@@ -252,17 +252,24 @@ def seen_by_gates(view, gate, answers):
     if gate is None:
         return view
     stands = STANDS_WORDS.get(gate.stands, gate.stands) if gate.obeys else ''
-    # A warning about its link stays: it is worth more than what it does.
     brake = BrakeView(gate.brake, gate.free_way_m, gate.brake_on_robot, gate.back_after_s)
-    calm = 'on a task' if gate.obeys == RobotGate.TASK and view.link == LIVE else \
-        brake_words(brake)
     return with_stop_words(replace(
         view, driven=is_driven(gate) and bool(gate.topic), guarded=gate.guarded,
         obeys=gate.obeys, stands=gate.stands, brake=brake, power=gate.power,
         waits=gate.stands == RobotGate.JOINING, stop_latched=gate.stop_confirmed,
         sent_mps=gate.sent.linear.x, sent_rad_s=gate.sent.angular.z, reached=bool(gate.topic),
-        note=stands if stands and view.link == LIVE else view.note or calm,
+        note=stands if stands and view.link == LIVE else view.note or _calm_note(
+            view, gate, brake),
         slow=view.slow or bool(stands) or brake.holds))
+
+
+def _calm_note(view, gate, brake):
+    """Return what a robot does, where no warning about its link is worth more."""
+    if view.link != LIVE:
+        return ''
+    if gate.obeys == RobotGate.TASK:
+        return 'on a task'
+    return brake_words(brake) or ('' if is_driven(gate) else back_words(brake))
 
 
 def with_stop_words(view):

@@ -350,10 +350,9 @@ class ScreenBackend:
         view = PanelView(
             ros=self._state_of_ros(), mode=mode, brake=gates.brake if gates else self._brake,
             stop_all=self._stopped_by_gates or (self._mux.stopped if self._mux else self._pressed),
-            stop_note=self._stop_note,
-            limits=limits or self._first_limits or (0.5, 1.5), robots=robots, together=together,
-            pace=pace_words(robots, together, share), slowed=share < 1.0,
-            camera_bits_per_s=self._fleet.camera_bits_per_s(),
+            stop_note=self._stop_note, limits=limits or self._first_limits or (0.5, 1.5),
+            robots=robots, together=together, pace=pace_words(robots, together, share),
+            slowed=share < 1.0, camera_bits_per_s=self._fleet.camera_bits_per_s(),
             **(self._devices.view() if self._devices else {}),
             control=self._control(), answers=answers,
             stop_taken=answers and self._stopped_by_gates, asked=asked, waits_for=waits_for or '',

@@ -60,6 +60,16 @@ class MocapFeed:
                 self._pose = self._read(message) or self._pose
             return self._pose
 
+    def take(self):
+        """Return (pose, when it was heard [s]) where that is new and can be, else None."""
+        with self._lock:
+            message, self._message = self._message, None
+            pose = None if message is None else self._read(message)
+            if pose is None or not pose.is_finite():
+                return None
+            self._pose = pose
+            return pose, self._heard_at
+
     def _read(self, message):
         """Return the :class:`Pose` in a message, NaN if impossible; None for mere bytes."""
         message = self._refusals.read(message, PoseStamped)

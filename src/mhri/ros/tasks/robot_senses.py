@@ -9,10 +9,13 @@ import rospy
 from sensor_msgs.msg import BatteryState, LaserScan
 
 from mhri.core.driving.brake import Surroundings
+from mhri.core.map.places import Odometry, OLD_S
+from mhri.core.map.tf_tree import frame_name
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.names import topic_of
 from mhri.core.tasks.base import Body
 from mhri.core.tasks.retrace import Trail
+from mhri.ros.convert import header_of
 from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.robots.robot_link import battery_fraction, ODOMETRY_READERS
 from mhri.ros.sensors.beams import read_beams
@@ -58,7 +61,7 @@ class _Newest:
 
 
 class RobotSenses:
-    """A robot's odometry at all times, for its trail; the rest from :meth:`open` on.
+    """A robot's odometry and motion capture at all times; the rest from :meth:`open` on.
 
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
     """
@@ -67,13 +70,19 @@ class RobotSenses:
         self.name = name
         self.robot_type = robot_type
         self._clock = clock
+        self._begun_at = clock()
         self.body = Body(robot_type.radius_m, robot_type.limits)
         self.trail = Trail()
-        self.pose = None
+        # By its odometry: the pose, the newest :class:`Odometry`, and the name of its frame.
+        self.pose = self.odometry = None
+        self.odometry_frame = ''
+        # By motion capture: (pose, when it was heard [s]).
+        self.seen_at = None
         self._odometry = self._open_odometry()
         self._scan = self._battery = None
         self._charge = None
-        self._mocap = None
+        self._mocap = MocapFeed(name, clock)
+        self._mocap.open()
         self._surroundings = Surroundings()
 
     def _open_odometry(self):
@@ -84,10 +93,14 @@ class RobotSenses:
             rospy.logwarn('%s: cannot read its odometry, %s is not installed here', self.name,
                           self.robot_type.odometry_type)
             return None
-        return _Newest(self._topics('odometry'), message_class, self._clock)
+        return _Newest(self.odometry_topics, message_class, self._clock)
 
     def _topics(self, key):
         return [topic_of(self.name, topic) for topic in getattr(self.robot_type, key)]
+
+    def known_s(self):
+        """Return since when the robot is known [s]."""
+        return self._clock() - self._begun_at
 
     def open(self):
         """Begin to listen to laser and battery (blocking: it asks the master)."""
@@ -96,43 +109,39 @@ class RobotSenses:
         if self._battery is None and self.robot_type.battery:
             self._battery = _Newest(self._topics('battery'), BatteryState, self._clock)
 
-    def track(self):
-        """Begin to listen to motion capture (blocking: it asks the master)."""
-        if self._mocap is None:
-            mocap = MocapFeed(self.name, self._clock)
-            mocap.open()
-            self._mocap = mocap
-
-    def untrack(self):
-        """Do without motion capture, which has gone (blocking: it asks the master)."""
-        mocap, self._mocap = self._mocap, None
-        if mocap is not None:
-            mocap.close()
+    @property
+    def odometry_topics(self):
+        """The topics that its odometry may have."""
+        return self._topics('odometry')
 
     @property
     def has_laser(self):
         """Whether robots of its type have a laser."""
         return bool(self.robot_type.scan)
 
-    @property
-    def tracked(self):
-        """Whether motion capture is listened to."""
-        return self._mocap is not None
-
     def look(self):
         """Read what has come since the last time."""
         message = self._odometry.take() if self._odometry else None
         if message is not None:
-            motion = self._read(message)
-            if motion is not None and motion.is_possible():
-                self.pose = Pose(motion.x_m, motion.y_m, motion.heading_rad)
-                self.trail.add(self.pose)
+            self._go(message)
+        self.seen_at = self._mocap.take() or self.seen_at
         scan = self._scan.take() if self._scan else None
         if scan is not None and self.pose is not None:
             self._see(scan)
         battery = self._battery.take() if self._battery else None
         if battery is not None:
             self._charge = battery_fraction(battery)
+
+    def _go(self, message):
+        motion = self._read(message)
+        if motion is None or not motion.is_possible():
+            return
+        self.pose = Pose(motion.x_m, motion.y_m, motion.heading_rad)
+        header = header_of(message, type(message))
+        if header is not None:
+            self.odometry_frame = frame_name(message.header.frame_id)
+        self.odometry = Odometry(self.pose, self._odometry.heard_at, header and header[0])
+        self.trail.add(self.pose, self._clock())
 
     def _see(self, message):
         try:
@@ -149,16 +158,13 @@ class RobotSenses:
         return self._surroundings.around(self.pose)
 
     def captured(self):
-        """Return its :class:`Pose` by motion capture, None where that says nothing that can be."""
-        mocap = self._mocap
-        pose = mocap.pose() if mocap else None
-        return pose if pose is not None and pose.is_finite() else None
+        """Return its :class:`Pose` by motion capture, None where that says nothing now."""
+        seen_at = self.seen_at
+        return seen_at[0] if seen_at and self._clock() - seen_at[1] <= OLD_S else None
 
     def ages(self):
         """Return {what: age [s], None before the first}, as :class:`Facts` has them."""
-        mocap = self._mocap
         return dict(odometry_age_s=self._odometry.age_s() if self._odometry else None,
-                    place_age_s=mocap.age_s() if mocap else 0.0,
                     scan_age_s=self._scan.age_s() if self._scan else None)
 
     @property

@@ -4,18 +4,16 @@
 import re
 import threading
 
+import numpy as np
 import rospy
 
 from mhri.core.robots.robot_types import resolve_robot_type
 from mhri.core.tasks.base import circles, Other, Senses
 from mhri.ros.graph.look import robot_facts
 from mhri.ros.graph.master_api import MasterApi
-from mhri.ros.sensors.mocap_feed import TOPIC as MOCAP_TOPIC
 from mhri.ros.tasks.robot_senses import RobotSenses
 
 NUMBERS_PARAMETER = '/mhri/robot_numbers'
-# A place that is older is no place [s].
-OLD_S = 0.5
 
 
 class SeenRobots:
@@ -54,9 +52,7 @@ class SeenRobots:
                 for name in names}
 
     def open(self, names):
-        """Have these robots sense all they can, and motion capture every robot that it sees.
-
-        Blocking: it asks the master.
+        """Have these robots sense all they can (blocking: it asks the master).
 
         :raises MasterError: the master cannot be asked now
         """
@@ -68,23 +64,16 @@ class SeenRobots:
                 robot = self.get(name)
             robot.open()
         api = MasterApi(rospy.get_name(), timeout_s=2.0)
-        published = {topic for topic, _ in api.call('getSystemState')[0]}
-        for name in self.names():
-            robot = self.get(name)
-            if robot is not None and MOCAP_TOPIC.format(name) in published:
-                robot.track()
-            elif robot is not None and name in names:
-                # Only of who begins: whoever is on its way keeps to its frame, or is lost.
-                robot.untrack()
         numbers = api.call_many([('getParam', NUMBERS_PARAMETER)])[0]
         self._numbers = numbers if isinstance(numbers, dict) else {}
 
     def look(self):
         """Read what has come of every robot."""
-        for robot in self._all():
+        for robot in self.all():
             robot.look()
 
-    def _all(self):
+    def all(self):
+        """Return every :class:`RobotSenses`."""
         with self._lock:
             return list(self._robots.values())
 
@@ -98,26 +87,31 @@ class SeenRobots:
         with self._lock:
             return self._robots.get(name)
 
-    def senses(self, robot, now_s, busy):
+    def senses(self, robot, now_s, busy, place_of, fence=()):
         """Return the :class:`Senses` of a robot, None before it is heard.
 
         :param robot: a :class:`RobotSenses`
         :param busy: names of the robots that are on a task
+        :param place_of: function from a name to its :class:`mhri.core.map.places.Place`
+        :param fence: corners (x, y) [m] in the frame of the map
         """
-        captured = robot.captured()
-        if robot.pose is None or (robot.tracked and captured is None):
+        odometry, place = robot.pose, place_of(robot.name)
+        if odometry is None:
             return None
-        others = self._others(robot, busy) if captured else {}
-        pose = captured or robot.pose
-        return Senses(now_s, pose, robot.pose, captured,
-                      robot.points(circles(pose, others.values())), others)
+        placed = place.is_fresh
+        pose = place.pose(odometry) if placed else odometry
+        others = self._others(robot, busy, place_of) if placed else {}
+        return Senses(now_s, pose, odometry, robot.captured(),
+                      robot.points(circles(pose, others.values())), others,
+                      np.array(fence if placed else ()).reshape(-1, 2))
 
-    def _others(self, robot, busy):
-        """Return the others that share the frame of motion capture with a robot."""
+    def _others(self, robot, busy, place_of):
+        """Return the other robots that are placed."""
         rank, others = self._rank(robot.name), {}
-        for other in self._all():
-            age_s, pose = other.ages()['place_age_s'], other.captured()
-            if other is not robot and pose is not None and age_s is not None and age_s < OLD_S:
+        for other in self.all():
+            place = place_of(other.name)
+            pose = place.pose(other.pose)
+            if other is not robot and pose is not None and place.is_fresh:
                 others[other.name] = Other(pose, other.name in busy
                                            and self._rank(other.name) < rank,
                                            other.body.radius_m)

@@ -9,12 +9,13 @@ Interfaces (global names; SI units):
   0.6 s after it) and ``/mhri_tasks/list`` (``mhri/TaskList``, latched, on change)
 - subscribes ``/gates/state`` (``mhri/GatesState``) and ``/robot_controller/stop_all``
   (``std_msgs/Bool``), each from the node in force alone; of every robot that the gates know its
-  odometry; of robots on a task laser and battery as well; and ``/vrpn_client_node/<robot>/pose``
-  where motion capture runs
+  odometry and ``/vrpn_client_node/<robot>/pose``; of robots on a task laser and battery as well
+- knows where robots are placed: :mod:`mhri.ros.map.place_keeper`
 
 The action server has a lock of its own, held while it calls :meth:`Tasks._on_goal`: nothing of it
 is called while this object's lock is held.
 """
+import math
 import threading
 import time
 
@@ -25,17 +26,20 @@ from std_msgs.msg import Bool
 
 from mhri.core.config import ConfigError, short
 from mhri.core.driving.limits import ZERO
-from mhri.core.robots.names import name_problem
-from mhri.core.tasks.base import DONE, FAILED, LOST, Start, STOPPED, TAKEN_OVER, TEAM
+from mhri.core.tasks.base import DONE, FAILED, STOPPED, TAKEN_OVER
 from mhri.core.tasks.rows import BY_KEY
-from mhri.core.tasks.run import ENDED, Facts, RobotRun
+from mhri.core.tasks.run import ENDED, Facts
 from mhri.msg import (
     GatesState, RunTaskAction, RunTaskFeedback, RunTaskResult, TaskList, TaskRun, TeamTwist)
 from mhri.ros.convert import to_twist
 from mhri.ros.driving.in_force import InForce, STOP_SERVICE, TAKE_SERVICE
 from mhri.ros.graph.master_api import MasterError
 from mhri.ros.graph.rospy_inside import PromptPublisher
+from mhri.ros.map.map_source import MapSource
+from mhri.ros.map.place_keeper import PlaceKeeper
+from mhri.ros.map.place_services import PlaceServices
 from mhri.ros.tasks.seen_robots import SeenRobots
+from mhri.ros.tasks.starter import Starter
 from mhri.ros.tasks.words import kind_message, state_message
 from mhri.ros.worker import Worker
 
@@ -45,7 +49,6 @@ FEEDBACK_EVERY = 4
 ZEROS_S = 0.6
 # The gates speak at 2 Hz: a word late by this much is a word that does not come [s].
 SILENT_S = 0.9
-MOST_ROBOTS = 64
 
 
 class _Goal:
@@ -79,16 +82,20 @@ class Tasks:
 
     :param types: {name: RobotType}
     :param kinds: {key: TaskKind} of the tasks that can be started
+    :param grid: of a map that is to be published; None: whatever map there is
     :param clock: seconds, monotonic
     """
 
-    def __init__(self, types, kinds=BY_KEY, clock=time.monotonic):
+    def __init__(self, types, kinds=BY_KEY, grid=None, clock=time.monotonic):
         self._kinds = kinds
         self._clock = clock
         self._lock = threading.RLock()
         self._wake = threading.Event()
         self._done = threading.Event()
         self._seen = SeenRobots(types, clock)
+        self._map = MapSource(grid)
+        self.places = PlaceKeeper(self._seen, self._map, clock)
+        self._starter = Starter(kinds, self._seen, self.places, clock)
         self._goals = {}
         # {robot: its newest RobotRun}: a robot has one task.
         self._runs = {}
@@ -96,7 +103,7 @@ class Tasks:
         self._heard_at = None
         self._gates_stop = self._mux_stop = False
         self._told = None
-        self._worker = Worker('tasks_calls')
+        self._worker = Worker('tasks_calls', self.places.keep)
         self._gates_force = InForce(TAKE_SERVICE)
         self._mux_force = InForce(STOP_SERVICE)
         self._server = None
@@ -109,6 +116,9 @@ class Tasks:
                                     tcp_nodelay=True)
         self._mux_force.subscribe('/robot_controller/stop_all', Bool, self._on_stop, queue_size=10,
                                   tcp_nodelay=True)
+        self._map.start()
+        self.places.start()
+        PlaceServices(self._seen, self.places, self._map, self.is_busy, self._worker).start()
         self._gates_force.start()
         self._mux_force.start()
         self._worker.start()
@@ -129,6 +139,11 @@ class Tasks:
         self._finish()
         self._done.set()
         self._worker.stop()
+
+    def is_busy(self, name):
+        """Tell whether a robot is on a task."""
+        with self._lock:
+            return name in self._runs and self._runs[name].phase != ENDED
 
     def summary(self):
         """Return {robot: (task state, sentence)} of the robots on a task."""
@@ -155,7 +170,7 @@ class Tasks:
     def _know(self):
         """See the robots that the gates know; tried again where the master does not answer."""
         try:
-            self._seen.know(list(self._gates))
+            self._starter.know(list(self._gates))
         except (MasterError, OSError) as error:
             rospy.logwarn_throttle(5.0, 'the robots cannot be looked at: {}'.format(error))
             if not self._done.wait(1.0):
@@ -165,7 +180,7 @@ class Tasks:
         """Accept a goal that can be understood, and begin it on the worker."""
         goal = handle.get_goal()
         try:
-            values = _values_of(goal, self._kinds)
+            values = self._starter.values_of(goal)
         except ConfigError as error:
             handle.set_rejected(RunTaskResult(), short(error))
             return
@@ -186,17 +201,12 @@ class Tasks:
 
     def _begin(self, goal):
         """Open what the robots of a goal need, and begin their runs (on the worker)."""
-        try:
-            known = [name for name in goal.team if name in self._gates]
-            self._seen.know(list(self._gates))
-            self._seen.open(known)
-            problem = ''
-        except (MasterError, OSError) as error:
-            problem = 'the ROS master does not answer: {}'.format(error)
+        drives, problem = self._starter.prepare(goal.key, goal.values, goal.team,
+                                                list(self._gates))
         with self._lock:
             now = self._clock()
             for name in goal.team:
-                run = self._new_run(goal, name, problem, now)
+                run = self._starter.run(goal, name, drives, problem, now)
                 before = self._runs.get(name)
                 if before is not None:
                     before.end(TAKEN_OVER, 'it got another task: {}'.format(goal.key), now)
@@ -205,28 +215,6 @@ class Tasks:
                 if goal.cancelled:
                     run.end(STOPPED, 'it was cancelled', now)
             goal.ready = True
-
-    def _new_run(self, goal, name, problem, now):
-        """Return the run of one robot; one that cannot be begun has ended."""
-        robot, kind, state = self._seen.get(name), self._kinds[goal.key], FAILED
-        task = body = None
-        if not problem and robot is None:
-            state = LOST
-            problem = 'the drive service does not know it: add it to the list of robots'
-        if not problem and kind.key == 'follow' and not robot.tracked:
-            problem = 'nobody knows where it is: motion capture does not see it'
-        if not problem:
-            body = robot.body
-            try:
-                task = kind.make(goal.values, Start(name, goal.order, body, robot.trail.places()))
-            except ValueError as error:
-                problem = str(error)
-            except Exception as error:  # a task may be a lab's own
-                problem = 'its task cannot be begun: {!r}'.format(error)[:200]
-        run = RobotRun(name, task, body, goal.values.number('timeout'), now)
-        if problem:
-            run.end(state, problem, now)
-        return run
 
     def _run(self):
         number = 0
@@ -249,6 +237,7 @@ class Tasks:
 
     def _tick(self, number):
         self._seen.look()
+        self.places.look()
         with self._lock:
             self._publish(self._clock())
         self._finish()
@@ -265,6 +254,8 @@ class Tasks:
                     message.twists.append(Twist())
                 continue
             velocity = self._ticked(run, now, busy)
+            if not run.drives:
+                continue
             message.robots.append(name)
             message.twists.append(to_twist(velocity.linear_mps, velocity.angular_rad_s))
         if message.robots:
@@ -274,14 +265,15 @@ class Tasks:
     def _ticked(self, run, now, busy):
         """Return what a robot shall do; a task that fails ends its own run alone."""
         try:
-            return run.tick(self._facts(run.robot, now, busy))
+            return run.tick(self._facts(run, now, busy))
         except Exception as error:  # a task may be a lab's own
             rospy.logerr('%s: its task failed: %r', run.robot, error)
             run.end(FAILED, 'its task failed: {!r}'.format(error)[:200], now)
             return ZERO
 
-    def _facts(self, name, now, busy):
+    def _facts(self, run, now, busy):
         """Return the :class:`Facts` of a robot."""
+        name = run.robot
         gate, robot = self._gates.get(name), self._seen.get(name)
         known = dict(stop_all=self._mux_stop or self._gates_stop, known=gate is not None,
                      answers=self._heard_at is not None and now - self._heard_at <= SILENT_S)
@@ -289,7 +281,13 @@ class Tasks:
             known.update(obeys=gate.obeys, stands=gate.stands)
         if robot is not None:
             known.update(robot.ages(), has_laser=robot.has_laser, battery=robot.charge,
-                         senses=self._seen.senses(robot, now, busy))
+                         senses=self._seen.senses(robot, now, busy, self.places.place,
+                                                  self.places.fence()))
+        if run.placed or self.places.fence():
+            place = self.places.place(name)
+            age_s = 0.0 if math.isnan(place.age_s) else place.age_s
+            known.update(place_age_s=None if place.odometry is None else age_s,
+                         place_text=place.text, settling=self.places.settling(name))
         return Facts(now, **known)
 
     def _finish(self):
@@ -325,26 +323,3 @@ class Tasks:
                                runs=runs)
             message.header.stamp = rospy.Time.now()
             self._list.publish(message)
-
-
-def _values_of(goal, kinds):
-    """Return the parameters of a ``mhri/RunTaskGoal``.
-
-    :raises ConfigError: something of it cannot be used
-    """
-    kind = kinds.get(goal.task)
-    if kind is None:
-        raise ConfigError('task', '', 'no task {!r}; there are {}'.format(
-            goal.task[:60], ', '.join(kinds)))
-    origin = 'task ' + goal.task
-    if not 0 < len(goal.robots) <= MOST_ROBOTS or len(set(goal.robots)) < len(goal.robots):
-        raise ConfigError(origin, 'robots', 'expected 1 to {} robots, each once'.format(
-            MOST_ROBOTS))
-    for name in goal.robots:
-        problem = name_problem(name)
-        if problem:
-            raise ConfigError(origin, 'robots', '{!r}: {}'.format(name[:64], problem))
-    values = kind.read(goal.parameters)
-    if values.team and not set(goal.robots) <= set(values.team):
-        raise ConfigError(origin, TEAM, 'has to name every robot that is started')
-    return values

@@ -72,7 +72,7 @@ class TasksClient:
     def _on_new(self, _):
         """Take in that another process runs the tasks now: what the last one ran is over."""
         with self._lock:
-            self._book.lose('what runs the tasks has been started anew')
+            self._book.lose('the task service was restarted')
 
     def _hear_list(self, message):
         with self._lock:
@@ -101,7 +101,7 @@ class TasksClient:
         there = bool(self._topics) and self._force.caller in publishers(self._topics[0])
         with self._lock:
             if self._there and not there:
-                self._book.lose('what runs the tasks has ended, and it stands')
+                self._book.lose('the task service has ended, and the robot stands')
             self._there = there
             self._book.tick(now)
             view = self._book.view()

@@ -1,0 +1,109 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The map: a file of map_server that is published as ``/map``, or what somebody else publishes.
+
+Interfaces: ``/map`` (``nav_msgs/OccupancyGrid``, latched; occupancy in [0, 100], -1 for unknown):
+published where a file is given, else subscribed.
+"""
+import os
+
+import cv2
+from geometry_msgs.msg import Quaternion
+from nav_msgs.msg import OccupancyGrid
+import numpy
+import rospy
+from rospy.numpy_msg import numpy_msg
+
+from mhri.core.map.grid import grid_of, GridError, read_map
+from mhri.core.robots.mocap import Pose
+from mhri.ros.convert import yaw_of
+from mhri.ros.messages import bytes_of
+from mhri.ros.resources import read_text
+
+TOPIC, FRAME = '/map', 'map'
+# numpy's bytes as they are: a map of 4 million cells as Python numbers takes a second.
+GridMessage = numpy_msg(OccupancyGrid)
+
+
+def load_map(path):
+    """Return the :class:`mhri.core.map.grid.Grid` of a YAML file of map_server.
+
+    :raises ConfigError: names the file, the key and the remedy
+    :raises OSError: it cannot be read
+    """
+    def load_image(name):
+        """Return the picture; its path counts from the folder of the file."""
+        image = os.path.join(os.path.dirname(os.path.abspath(path)), name)
+        return cv2.imread(image, cv2.IMREAD_UNCHANGED) if os.path.isfile(image) else None
+
+    return read_map(read_text(path), path, load_image)
+
+
+def grid_message(grid):
+    """Return the ``nav_msgs/OccupancyGrid`` of a grid, in the frame ``map``."""
+    message = GridMessage()
+    message.header.frame_id, message.header.stamp = FRAME, rospy.Time.now()
+    info, origin = message.info, grid.origin
+    info.map_load_time, info.resolution = message.header.stamp, grid.resolution_m
+    info.height, info.width = grid.cells.shape
+    info.origin.position.x, info.origin.position.y = origin.x_m, origin.y_m
+    info.origin.orientation = Quaternion(0.0, 0.0, *_half(origin.heading_rad))
+    message.data = grid.cells.reshape(-1)
+    return message
+
+
+def _half(heading_rad):
+    return numpy.sin(0.5 * heading_rad), numpy.cos(0.5 * heading_rad)
+
+
+def publish_map(grid):
+    """Publish a grid as ``/map``, latched; return the publisher, which has to be kept."""
+    publisher = rospy.Publisher(TOPIC, GridMessage, queue_size=1, latch=True)
+    publisher.publish(grid_message(grid))
+    return publisher
+
+
+class MapSource:
+    """The map in force.
+
+    :param grid: of a file, which is published; None: the one that somebody else publishes
+    """
+
+    def __init__(self, grid=None):
+        self._grid = grid
+        self._bytes = None
+        self._publisher = None
+
+    def start(self):
+        """Publish it, or listen to it (blocking: it asks the master)."""
+        if self._grid is not None:
+            self._publisher = publish_map(self._grid)
+        else:
+            rospy.Subscriber(TOPIC, bytes_of(OccupancyGrid), self._hear, queue_size=1,
+                             buff_size=1 << 24)
+
+    def _hear(self, message):
+        # Read when somebody asks for it: whoever makes a map publishes all of it again and again.
+        self._bytes = message._buff
+
+    @property
+    def is_there(self):
+        """Whether there is a map."""
+        return self._grid is not None or self._bytes is not None
+
+    def grid(self):
+        """Return the newest :class:`Grid`, None where there is no map.
+
+        :raises GridError: what is published is no map
+        """
+        buff = self._bytes
+        if self._grid is not None or buff is None:
+            return self._grid
+        try:
+            message = OccupancyGrid().deserialize_numpy(buff, numpy)
+        except Exception as error:  # whatever bytes may lead genpy to
+            raise GridError('no map: {}'.format(error))
+        info, corner = message.info, message.info.origin
+        return grid_of(info.resolution, Pose(corner.position.x, corner.position.y,
+                                             yaw_of(corner.orientation)),
+                       info.width, info.height, message.data)

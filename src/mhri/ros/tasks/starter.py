@@ -1,0 +1,134 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Goals made into runs: whether a goal can be understood, and who can begin it."""
+from mhri.core.config import ConfigError
+from mhri.core.robots.names import name_problem
+from mhri.core.tasks.base import FAILED, LOST, Start, TEAM
+from mhri.core.tasks.delegated import DelegatedRun
+from mhri.core.tasks.goto import ROW as GOTO
+from mhri.core.tasks.goto import target_of
+from mhri.core.tasks.replay import ROW as REPLAY
+from mhri.core.tasks.run import RobotRun
+from mhri.ros.graph.master_api import MasterError
+from mhri.ros.tasks.drives import DriveError, read_drive
+from mhri.ros.tasks.move_base import MoveBases
+
+MOST_ROBOTS = 64
+# A robot that is known for so long and not placed will not be by itself [s].
+PLACED_WITHIN_S = 2.0
+
+
+class Starter:
+    """Makes runs of goals.
+
+    :param kinds: {key: TaskKind}
+    :param seen: :class:`mhri.ros.tasks.seen_robots.SeenRobots`
+    :param places: :class:`mhri.ros.map.place_keeper.PlaceKeeper`
+    """
+
+    def __init__(self, kinds, seen, places, clock):
+        self._kinds = kinds
+        self._seen = seen
+        self._places = places
+        self._move_bases = MoveBases(self._odometry_frame, clock)
+
+    def _odometry_frame(self, name):
+        robot = self._seen.get(name)
+        return robot.odometry_frame if robot else ''
+
+    def values_of(self, goal):
+        """Return the parameters of a ``mhri/RunTaskGoal``.
+
+        :raises ConfigError: something of it cannot be used
+        """
+        kind = self._kinds.get(goal.task)
+        if kind is None:
+            raise ConfigError('task', '', 'no task {!r}; there are {}'.format(
+                goal.task[:60], ', '.join(self._kinds)))
+        origin = 'task ' + goal.task
+        if not 0 < len(goal.robots) <= MOST_ROBOTS or len(set(goal.robots)) < len(goal.robots):
+            raise ConfigError(origin, 'robots', 'expected 1 to {} robots, each once'.format(
+                MOST_ROBOTS))
+        for name in goal.robots:
+            problem = name_problem(name)
+            if problem:
+                raise ConfigError(origin, 'robots', '{!r}: {}'.format(name[:64], problem))
+        values = kind.read(goal.parameters)
+        if values.team and not set(goal.robots) <= set(values.team):
+            raise ConfigError(origin, TEAM, 'has to name every robot that is started')
+        return values
+
+    def know(self, names):
+        """See exactly these robots (blocking: it asks the master).
+
+        :raises MasterError: the master cannot be asked now
+        """
+        # Goals that nobody wants any more first: robots drive to them.
+        self._move_bases.know(names)
+        self._seen.know(names)
+
+    def prepare(self, key, values, team, names):
+        """Open what a goal needs (blocking: it asks the master and reads files).
+
+        :param names: all robots that there are
+        :returns: ({robot: its recorded drive}, why it cannot be or '')
+        """
+        team = [name for name in team if name in names]
+        try:
+            self.know(names)
+            self._seen.open(team)
+            bag = values.text('bag') if key == REPLAY.key else ''
+            return {name: self._drive(bag, values.text('topic'), name)
+                    for name in team if bag}, ''
+        except (MasterError, OSError) as error:
+            return {}, 'the ROS master does not answer: {}'.format(error)
+        except DriveError as error:
+            return {}, str(error)
+
+    def _drive(self, bag, topic, name):
+        robot = self._seen.get(name)
+        return read_drive(bag, [topic] if topic else robot.odometry_topics if robot else [])
+
+    def run(self, goal, name, drives, problem, now):
+        """Return the run of one robot; one that cannot be begun has ended.
+
+        :param goal: has ``key``, ``values`` and ``order``, the team
+        :param drives: see :meth:`prepare`, as is ``problem``
+        """
+        robot, kind, values = self._seen.get(name), self._kinds[goal.key], goal.values
+        state, made, timeout_s = FAILED, None, values.number('timeout')
+        placed = kind.placed(values)
+        if not problem and robot is None:
+            state = LOST
+            problem = 'the drive service does not know it: add it to the list of robots'
+        problem = problem or self._not_placed(robot, placed)
+        if not problem:
+            start = Start(name, goal.order, robot.body, robot.trail.places(),
+                          robot.trail.ages_s(now), self._places.marks(), drives.get(name, ()))
+            try:
+                made = self._made(kind, values, start, timeout_s, now)
+            except ValueError as error:
+                problem = str(error)
+            except Exception as error:  # a task may be a lab's own
+                problem = 'its task cannot be begun: {!r}'.format(error)[:200]
+        run = made or RobotRun(name, None, robot.body if robot else None, timeout_s, now)
+        run.placed = placed
+        if problem:
+            run.end(state, problem, now)
+        return run
+
+    def _not_placed(self, robot, placed):
+        """Return why a robot that has to be placed is not, '' where it is or need not be."""
+        place = self._places.place(robot.name)
+        if robot.known_s() <= PLACED_WITHIN_S or place.is_fresh:
+            return ''
+        if self._places.fence():
+            return 'there is a fence, and ' + place.text
+        return place.text if placed else ''
+
+    def _made(self, kind, values, start, timeout_s, now):
+        own = self._move_bases.get(start.robot) if kind is GOTO else None
+        if own is not None:
+            return DelegatedRun(start.robot, target_of(values, start), own, start.body, timeout_s,
+                                now)
+        return RobotRun(start.robot, kind.make(values, start), start.body, timeout_s, now)

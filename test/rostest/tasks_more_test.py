@@ -1,0 +1,273 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""More tasks by the real nodes: formation, replay, marks, fence, a robot with move_base, turtles.
+
+Two simulated robots are seen by motion capture; the navigation of ``bot3`` is played here.
+"""
+import math
+import os
+import re
+import sys
+import tempfile
+import time
+import unittest
+
+import actionlib
+from geometry_msgs.msg import Point32, Pose2D, PoseStamped, Twist
+from move_base_msgs.msg import MoveBaseAction, MoveBaseResult
+from nav_msgs.msg import Odometry
+import psutil
+import rosbag
+import rospy
+import rostest
+from rostest_tools import moves, NEUTRAL, Recorder, rests, Stick, wait_until
+from std_srvs.srv import SetBool
+
+HERE = os.path.dirname(os.path.realpath(__file__))
+sys.path[:0] = [os.path.join(HERE, '..'), os.path.join(HERE, '..', 'support', 'messages')]
+
+from mhri.msg import ControlMode, RunTaskAction, RunTaskGoal, TaskList, TaskState  # noqa: E402
+from mhri.srv import SetFence, SetMark  # noqa: E402
+from support.fake_mux import FakeOperator, StateEar  # noqa: E402
+from turtlesim.msg import Pose as TurtlePose  # noqa: E402
+
+PATIENCE_S = 120.0
+ROBOTS = ('bot1', 'bot2', 'bot3', 'pond')
+
+
+def velocity(twist):
+    """Return what a command says, as (m/s, rad/s)."""
+    return (twist.linear.x, twist.angular.z)
+
+
+class FakeMoveBase:
+    """A navigation that drives straight on while it has a goal, and never arrives by itself."""
+
+    def __init__(self, name):
+        self.goals = []
+        self._drive = rospy.Publisher('/{}/cmd_vel'.format(name), Twist, queue_size=1)
+        self._server = actionlib.ActionServer('/{}/move_base'.format(name), MoveBaseAction,
+                                              self._on_goal, self._on_cancel, auto_start=False)
+        self._server.start()
+        rospy.Timer(rospy.Duration(0.1), self._on_time)
+
+    def _on_goal(self, handle):
+        handle.set_accepted()
+        self.goals.append(handle)
+
+    def _on_cancel(self, handle):
+        if handle in self.goals:
+            self.goals.remove(handle)
+        handle.set_canceled()
+
+    def _on_time(self, _):
+        if self.goals:
+            message = Twist()
+            message.linear.x = 0.1
+            self._drive.publish(message)
+
+    def end(self, how):
+        """End every goal: ``succeeded`` or ``aborted``."""
+        while self.goals:
+            handle = self.goals.pop()
+            getattr(handle, 'set_' + how)(MoveBaseResult(), 'the test says so')
+
+
+class TasksMore(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        cls.operator, cls.state = FakeOperator(), StateEar()
+        cls.stick = Stick('/mux_in/joy')
+        cls.set_stop = rospy.ServiceProxy('/mux/set_stop_all', SetBool)
+        cls.set_fence = rospy.ServiceProxy('/mhri_tasks/set_fence', SetFence)
+        cls.set_mark = rospy.ServiceProxy('/mhri_tasks/set_mark', SetMark)
+        cls.mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=1, latch=True)
+        cls.mode.publish('joy')
+        cls.navigation = FakeMoveBase('bot3')
+        cls.commands = Recorder('/bot3/cmd_vel', Twist, velocity)
+        cls.places = {name: Recorder(
+            '/vrpn_client_node/{}/pose'.format(name), PoseStamped,
+            lambda message: (message.pose.position.x, message.pose.position.y))
+            for name in ('bot1', 'bot2')}
+        cls.odometry = Recorder('/bot1/odom', Odometry, lambda message: message)
+        cls.turtle = Recorder('/pond/turtle1/pose', TurtlePose,
+                              lambda message: (message.x, message.y, message.theta))
+        cls.lists = Recorder('/mhri_tasks/list', TaskList, lambda message: message)
+        cls.client = actionlib.ActionClient('/mhri_tasks/run', RunTaskAction)
+
+    def setUp(self):
+        """Nothing is stopped, nobody is checked, no robot is on a task; there is no fence."""
+        self.set_stop.wait_for_service(60.0)
+        self.stick.wait_listener()
+        self.stick.hold(NEUTRAL)
+        self.operator.check()
+        wait_until(lambda: self.set_stop(False).success, 'not released', 30.0)
+        self.assertTrue(self.client.wait_for_server(rospy.Duration(60.0)))
+        self.set_fence.wait_for_service(60.0)
+        self.assertTrue(self.set_fence([]).success)
+        for name in ROBOTS:
+            self.state.wait_robot(name, lambda gate: gate.topic and not gate.obeys and
+                                  not gate.stands, 'the gate of ' + name, 60.0)
+
+    def tearDown(self):
+        """Whatever a test that failed has left to do is ended."""
+        self.client.cancel_all_goals()
+        self.navigation.end('aborted')
+
+    def start(self, robots, task, parameters=''):
+        """Start a task; return its handle."""
+        return self.client.send_goal(RunTaskGoal(task, robots.split(), parameters))
+
+    def ends(self, goal):
+        """Wait for the end; return [(state, sentence)] of its robots."""
+        wait_until(lambda: goal.get_comm_state() == actionlib.CommState.DONE, 'the task goes on',
+                   PATIENCE_S)
+        self.assertIsNotNone(goal.get_result(), goal.get_goal_status_text())
+        return [(robot.state, robot.text) for robot in goal.get_result().robots]
+
+    def done(self, goal):
+        """Wait for the end, which has to be a good one; return the first sentence."""
+        ended = self.ends(goal)
+        self.assertEqual([state for state, _ in ended], [TaskState.DONE] * len(ended), ended)
+        return ended[0][1]
+
+    def test_a_formation_keeps_its_spacing_in_a_bend(self):
+        self.done(self.start('bot1', 'goto', '{x: 3.0, y: 1.2, heading: 0.0}'))
+        self.done(self.start('bot2', 'goto', '{x: 2.2, y: 1.2, heading: 0.0}'))
+        formed = self.start('bot2', 'formation', '{leader: bot1, shape: column, spacing: 0.8}')
+        begun = time.monotonic()
+        self.done(self.start('bot1', 'patrol',
+                             '{route: [[4.2, 1.2], [4.6, 1.6], [4.6, 2.2]], rounds: 1, '
+                             'speed: 0.12}'))
+        wait_until(lambda: abs(self.gap() - 0.8) < 0.2, 'the spacing is {:.2f} m'.format(
+            self.gap()), PATIENCE_S)
+        second = [item.value for item in self.places['bot2'].since(begun)]
+        first = self.places['bot1'].since(begun)
+        gaps = [math.dist(item.value, place) for item, place in zip(
+            first, second[:len(first)])]
+        print('formation: {:.2f} to {:.2f} m between the two'.format(min(gaps), max(gaps)))
+        self.assertGreater(min(gaps), 0.45)
+        formed.cancel()
+        self.ends(formed)
+
+    def gap(self):
+        """Return the way between the two robots [m]."""
+        return math.dist(self.places['bot1'].last(), self.places['bot2'].last())
+
+    def test_a_drive_of_a_bag_is_replayed_within_015_m(self):
+        self.done(self.start('bot2', 'goto', '{x: 2.0, y: 2.6}'))
+        self.done(self.start('bot1', 'goto', '{x: 3.0, y: 1.2, heading: 0.0}'))
+        begun = time.monotonic()
+        self.done(self.start('bot1', 'patrol', '{route: [[4.0, 1.2], [4.6, 1.9]], rounds: 1}'))
+        path = os.path.join(tempfile.mkdtemp(), 'drive.bag')
+        with rosbag.Bag(path, 'w') as bag:
+            for item in self.odometry.since(begun):
+                bag.write('/bot1/odom', item.value, item.value.header.stamp)
+        for words in ('{{bag: {}, begin: there}}', '{{bag: {}, topic: /bot1/odom, begin: there}}'):
+            said = self.done(self.start('bot1', 'replay', words.format(path)))
+            print('replay:', said)
+            off = [float(most) for most in re.findall(r'([\d.]+) m at most', said)]
+            self.assertEqual(len(off), 2, said)
+            self.assertLess(max(off), 0.15, said)
+        for words, why in (('{bag: /nowhere/x.bag}', 'cannot be read: No such file'),
+                           ('{{bag: {}, topic: /odom}}'.format(path), 'topic could be: /bot1/odom'),
+                           ('{seconds: 1, bag: ""}', '')):
+            ended = self.ends(self.start('bot1', 'replay', words))
+            self.assertIn(ended[0][0], (TaskState.FAILED, TaskState.DONE))
+            self.assertIn(why, ended[0][1])
+
+    def test_marks_and_the_fence(self):
+        self.done(self.start('bot2', 'goto', '{x: 2.0, y: 2.6}'))
+        self.assertTrue(self.set_mark('dock', True, Pose2D(3.6, 1.8, 0.0)).success)
+        self.assertTrue(self.set_fence([Point32(x, y, 0.0) for x, y in (
+            (2.4, 0.4), (4.4, 0.4), (4.4, 2.6), (2.4, 2.6))]).success)
+        self.done(self.start('bot1', 'return', '{mark: dock}'))
+        self.assertLess(math.dist(self.places['bot1'].last(), (3.6, 1.8)), 0.2)
+        self.assertIn('there are: dock', self.ends(
+            self.start('bot1', 'return', '{mark: door}'))[0][1])
+        self.assertEqual(self.ends(self.start('bot1', 'goto', '{x: 5.0, y: 1.8}')), [
+            (TaskState.FAILED, 'its goal lies outside of the fence')])
+        begun = time.monotonic()
+        ended = self.ends(self.start('bot1', 'square', '{side: 3.0}'))
+        self.assertEqual(ended, [(TaskState.BLOCKED, 'for 5 s: it is at the fence')])
+        furthest = max(item.value[0] for item in self.places['bot1'].since(begun))
+        print('fence at 4.40 m: the middle of the robot came to {:.2f} m'.format(furthest))
+        self.assertLess(furthest, 4.4 - 0.15)
+        unplaced = self.ends(self.start('pond', 'square', '{side: 1.0}'))
+        self.assertEqual(unplaced[0][0], TaskState.FAILED)
+        self.assertIn('there is a fence, and ', unplaced[0][1])
+
+    def sent(self):
+        """Send the robot that has move_base somewhere; return the goal, once it is on its way."""
+        begun = time.monotonic()
+        goal = self.start('bot3', 'goto', '{x: 50.0, y: 1.0, frame: odom}')
+        wait_until(lambda: self.navigation.goals, 'its navigation gets no goal', 60.0)
+        self.commands.wait(moves, begun, 60.0)
+        return goal
+
+    def rests_for_good(self, since):
+        """Wait for silence after the first zero of the gates; no command but zeros came after."""
+        wait_until(lambda: not self.navigation.goals, 'its navigation goes on', 60.0)
+        self.commands.wait_silence(1.2, 60.0)
+        noted = self.commands.since(since)
+        self.assertTrue([item for item in noted if rests(item.value)], 'no zero came')
+        self.assertTrue(rests(noted[-1].value))
+
+    def test_a_goal_goes_to_the_navigation_of_the_robot(self):
+        goal = self.sent()
+        target = self.navigation.goals[0].get_goal().target_pose
+        self.assertEqual((target.pose.position.x, target.pose.position.y), (50.0, 1.0))
+        self.assertEqual([item.value for item in self.commands.since(0.0)
+                          if rests(item.value)][3:], [], 'zeros are in the way of its navigation')
+        self.navigation.end('succeeded')
+        self.assertRegex(self.done(goal), 'it is there by its own navigation')
+        goal = self.sent()
+        self.navigation.end('aborted')
+        self.assertEqual(self.ends(goal), [
+            (TaskState.BLOCKED, 'its own navigation found no way (the test says so)')])
+
+    def test_whatever_ends_a_task_cancels_the_goal_there(self):
+        for ends, state in (
+                (lambda goal: self.set_stop(True), TaskState.STOPPED),
+                (lambda goal: self.operator.check('bot3'), TaskState.TAKEN_OVER),
+                (lambda goal: goal.cancel(), TaskState.STOPPED),
+                (lambda goal: self.start('bot3', 'hold', '{seconds: 0.5}'),
+                 TaskState.TAKEN_OVER)):
+            self.setUp()
+            goal = self.sent()
+            since = time.monotonic()
+            ends(goal)
+            self.assertEqual(self.ends(goal)[0][0], state)
+            self.rests_for_good(since)
+
+    def test_when_mhri_tasks_is_killed_the_next_one_cancels_its_goals(self):
+        self.sent()
+        killed = time.monotonic()
+        for process in psutil.process_iter(['cmdline']):
+            if '__name:=mhri_tasks' in (process.info['cmdline'] or ()) \
+                    and os.environ['ROS_MASTER_URI'] == process.environ().get('ROS_MASTER_URI'):
+                process.kill()
+        wait_until(lambda: not self.navigation.goals, 'its navigation goes on', 60.0)
+        print('mhri_tasks killed: goal cancelled after {:.1f} s'.format(time.monotonic() - killed))
+        self.commands.wait_silence(1.2, 60.0)
+        wait_until(lambda: self.lists.since(killed) and not self.lists.last().runs,
+                   'mhri_tasks does not come back', 60.0)
+
+    def test_a_turtle_does_what_its_topics_allow(self):
+        x, y, _ = self.turtle.last()
+        self.done(self.start('pond', 'goto', '{{x: {}, y: {}, frame: odom, speed: 1.0}}'.format(
+            x + 1.0, y + 0.5)))
+        self.assertLess(math.dist(self.turtle.last()[:2], (x + 1.0, y + 0.5)), 0.2)
+        self.assertIn('by odometry', self.done(self.start('pond', 'square',
+                                                          '{side: 1.0, speed: 1.0}')))
+        self.done(self.start('pond', 'replay', '{seconds: 600, speed: 1.0}'))
+        self.done(self.start('pond', 'return', '{distance: 1.0, speed: 1.0}'))
+        ended = self.ends(self.start('pond', 'follow', '{leader: bot1}'))
+        self.assertEqual(ended[0][0], TaskState.FAILED)
+
+
+if __name__ == '__main__':
+    rospy.init_node('tasks_more_test')
+    rostest.rosrun('mhri', 'tasks_more', TasksMore)
