@@ -91,6 +91,12 @@ class GatesCase(unittest.TestCase):
         wait_for(lambda: receiver.after(when), what='the command')
         return receiver.after(when)[-1][1:]
 
+    def drive_all(self, made, linear):
+        """Publish one command; return once every robot has it, so that none is under way."""
+        when = self.mux.say(linear)
+        for name, receiver in made:
+            wait_for(lambda: receiver.after(when), what='the command for ' + name)
+
     def first_zero(self, what, receiver, when, within_s):
         """Wait for the next message, which has to be a zero and in time."""
         wait_for(lambda: receiver.after(when), what='the zero: ' + what)

@@ -271,8 +271,7 @@ class GatesTest(GatesCase):
 
     def test_gates_that_are_killed_are_followed_by_a_zero(self):
         made = self.robots(4)
-        for _, receiver in made:
-            self.drive(receiver, 0.2)
+        self.drive_all(made, 0.2)
         when = self.gates.send(signal.SIGKILL)
         GatesCase.gates = start_gates()
         for name, receiver in made:
@@ -290,8 +289,7 @@ class GatesTest(GatesCase):
 
     def test_a_robot_unchecked_while_there_are_no_gates_gets_its_zero(self):
         (_, still), (_, driven) = made = self.robots(2)
-        for _, receiver in made:
-            self.drive(receiver, 0.2)
+        self.drive_all(made, 0.2)
         when = self.gates.send(signal.SIGKILL)
         self.gates.wait()
         self.operator.check(made[0][0])
