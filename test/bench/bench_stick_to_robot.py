@@ -7,6 +7,8 @@ machine and with rounds taken in turn: Twist -> topic_tools mux -> a topic_tools
 robot -> Twist, the same two hops made of C++ nodes from the distribution (without limits, watch on
 freshness, selection or stop). Every figure is in milliseconds, over all robots and events.
 
+Then the same with the obstacle brake on, and scans and odometry played to it by another process.
+
 Last the case of the contract: four robots, each with its window on the screen in which its camera
 (RGB, 640x480, 30 Hz) and the graph of its motion run. First they are simulated on this machine,
 where drawing what the cameras see takes a core; then what they sent is played from a bag (rosbag
@@ -80,9 +82,10 @@ class Mhri:
     """The mux, the gates and the real panel, with the robots selected.
 
     :param streaming: simulated robots with cameras, else none but who receives their commands
+    :param brake: whether the obstacle brake is on; then their lasers and odometry are played
     """
 
-    def __init__(self, system, names, streaming):
+    def __init__(self, system, names, streaming, brake):
         import rospy
         from sensor_msgs.msg import Joy
         from mhri.msg import ControlMode
@@ -95,8 +98,8 @@ class Mhri:
             rospy.set_param('/{}/robot_type'.format(name), 'turtlebot2' if streaming else 'generic')
         settings = os.path.join(system.home, 'screen.json')
         with open(settings, 'w', encoding='utf-8') as stream:
-            json.dump({'state': {'looks': {name: {'views': ['imu', 'rgb']} for name in names}}},
-                      stream)
+            looks = {name: {'views': ['imu', 'rgb']} for name in names}
+            json.dump({'state': {'brake': brake, 'looks': looks}}, stream)
         panel = system.node('panel', '--settings', settings, '--select', ' '.join(names))
         self.receiver = Receiver(['/{}/{}'.format(
             name, 'teleop/input' if streaming else 'cmd_vel') for name in names])
@@ -106,6 +109,9 @@ class Mhri:
                  'the mux')
         mode.publish('pedal')
         wait_for(self.receiver.connected, 60, 'the gates')
+        if brake:
+            system.start(sys.executable, os.path.abspath(__file__), '--play', *names)
+            wait_for_brakes(names)
         wait_for(lambda: self._through(0.1), 60, 'the first command at every robot')
         if streaming:
             self.streams = Streams(system, names, panel, robots)
@@ -126,6 +132,39 @@ class Mhri:
     def send(self, value):
         """Deflect the stick forward; the operator's limit makes it half as many m/s."""
         self._joy.publish(self._joy_class(axes=[0.0, value]))
+
+
+def wait_for_brakes(names):
+    """Wait until the gates say of every robot that its brake is on."""
+    import rospy
+    from mhri.msg import GatesState
+    said = []
+    ear = rospy.Subscriber('/gates/state', GatesState, lambda message: said.append(
+        {robot.name for robot in message.robots if robot.brake == robot.BRAKE_ON}))
+    wait_for(lambda: said and said[-1] == set(names), 30, 'the brakes')
+    ear.unregister()
+
+
+def play(names):
+    """Play laser (10 Hz) and odometry (50 Hz) of robots in a room 8 m wide, until ended."""
+    import rospy
+    from nav_msgs.msg import Odometry
+    from sensor_msgs.msg import LaserScan
+    rospy.init_node('players')
+    scans = [rospy.Publisher('/{}/scan'.format(name), LaserScan, queue_size=1) for name in names]
+    places = [rospy.Publisher('/{}/odom'.format(name), Odometry, queue_size=1) for name in names]
+    scan = LaserScan(angle_increment=0.0174533, range_min=0.1, range_max=10.0, ranges=[4.0] * 360)
+    place = Odometry()
+    place.pose.pose.orientation.w = 1.0
+    tick, rate = 0, rospy.Rate(50)
+    while not rospy.is_shutdown():
+        tick += 1
+        for publisher in places:
+            publisher.publish(place)
+        # Each at another moment, as robots do.
+        for publisher in scans[tick % 5::5]:
+            publisher.publish(scan)
+        rate.sleep()
 
 
 class Streams:
@@ -292,7 +331,7 @@ def compare_streaming(mhri, chain, robots, events, table, short):
             ', '.join('{:.1f}'.format(rate) for rate in mhri.streams.rates(2.0))))
 
 
-def run(robots, table, streaming, short):
+def run(robots, table, streaming, brake, short):
     """Measure both ways with a number of robots."""
     import rospy
     events = 200 if short else 1000
@@ -303,12 +342,12 @@ def run(robots, table, streaming, short):
         system.screen()
         system.start_master()
         rospy.init_node('bench', disable_signals=True)
-        mhri, chain = Mhri(system, names, streaming), Chain(system, names)
+        mhri, chain = Mhri(system, names, streaming, brake), Chain(system, names)
         if streaming:
             compare_streaming(mhri, chain, robots, events, table, short)
         else:
-            compare({'mhri (mux, gates)': mhri, 'topic_tools (mux, relay)': chain}, robots, events,
-                    table)
+            title = 'mhri, obstacle brake on' if brake else 'mhri (mux, gates)'
+            compare({title: mhri, 'topic_tools (mux, relay)': chain}, robots, events, table)
         rospy.signal_shutdown('measured')
 
 
@@ -317,12 +356,18 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--short', action='store_true', help='fewer events and numbers of robots')
     parser.add_argument('--robots', type=int, help='only this many')
+    parser.add_argument('--brake', action='store_true', help='with the obstacle brake on')
+    parser.add_argument('--play', nargs='+', metavar='ROBOT', help='play their sensors, no more')
     parser.add_argument('--streaming', action='store_true', help='windows with pictures')
     options = parser.parse_args()
+    if options.play:
+        play(options.play)
+        return
     if options.robots is None:
         print('stick to robot [ms]        bots  values      p50      p90      p99      max',
               flush=True)
-        for words in ([] if options.short else [['1'], ['4']]) + [['12'], ['4', '--streaming']]:
+        for words in ([] if options.short else [['1'], ['4']]) + [
+                ['12'], ['4', '--brake'], ['4', '--streaming']]:
             arguments = [sys.executable, os.path.abspath(__file__), '--robots'] + words
             status = os.spawnv(os.P_WAIT, sys.executable,
                                arguments + (['--short'] if options.short else []))
@@ -330,7 +375,7 @@ def main():
                 sys.exit(status)
         return
     table = []
-    run(options.robots, table, options.streaming, options.short)
+    run(options.robots, table, options.streaming, options.brake, options.short)
     print('\n'.join(table), flush=True)
 
 

@@ -201,3 +201,18 @@ def drag():
         QApplication.sendEvent(joystick, QMouseEvent(
             QEvent.MouseMove, target, Qt.NoButton, Qt.LeftButton, Qt.NoModifier))
     return drag_to
+
+
+@pytest.fixture
+def scene(application, operator, ui_dir):
+    """Return a maker of scenes."""
+    # Not before it is wanted: it loads the whole screen.
+    from mhri.gui.screen import theme
+    from support.scenes import Scene
+    before = application.font()
+
+    def make(size, count, font=1.0, **more):
+        application.setFont(theme.larger(before, font))
+        return Scene(application, ui_dir, size, count, **more)
+    yield make
+    application.setFont(before)

@@ -2,29 +2,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The screen at every size, read pixel by pixel: pictures large, nothing clipped, all readable."""
 import itertools
+import os
+import sys
 
 import numpy as np
 import pytest
 from python_qt_binding.QtCore import QPoint, QRect, Qt
-from python_qt_binding.QtGui import QColor, QImage, QPalette
+from python_qt_binding.QtGui import QColor, QPalette
 from python_qt_binding.QtTest import QTest
-from python_qt_binding.QtWidgets import QAbstractButton, QPushButton, QVBoxLayout, QWidget
+from python_qt_binding.QtWidgets import QAbstractButton, QPushButton, QWidget
 
-from mhri.core.camera.images import Frame
-from mhri.core.screen import views
-from mhri.gui.driving.stop_button import StopButton
-from mhri.gui.screen import theme
-from mhri.gui.screen.labels import TextLine
-from mhri.gui.screen.screen import ScreenWidget
-from mhri.gui.screen.status_line import StatusLine
-from mhri.gui.screen.torn_off import TornOff
-from mhri.gui.screen.windows import TurtleBotWindow
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-# A colour that nothing else on the screen has, also where the header darkens it.
-MAGENTA = (220, 0, 220)
+from mhri.gui.driving.stop_button import StopButton  # noqa: E402
+from mhri.gui.screen import theme  # noqa: E402
+from mhri.gui.screen.labels import TextLine  # noqa: E402
+from mhri.gui.screen.torn_off import TornOff  # noqa: E402
+from support.scenes import colour_at, KINDS  # noqa: E402
+
 SMALL, LARGE = (1280, 720), (1920, 1080)
-KINDS = {
-    'plain': {}, 'long': {'long_names': True}, 'group': {'group': True}, 'stopped': {'stop': True}}
 LAYOUTS = [
     # size, robots, theme, font, kind, drawer
     ((1024, 600), 3, 'dark', 1.0, 'plain', True), ((1024, 600), 12, 'light', 1.0, 'plain', False),
@@ -39,104 +35,11 @@ LAYOUTS = [
     ((794, 700), 6, 'light', 1.0, 'plain', True), ((794, 700), 3, 'dark', 1.0, 'stopped', False)]
 
 
-def frame_of(colour, size=(640, 480)):
-    """Return a picture of one colour."""
-    rgb = np.zeros((size[1], size[0], 3), np.uint8)
-    rgb[:] = colour
-    return Frame(kind='rgb', rgb=rgb, depth_m=None, depth_range_m=None, full_size=size)
-
-
-def robots_of(count, long_names=False, group=False, stop=False):
-    """Return so many robots: the first driven, the third lost, the fifth with a flat battery."""
-    robots = []
-    for number in range(1, count + 1):
-        more = {'selected': number == 1 or group and number <= 3, 'driven': number == 1}
-        if number == 3:
-            more.update(link=views.GONE,
-                        note='nothing heard for 12 s: switched off, or out of reach')
-        if number == 5:
-            more.update(battery=0.12, slow=True, note='battery at 12 %')
-        if stop:
-            more.update(driven=False,
-                        proof=views.ProofView(views.PROOF_STOPPED, 'stopped in 20 ms'))
-        robots.append(views.RobotView(**{**dict(
-            name='{}{}'.format('inspection_crawler_' if long_names else 'bot', number),
-            type_label='TurtleBot2', number=number, link=views.LIVE, age_s=0.012, linear_mps=0.38,
-            angular_rad_s=-0.8, heading_rad=0.8, battery=0.82, x_m=1.0, y_m=2.0,
-            max_linear_mps=0.65, max_angular_rad_s=3.14), **more}))
-    return tuple(robots)
-
-
-class Scene:
-    """A screen with robots that nobody drives."""
-
-    def __init__(self, application, ui_dir, size, count, mode='joy', **kind):
-        self.application = application
-        self.screen = ScreenWidget(ui_dir)
-        self.screen.setAttribute(Qt.WA_DontShowOnScreen)
-        self.screen.resize(*size)
-        self.robots = robots_of(count, **kind)
-        self.stop = kind.get('stop', False)
-        self.view = views.PanelView(
-            ros=views.ROS_CONNECTED, sources=(('joy', 'Virtual joystick'), ('ps3joy', 'Pad')),
-            mode=mode, status='driving bot1', robots=self.robots, camera_bits_per_s=12e6,
-            stop_all=self.stop)
-        self.tiles = {}
-        for robot in self.robots:
-            tile = TurtleBotWindow(ui_dir, robot.name, robot.type_label, self.screen.stage)
-            tile.offer({'rgb', 'scan', 'record'})
-            self.tiles[robot.name] = tile
-
-    def show(self):
-        """Show it until nothing moves any more, and return the screen."""
-        self.screen.show()
-        self.screen.show_view(self.view)
-        self.screen.stage.show_tiles(self.tiles)
-        for _ in range(3):
-            self.application.processEvents()
-            self.screen.show_view(self.view)
-            for robot in self.robots:
-                tile = self.tiles[robot.name]
-                tile.show_view(robot, self.stop)
-                tile.view('rgb').show_frame(self.frame(robot.number))
-        self.application.processEvents()
-        return self.screen
-
-    def frame(self, number):
-        """Return what a robot's camera sees."""
-        return frame_of(MAGENTA)
-
-    def pixels(self):
-        """Return what is to be seen as an array (row, column, RGB)."""
-        return pixels_of(self.screen)
-
-
-def pixels_of(widget):
-    """Return a picture of a widget as an array (row, column, RGB)."""
-    image = widget.grab().toImage().convertToFormat(QImage.Format_RGB888)
-    bits = image.constBits()
-    bits.setsize(image.byteCount())
-    rows = np.frombuffer(bits, np.uint8).reshape(image.height(), image.bytesPerLine())
-    return rows[:, :3 * image.width()].reshape(image.height(), image.width(), 3).copy()
-
-
 def share_of_picture(pixels):
     """Return which part of the pixels is picture, under a dark header as well."""
     red, green, blue = (pixels[..., part].astype(int) for part in range(3))
     picture = (red > 36) & (abs(red - blue) < 16) & (2 * green < red)
     return picture.mean()
-
-
-@pytest.fixture
-def scene(application, operator, ui_dir):
-    """Return a maker of scenes."""
-    before = application.font()
-
-    def make(size, count, font=1.0, **more):
-        application.setFont(theme.larger(before, font))
-        return Scene(application, ui_dir, size, count, **more)
-    yield make
-    application.setFont(before)
 
 
 def place_in(window, widget):
@@ -242,12 +145,6 @@ def test_colours_of_a_theme_can_be_told_from_their_ground(name):
     assert theme.contrast(QColor(Qt.white), theme.STOP_GROUND) >= 4.5
 
 
-def colour_at(pixels, widget, window, x, y):
-    """Return the colour at a place in a widget as an (R, G, B)."""
-    corner = widget.mapTo(window, QPoint(0, 0))
-    return tuple(int(part) for part in pixels[corner.y() + y, corner.x() + x])
-
-
 def test_trouble_is_on_the_edge_of_a_tile_and_driving_on_that_of_another(scene):
     made = scene(SMALL, 6)
     screen = made.show()
@@ -333,66 +230,6 @@ def test_without_robots_it_invites_to_look(scene, heard):
     assert button.isVisible() and not screen.joystick.geometry().intersects(button.geometry())
     QTest.mouseClick(button, Qt.LeftButton)
     assert len(asked) == 1
-
-
-def test_in_a_narrow_dock_of_a_light_desktop_it_can_be_read(scene, application):
-    made = scene((684, 440), 0)
-    dock = QWidget()
-    dock.setPalette(theme.palette_of('light'))
-    dock.setAttribute(Qt.WA_DontShowOnScreen)
-    QVBoxLayout(dock).addWidget(made.screen)
-    dock.resize(700, 470)
-    dock.show()
-    screen = made.show()
-    pixels = made.pixels()
-    ground = theme.palette_of('dark').color(QPalette.Window).getRgb()[:3]
-    invitation = screen.findChild(QWidget, 'invitation')
-    assert colour_at(pixels, invitation, screen, 2, 2) == ground
-    assert colour_at(pixels, screen.foot, screen, screen.foot.width() - 2, 2) == ground
-    button = screen.findChild(QPushButton, 'invitation_look_button')
-    assert invitation.rect().contains(button.geometry())
-    assert button.width() > theme.text_width(button.font(), button.text())
-
-
-@pytest.mark.parametrize('width', [180, 250, 330, 420])
-def test_numbers_over_a_narrow_picture_are_whole(scene, width):
-    """White is words alone here: none at the right edge, where a line would be cut off."""
-    made = scene(SMALL, 1)
-    made.show()
-    hud = made.tiles['bot1'].hud
-    hud.set_extra(('0.98 m to the nearest thing, ahead left',))
-    hud.show_view(made.robots[0])
-    hud.resize(width, 160)
-    seen = pixels_of(hud)
-    assert (seen[:, :width // 2] > 240).all(axis=2).any()
-    assert not (seen[:, -6:] > 240).all(axis=2).any()
-
-
-def test_a_narrow_bottom_line_says_what_happens(application, operator):
-    line = StatusLine()
-    operator.show(line)
-    label = line.findChild(TextLine, 'status_label')
-    line.show_status('1 of 2 robots  \u2013  Virtual joystick  \u2013  driving', 'calm')
-    for text, width in (('driving', 80), ('Virtual joystick  \u2013  driving', 240)):
-        label.setFixedWidth(width)
-        assert label.shown_text() == text
-    line.show_status('no robot selected: check the ones to drive', 'calm')
-    label.setFixedWidth(theme.text_width(label.font(), 'no robot selected:'))
-    assert label.shown_text() == 'no robot selected'
-
-
-@pytest.mark.parametrize('size', [(794, 700), (1024, 600), SMALL, LARGE])
-def test_every_page_of_the_drawer_has_its_tab_in_sight(scene, size):
-    made = scene(size, 3)
-    for title in ('Tasks', 'Events', 'Doctor', 'Pad'):
-        made.screen.arrangement.add_page(title, QWidget())
-    tabs = made.show().tabs
-    assert {'Robots', 'Screen', 'Tasks', 'Events', 'Doctor', 'Pad'} <= {
-        tabs.tabText(index) for index in range(tabs.count())}
-    for index in range(tabs.count()):
-        room = tabs.tabRect(index)
-        assert tabs.rect().contains(room), tabs.tabText(index)
-        assert theme.text_width(tabs.font(), tabs.tabText(index)) <= room.width()
 
 
 def test_the_scan_lies_in_a_corner_and_leaves_the_picture_large(scene):

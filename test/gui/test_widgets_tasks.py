@@ -183,6 +183,19 @@ def test_row_and_tile_say_what_it_does_and_why_it_waits(
     assert tile.hud.sign == sign and words in tile.hud.sentence
 
 
+def test_a_bad_link_hides_neither_the_task_nor_is_hidden_by_it(
+        panel, four_robots, operator, ui_dir):
+    robot = replace(four_robots.robots[0], selected=False, obeys='task', task=ON_SQUARE, slow=True,
+                    note='18 % of its messages lost')
+    panel.show_view(replace(four_robots, robots=(robot,)))
+    row = panel.robot_list.row('bot1')
+    assert row.trouble.text().startswith('square: corner 2')
+    assert row.trouble_sign.sign == (theme.TRIANGLE, theme.ATTENTION)
+    tile = operator.show(BotWindow(ui_dir, 'bot1', 'TurtleBot2'))
+    tile.show_view(robot)
+    assert tile.hud.sentence == '18 % of its messages lost; square: corner 2 of 4, 1.3 m to go'
+
+
 def test_a_robot_that_is_taken_over_is_driven_whatever_its_task_says(panel, four_robots):
     robot = replace(four_robots.robots[0], obeys='operator', task=ON_SQUARE)
     panel.show_view(replace(four_robots, robots=(robot,)))

@@ -124,6 +124,7 @@ class TasksMore(unittest.TestCase):
         """Wait for the end; return [(state, sentence)] of its robots."""
         wait_until(lambda: goal.get_comm_state() == actionlib.CommState.DONE, 'the task goes on',
                    PATIENCE_S)
+        self.assertIsNotNone(goal.get_result(), goal.get_goal_status_text())
         return [(robot.state, robot.text) for robot in goal.get_result().robots]
 
     def done(self, goal):
@@ -241,7 +242,7 @@ class TasksMore(unittest.TestCase):
             self.assertEqual(self.ends(goal)[0][0], state)
             self.rests_for_good(since)
 
-    def test_a_goal_of_one_that_was_killed_is_cancelled_by_the_next(self):
+    def test_when_mhri_tasks_is_killed_the_next_one_cancels_its_goals(self):
         self.sent()
         killed = time.monotonic()
         for process in psutil.process_iter(['cmdline']):

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the screen at every size into PNG files, to be looked at: ``layout_pictures.py <folder>``.
 
-The robots are those of ``test/gui/test_layouts.py``, their pictures those of the simulator.
+The robots are those of ``scenes.py``, their pictures those of the simulator.
 """
 import itertools
 import os
@@ -12,18 +12,17 @@ import sys
 import numpy as np
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path[:0] = [os.path.join(HERE, '..'), os.path.join(HERE, '..', 'gui')]
+sys.path.insert(0, os.path.join(HERE, '..'))
 os.environ['QT_QPA_PLATFORM'] = 'xcb'
 
 from python_qt_binding.QtWidgets import QApplication  # noqa: E402
-
-import test_layouts as layouts  # noqa: E402
 
 from mhri.core.camera.images import Frame  # noqa: E402
 from mhri.gui.screen import theme  # noqa: E402
 from mhri.ros.resources import read_text, resource_path  # noqa: E402
 from mhri.sim.camera import Camera  # noqa: E402
 from mhri.sim.plan import parse_plan  # noqa: E402
+from support import scenes  # noqa: E402
 
 SIZES = (794, 700), (1024, 600), (1280, 720), (1366, 768), (1920, 1080), (3840, 2160)
 COUNTS = 1, 3, 6, 12
@@ -43,7 +42,7 @@ def wishes():
         yield size, 0, 'dark', 1.0, 'plain', True, 'joy'
 
 
-class Scene(layouts.Scene):
+class Scene(scenes.Scene):
     """A scene whose robots stand in the simulated building."""
 
     frames = {}
@@ -73,7 +72,7 @@ def main(folder):
     Scene.frames = frames()
     for size, count, name, font, kind, is_open, mode in wishes():
         application.setFont(theme.larger(usual, font))
-        scene = Scene(application, resource_path(), size, count, mode, **layouts.KINDS[kind])
+        scene = Scene(application, resource_path(), size, count, mode, **scenes.KINDS[kind])
         scene.screen.arrangement.choose_theme(name)
         scene.screen.drawer_button.setChecked(is_open)
         scene.show().grab().save(os.path.join(folder, '{}x{}-{:02}-{}-{:g}-{}-{}-{}.png'.format(

@@ -50,7 +50,8 @@ def test_a_group_of_three_leaves_no_cell_empty(size):
 
 def test_the_picture_of_a_group_of_three_is_larger_than_in_a_square_of_four():
     found = arrange(1440, 1080, [4 / 3] * 3, [], (150, 60), 4)
-    assert found.picture_px == pytest.approx(sum(box.picture(4 / 3) for box in found.large), rel=1e-3)
+    assert found.picture_px == pytest.approx(
+        sum(box.picture(4 / 3) for box in found.large), rel=1e-3)
     assert arrange(1500, 1000, [4 / 3] * 3, [], (150, 60), 4).picture_px > 3 * (
         Box(0, 0, 748, 498).picture(4 / 3))
 

@@ -85,8 +85,9 @@ def tried(far_m, beside=False):
 def test_random_starts_end_within_5_cm_and_2_degrees_or_are_refused(far_m, beside, most_refused):
     fits, refused = tried(far_m, beside)
     off_m, off_deg = errors_of(fits)
-    print('laser of {} m, {}: {} fits, {} refused; median {:.3f} m {:.2f} degrees, most {:.3f} m '
-          '{:.2f} degrees'.format(far_m, 'another robot' if beside else 'map', len(fits), refused,
+    words = 'laser of {} m, {}: {} fits, {} refused; median {:.3f} m {:.2f} deg, most {:.3f} m ' \
+        '{:.2f} deg'
+    print(words.format(far_m, 'another robot' if beside else 'map', len(fits), refused,
                        np.median(off_m), np.median(off_deg), off_m.max(), off_deg.max()))
     assert off_m.max() <= 0.05 and off_deg.max() <= 2.0
     assert refused <= most_refused

@@ -84,6 +84,14 @@ def test_what_was_taken_or_stopped_can_be_continued_and_nothing_else(book, state
         assert (left.key, left.robots, left.parameters) == ('square', ('bot1',), '{side: 1.0}')
 
 
+def test_what_is_asked_for_is_not_offered_meanwhile(book):
+    book.hear_result('a', '', ended('lost'))
+    book.ask('b', GOAL, 1.0)
+    assert book.left('bot1') is None
+    book.hear_result('b', 'no', ())
+    assert book.left('bot1') is not None
+
+
 @pytest.mark.parametrize('by', ['operator', 'somebody'])
 def test_what_was_cancelled_is_not_offered_again(book, by):
     if by == 'operator':

@@ -9,6 +9,7 @@ import time
 
 import yaml
 
+from mhri.core.events.events import ATTENTION, KINDS
 from mhri.core.screen.task_book import Goal
 from mhri.core.screen.task_words import carry_on_line, start_problem
 from mhri.core.screen.views import PanelView, ROS_CONNECTED
@@ -134,9 +135,10 @@ class TaskHost:
     def _hear(self, news):
         """Tell of what has happened."""
         self._note(news.kind, news.text, news.robot)
-        if news.kind == 'task.refused':
-            self.page.show_problem(news.text)
-            self._screen.show_look_result(news.text)
+        if KINDS[news.kind][0] == ATTENTION:
+            text = ': '.join(filter(None, (news.robot, news.text)))
+            self.page.show_problem(text)
+            self._screen.show_look_result(text)
 
     def _watch(self):
         """Tell of whoever runs the tasks falling silent or coming back, and of strangers."""
@@ -213,6 +215,8 @@ class TaskHost:
 
     def carry_on(self, robot):
         """Put a robot back on the task that it was taken from, or that was stopped."""
+        if any(robot in start.goal.robots for start in self._waiting):
+            return
         goal = self._client.left(robot)
         if goal is None or self._client.of(robot) is not None:
             self._screen.show_look_result('{} has no task to continue'.format(robot))

@@ -4,6 +4,8 @@
 import importlib
 import operator
 
+import rospy
+
 
 class MessageMissing(LookupError):
     """A message type whose package is not installed here; says which."""
@@ -23,6 +25,16 @@ def message_class(kind):
         return getattr(module, name)
     except AttributeError:
         raise MessageMissing('{} has no message {}'.format(package, name)) from None
+
+
+def bytes_of(kind):
+    """Return a class with which a topic of this message class is heard as bytes (``_buff``).
+
+    Unlike ``rospy.AnyMsg`` it refuses publishers of another type, and the master knows the type.
+    """
+    return type(kind.__name__, (rospy.AnyMsg,), {
+        '__slots__': (), '_md5sum': kind._md5sum, '_type': kind._type,
+        '_full_text': kind._full_text})
 
 
 def read_field(message, field):

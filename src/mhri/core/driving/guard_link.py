@@ -63,7 +63,8 @@ def read_state(text: str) -> GuardState:
 
     What cannot be read counts as not said, but for a brake of which nobody knows what it does.
     """
-    found = dict(part.groups() for part in map(_STATE.match, text[:200].split()) if part)
+    found = {part.group(1): part.group(2)
+             for part in map(_STATE.match, text[:200].split()) if part}
     brake = found.get('brake', '')
     return GuardState(brake if brake in ('', ON, SLOWS) else NO_SCAN,
                       _number(found.get('way'), math.nan), _number(found.get('back_after'), 0.0))

@@ -198,5 +198,6 @@ class TaskBook:
             one.robot in robots and one.state not in ENDS for one in run.robots)]
 
     def left(self, robot: str) -> Optional[Goal]:
-        """Return what a robot could continue, None for nothing."""
-        return self._left.get(robot)
+        """Return what a robot could continue, None for nothing, and while it is asked for."""
+        asked = any(robot in goal.robots for goal, _ in self._asked.values())
+        return None if asked else self._left.get(robot)

@@ -10,7 +10,7 @@ NOT_RUNNING = ('the task service is not running: it restarts within seconds; if 
                'mhri again')
 NOT_ANSWERING = 'the task service does not answer: robots on a task stand'
 # How a task that is continued goes on; any other begins anew.
-_GOES_ON = {'goto': 'goes on to its goal', 'return': 'goes on back along its trail',
+_GOES_ON = {'goto': 'goes on to its goal', 'return': 'goes on back',
             'follow': 'goes on behind its leader', 'formation': 'goes back to its place',
             'patrol': 'goes to the first corner of its route', 'hold': 'stands where it is now'}
 _ANEW = 'begins anew from where it stands'

@@ -20,8 +20,8 @@ from mhri.core.tasks.base import (
 from mhri.core.tasks.fence import depths, is_inside
 from mhri.core.tasks.run import ENDED, Facts, missing_senses, READYING, RobotRun, UNDER_WAY
 
-# So much nearer to the fence within a tick is no error of measurement [m].
-_NEARER_M = 0.002
+# So much nearer to the fence than before is no error of measurement [m].
+_NEARER_M = 0.02
 
 
 class Errand:
@@ -60,7 +60,7 @@ class DelegatedRun(RobotRun):
         super().__init__(robot, None, body, timeout_s, now_s)
         self._target = target
         self._errand = errand
-        self._depth_m = math.inf
+        self._depth_m = -math.inf
 
     @property
     def drives(self) -> bool:
@@ -130,7 +130,6 @@ class DelegatedRun(RobotRun):
         """Tell whether it gets nearer to a fence that it touches, or further off outside."""
         if not len(senses.fence):
             return False
-        before = self._depth_m
-        self._depth_m = float(depths(senses.fence, np.array(
-            [[senses.pose.x_m, senses.pose.y_m]]))[0])
-        return self._depth_m < min(self._body.radius_m, before - _NEARER_M)
+        depth_m = float(depths(senses.fence, np.array([[senses.pose.x_m, senses.pose.y_m]]))[0])
+        self._depth_m = max(self._depth_m, depth_m)
+        return depth_m < min(self._body.radius_m, self._depth_m - _NEARER_M)

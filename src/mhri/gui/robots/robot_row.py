@@ -254,7 +254,7 @@ class RobotRow(QWidget):
         elif view.link != views.LIVE:
             self._show_trouble(None, view.note or words.LINK_WORDS[view.link])
         elif view.task is not None:
-            self._show_trouble(theme.TASK_WAITS if view.task.waits else theme.ON_TASK,
+            self._show_trouble(theme.TASK_WAITS if view.task.waits or view.slow else theme.ON_TASK,
                                *task_lines(view.task))
         elif view.carry_on and not view.note:
             self._show_trouble(None, interrupted_line(view.carry_on))

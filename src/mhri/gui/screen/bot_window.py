@@ -305,7 +305,7 @@ class BotWindow(QWidget):
         elif view.note and (view.slow or view.link != views.LIVE):
             sign = (theme.TRIANGLE, theme.ATTENTION) if view.link == views.LIVE \
                 else theme.LINK_SIGNS[view.link]
-            text = view.note
+            text = '; '.join((view.note, *([task_line(view.task)] if view.task else ())))
         elif view.task is not None:
             sign, text = theme.TASK_WAITS if view.task.waits else theme.ON_TASK, \
                 task_line(view.task)

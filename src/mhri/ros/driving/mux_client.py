@@ -6,9 +6,9 @@ Publishes ``/mux_in/mode_select`` (``mhri/ControlMode``) and ``/mux_in/speed_lim
 (``geometry_msgs/Twist``, latched); while this screen drives also ``/mux_in/joy``
 (``sensor_msgs/Joy``) and ``/robot_controller/robot_select`` (``mhri/RobotSelect``, latched).
 Subscribes ``/mux/mode``, ``/mux/speed_limit``, ``/mux/waits_for``, ``/mux/pushed``,
-``/mux/advice``, ``/mux/dead_man``, ``/robot_controller/stop_all``, ``/robot_controller/twist``, and believes only
-the mux in force (:mod:`mhri.ros.driving.in_force`). Calls ``/mux/set_stop_all`` on a thread of its
-own.
+``/mux/advice``, ``/mux/dead_man``, ``/robot_controller/stop_all``, ``/robot_controller/twist``, and
+believes only the mux in force (:mod:`mhri.ros.driving.in_force`). Calls ``/mux/set_stop_all`` on a
+thread of its own.
 """
 import threading
 import time

@@ -17,6 +17,7 @@ from rospy.numpy_msg import numpy_msg
 from mhri.core.map.grid import grid_of, GridError, read_map
 from mhri.core.robots.mocap import Pose
 from mhri.ros.convert import yaw_of
+from mhri.ros.messages import bytes_of
 from mhri.ros.resources import read_text
 
 TOPIC, FRAME = '/map', 'map'
@@ -78,7 +79,8 @@ class MapSource:
         if self._grid is not None:
             self._publisher = publish_map(self._grid)
         else:
-            rospy.Subscriber(TOPIC, rospy.AnyMsg, self._hear, queue_size=1, buff_size=1 << 24)
+            rospy.Subscriber(TOPIC, bytes_of(OccupancyGrid), self._hear, queue_size=1,
+                             buff_size=1 << 24)
 
     def _hear(self, message):
         # Read when somebody asks for it: whoever makes a map publishes all of it again and again.

@@ -9,9 +9,11 @@ import struct
 import threading
 
 import rospy
+from tf2_msgs.msg import TFMessage
 
 from mhri.core.map.tf_tree import frame_name, TfTree
 from mhri.ros.graph.rospy_inside import unsubscribe
+from mhri.ros.messages import bytes_of
 from mhri.ros.sensors.refusals import Refusals
 
 MOST_TRANSFORMS = 1000
@@ -56,8 +58,8 @@ class TfFeed:
         """Begin to listen (blocking: it asks the master)."""
         if not self._subscribers:
             self._subscribers = [
-                rospy.Subscriber('/tf', rospy.AnyMsg, self._hear, False, tcp_nodelay=True),
-                rospy.Subscriber('/tf_static', rospy.AnyMsg, self._hear, True)]
+                rospy.Subscriber('/tf', bytes_of(TFMessage), self._hear, False, tcp_nodelay=True),
+                rospy.Subscriber('/tf_static', bytes_of(TFMessage), self._hear, True)]
 
     def close(self):
         """Stop listening (blocking: it asks the master)."""

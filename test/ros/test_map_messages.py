@@ -1,0 +1,126 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The map and tf as ROS writes them: files of map_server, messages, and bytes of tf."""
+import io
+import math
+import struct
+
+import cv2
+from geometry_msgs.msg import TransformStamped
+from nav_msgs.msg import OccupancyGrid
+import numpy as np
+import pytest
+import rospy
+from tf2_msgs.msg import TFMessage
+
+from mhri.core.config import ConfigError
+from mhri.core.map.grid import GridError
+from mhri.ros.map.map_source import grid_message, load_map, MapSource
+from mhri.ros.map.tf_feed import TfFeed, transforms
+from mhri.ros.messages import bytes_of
+
+YAML = 'image: {}\nresolution: 0.05\norigin: [-1, -2, 0.5]\nnegate: 0\n' \
+    'occupied_thresh: 0.65\nfree_thresh: 0.196\n'
+
+
+@pytest.fixture(autouse=True)
+def stamped(monkeypatch):
+    monkeypatch.setattr(rospy.Time, 'now', lambda: rospy.Time(5))
+
+
+def on_the_wire(message):
+    buffer = io.BytesIO()
+    message.serialize(buffer)
+    return buffer.getvalue()
+
+
+@pytest.mark.parametrize('name', ['hall.pgm', 'hall.png'])
+def test_a_file_of_map_server_becomes_a_message_and_a_grid_again(tmp_path, name):
+    cv2.imwrite(str(tmp_path / name), np.array([[0, 255, 205], [255, 255, 0]], dtype=np.uint8))
+    path = tmp_path / 'hall.yaml'
+    path.write_text(YAML.format(name))
+    grid = load_map(str(path))
+    assert grid.cells.tolist() == [[0, 0, 100], [100, 0, -1]]
+    buffer = io.BytesIO()
+    grid_message(grid).serialize_numpy(buffer, np)
+    message = OccupancyGrid().deserialize(buffer.getvalue())
+    assert list(message.data) == [0, 0, 100, 100, 0, -1]
+    assert (message.header.frame_id, message.info.width, message.info.height) == ('map', 3, 2)
+    heard = MapSource()
+    assert not heard.is_there and heard.grid() is None
+    heard._hear(bytes_of(OccupancyGrid)().deserialize(buffer.getvalue()))
+    assert heard.is_there
+    again = heard.grid()
+    assert again.cells.tolist() == grid.cells.tolist()
+    assert again.origin.heading_rad == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize('name', ['none.pgm', '.', '/dev/zero', 'hall.yaml'])
+def test_a_picture_that_is_none_is_refused_by_name(tmp_path, name):
+    path = tmp_path / 'hall.yaml'
+    path.write_text(YAML.format(name))
+    with pytest.raises(ConfigError) as refused:
+        load_map(str(path))
+    assert 'hall.yaml: image' in str(refused.value)
+
+
+@pytest.mark.parametrize('change', [
+    dict(width=7), dict(width=2 ** 31, height=2 ** 31), dict(resolution=0.0),
+    dict(resolution=math.nan)])
+def test_a_map_that_cannot_be_is_refused(change):
+    message = OccupancyGrid(data=[0, 100])
+    message.info.width, message.info.height, message.info.resolution = 2, 1, 0.1
+    for key, value in change.items():
+        setattr(message.info, key, value)
+    heard = MapSource()
+    heard._hear(bytes_of(OccupancyGrid)().deserialize(on_the_wire(message)))
+    with pytest.raises(GridError):
+        heard.grid()
+
+
+def test_bytes_that_are_no_map_are_refused():
+    heard = MapSource()
+    heard._hear(bytes_of(OccupancyGrid)().deserialize(b'\xff' * 40))
+    with pytest.raises(GridError):
+        heard.grid()
+
+
+def tf(*frames):
+    found = TFMessage()
+    for number, (parent, child) in enumerate(frames, 1):
+        edge = TransformStamped(child_frame_id=child)
+        edge.header.frame_id = parent
+        edge.transform.translation.x, edge.transform.rotation.w = float(number), 1.0
+        found.transforms.append(edge)
+    return found
+
+
+def test_the_bytes_of_tf_are_read_as_they_are():
+    found = list(transforms(on_the_wire(tf(('/map', 'bot1/odom'), ('bot1/odom', 'ü')))))
+    assert found == [('map', 'bot1/odom', (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)),
+                     ('bot1/odom', 'ü', (2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))]
+    assert list(transforms(on_the_wire(TFMessage()))) == []
+
+
+def test_tf_is_as_old_as_its_hearing_and_static_tf_is_not():
+    feed, now = TfFeed(lambda: now[0]), [3.0]
+    feed._hear(bytes_of(TFMessage)().deserialize(on_the_wire(tf(('map', 'odom')))), False)
+    feed._hear(bytes_of(TFMessage)().deserialize(on_the_wire(tf(('map', 'hall')))), True)
+    assert feed.find('map', 'odom')[1] == 3.0
+    assert feed.find('map', 'hall')[1] is None
+    assert feed.knows('hall') and not feed.knows('moon')
+
+
+@pytest.mark.parametrize('buff', [
+    b'', b'\1\0\0', b'\5\0\0\0', struct.pack('<I', 2 ** 32 - 1) + b'\xff' * 200,
+    on_the_wire(tf(('map', 'odom')))[:-3],
+    on_the_wire(tf(('map', 'odom'))).replace(b'odom', b'\xff\xff\xff\xff')])
+def test_bytes_that_are_no_tf_change_nothing(buff):
+    feed = TfFeed(lambda: 0.0)
+    feed._hear(bytes_of(TFMessage)().deserialize(buff), False)
+    assert not feed.knows('map')
+
+
+def test_what_is_heard_as_bytes_has_its_type():
+    kind = bytes_of(TFMessage)
+    assert (kind._type, kind._md5sum) == (TFMessage._type, TFMessage._md5sum)
