@@ -6,6 +6,7 @@ One screen, 1920x1080, without cameras; what it takes with the map closed is tak
 <= 0.15 of a core, listening to the scans included, and nothing while nobody can see it.
 """
 import argparse
+import math
 import os
 import sys
 import time
@@ -17,6 +18,8 @@ from support.ros_system import System, wait_for  # noqa: E402
 NAMES = ['bot{}'.format(number) for number in range(1, 13)]
 WORLD = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'support', 'map_world.py')
 PROMISED = 0.15
+# Drawn less often, it had less to do than was promised.
+LEAST_HZ = 9.0
 
 
 class Screen:
@@ -90,17 +93,20 @@ def main():
         print('12 robots, scans at 10 Hz, no cameras                 of a core', flush=True)
         closed = screen.cores(seconds)
         print('map closed                                                 {:.3f}'.format(closed))
-        found = {}
+        found, slowest_hz = {}, math.inf
         for state, words in (('beside', 'map beside the pictures'), ('large', 'map large')):
             screen.show_map(state)
             found[state] = screen.cores(seconds) - closed
-            print('{:<52} + {:.3f}, drawn at {:.1f} Hz'.format(
+            slowest_hz = min(slowest_hz, screen.drawn_hz)
+            print('{:<52} {:+.3f}, drawn at {:.1f} Hz'.format(
                 words, found[state], screen.drawn_hz), flush=True)
         screen.show_map('closed')
         print('closed again                                             {:+.3f}'.format(
             screen.cores(seconds) - closed))
-        print('promised: + {:.3f} at most: {}'.format(PROMISED, 'kept' if max(
-            found.values()) <= PROMISED else 'NOT kept'), flush=True)
+        verdict = 'kept' if max(found.values()) <= PROMISED else 'NOT kept'
+        print('promised: {:+.3f} at most: {}'.format(
+            PROMISED, verdict if slowest_hz >= LEAST_HZ else 'this computer is too busy to tell'),
+            flush=True)
         screen.host.close()
         rospy.signal_shutdown('measured')
 

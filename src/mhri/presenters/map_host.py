@@ -14,7 +14,8 @@ import numpy as np
 from python_qt_binding.QtCore import QObject, QTimer
 
 from mhri.core.events.events import CALM, KINDS
-from mhri.core.map.scene import composed, goals_of, in_frame, map_robot, own_pose, Scene
+from mhri.core.map.places import composed
+from mhri.core.map.scene import goals_of, in_frame, map_robot, own_pose, Scene
 from mhri.core.map.spread import has_room, spread
 from mhri.core.map.track import Track
 from mhri.core.map.trail import link_grade, Trail

@@ -8,6 +8,7 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 
 from mhri.core.config import ConfigError, parse_yaml
+from mhri.core.map.places import composed
 from mhri.core.map.trail import Trail
 from mhri.core.robots.mocap import Pose
 from mhri.core.screen.views import LIVE, RobotView
@@ -145,14 +146,6 @@ class Scene:
         array = np.array(places)
         least, most = array.min(axis=0), array.max(axis=0)
         return (float(least[0]), float(least[1])), (float(most[0]), float(most[1]))
-
-
-def composed(frame: Pose, pose: Pose) -> Pose:
-    """Return a pose, given in a frame, in that frame's own frame."""
-    cos, sin = math.cos(frame.heading_rad), math.sin(frame.heading_rad)
-    return Pose(frame.x_m + pose.x_m * cos - pose.y_m * sin,
-                frame.y_m + pose.x_m * sin + pose.y_m * cos,
-                math.remainder(frame.heading_rad + pose.heading_rad, 2.0 * math.pi))
 
 
 def in_frame(pose: Pose, points: np.ndarray) -> np.ndarray:
