@@ -7,7 +7,6 @@ import os
 import sys
 import threading
 import time
-import unittest
 
 import rospy
 import rostest

@@ -22,8 +22,8 @@ def moving(linear_mps=0.1):
 class FakeGates:
     """Says a ``mhri/GatesState`` and keeps what it is asked, by caller id.
 
-    ``selections`` are (caller, robots), ``groups`` (together, slow_with_link, brake), ``takers`` and
-    ``power`` what the services were called with.
+    ``selections`` are (caller, robots), ``groups`` (together, slow_with_link, brake), ``takers``
+    and ``power`` what the services were called with.
     """
 
     def __init__(self):

@@ -35,7 +35,8 @@ def test_what_was_kept_comes_back_whole():
     ('numbers', {'bot1': True}), ('numbers', {'bot1': 1.0}), ('numbers', {'bot1': 10 ** 6}),
     ('numbers', {'bot1': 2, 'bot2': 2}), ('numbers', {'a%d' % n: n + 1 for n in range(5000)}),
     ('mode', 5), ('mode', 'x' * 1_000_000), ('mode', 'a\x00b'), ('mode', ['joy']),
-    ('brake', 1), ('together', 1), ('together', 'yes'), ('windows', []), ('looks', 'x'), ('panel', [1]),
+    ('brake', 1), ('together', 1), ('together', 'yes'), ('windows', []), ('looks', 'x'),
+    ('panel', [1]),
     ('events', True)])
 def test_a_part_that_cannot_be_used_is_left_out_and_named(key, value):
     state, problems = usable_state({**GOOD, key: value})

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The executable ``tasks``: runs :class:`mhri.ros.tasks.tasks.Tasks` as ``/mhri_tasks``.
 
-Parameter: ``~map`` (path of a YAML file of map_server; it is published as ``/map``; default: none).
+``tasks --stand-by`` does so in a process that another one, already loaded, replaces if it is
+killed (:mod:`mhri.ros.stand_by`). Parameter: ``~map`` (path of a YAML file of map_server; it is published as ``/map``; default: none).
 """
 import signal
 import sys
@@ -19,6 +20,7 @@ from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.graph.rospy_inside import ended_by_hand
 from mhri.ros.map.map_source import load_map
 from mhri.ros.resources import robot_types
+from mhri.ros.stand_by import stand_by
 from mhri.ros.tasks.exported import task_kinds
 from mhri.ros.tasks.tasks import Tasks
 
@@ -43,6 +45,8 @@ def main():
     """
     types, _ = robot_types()
     kinds, errors = task_kinds()
+    if '--stand-by' in sys.argv:
+        stand_by('the tasks')
     limit_handshakes()
     rospy.init_node('mhri_tasks', disable_rostime=True)
     log.install()

@@ -72,8 +72,8 @@ class RobotView:
     ``guarded`` while its commands go through a guard on the robot, ``obeys`` is whom it obeys ('',
     'operator', 'task'), ``stands`` why it is kept still ('', 'stopped', 'not_heard', 'joining'),
     ``waits`` is true while it waits for a centred stick, ``stop_latched`` once its guard has
-    confirmed the stop. ``brake`` is what its obstacle brake does. ``hardware_stop`` is true while the robot's own emergency stop holds it,
-    None if nothing reports it. ``power`` says in words what was done to its motor power
+    confirmed the stop. ``brake`` is what its obstacle brake does. ``hardware_stop`` is true while
+    the robot's own emergency stop holds it, None if nothing reports it. ``power`` says in words what was done to its motor power
     (:mod:`mhri.core.driving.motor_power`), '' for nothing, ``offers_power`` whether it can be cut.
     ``sent_mps`` and ``sent_rad_s`` are the velocity last sent to it (None: not known), ``reached``
     is false while nothing on it takes commands.
@@ -194,7 +194,8 @@ class PanelView:
     is stopped. ``limits`` are the operator's speed limits in force [m/s, rad/s]. ``status`` is the
     one line at the bottom, never empty; ``status_level`` one of 'calm', 'attention', 'stopped'.
     ``together`` is true while all selected robots are held to the pace of the slowest, ``pace``
-    says in words what that is, ``brake`` while the obstacle brake is on, ``slowed`` is true while a slow link holds them back.
+    says in words what that is, ``brake`` while the obstacle brake is on, ``slowed`` is true while a
+    slow link holds them back.
     ``camera_bits_per_s`` is what all pictures on show take of the network. ``heard`` is what the
     voice node heard last, None before that. ``control`` is who drives, ``answers`` is false while
     the gates are not heard, ``stop_taken`` true once they have said that the stop is in force.
