@@ -3,7 +3,8 @@
 """The executable ``tasks``: runs :class:`mhri.ros.tasks.tasks.Tasks` as ``/mhri_tasks``.
 
 ``tasks --stand-by`` does so in a process that another one, already loaded, replaces if it is
-killed (:mod:`mhri.ros.stand_by`). Parameter: ``~map`` (path of a YAML file of map_server; it is published as ``/map``; default: none).
+killed (:mod:`mhri.ros.stand_by`). Parameter: ``~map`` (path of a YAML file of map_server; it is
+published as ``/map``; default: none).
 """
 import signal
 import sys
