@@ -74,7 +74,8 @@ class RobotView:
     ``waits`` is true while it waits for a centred stick, ``stop_latched`` once its guard has
     confirmed the stop. ``brake`` is what its obstacle brake does. ``hardware_stop`` is true while
     the robot's own emergency stop holds it, None if nothing reports it. ``power`` says in words
-    what was done to its motor power (:mod:`mhri.core.driving.motor_power`), '' for nothing, ``offers_power`` whether it can be cut.
+    what was done to its motor power (:mod:`mhri.core.driving.motor_power`), '' for nothing,
+    ``offers_power`` whether it can be cut.
     ``sent_mps`` and ``sent_rad_s`` are the velocity last sent to it (None: not known), ``reached``
     is false while nothing on it takes commands.
 
