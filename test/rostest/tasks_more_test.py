@@ -248,6 +248,7 @@ class TasksMore(unittest.TestCase):
                 (lambda goal: self.set_stop(True), TaskState.STOPPED),
                 (lambda goal: self.operator.check('bot3'), TaskState.TAKEN_OVER),
                 (lambda goal: goal.cancel(), TaskState.STOPPED),
+                (lambda goal: self.operator.fall_silent(), TaskState.LOST),
                 (lambda goal: self.start('bot3', 'hold', '{seconds: 0.5}'),
                  TaskState.TAKEN_OVER)):
             self.setUp()

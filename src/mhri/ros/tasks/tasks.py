@@ -102,6 +102,7 @@ class Tasks:
         self._gates = {}
         self._heard_at = None
         self._gates_stop = self._mux_stop = False
+        self._operator = ''
         self._told = None
         self._worker = Worker('tasks_calls', self.places.keep)
         self._gates_force = InForce(TAKE_SERVICE)
@@ -157,9 +158,21 @@ class Tasks:
             self._gates = {robot.name: robot for robot in message.robots}
             self._heard_at = self._clock()
             self._gates_stop = message.stop_all
+            self._watch_operator(message.operator if message.leased else '')
             if names != set(self._gates):
                 self._worker.do(self._know)
         self._wake.set()
+
+    def _watch_operator(self, operator):
+        """End every task if the operator in control has gone or fallen silent.
+
+        Who began tasks with nobody in control, from a terminal, goes on without.
+        """
+        before, self._operator = self._operator, operator
+        if before and operator != before:
+            for run in self._runs.values():
+                run.end(LOST, 'nobody is in control any more: {} has gone or fallen silent'.format(
+                    before) if not operator else '{} took control'.format(operator), self._clock())
 
     def _on_stop(self, message):
         with self._lock:
