@@ -84,7 +84,8 @@ def test_end_to_end(terminal, tmp_path):
 @pytest.mark.skipif(bool(NO_PADS), reason=str(NO_PADS))
 @pytest.mark.parametrize('arguments, said', [
     (['ps3'], 'shipped profile'), (['my pad'], 'is no name for a profile'),
-    (['--device', 'wii'], "no 'wii' among 0: Lab rat pad")])
+    (['--device', 'wii'], "'wii' is not connected: plug it in, or choose another pad; "
+                          'connected: 0: Lab rat pad')])
 def test_what_is_refused_at_once(terminal, tmp_path, arguments, said):
     process = terminal(*arguments)
     assert ended(process) == 1
