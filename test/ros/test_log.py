@@ -3,6 +3,7 @@
 """A log that nobody has to wait for: what blocks, blocks its own thread alone."""
 import logging
 import os
+import subprocess
 import sys
 import threading
 import time
@@ -88,3 +89,17 @@ def _loggers():
     named = logging.root.manager.loggerDict.items()
     return dict([('', logging.root)] + [(name, item) for name, item in named
                                         if isinstance(item, logging.Logger)])
+
+
+def test_a_program_that_hangs_at_its_end_is_ended():
+    """A thread whose traceback waits for the terminal must not keep a node, and its name."""
+    program = '''
+import logging, threading, time, rospy
+from mhri.ros.graph import log
+log.ENDED_WITHIN_S = 0.2
+logging.root.addHandler(logging.StreamHandler())
+log.install()
+threading.Thread(target=time.sleep, args=(600.0,)).start()
+rospy.signal_shutdown('the test says so')
+'''
+    assert subprocess.run([sys.executable, '-c', program], timeout=60).returncode == 0

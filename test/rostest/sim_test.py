@@ -172,6 +172,8 @@ class SimTest(unittest.TestCase):
                       prefix + imu: 'sensor_msgs/Imu', prefix + 'scan': 'sensor_msgs/LaserScan'}
             wanted.update({prefix + topic: 'sensor_msgs/BatteryState' for topic in more})
             wanted.update(cameras(prefix, name == 'bot1'))
+            if name == 'bot1':
+                wanted['/map'] = 'nav_msgs/OccupancyGrid'
             self.assertEqual({topic: types[topic] for topic in of_node(node, publishers)}, wanted)
             wanted = {prefix + topic: 'geometry_msgs/Twist' for topic in commands}
             wanted[prefix + POWER[robot_type][0]] = POWER[robot_type][1]._type

@@ -11,8 +11,8 @@ import pytest
 from test_remote_check import FakeMaster, HOST
 
 REMOTE = REPO / 'utils' / 'remote'
-PROGRAMS = sorted(path.name for path in REMOTE.iterdir()
-                  if path.suffix == '.py' or path.read_bytes().startswith(b'#!/usr/bin/env python'))
+PROGRAMS = sorted(path.name for path in REMOTE.iterdir() if path.is_file() and (
+    path.suffix == '.py' or path.read_bytes().startswith(b'#!/usr/bin/env python')))
 COMPILE = 'import sys; compile(open(sys.argv[1]).read(), sys.argv[1], "exec")'
 SENTENCE = 'mhri: this computer has no IPv4 address'
 

@@ -19,6 +19,9 @@ import rospy
 QUEUE_SIZE = 1000
 # How long an ending program waits for its last lines [s].
 LAST_WORDS_S = 0.5
+# A program that has not ended so long after its shutdown waits for an output that takes nothing:
+# what is written past these handlers (the traceback of a thread, Python's own last flush) blocks.
+ENDED_WITHIN_S = 10.0
 
 
 class PatientHandler(logging.Handler):
@@ -87,7 +90,15 @@ def install():
             logger.addHandler(patient[handler])
     if patient:
         atexit.register(_finish, list(patient.values()))
+        rospy.on_shutdown(_end_in_time)
     return list(patient.values())
+
+
+def _end_in_time():
+    """End the program, whatever holds it up."""
+    timer = threading.Timer(ENDED_WITHIN_S, os._exit, (0,))
+    timer.daemon = True
+    timer.start()
 
 
 def _finish(handlers):

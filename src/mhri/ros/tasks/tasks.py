@@ -26,7 +26,7 @@ from std_msgs.msg import Bool
 
 from mhri.core.config import ConfigError, short
 from mhri.core.driving.limits import ZERO
-from mhri.core.tasks.base import DONE, FAILED, STOPPED, TAKEN_OVER
+from mhri.core.tasks.base import DONE, FAILED, LOST, STOPPED, TAKEN_OVER
 from mhri.core.tasks.rows import BY_KEY
 from mhri.core.tasks.run import ENDED, Facts
 from mhri.msg import (
