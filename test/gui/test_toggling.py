@@ -29,9 +29,9 @@ STEPS = (('view_imu', False), ('camera_depth', True), ('view_scan', True), ('cam
 CAMERAS = ('camera_off', 'camera_rgb', 'camera_depth')
 # One thread, handle or object left behind by each toggle would be a hundred, thirty or twice as
 # many as these; a connection that is just ending is no leak. With a picture of 1100 x 800 px (3 MB)
-# the memory rises by some 30 MB in the first 250 toggles and then moves by 17 MB up and down, though
-# malloc gives back what it can: it says little alone, and the objects that Python knows are counted
-# beside it.
+# the memory rises by some 30 MB in the first 250 toggles and then moves by 17 MB up and down, even
+# though malloc gives back what it can: it says little alone, and the objects that Python knows are
+# counted beside it.
 LIBC = ctypes.CDLL(None)
 MARGINS = {'threads': 10, 'handles': 30, 'memory [MB]': 64.0, 'objects': 500}
 RGB_TOPIC = '/bot1/camera/rgb/image_raw/compressed'
