@@ -54,7 +54,7 @@ class TfTree:
         common = {name for name, _ in up}
         shared = next(name for name, _ in down if name in common)
         times: List[float] = []
-        matrix = np.linalg.inv(self._product(up, shared, times)) @ self._product(
+        matrix = _inverse(self._product(up, shared, times)) @ self._product(
             down, shared, times)
         if not np.isfinite(matrix).all():
             return None
@@ -97,3 +97,14 @@ def _matrix(numbers: Sequence[float]) -> np.ndarray:
         (2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), numbers[1]),
         (2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), numbers[2]),
         (0.0, 0.0, 0.0, 1.0)))
+
+
+def _inverse(matrix: np.ndarray) -> np.ndarray:
+    """Return the inverse of a rigid transform (4, 4).
+
+    Not by ``np.linalg.inv``: the threads of OpenBLAS wait busily after each call, and took a core.
+    """
+    inverse = np.eye(4)
+    inverse[:3, :3] = matrix[:3, :3].T
+    inverse[:3, 3] = -matrix[:3, :3].T @ matrix[:3, 3]
+    return inverse
