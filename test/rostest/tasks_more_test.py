@@ -21,7 +21,7 @@ import psutil
 import rosbag
 import rospy
 import rostest
-from rostest_tools import moves, NEUTRAL, Recorder, rests, Stick, wait_until
+from rostest_tools import measured, moves, NEUTRAL, Recorder, rests, Stick, wait_until
 from std_srvs.srv import SetBool
 
 HERE = os.path.dirname(os.path.realpath(__file__))
@@ -40,6 +40,13 @@ ROBOTS = ('bot1', 'bot2', 'bot3', 'pond')
 def velocity(twist):
     """Return what a command says, as (m/s, rad/s)."""
     return (twist.linear.x, twist.angular.z)
+
+
+def processes_of_tasks():
+    """Return the processes of mhri_tasks on this master; the last one runs, others stand by."""
+    return [process for process in psutil.process_iter(['cmdline'])
+            if '__name:=mhri_tasks' in (process.info['cmdline'] or ())
+            and os.environ['ROS_MASTER_URI'] == process.environ().get('ROS_MASTER_URI')]
 
 
 class FakeMoveBase:
@@ -258,13 +265,29 @@ class TasksMore(unittest.TestCase):
             self.assertEqual(self.ends(goal)[0][0], state)
             self.rests_for_good(since)
 
+    def test_stop_all_and_checking_cancel_the_goal_while_mhri_tasks_hangs(self):
+        """Its navigation speaks to the robot itself: nobody else would tell it to end."""
+        for what, ends in (('stop-all', lambda: self.set_stop(True)),
+                           ('checked', lambda: self.operator.check('bot3'))):
+            self.setUp()
+            self.sent()
+            hung = processes_of_tasks()
+            try:
+                for process in hung:
+                    process.suspend()
+                since = time.monotonic()
+                ends()
+                self.rests_for_good(since)
+                first = next(item for item in self.commands.since(since) if rests(item.value))
+                measured('{}, mhri_tasks hangs: first zero'.format(what), first.at - since)
+            finally:
+                for process in hung:
+                    process.resume()
+
     def test_when_mhri_tasks_is_killed_the_next_one_cancels_its_goals(self):
         self.sent()
         killed = time.monotonic()
-        for process in psutil.process_iter(['cmdline']):
-            if '__name:=mhri_tasks' in (process.info['cmdline'] or ()) \
-                    and os.environ['ROS_MASTER_URI'] == process.environ().get('ROS_MASTER_URI'):
-                process.kill()
+        processes_of_tasks()[-1].kill()
         wait_until(lambda: not self.navigation.goals, 'its navigation goes on', 60.0)
         print('mhri_tasks killed: goal cancelled after {:.1f} s'.format(time.monotonic() - killed))
         self.commands.wait_silence(1.2, 60.0)

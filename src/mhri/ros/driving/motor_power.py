@@ -9,8 +9,8 @@ import genpy
 import rospy
 from std_srvs.srv import SetBool
 
-from mhri.core.driving.listeners import first_obeying
 from mhri.core.driving.motor_power import MotorPowerRule
+from mhri.core.robots.listeners import first_obeying
 from mhri.core.robots.names import topic_of
 from mhri.ros.graph.rospy_inside import listeners, PromptPublisher
 from mhri.ros.messages import message_class, MessageMissing, with_field

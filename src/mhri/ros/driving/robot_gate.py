@@ -11,14 +11,15 @@ from std_msgs.msg import String
 from mhri.core.driving.gate import GateRule, STOPPED
 from mhri.core.driving.guard_link import GuardLink, GuardState, parse_id, read_state
 from mhri.core.driving.limits import ZERO
-from mhri.core.driving.listeners import obeying
 from mhri.core.robots.link import link_state
+from mhri.core.robots.listeners import obeying
 from mhri.core.robots.names import topic_of
 from mhri.core.screen.views import GONE, SILENT
 from mhri.msg import RobotGate as RobotGateMessage
 from mhri.ros.convert import to_twist
 from mhri.ros.driving.brake_eye import BrakeEye
 from mhri.ros.driving.motor_power import MotorPower
+from mhri.ros.driving.own_navigation import OwnNavigation
 from mhri.ros.graph.rospy_inside import (
     listeners, PromptPublisher, publisher_uri, unsubscribe)
 from mhri.ros.robots.link_probe import LinkProbe
@@ -44,7 +45,8 @@ class RobotGate:
     which only the time counts; of a guard that does something by itself also
     ``/<robot>/mhri_guard/state`` (``std_msgs/String``), which it answers by
     ``/<robot>/mhri_guard/heard`` (``std_msgs/String``). While the brake is asked for, see
-    :class:`mhri.ros.driving.brake_eye.BrakeEye`. Apart from its callbacks it is not thread-safe:
+    :class:`mhri.ros.driving.brake_eye.BrakeEye`; while the robot is checked or stopped, see
+    :class:`mhri.ros.driving.own_navigation.OwnNavigation`. Apart from its callbacks it is not thread-safe:
     hold ``lock``.
 
     :param name: the robot
@@ -89,6 +91,7 @@ class RobotGate:
                                        self._on_guard_state, queue_size=1, tcp_nodelay=True)
         self._heard = PromptPublisher('/{}/mhri_guard/heard'.format(name), String)
         self.power = MotorPower(name, robot_type)
+        self._navigation = OwnNavigation(name)
         self._probe = LinkProbe(name, self._node_uri, self._on_round_trip)
         if len(robot_type.command) > MOST_TOPICS:
             rospy.logwarn('%s has %d velocity topics: the first %d are used', name,
@@ -220,6 +223,7 @@ class RobotGate:
 
     def send(self, velocity):
         """Publish what the rule returned (None: nothing)."""
+        self._navigation.end_while(self.rule.checked or self.rule.state == STOPPED)
         if velocity is None:
             return
         if velocity.is_zero():
@@ -276,6 +280,7 @@ class RobotGate:
         self._probe.close()
         self.power.close()
         self._eye.close()
+        self._navigation.close()
         for publisher in self._publishers + [self._heard]:
             publisher.unregister()
         for subscriber in self._odometry + [self._echo, self._state]:

@@ -44,8 +44,9 @@ _STATES = {
     GoalStatus.SUCCEEDED: (DONE, 'it is there by its own navigation'),
     GoalStatus.ABORTED: (BLOCKED, 'its own navigation found no way'),
     GoalStatus.REJECTED: (FAILED, 'its own navigation refused the goal'),
-    GoalStatus.PREEMPTED: (TAKEN_OVER, 'its own navigation got another goal'),
-    GoalStatus.RECALLED: (TAKEN_OVER, 'its own navigation got another goal')}
+    # By another goal, or by a cancel: the gates cancel when the operator stops or checks it.
+    GoalStatus.PREEMPTED: (TAKEN_OVER, 'its own navigation was told to do otherwise'),
+    GoalStatus.RECALLED: (TAKEN_OVER, 'its own navigation was told to do otherwise')}
 
 
 class MoveBase(Errand):
