@@ -309,7 +309,7 @@ def main():
         if speech.can_say('stop', voice):
             speech.speak('stop', voice)
     jobs = plan('tune' if options.tune else 'test', voices, rooms,
-                options.each, 31 if options.short else options.step,
+                options.each, 97 if options.short else options.step,
                 tuning)
     if options.short:
         found = [listen(job) for job in jobs]
