@@ -4,8 +4,8 @@
 
 A file ``sleep`` or ``hold`` there lets the view block while it is painted, asleep or with Python's
 lock held, until there is a file ``end``, or the seconds in the file have passed. ``stuck`` is there
-while it does; ``places`` says where the stop button, while it is shown, and the middle of the window
-are [px of the screen].
+while it does; ``places`` says where the stop button, while it is shown, and the middle of the
+window are [px of the screen].
 """
 import ctypes
 import json
