@@ -224,8 +224,8 @@ class World:
         """Wait on a clean cable until all is well."""
         self.radio.follow([{'at_s': 0}])
         wait_for(lambda: self.operator.ready() and self.shown.pose_age_s() < 0.5
-                 and self.shown.pictures and self.at_the_robot()[1], PATIENCE_S, 'the robot',
-                 poll_s=0.1)
+                 and self.shown.pictures and self.shown.pictures[-1] < 1.0
+                 and self.at_the_robot()[1], PATIENCE_S, 'the robot', poll_s=0.1)
         self.shown.forget()
 
     def measure(self, row, outage_s, drive_s):
