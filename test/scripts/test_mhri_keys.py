@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """mhri_keys.sh for real: the keys it makes let each other in, and nobody else."""
 import os
+import re
 import shutil
 import ssl
 import subprocess
@@ -240,14 +241,18 @@ def test_put_in_place_on_this_computer(lab):
     lab.does('check')
 
 
-@pytest.fixture
-def robot(lab):
+def stand_for_robot(operator):
     """Return the home of a robot that ssh leads to; its programs are in ``tools``."""
-    home, tools = lab.home / 'robot', lab.home / 'tools'
+    home, tools = operator.home / 'robot', operator.home / 'tools'
     home.mkdir()
     tools.mkdir()
-    lab.program('ssh', SSH.format(home=home, tools=tools))
+    operator.program('ssh', SSH.format(home=home, tools=tools))
     return home
+
+
+@pytest.fixture
+def robot(lab):
+    return stand_for_robot(lab)
 
 
 def test_put_in_place_on_a_robot(lab, robot):
@@ -351,3 +356,18 @@ def test_help_is_the_manual(operator):
     output = operator.does('--help')
     for word in ('new', 'host', 'robot', 'put', 'list', 'check', 'renew', 'withdraw', '--folder'):
         assert word in output
+
+
+def test_guide_is_right(operator):
+    """Its commands one after another, with a folder for the robot."""
+    home = stand_for_robot(operator)
+    guide = (REPO / 'doc' / 'operators_guide.md').read_text(encoding='utf-8')
+    chapter = guide.split('### Keys in five minutes')[1].split('\n## ')[0]
+    commands = re.findall(r'^    utils/host/mhri_keys.sh (.*)$', chapter, re.MULTILINE)
+    assert len(commands) == 9
+    for command in commands:
+        operator.does(*command.split())
+    for folder in (operator.place, home / 'mhri' / 'keys'):
+        assert {path.name for path in folder.iterdir()} == FILES
+    for name in FILES | {'host:lab', 'robot:bot1.2', '~/.config/mhri/keys', '~/mhri/keys'}:
+        assert '`{}`'.format(name) in chapter
