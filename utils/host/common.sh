@@ -30,13 +30,13 @@ DEBIAN_RUN=(
   python3-cv-bridge python3-python-qt-binding python3-pyqt5 python3-pyqtgraph python3-pygame
   python3-evdev python3-pocketsphinx pocketsphinx-en-us python3-pyaudio
   python3-numpy python3-opencv python3-yaml python3-genpy python3-netifaces fonts-dejavu-core
-  libturbojpeg0 openssh-client
+  libturbojpeg0 openssh-client openssl
   xvfb xauth hostname util-linux
 )
 DEBIAN_TEST=(
   librostest-dev python3-rostest python3-roslib topic-tools python3-pytest python3-flake8
   python3-flake8-docstrings python3-mccabe python3-pip python3-psutil catkin-lint shellcheck
-  xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server openssl iproute2 nftables
+  xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server iproute2 nftables
 )
 # Only for the fast group of tests; Ubuntu uses the same names.
 FAST=(
@@ -50,7 +50,7 @@ UBUNTU_RUN=(
 )
 UBUNTU_TEST=(
   python3-pytest python3-flake8 python3-mccabe python3-pip python3-psutil python3-catkin-lint
-  shellcheck xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server openssl iproute2
+  shellcheck xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server iproute2
   nftables
 )
 
