@@ -27,6 +27,8 @@ CRAWL_MPS = 0.1
 KEEP_M = 1.2
 _GRID_M = 0.03
 _EDGE_M = 0.05
+# No gap between the last beam and the first hides anything if it is twice as wide at most [rad].
+_GAP_RAD = 0.05
 # What was met no further off a robot than this was that robot [m].
 _BESIDE_M = 0.15
 _NOTHING = np.zeros((0, 2))
@@ -68,7 +70,7 @@ class Scan:
 
     def faces(self, points: np.ndarray) -> np.ndarray:
         """Return for each point whether a beam goes that way, however far it reaches."""
-        return self._faced(_into(self.mount, points))
+        return self._faced(_into(self.mount, points), _GAP_RAD)
 
     def looks_at(self, points: np.ndarray) -> np.ndarray:
         """Return for each point whether this scan would have met it."""
@@ -78,12 +80,14 @@ class Scan:
                             & (far < self.range_max_m))
         return seen
 
-    def _faced(self, points: np.ndarray) -> np.ndarray:
-        turn = np.mod(np.arctan2(points[:, 1], points[:, 0]) - self.angle_min, 2.0 * math.pi)
+    def _faced(self, points: np.ndarray, slack_rad: float = 0.0) -> np.ndarray:
+        turn = np.mod(np.arctan2(points[:, 1], points[:, 0]) - self.angle_min + slack_rad,
+                      2.0 * math.pi)
         step, count = abs(self.step), len(self.ranges)
-        faced: np.ndarray = turn <= step * count
+        faced: np.ndarray = turn <= step * count + 2.0 * slack_rad
         if self.looked is not None and count:
-            faced &= self.looked[np.minimum(np.rint(turn / step).astype(int), count - 1)]
+            beam = np.rint((turn - slack_rad) / step).astype(int)
+            faced &= self.looked[np.clip(beam, 0, count - 1)]
         return faced
 
 
