@@ -55,7 +55,7 @@ class TfTree:
                     math.atan2(matrix[1, 0], matrix[0, 0])), at_s
 
     def matrix(self, frame: str, other: str) -> Optional[Tuple[np.ndarray, Optional[float]]]:
-        """Return the same with the matrix (4, 4) that turns the other frame's points into these."""
+        """Return the same with a matrix, which takes points of the other frame into this one."""
         up, down = self._to_root(frame), self._to_root(other)
         if up is None or down is None or up[-1][0] != down[-1][0]:
             return None

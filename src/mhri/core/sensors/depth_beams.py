@@ -63,8 +63,8 @@ class DepthBeams:
             inside = valid & (up > self._least_m + self._share * far) & (up < ABOVE_M)
         measured = valid.mean(axis=0)
         if measured.mean() < LEAST_OF_PICTURE:
-            raise CloudError('a depth picture that measured nothing in {:.0f} % of its pixels'.format(
-                100.0 - 100.0 * measured.mean()))
+            raise CloudError('a depth picture that measured nothing in {:.0f} % of its '
+                             'pixels'.format(100.0 - 100.0 * measured.mean()))
         far[~inside] = np.inf
         rows = far.argmin(axis=0)
         columns = np.arange(far.shape[1])

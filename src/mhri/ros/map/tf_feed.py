@@ -58,13 +58,16 @@ class TfFeed:
         self._lock = threading.Lock()
         self._tree = TfTree()
         self._subscribers = []
+        self._opening = threading.Lock()
         self._refusals = Refusals('/tf', clock)
         self._thread = threading.local()
         self._closed = threading.Event()
 
     def open(self):
         """Begin to listen (blocking: it asks the master)."""
-        if not self._subscribers:
+        with self._opening:
+            if self._subscribers:
+                return
             self._subscribers = [
                 rospy.Subscriber(topic, bytes_of(TFMessage), self._hear, topic == '/tf_static')
                 for topic in ('/tf', '/tf_static') if self._moving or topic == '/tf_static']
