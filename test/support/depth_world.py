@@ -1,12 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Random drives in :mod:`support.task_world` of a robot with a depth camera instead of a laser."""
+from dataclasses import replace
 import math
 import random
 
 import numpy as np
 
 from mhri.core.camera.raw_image import metres
+from mhri.core.driving.brake import NARROW_M
 from mhri.core.sensors.depth_beams import DepthBeams
 from mhri.core.sensors.point_cloud import CloudError, Lens
 from mhri.core.tasks.base import ENDS
@@ -31,6 +33,8 @@ class Seer(Robot):
         self._mount = np.array([[0.0, 0.0, 1.0, 0.0], [-1.0, 0.0, 0.0, 0.0],
                                 [0.0, -1.0, 0.0, self._camera.height_m], [0.0, 0.0, 0.0, 1.0]])
         self._beams = DepthBeams()
+        self.task_body = replace(self.task_body,
+                                 radius_m=self.task_body.radius_m + NARROW_M)
 
     def sense(self, now_s, tick):
         """Look, when it is due."""

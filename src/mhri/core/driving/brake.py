@@ -18,6 +18,8 @@ from mhri.core.robots.mocap import Pose
 SCAN_OLD_S = 0.3
 # What is left between the robot and what is in its way [m].
 MARGIN_M = 0.08
+# So much more for who has only a depth camera: what is near and beside is out of its picture [m].
+NARROW_M = 0.05
 # What a TurtleBot loses with its smoother on is 0.8 to 1 m/s^2; and the time from a scan to the
 # moment at which the command that it led to acts.
 BRAKES_MPS2, REACTION_S = 0.5, 0.2

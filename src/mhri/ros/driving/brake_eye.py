@@ -8,6 +8,7 @@ import time
 import rospy
 from sensor_msgs.msg import LaserScan
 
+from mhri.core.driving.brake import NARROW_M
 from mhri.core.driving.stick_brake import StickBrake
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.names import topic_of
@@ -35,7 +36,8 @@ class BrakeEye:
     """
 
     def __init__(self, name, robot_type, clock=time.monotonic, frames=None):
-        self.brake = StickBrake(robot_type.radius_m, bool(robot_type.scan or robot_type.depth))
+        self.brake = StickBrake(robot_type.radius_m + (0.0 if robot_type.scan else NARROW_M),
+                                bool(robot_type.scan or robot_type.depth))
         self._clock = clock
         self._frames = frames
         self._mounts = Mounts(robot_type, frames)

@@ -8,7 +8,7 @@ import time
 import rospy
 from sensor_msgs.msg import BatteryState, LaserScan
 
-from mhri.core.driving.brake import Surroundings
+from mhri.core.driving.brake import NARROW_M, Surroundings
 from mhri.core.map.places import Odometry, OLD_S
 from mhri.core.map.tf_tree import frame_name
 from mhri.core.robots.mocap import Pose
@@ -75,7 +75,9 @@ class RobotSenses:
         self.robot_type = robot_type
         self._clock = clock
         self._begun_at = clock()
-        self.body = Body(robot_type.radius_m, robot_type.limits)
+        by_depth = self.has_eye and not self.has_laser
+        self.body = Body(robot_type.radius_m + (NARROW_M if by_depth else 0.0),
+                         robot_type.limits)
         self.trail = Trail()
         # By its odometry: the pose, the newest :class:`Odometry`, and the name of its frame.
         self.pose = self.odometry = None
