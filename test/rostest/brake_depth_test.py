@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The obstacle brake of a robot without a laser: its depth camera sees the wall, and not the rear."""
+"""The obstacle brake of a robot without a laser: its depth camera sees a wall, and not the rear."""
+from dataclasses import replace
 import os
 import sys
 import time
 
+import numpy as np
 import rospy
 import rostest
 
@@ -13,8 +15,11 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 
 from drive_tools import Hall, Hand, PATIENCE_S  # noqa: E402
 from gates_case import GatesCase  # noqa: E402
-from mhri.core.driving.brake import CRAWL_MPS  # noqa: E402
+from mhri.core.driving.brake import CRAWL_MPS, SCAN_OLD_S  # noqa: E402
 from mhri.msg import GroupSpeed, RobotGate  # noqa: E402
+from mhri.ros.map.tf_feed import TfFeed  # noqa: E402
+from mhri.ros.resources import robot_types  # noqa: E402
+from mhri.ros.tasks.robot_senses import RobotSenses  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
 
@@ -73,6 +78,23 @@ class BrakeByDepth(GatesCase):
         self.hall.places.wait(lambda x: x < 11.0, time.monotonic(), PATIENCE_S)
         self.says(RobotGate.BRAKE_UNSEEN)
         self.assertGreaterEqual(min(entry[1] for entry in self.end.after(when)), -CRAWL_MPS)
+
+    def test_a_task_senses_by_it(self):
+        frames = TfFeed(time.monotonic)
+        frames.open()
+        self.addCleanup(frames.close)
+        senses = RobotSenses('bot1', replace(robot_types()[0]['turtlebot2'], scan=()),
+                             frames=frames)
+        self.addCleanup(senses.close)
+        senses.open()
+
+        def sees():
+            senses.look()
+            age_s = senses.ages()['scan_age_s']
+            return age_s is not None and age_s < SCAN_OLD_S and len(senses.points()) > 0
+        self.assertTrue(senses.has_eye and not senses.has_laser)
+        wait_for(sees, PATIENCE_S, 'the depth camera')
+        self.assertEqual(list(senses.looks()(np.array([[1.0, 0.0], [-1.0, 0.0]]))), [True, False])
 
 
 if __name__ == '__main__':

@@ -5,7 +5,7 @@
 Publishes odometry at 50 Hz, IMU at 100 Hz, laser scan at 10 Hz, ``/tf`` at 50 Hz and, where the
 template has one, the battery at 1 Hz; on request also the true pose at 50 Hz as a motion capture
 system would tell it (``/vrpn_client_node/<robot>/pose``, frame ``world``), and where its odometry
-begins as a perfect localisation would (``/tf``, ``map`` to ``<robot>/odom``). Where laser and camera
+begins as a perfect localisation would (``/tf``, ``map`` to ``<robot>/odom``). Where its sensors
 sit is on ``/tf_static``. Reads every velocity topic of the template, and what takes the power from
 its motors. Frames are ``<robot>/odom``,
 ``<robot>/base_link``, ``<robot>/imu_link``, ``<robot>/laser`` (REP-105) and that of the camera.
