@@ -60,7 +60,7 @@ class _Goal:
         self.key = goal.task
         self.parameters = goal.parameters
         self.team = tuple(goal.robots)
-        # In whose order places are counted.
+        # In whose order places are counted: see Starter.in_order.
         self.order = values.team or self.team
         self.values = values
         self.cancelled = False
@@ -216,6 +216,8 @@ class Tasks:
         """Open what the robots of a goal need, and begin their runs (on the worker)."""
         drives, problem = self._starter.prepare(goal.key, goal.values, goal.team,
                                                 list(self._gates))
+        goal.team = tuple(self._starter.in_order(goal))
+        goal.order = goal.values.team or goal.team
         with self._lock:
             now = self._clock()
             for name in goal.team:
