@@ -210,7 +210,8 @@ class Demo(QObject):
         self._say('{} and {} patrol, {} follows {}: driving that one'.format(one, four, three, two))
         hands.click('check_' + two)
         yield 'the panel to be ready', self._reads(READY)
-        yield 'all four to be on their way', self._hold(0.5, 0.0, self._all_go(
+        # In a circle to the left: away from who patrols, however long it takes.
+        yield 'all four to be on their way', self._hold(0.45, 0.25, self._all_go(
             two, {one: 0.3, two: 0.8, three: 0.4, four: 0.3}))
         yield 'every tile to be drawn', self._all_drawn()
         self._take_pictures(map=host.screen)
