@@ -53,6 +53,7 @@ import pytest
     (['--master', 'https://host:11311'], "'https://host:11311'"),
     (['--demo', '--ip', '127.0.0.1'], 'leave out --ip and --master'),
     (['--demo', '--master', 'http://127.0.0.1:11311'], 'leave out --ip and --master'),
+    (['--demo', '--sim', '3'], '--demo plays with four robots'),
     (['--screenshot', 'x.png'], '--screenshot goes with --demo'),
     (['--demo', '--screenshot', '/nowhere/at/all.png'], 'there is no folder /nowhere/at'),
     (['--demo', '--screenshot', '/tmp'], '/tmp is a folder'),

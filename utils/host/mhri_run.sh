@@ -19,15 +19,16 @@ Robots
                        --sim 3 "turtlebot2 turtlebot3_burger turtlebot3_waffle"; another type is
                        turtlebot3_waffle_pi
   --sim-types TYPES    the same, as an option of its own
-  --demo               drive simulated robots by a script: discover, select two of three, drive
-                       both, change the selection while they move, stop all. Prints what each
-                       robot did, writes pictures and ends: 0 if all went well, else 1. Means
-                       --sim 3 unless --sim is given. Uses a master of its own, so it does not
+  --demo               drive simulated robots by a script: discover, select two of four, drive
+                       both, change the selection while they move, stop all; then two patrol, one
+                       is driven and one follows it, on the map. Prints what each robot did,
+                       writes pictures and ends: 0 if all went well, else 1. Means --sim 4
+                       unless --sim is given. Uses a master of its own, so it does not
                        disturb a running system, and neither reads nor writes the settings of the
                        screen.
   --screenshot FILE    where --demo writes the picture of the screen (PNG; default mhri-demo.png,
-                       here); beside it come four of its parts, e.g. mhri-demo_panel.png, _bot_window,
-                       _depth and _stopped. What is there is overwritten.
+                       here); beside it come five more, e.g. mhri-demo_panel.png, _bot_window,
+                       _depth, _stopped and _map. What is there is overwritten.
 
 Network
   --ip ADDR            this computer's address, as the robots reach it. Default: the first IPv4
@@ -111,6 +112,9 @@ check_arguments() {
   if "$DEMO" && [ -n "$IP$MASTER" ]; then
     usage_error "--demo runs on this machine alone, with its own master:" \
       "leave out --ip and --master"
+  fi
+  if "$DEMO" && [ "${SIM:-4}" -lt 4 ]; then
+    usage_error "--demo plays with four robots: leave out --sim $SIM, or give more"
   fi
   [ -z "$PICTURE" ] || "$DEMO" || usage_error "--screenshot goes with --demo"
   for arg in "${LAUNCH_ARGS[@]}"; do
@@ -303,7 +307,7 @@ demo_verdict() {
   local verdict=
   [ ! -f "$SCRATCH/demo_result" ] || verdict=$(cat "$SCRATCH/demo_result")
   [ "$verdict" = ok ] || die "the demo failed: ${verdict:-it ended without a result}"
-  say "the demo succeeded; its pictures are $PICTURE and four beside it"
+  say "the demo succeeded; its pictures are $PICTURE and five beside it"
 }
 
 main() {
@@ -311,7 +315,7 @@ main() {
   check_arguments
   check_picture
   check_launch_arguments
-  if "$DEMO"; then SIM=${SIM:-3}; fi
+  if "$DEMO"; then SIM=${SIM:-4}; fi
   os_family >/dev/null
   choose_address
   make_scratch
