@@ -270,3 +270,20 @@ def test_a_torn_off_tile_has_stop_and_a_way_back(scene, application):
     tile.setParent(screen.stage)
     screen.stage.refresh()
     assert screen.stage.names == ('bot1', 'bot2') and tile.tear_button.text() == 'Tear off'
+
+
+@pytest.mark.parametrize('style', ['auto', 'one', 'alike'])
+def test_tiles_that_come_one_by_one_move_none_that_is_there(scene, style):
+    made = scene(LARGE, 12)
+    stage, names = made.show().stage, list(made.tiles)
+    stage.set_style(style)
+    whole = {name: tile.geometry() for name, tile in made.tiles.items()}
+    shown = {}
+    for name in ['bot4', *(name for name in names if name != 'bot4')]:
+        shown[name] = made.tiles[name]
+        stage.show_tiles({name: shown[name] for name in names if name in shown}, names)
+        assert {name: tile.geometry() for name, tile in shown.items()} == {
+            name: whole[name] for name in shown}
+    # Those that do not come any more leave no gap.
+    stage.show_tiles({name: made.tiles[name] for name in names[:1]}, names[:1])
+    assert made.tiles['bot1'].geometry() == stage.rect()
