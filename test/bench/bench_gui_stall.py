@@ -18,11 +18,14 @@ import xmlrpc.client
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
+from support.live_screen import LiveScreen  # noqa: E402
 from support.played_cameras import play_cameras  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
 
 NAMES = ['bot{}'.format(number + 1) for number in range(4)]
+HEAD = '{:<44} {:>7} {:>7} {:>7} {:>7} {:>7}'.format(
+    'Qt event loop blocked [ms]', 'turns', 'p50', 'p99', 'max', 'own')
 
 
 class LoopWatch:
@@ -64,33 +67,19 @@ def register(system, robots, topics, uri):
     batch()
 
 
-class Measurement:
+class Measurement(LiveScreen):
     """A screen in this process with the tiles of four robots, alike."""
 
     def __init__(self, system, seconds):
         import psutil
-        from python_qt_binding.QtWidgets import QApplication
         from mhri.presenters.demo import Hands
-        from mhri.presenters.screen_host import ScreenHost
-        from mhri.ros.screen.backend import ScreenBackend
+        super().__init__((1000, 600), selected=NAMES)
         self.system = system
         self._seconds = seconds
         self._used = (psutil.Process().cpu_times, psutil.cpu_times)
-        self._app = QApplication(['panel'])
-        self.host = ScreenHost(ScreenBackend(['panel']))
-        self.operator = self.host.operator
-        self.host.screen.resize(1000, 600)
-        self.host.screen.show()
-        self.host.start((), NAMES)
-        self.until(lambda: len(self.host.windows) == 4 and all(
-            self.operator.robot_view(name).link == 'live' for name in NAMES), 'four robots')
         self.until(lambda: self.operator.view().status.endswith('ready'), 'the mux')
         self._hands = Hands(self.host.screen)
         self._watch = LoopWatch()
-
-    def until(self, condition, what):
-        """Let Qt work until a condition comes true."""
-        wait_for(lambda: (self._app.processEvents(), condition())[1], 40, what)
 
     def watch_for(self, seconds):
         """Return the gaps of some seconds, sorted."""
@@ -173,7 +162,7 @@ def main():
                                  for name in NAMES), 40, 'robots')
             play_cameras(system, NAMES)
         measurement = Measurement(system, seconds)
-        print('Qt event loop blocked [ms]                     turns     p50     p99     max     own')
+        print(HEAD)
         measurement.drive()
         measurement.find(rospy.get_node_uri())
         measurement.host.close()
