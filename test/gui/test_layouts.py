@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The screen at every size, read pixel by pixel: pictures large, nothing clipped, all readable."""
+from dataclasses import replace
 import itertools
 import os
 import sys
@@ -157,6 +158,15 @@ def test_trouble_is_on_the_edge_of_a_tile_and_driving_on_that_of_another(scene):
     calm = made.tiles['bot2']
     assert colour_at(pixels, calm, screen, 2, calm.height() // 2) == \
         theme.PICTURE_GROUND.getRgb()[:3]
+
+
+def test_after_a_stop_every_edge_says_so_whatever_else_is_wrong(scene):
+    made = scene(SMALL, 6, **KINDS['stopped'])
+    made.robots = tuple(replace(robot, slow=True, note='bad link') for robot in made.robots)
+    screen = made.show()
+    pixels, ink = made.pixels(), theme.colour(theme.STOP, theme.over_picture(screen.palette()))
+    for name, tile in made.tiles.items():
+        assert colour_at(pixels, tile, screen, 1, tile.height() // 2) == ink.getRgb()[:3], name
 
 
 def test_the_one_looked_at_is_marked(scene):
