@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-# Takes the pictures of README.md and of the operator's guide anew, from a scripted drive.
+# Takes the pictures of README.md and of the operator's guide anew, most from a scripted drive.
+# With ImageMagick they become a third as large.
 set -euo pipefail
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 folder=$(mktemp -d)
@@ -13,3 +14,15 @@ mv "$folder/screen.png" "$here/images/screen.png"
 for name in panel bot_window depth stopped; do
   mv "$folder/screen_$name.png" "$here/images/$name.png"
 done
+(
+  # The file of the workspace reads variables that may not be set.
+  set +u
+  . "$here/../build/.ws/devel/setup.bash"
+  QT_QPA_PLATFORM=xcb python3 "$here/../test/support/guide_pictures.py" "$here/images"
+)
+if command -v convert > /dev/null; then
+  for picture in "$here"/images/*.png; do
+    convert "$picture" +dither -colors 256 "PNG8:$folder/small.png"
+    mv "$folder/small.png" "$picture"
+  done
+fi
