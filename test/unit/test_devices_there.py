@@ -47,7 +47,8 @@ def test_pads_and_nothing_else(system):
 
 
 @pytest.mark.parametrize('phys, uniq, where', [
-    ('usb-0000:00:14.0-1.2/input0', 'A1B2', 'USB 1.2'), ('usb-0000:00:14.0-3/input4', '', 'USB 3/4'),
+    ('usb-0000:00:14.0-1.2/input0', 'A1B2', 'USB 1.2'),
+    ('usb-0000:00:14.0-3/input4', '', 'USB 3/4'),
     ('usb-3f980000.usb-1.10/input0', '', 'USB 1.10'),
     # By Bluetooth: the port is this computer's own radio.
     ('5c:f3:70:8b:11:02', '00:1b:fb:63:a2:81', '00:1b:fb:63:a2:81'), ('', '', 'event4')])
