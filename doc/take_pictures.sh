@@ -17,6 +17,7 @@ done
 (
   # The file of the workspace reads variables that may not be set.
   set +u
+  # shellcheck disable=SC1091
   . "$here/../build/.ws/devel/setup.bash"
   QT_QPA_PLATFORM=xcb python3 "$here/../test/support/guide_pictures.py" "$here/images"
 )
