@@ -7,6 +7,7 @@ set -euo pipefail
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
+touch "$folder/began"
 unset DISPLAY WAYLAND_DISPLAY
 "$here/../utils/host/mhri_run.sh" --demo --screenshot "$folder/screen.png"
 mkdir -p "$here/images"
@@ -22,7 +23,7 @@ done
   QT_QPA_PLATFORM=xcb python3 "$here/../test/support/guide_pictures.py" "$here/images"
 )
 if command -v convert > /dev/null; then
-  for picture in "$here"/images/*.png; do
+  find "$here/images" -name '*.png' -newer "$folder/began" | while read -r picture; do
     convert "$picture" +dither -colors 256 "PNG8:$folder/small.png"
     mv "$folder/small.png" "$picture"
   done
