@@ -66,7 +66,7 @@ class Linked:
     def start_host_side(self):
         """Start the host's side; it is one process, so that it can be killed."""
         self.link_of_host = self.host.node('mhri_link', '--side', 'host', '--name', 'bot1',
-                                           '--connect', self.endpoint)
+                                           '--connect', self.endpoint, '__ns:=/bot1')
         return self.link_of_host
 
     def rows(self):
