@@ -5,9 +5,12 @@
 The robot is witnessed on its own master, by a process there: what the host sees proves nothing
 while the link is down.
 """
+import collections
 import sys
 import threading
 import time
+
+import psutil
 
 from support.ros_system import free_port, System, wait_for
 
@@ -49,6 +52,7 @@ class Linked:
     """The two systems; ``protocol`` is ``tcp`` or ``udp``."""
 
     def __init__(self, protocol='tcp'):
+        self._states = collections.deque(maxlen=1)
         self.host = System()
         self.robot = System(adopt=False)
         self.endpoint = '{}/127.0.0.1:{}'.format(protocol, free_port())
@@ -68,6 +72,30 @@ class Linked:
         self.link_of_host = self.host.node('mhri_link', '--side', 'host', '--name', 'bot1',
                                            '--connect', self.endpoint, '__ns:=/bot1')
         return self.link_of_host
+
+    def node_of_robot(self):
+        """Return the process of the robot's side, which roslaunch starts again if it is killed."""
+        def find():
+            for child in psutil.Process(self.link_of_robot.pid).children():
+                try:
+                    if any(part.endswith('/mhri_link') for part in child.cmdline()):
+                        return child
+                except psutil.NoSuchProcess:
+                    pass
+            return None
+        return wait_for(find, LONG_S, 'the side of the robot')
+
+    def watch_gates(self):
+        """Begin to read /gates/state, for :meth:`gate`."""
+        import rospy
+        from mhri.msg import GatesState
+        rospy.Subscriber('/gates/state', GatesState, self._states.append, queue_size=1)
+
+    def gate(self):
+        """Return what the gates said last of bot1."""
+        return wait_for(lambda: next((gate for gate in (
+            self._states[-1].robots if self._states else ()) if gate.name == 'bot1'), None),
+            LONG_S, 'the gates to know bot1')
 
     def rows(self):
         """Return what the robot did, by its own odometry: (time, m/s, rad/s) in a list."""

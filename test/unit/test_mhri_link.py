@@ -12,8 +12,9 @@ from mhri.core.link.carried import (
 from mhri.core.link.frames import (
     About, Beat, Frame, FrameError, Newest, pack, pack_about, pack_beat, unpack, unpack_about,
     unpack_beat)
-from mhri.core.link.peer import BEAT_S, GONE_S, may_pass, Peer, SURE_S
-from mhri.core.link.renaming import first_text, renamer, rewritten, transforms, Transforms
+from mhri.core.link.peer import BEAT_S, GONE_S, held_s, may_pass, Peer, SURE_S
+from mhri.core.link.renaming import (
+    first_text, renamer, rewritten, stamp_of, transforms, Transforms)
 from mhri.core.robots.robot_types import parse_robot_type
 
 KIND = parse_robot_type('''
@@ -209,6 +210,12 @@ def test_what_goes_on_to_the_guard(frame_id, age_s, passes):
     assert may_pass(frame_id, age_s) is passes
 
 
+@pytest.mark.parametrize('said_at, now, held', [
+    (100.0, 100.4, 0.4), (100.0, 99.0, 0.0), (100.0, 200.0, 0.0), (100.0, 100.0, 0.0)])
+def test_what_waited_on_its_own_computer_is_as_old_as_that(said_at, now, held):
+    assert held_s(said_at, now) == pytest.approx(held)
+
+
 # --- frames of tf
 
 def text(words):
@@ -235,6 +242,7 @@ def test_a_message_gets_its_number_and_its_frames():
     rename = renamer('bot1')
     data = headed('odom', text('base_link'), b'the rest')
     assert first_text(data) == 'odom'
+    assert stamp_of(data) == pytest.approx(11.000000022)
     assert rewritten(data, 9, 2, rename) == headed(
         'bot1/odom', text('bot1/base_link'), b'the rest', number=9)
     assert rewritten(data, 9, 1, rename) == headed(
@@ -249,6 +257,11 @@ def test_a_message_that_ends_too_early(data):
         rewritten(data, 1, 1, renamer('bot1'))
     with pytest.raises(ValueError):
         first_text(data)
+
+
+def test_a_stamp_that_is_missing():
+    with pytest.raises(ValueError):
+        stamp_of(bytes(11))
 
 
 def tf_message(*pairs, mark=b'\x01'):

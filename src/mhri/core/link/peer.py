@@ -79,6 +79,16 @@ class Peer:
         return 1.0 - len(set(self._numbers)) / sent
 
 
+def held_s(said_at: float, now: float) -> float:
+    """Return how long a command was held on its own computer before it came to the link [s].
+
+    Both are times of day of that computer. Where they cannot be, as the clock was set, it is 0:
+    what is older than this can tell answers no question of the guard any more.
+    """
+    held = now - said_at
+    return held if 0.0 <= held <= SURE_S else 0.0
+
+
 def may_pass(frame_id: str, age_s: Optional[float]) -> bool:
     """Tell whether a command that came over the link goes on to the guard.
 

@@ -11,6 +11,7 @@ from typing import Callable, Dict, Iterator, Optional, Tuple
 from mhri.core.link.carried import SHARED_FRAMES
 
 _LENGTH = struct.Struct('<I')
+_STAMP = struct.Struct('<II')
 # Number and stamp of a header.
 _BEFORE_FRAME = 12
 # Translation and rotation of a transform.
@@ -54,6 +55,17 @@ def first_text(data: bytes) -> str:
     :raises ValueError: it has none
     """
     return _text(data, _BEFORE_FRAME)[0].decode('utf-8')
+
+
+def stamp_of(data: bytes) -> float:
+    """Return the stamp of a message with a header [s].
+
+    :raises ValueError: it has none
+    """
+    if len(data) < _BEFORE_FRAME:
+        raise ValueError('a message that ends too early')
+    seconds, nanoseconds = _STAMP.unpack_from(data, 4)
+    return float(seconds + 1e-9 * nanoseconds)
 
 
 def rewritten(data: bytes, number: int, names: int, rename: Rename) -> bytes:

@@ -1,11 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The host's side of the link: on the host's master the robot looks like any other."""
+import time
+
 import rospy
 
 from mhri.core.link.carried import (
-    COMMAND, DOWN, full_topic, GUARD_ECHO, PICTURE, STATE, TF, TF_STATIC, TF_TYPE)
+    COMMAND, DOWN, full_topic, GUARD_COMMAND, GUARD_ECHO, PICTURE, STATE, TF, TF_STATIC, TF_TYPE)
 from mhri.core.link.frames import About, unpack_about
+from mhri.core.link.peer import held_s
+from mhri.core.link.renaming import stamp_of
 from mhri.ros.graph.master_api import MasterError
 from mhri.ros.link.robot_side import PARAMETERS
 from mhri.ros.link.side import ABOUT, Side
@@ -101,10 +105,15 @@ class HostSide(Side):
             self._publishers[key] = publisher
 
     def _subscribe(self, stream, kind):
+        # No queue: of what waited, the stop among the commands must not be lost.
         return rospy.Subscriber(
             full_topic('/' + self.name, stream.topic), bytes_of(message_class(kind)),
-            lambda message: self.send(stream.topic, stream.urgency, message._buff),
-            tcp_nodelay=True)
+            lambda message: self._on_command(stream, message._buff), tcp_nodelay=True)
+
+    def _on_command(self, stream, data):
+        """Send down what the gates said, as old as it is: this node may have hung meanwhile."""
+        held = held_s(stamp_of(data), time.time()) if stream.topic == GUARD_COMMAND else 0.0
+        self.send(stream.topic, stream.urgency, data, held_s=held)
 
     def fill(self, status):
         """Fill a ``DiagnosticStatusWrapper`` with the figures of the link."""

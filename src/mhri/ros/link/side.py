@@ -55,9 +55,10 @@ class Side:
         threading.Thread(target=self._run, name='link', daemon=True).start()
         return self
 
-    def send(self, topic, urgency, body, make=None):
+    def send(self, topic, urgency, body, make=None, held_s=0.0):
         """Send a message of a stream now, or drop it.
 
+        :param held_s: how old it is already [s]
         :param make: called with the number of the message, returns what is sent instead of ``body``
         """
         with self.lock:
@@ -66,7 +67,8 @@ class Side:
                 sender = self._senders[topic] = self._carrier.sender(self._way, topic, urgency)
             self._numbers[topic] += 1
             number = self._numbers[topic]
-            sender(pack(self._session, number, self.clock(), make(number) if make else body))
+            sender(pack(self._session, number, self.clock() - held_s,
+                        make(number) if make else body))
 
     def _hear(self, topic, data):
         """Take in a message (on zenoh's thread)."""
