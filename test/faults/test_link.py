@@ -57,6 +57,17 @@ def test_it_looks_like_any_robot(lab):
     assert dict(rospy.get_published_topics())['/bot1/scan'] == 'sensor_msgs/LaserScan'
 
 
+def test_the_host_side_subscribes_commands_alone(lab):
+    from mhri.ros.graph.master_api import MasterApi
+    api = MasterApi('/link_test', 2.0)
+
+    def heard():
+        return {topic for topic, nodes in api.call('getSystemState')[1]
+                if '/bot1/mhri_link' in nodes}
+    wait_for(lambda: heard() == {'/bot1/mhri_guard/command', '/bot1/mhri_guard/heard'}, LONG_S,
+             lambda: 'its topics: {}'.format(heard()))
+
+
 def test_it_is_driven_through_its_guard(lab):
     lab.drive(lab.operator)
     wait_for(lab.witness.moving, LONG_S, 'the host to see it move')

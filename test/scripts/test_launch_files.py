@@ -120,6 +120,16 @@ def test_a_link_for_each_robot_with_a_master_of_its_own():
     assert not [node for node in load(MHRI).nodes if node.type == 'mhri_link']
 
 
+@pytest.mark.parametrize('more, namespaces', [
+    ([], ['/bot1/', '/bot1/']), (['namespace:=/'], ['/', '/bot1/']),
+    (['guard:=false'], ['/bot1/'])])
+def test_a_robot_with_a_master_of_its_own_has_link_and_guard(more, namespaces):
+    config = load(LAUNCH / 'link.launch', 'side:=robot', 'name:=bot1', *more)
+    assert sorted(node.namespace for node in config.nodes) == namespaces
+    args = next(node.args for node in config.nodes if node.type == 'mhri_link')
+    assert '--side robot' in args and "--listen 'tcp/0.0.0.0:7447'" in args
+
+
 def test_test_nodes_have_names_of_their_own():
     """A result file is called after its test node: a second one would write over the first."""
     names = [test.get('test-name') for path in sorted(LAUNCH.parent.glob('test/rostest/*.test'))

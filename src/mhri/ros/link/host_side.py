@@ -54,7 +54,7 @@ class HostSide(Side):
         """Publish a message, or note what the robot says of itself."""
         if topic == ABOUT:
             self._news = unpack_about(frame.body)
-            self.wake.set()
+            self.to_do.set()
             return
         publisher = self._publishers.get(topic)
         if publisher is not None:
@@ -100,7 +100,7 @@ class HostSide(Side):
             return
         publisher = rospy.Publisher(
             full_topic('/' + self.name, topic), found, queue_size=QUEUE, tcp_nodelay=True,
-            latch=topic in LATCHED, subscriber_listener=Listener(self.wake.set))
+            latch=topic in LATCHED, subscriber_listener=Listener(self.to_say.set))
         with self.lock:
             self._publishers[key] = publisher
 

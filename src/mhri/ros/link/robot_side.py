@@ -116,7 +116,7 @@ class RobotSide(Side):
             self.send_about(pack_about(self._about))
         if wanted != self._wanted:
             self._wanted = wanted
-            self.wake.set()
+            self.to_do.set()
 
     def on_frame(self, topic, frame, now):
         """Give the guard a command, unless it is late."""

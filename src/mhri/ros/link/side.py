@@ -37,7 +37,8 @@ class Side:
         self.clock = clock
         self.peer = Peer()
         self.lock = threading.RLock()
-        self.wake = threading.Event()
+        # Set to beat at once, or to work at once.
+        self.to_say, self.to_do = threading.Event(), threading.Event()
         self.refused = 0
         self._carrier = carrier
         self._way = way
@@ -46,13 +47,15 @@ class Side:
         self._numbers = collections.Counter()
         self._newest = collections.defaultdict(Newest)
         self._ages = {}
-        self._beat_at = 0.0
         self._was_heard = False
 
     def start(self):
         """Begin to listen and to beat; returns at once."""
         self._carrier.listen('up' if self._way == 'down' else 'down', self._hear)
-        threading.Thread(target=self._run, name='link', daemon=True).start()
+        # Not in one thread: a master that hangs holds up the work, and must not hold up the beats.
+        for tick, asked in ((self._beat, self.to_say), (self.work, self.to_do)):
+            threading.Thread(target=self._run, args=(tick, asked), name='link',
+                             daemon=True).start()
         return self
 
     def send(self, topic, urgency, body, make=None, held_s=0.0):
@@ -115,20 +118,17 @@ class Side:
             return {urgency: sorted(age_s for at, age_s in ages if now - at < 10.0)
                     for urgency, ages in self._ages.items()}
 
-    def _run(self):
+    def _run(self, tick, asked):
         while not rospy.is_shutdown():
-            self.wake.wait(0.5 * BEAT_S)
-            pressed = self.wake.is_set()
-            self.wake.clear()
+            asked.wait(0.75 * BEAT_S)
+            asked.clear()
             try:
-                self._tick(pressed)
+                tick(self.clock())
             except Exception as error:  # without this thread the link would be dead
                 if not rospy.is_shutdown():
                     rospy.logerr_throttle(1.0, '{}: the link failed: {!r}'.format(self.name, error))
 
-    def _tick(self, pressed):
-        now = self.clock()
-        self.work(now)
+    def _beat(self, now):
         with self.lock:
             heard = self.peer.heard(now)
             if heard != self._was_heard:
@@ -136,9 +136,7 @@ class Side:
                 (rospy.loginfo if heard else rospy.logwarn)(
                     '%s: the other side of the link is %s', self.name,
                     'there' if heard else 'not heard any more')
-            if pressed or now - self._beat_at >= 0.75 * BEAT_S:
-                self._beat_at = now
-                self.send(BEAT, COMMAND, pack_beat(Beat(self.peer.echo(now), *self.said())))
+            self.send(BEAT, COMMAND, pack_beat(Beat(self.peer.echo(now), *self.said())))
 
     def send_about(self, body):
         """Send what the robot says of itself."""
@@ -157,5 +155,5 @@ class Side:
         raise NotImplementedError
 
     def work(self, now):
-        """Do what takes a while, without the lock."""
+        """Do what takes a while: without the lock, and on a thread of its own."""
         raise NotImplementedError
