@@ -56,30 +56,41 @@ def shown(session, text):
                   what='{!r} in the mode list'.format(text))
 
 
-def test_with_two_pads_plugged_in_the_operator_chooses(session, joy, tmp_path):
+def choose(session, text):
+    """Click an entry of the mode list."""
     from python_qt_binding.QtCore import Qt
     from python_qt_binding.QtTest import QTest
-    import rospy
-    operator, combo = session.operator, session.host.screen.mode_combo
-    first = joy.do('attach', name=PS3)
-    joy.do('attach', name=F710[0], axes=6, buttons=12)
-    session.host._request_mode('ps3joy')
-    shown(session, PS3)
-    shown(session, F710[0])
+    combo = session.host.screen.mode_combo
     combo.showPopup()
     session.until(combo.view().isVisible, what='the list')
-    row = next(row for row in range(combo.count()) if combo.itemText(row) == F710[0])
+    row = next(row for row in range(combo.count()) if combo.itemText(row) == text)
     place = combo.view().visualRect(combo.model().index(row, 0)).center()
     # The list lets clicks pass for a moment after it was opened.
     session.until(lambda: QTest.mouseClick(combo.view().viewport(), Qt.LeftButton,
                                            Qt.NoModifier, place) or not combo.view().isVisible(),
                   what='the click')
-    session.until(lambda: combo.shown_text == F710[0], what='the other pad')
+    session.until(lambda: combo.shown_text == text, what='{!r} to be the mode'.format(text))
+
+
+@pytest.mark.parametrize('name, first_is, other_is', [
+    (F710[0], PS3, F710[0]), (PS3, PS3 + ', number 1', PS3 + ', number 2')])
+def test_with_two_pads_plugged_in_the_operator_chooses(session, joy, name, first_is, other_is):
+    import rospy
+    operator = session.operator
+    first = joy.do('attach', name=PS3)
+    joy.do('attach', name=name)
+    session.host._request_mode('ps3joy')
+    shown(session, first_is)
+    shown(session, other_is)
+    choose(session, other_is)
     assert operator.view().mode == 'ps3joy'
-    shown(session, PS3)
+    shown(session, first_is)
     joy.do('set', number=first, axes={1: -1.0}, buttons={L1: 1})
     session.until(lambda: operator.view().status, what='the status')
     assert not operator.robot_view('bot1').moving, 'the pad that was not chosen is pushed'
+    if name == PS3:
+        joy.do('detach', number=first)
+        session.until(lambda: session.host.screen.mode_combo.shown_text == PS3, what='one name')
     rospy.set_param('/mhri_joy/device', '')
 
 

@@ -14,13 +14,17 @@ MOUSE = ('USB Optical Mouse', '0003', '046d', 'c077', '0111', '70000 0 0 0 0')
 NAMELESS = ('Home-made stick', '0000', '0000', '0000', '0000', 'ff00000000 0 0 0 0')
 
 
-def plug(folder, number, device):
-    """Describe a device as ``event<number>``; the folder appears whole."""
+def plug(folder, number, device, phys='', uniq=''):
+    """Describe a device as ``event<number>``; the folder appears whole.
+
+    :param phys: its port, e.g. 'usb-0000:00:14.0-1.2/input0'
+    :param uniq: its own number or address
+    """
     name, bus, vendor, product, version, keys = device
     made = os.path.join(str(folder), 'event{}'.format(number))
     for place, text in (('name', name), ('id/bustype', bus), ('id/vendor', vendor),
-                        ('id/product', product), ('id/version', version), ('phys', ''),
-                        ('capabilities/key', keys)):
+                        ('id/product', product), ('id/version', version), ('phys', phys),
+                        ('uniq', uniq), ('capabilities/key', keys)):
         path = os.path.join(made + '.new', 'device', place)
         os.makedirs(os.path.dirname(path), exist_ok=True)
         with open(path, 'w', encoding='utf-8') as stream:

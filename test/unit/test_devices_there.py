@@ -40,9 +40,36 @@ def test_pads_and_nothing_else(system):
     for number, device in enumerate((KEYBOARD, MOUSE, F710, MOTION, NAMELESS, PS3), 3):
         plug(system, number, device)
     assert event_nodes.find_pads() == [
-        PadInfo(0, 'Logitech Gamepad F710', '030000006d0400001fc2000005030000'),
-        PadInfo(1, 'Home-made stick', ''),
-        PadInfo(2, 'Sony PLAYSTATION(R)3 Controller', '050000004c0500006802000000800000')]
+        PadInfo(0, 'Logitech Gamepad F710', '030000006d0400001fc2000005030000', 'event5'),
+        PadInfo(1, 'Home-made stick', '', 'event7'),
+        PadInfo(2, 'Sony PLAYSTATION(R)3 Controller', '050000004c0500006802000000800000',
+                'event8')]
+
+
+@pytest.mark.parametrize('phys, uniq, where', [
+    ('usb-0000:00:14.0-1.2/input0', 'A1B2', 'USB 1.2'),
+    ('usb-0000:00:14.0-3/input4', '', 'USB 3/4'),
+    ('usb-3f980000.usb-1.10/input0', '', 'USB 1.10'),
+    # By Bluetooth: the port is this computer's own radio.
+    ('5c:f3:70:8b:11:02', '00:1b:fb:63:a2:81', '00:1b:fb:63:a2:81'), ('', '', 'event4')])
+def test_where_a_pad_is(system, phys, uniq, where):
+    plug(system, 4, PS3, phys, uniq)
+    assert [pad.where for pad in event_nodes.find_pads()] == [where]
+    assert event_nodes.where_is('/dev/input/event4') == where
+    assert event_nodes.where_is('/dev/input/event5') == event_nodes.where_is('') == ''
+
+
+def test_two_pads_of_one_name_are_two(system):
+    reader = PadReader(profiles, joysticks=(), clock=iter(range(0, 100, 10)).__next__)
+    plug(system, 4, PS3, 'usb-0000:00:14.0-1.2/input0')
+    assert reader.there() == (PS3[0],)
+    other = plug(system, 5, PS3, 'usb-0000:00:14.0-1.4/input0')
+    assert reader.there() == (PS3[0] + ', USB 1.2', PS3[0] + ', USB 1.4')
+    reader.want(PS3[0] + ', USB 1.4')
+    assert reader.find() == PS3[0] + ', USB 1.4'
+    shutil.rmtree(other)
+    with pytest.raises(DeviceAbsent, match='USB 1.4'):
+        reader.find()
 
 
 def test_a_system_without_input_devices(system):

@@ -2,15 +2,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The reader of the pad over joysticks that are played."""
 import os
+import sys
 import types
 
 import pytest
 
-from mhri.core.devices.pads import PadInfo
-from mhri.core.driving.profile import parse_profile
-from mhri.inputs import sdl
-from mhri.inputs.pad import PadReader
-from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reading
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from mhri.core.devices.pads import PadInfo  # noqa: E402
+from mhri.core.driving.profile import parse_profile  # noqa: E402
+from mhri.inputs import event_nodes, sdl  # noqa: E402
+from mhri.inputs.pad import PadReader  # noqa: E402
+from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reading  # noqa: E402
+from support.kernel_pads import plug, PS3  # noqa: E402
 
 STICK = parse_profile('name: generic\nforward: {axis: 1, scale: -1.0}\nturn: {axis: 0}\n', 'g')
 TRIGGER = parse_profile(
@@ -327,3 +331,45 @@ def test_all_pads_are_named_and_the_chosen_one_is_opened():
         reader.read(0.0)
     reader.close()
     assert reader.open().startswith('Pad with profile')
+
+
+def test_a_pad_keeps_its_place_and_changes_its_name_with_its_twin():
+    reader, plugged = make('Pad')
+    plugged[0].info = PadInfo(0, 'Pad', where='USB 1')
+    twin = Joystick(PadInfo(1, 'Pad', where='USB 2'))
+    assert reader.open().startswith('Pad with profile')
+    assert (reader.there(), reader.name) == (('Pad',), 'Pad')
+    plugged.append(twin)
+    for _ in range(3000):  # the clock goes on with each look
+        reader.there()
+    assert (reader.there(), reader.name) == (('Pad, USB 1', 'Pad, USB 2'), 'Pad, USB 1')
+    reader.want('Pad, USB 2')
+    with pytest.raises(DeviceLost, match='another pad was chosen: Pad, USB 2'):
+        reader.read(0.0)
+    reader.close()
+    assert reader.open().startswith('Pad, USB 2 with profile')
+
+
+def listed_by(names, paths=None):
+    """Return what :class:`mhri.inputs.sdl.Joysticks` lists of an SDL that is played."""
+    library = types.SimpleNamespace(
+        SDL_JoystickNameForIndex=lambda index: names[index].encode(),
+        SDL_JoystickGetDeviceGUID=lambda _: types.SimpleNamespace(data=bytes(16)),
+        SDL_JoystickGetDeviceInstanceID=lambda index: index + 6)
+    if paths is not None:
+        library.SDL_JoystickPathForIndex = lambda index: paths[index]
+    joysticks = sdl.Joysticks()
+    joysticks._library = library
+    joysticks._pygame = types.SimpleNamespace(
+        joystick=types.SimpleNamespace(get_count=lambda: len(names)))
+    return [pad.where for pad in joysticks.connected()]
+
+
+@pytest.mark.parametrize('paths, places', [
+    ([b'/dev/input/event9', b'/dev/input/event4', None], ['USB 9', 'USB 4', 'number 9']),
+    (None, ['USB 4', 'USB 9', 'number 9'])])
+def test_where_a_joystick_of_sdl_is(paths, places, tmp_path, monkeypatch):
+    monkeypatch.setattr(event_nodes, 'SYS_INPUT', str(tmp_path))
+    for number in (9, 4):
+        plug(tmp_path, number, PS3, 'usb-0000:00:14.0-{}/input0'.format(number))
+    assert listed_by([PS3[0], PS3[0], 'Virtual'], paths) == places

@@ -7,7 +7,8 @@ import re
 import pytest
 
 from mhri.core.devices.pads import (
-    choose_pad, choose_profile, describe, is_guid, load_profiles, PadInfo, same_guid)
+    choose_pad, choose_profile, describe, is_guid, load_profiles, PadInfo, same_guid,
+    tell_apart)
 from mhri.core.driving.profile import ANY, JoyRefused
 
 PADS = Path(__file__).resolve().parents[2] / 'resource' / 'pads'
@@ -170,6 +171,29 @@ def test_a_name_that_is_part_of_another():
     pads = [PadInfo(0, 'PS3 Pad'), PadInfo(1, 'Pad')]
     assert choose_pad('Pad', pads, PROFILES).index == 1
     assert choose_pad('pad', pads, PROFILES).index == 0
+
+
+TWINS = [PadInfo(0, 'Pad', where='USB 1.2'), PadInfo(1, 'Stick', where='USB 2'),
+         PadInfo(2, 'Pad', where='USB 1.10'), PadInfo(3, 'Pad', where='USB 1.10')]
+
+
+def test_pads_of_one_name_are_called_by_their_place():
+    assert [pad.label for pad in tell_apart(TWINS)] == [
+        'Pad, USB 1.2', 'Stick', 'Pad, USB 1.10', 'Pad, USB 1.10 (2)']
+    assert [pad.label for pad in tell_apart([PadInfo(0, 'A'), PadInfo(1, 'A')])] == ['A', 'A (2)']
+
+
+@pytest.mark.parametrize('wanted, index', [
+    ('', 0), ('pad', 0), ('Pad, USB 1.2', 0), ('Pad, USB 1.10', 2), ('pad, usb 1.10', 2),
+    ('Pad, USB 1.10 (2)', 3)])
+def test_one_of_several_pads_of_one_name(wanted, index):
+    assert choose_pad(wanted, TWINS, PROFILES).index == index
+
+
+def test_the_pad_that_was_chosen_is_the_same_while_its_twin_comes_and_goes():
+    assert choose_pad('Pad, USB 1.10', TWINS[2:3], PROFILES).label == 'Pad'
+    with pytest.raises(LookupError, match="'Pad, USB 1.10' is not connected.*connected: 0: Pad$"):
+        choose_pad('Pad, USB 1.10', TWINS[:1], PROFILES)
 
 
 def test_small_helpers():

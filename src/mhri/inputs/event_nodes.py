@@ -19,6 +19,8 @@ DEV_INPUT = '/dev/input'
 # BTN_JOYSTICK to BTN_THUMBR (linux/input-event-codes.h): what pads have. Rudder pedals have none,
 # but a node of joydev.
 _PAD_KEYS = 0x120, 0x13f
+# The receiver of several pads shows each as another interface of its port; most have just 0.
+_USB_PORT = re.compile(r'usb-.*-([\d.]+)(?:/input(?:0|(\d+)))?$')
 
 
 @dataclass(frozen=True)
@@ -75,8 +77,25 @@ def find_pads(sys_input=None):
     folders = [folder for _, folder in _folders(sys_input or SYS_INPUT)
                if _has_keys(_line(folder, 'capabilities/key'), *_PAD_KEYS)
                or glob.glob(os.path.join(glob.escape(folder), 'js[0-9]*'))]
-    return [PadInfo(index, _line(folder, 'name'), _guid(folder))
+    return [PadInfo(index, _line(folder, 'name'), _guid(folder), _where(folder))
             for index, folder in enumerate(folders)]
+
+
+def where_is(path, sys_input=None):
+    """Return where the device with a file like ``/dev/input/event7`` is plugged in.
+
+    :returns: the same as ``where`` of :func:`find_pads`; '' if the system shows no such device
+    """
+    folder = os.path.join(sys_input or SYS_INPUT, os.path.basename(path), 'device')
+    return _where(folder) if os.path.isdir(folder) else ''
+
+
+def _where(folder):
+    """Return the port at this computer, else the device's own address or number, else its file."""
+    port = _USB_PORT.match(_line(folder, 'phys'))
+    if port:
+        return 'USB ' + '/'.join(filter(None, port.groups()))
+    return _line(folder, 'uniq') or os.path.basename(os.path.dirname(folder))
 
 
 def _has_keys(words, first, last):

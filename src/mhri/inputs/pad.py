@@ -9,7 +9,8 @@ import logging
 import threading
 import time
 
-from mhri.core.devices.pads import choose_pad, choose_profile, is_wanted, only_pads
+from mhri.core.devices.pads import (
+    choose_pad, choose_profile, is_wanted, only_pads, tell_apart)
 from mhri.inputs.event_nodes import find_pads
 from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader, Reading, Remembered
 from mhri.inputs.sdl import Joysticks
@@ -69,7 +70,7 @@ class PadReader(Reader):
     def _found(self, wanted, pads):
         """Return the name of the pad to open."""
         try:
-            return choose_pad(wanted, pads, self._profiles()).name
+            return choose_pad(wanted, pads, self._profiles()).label
         except LookupError as problem:
             raise DeviceAbsent(str(problem))
 
@@ -78,9 +79,17 @@ class PadReader(Reader):
         now = self._clock()
         if now >= self._look_at:
             self._look_at = now + LOOK_S
-            pads = find_pads() if self._pad is None else self._joysticks.connected()
-            self._there = tuple(dict.fromkeys(pad.name for pad in only_pads(pads)))
+            pads = tell_apart(only_pads(
+                find_pads() if self._pad is None else self._joysticks.connected()))
+            self._there = tuple(pad.label for pad in pads)
+            if self._pad is not None:
+                self._call_it(pads)
         return self._there
+
+    def _call_it(self, pads):
+        """Name the open pad as it is called among those that are there now."""
+        own = self._pad.info
+        self.name = next((pad.label for pad in pads if pad.full_name == own.full_name), self.name)
 
     def open(self):
         """Open the pad; see :class:`mhri.inputs.reader.Reader`."""
@@ -104,9 +113,9 @@ class PadReader(Reader):
         self._last = None
         self._rumble.clear()
         self._choice = self.note = note
-        self.name = info.name
+        self.name = info.label
         self._look_at = 0.0
-        return '{} with profile {}'.format(info.name, profile.name)
+        return '{} with profile {}'.format(info.label, profile.name)
 
     def read(self, timeout_s):
         """Wait for a change; see :class:`mhri.inputs.reader.Reader`."""

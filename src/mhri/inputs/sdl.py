@@ -7,12 +7,14 @@ runs on SDL 2, this module also asks that library, through ctypes. Otherwise an 
 its first event on, and a pad is gone when its file in /dev/input is.
 """
 import ctypes
+from dataclasses import replace
 import os
 import re
 import select
 import time
 
 from mhri.core.devices.pads import PadInfo
+from mhri.inputs.event_nodes import find_pads, where_is
 from mhri.inputs.reader import DeviceAbsent, DeviceLost
 
 # How often to look at a pad without a file to wait for (a virtual one) [s].
@@ -54,10 +56,14 @@ def load_library():
                 (library.SDL_JoystickGetAxisInitialState, number,
                  [pointer, number, ctypes.POINTER(ctypes.c_int16)]),
                 (library.SDL_JoystickNameForIndex, ctypes.c_char_p, [number]),
+                (library.SDL_JoystickGetDeviceInstanceID, ctypes.c_int32, [number]),
                 (library.SDL_JoystickGetDeviceGUID, _Guid, [number])):
             function.restype, function.argtypes = result, arguments
     except AttributeError:  # an SDL older than 2.0.6
         return None
+    if hasattr(library, 'SDL_JoystickPathForIndex'):  # from 2.24 on
+        library.SDL_JoystickPathForIndex.restype = ctypes.c_char_p
+        library.SDL_JoystickPathForIndex.argtypes = [number]
     return library
 
 
@@ -128,13 +134,37 @@ class Joysticks:
             pygame.joystick.init()
         pygame.event.pump()
         pygame.event.get()
-        return [self._info(index) for index in range(pygame.joystick.get_count())]
+        return self._list()
 
     def connected(self):
         """Return what :meth:`look` would, without touching anything; [] where SDL is too old."""
         if self._library is None:
             return []
-        return [self._info(index) for index in range(self._pygame.joystick.get_count())]
+        return self._list()
+
+    def _list(self):
+        """Return all joysticks, each with its place."""
+        pads = [replace(pad, where=self._where(pad.index)) for pad in map(
+            self._info, range(self._pygame.joystick.get_count()))]
+        if all(pad.where for pad in pads):
+            return pads
+        # An SDL that does not name their files has them in the kernel's order.
+        kernel = find_pads()
+        places = {pad.name: iter([other.where for other in kernel if other.name == pad.name])
+                  for pad in pads}
+        return [replace(pad, where=pad.where or next(places[pad.name], '')
+                        or self._number(pad.index)) for pad in pads]
+
+    def _where(self, index):
+        """Return where a joystick is plugged in, '' if its file is not known."""
+        if not hasattr(self._library, 'SDL_JoystickPathForIndex'):
+            return ''
+        return where_is((self._library.SDL_JoystickPathForIndex(index) or b'').decode())
+
+    def _number(self, index):
+        """Return the number that a joystick has for as long as it is there, '' if unknown."""
+        return 'number {}'.format(self._library.SDL_JoystickGetDeviceInstanceID(index) + 1) \
+            if self._library else ''
 
     def _info(self, index):
         if self._library is not None:

@@ -82,8 +82,9 @@ class TilesHost(QObject):
                         if robot.name not in self.windows and robot.type_label), None)
         if missing is not None:
             self.make(missing.name)
-        self._stage.show_tiles({name: self.windows[name] for name in names
-                                if name in self.windows})
+        self._stage.show_tiles(
+            {name: self.windows[name] for name in names if name in self.windows},
+            [robot.name for robot in robots if robot.type_label])
         self._stage.show_awaited(names)
         now = time.monotonic()
         self._due = sorted((robot for robot in robots if robot.name in self.hosts),

@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Which of several pads to use, and which profile says what its axes mean."""
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, replace
 from typing import Iterable, List, Optional, Sequence, Tuple
 
 from mhri.core.config import ConfigError
@@ -15,11 +16,22 @@ _NO_PADS = ('motion sensors', 'touchpad', 'accelerometer', 'pedal', 'rudder', 'f
 
 @dataclass(frozen=True)
 class PadInfo:
-    """A connected pad: its place in SDL's list, its name, its GUID ('' if not known)."""
+    """A connected pad: its place in SDL's list, its name, its GUID ('' if not known).
+
+    ``where`` tells it from others of its name, e.g. 'USB 1.2', '' if nothing is known. ``label`` is
+    what it is called on the screen, as :func:`tell_apart` says.
+    """
 
     index: int
     name: str
     guid: str = ''
+    where: str = ''
+    label: str = ''
+
+    @property
+    def full_name(self) -> str:
+        """Its name and where it is."""
+        return ', '.join(filter(None, (self.name, self.where)))
 
 
 def same_guid(guid: str) -> str:
@@ -100,21 +112,39 @@ def only_pads(devices: Iterable[PadInfo]) -> List[PadInfo]:
     return [pad for pad in devices if not any(part in pad.name.lower() for part in _NO_PADS)]
 
 
+def tell_apart(pads: Iterable[PadInfo]) -> List[PadInfo]:
+    """Return the pads with labels that differ.
+
+    That is its name; of several of one name also where it is, and a number where that does not
+    differ either.
+    """
+    pads = list(pads)
+    names = Counter(pad.name for pad in pads)
+    seen: Counter[str] = Counter()
+    told = []
+    for pad in pads:
+        label = pad.full_name if names[pad.name] > 1 else pad.name
+        seen[label] += 1
+        told.append(replace(pad, label='{} ({})'.format(label, seen[label])
+                            if seen[label] > 1 else label))
+    return told
+
+
 def choose_pad(wanted: object, pads: Iterable[PadInfo], profiles: Sequence[Profile]) -> PadInfo:
     """Return the :class:`PadInfo` to open.
 
     :param wanted: '' (any: the first that a profile knows, else the first), a whole number (its
-        place in the list, from 0), a GUID, or a part of its name in any case
+        place in the list, from 0), a GUID, its label, or a part of its name in any case
     :raises LookupError: there is none; the text says what was wanted and the remedy
     """
     word = str(wanted).strip()
-    pads = only_pads(pads)
+    pads = tell_apart(only_pads(pads))
     if not pads:
         raise LookupError('none is connected; plug one in, or press its PS button')
     if not word:
         return next((pad for pad in pads if is_known(profiles, pad)), pads[0])
     # One name may be a part of another.
-    for pad in sorted(pads, key=lambda pad: pad.name != word):
+    for pad in sorted(pads, key=lambda pad: word not in (pad.label, pad.full_name)):
         if is_wanted(word, pad):
             return pad
     raise LookupError('{!r} is not connected: plug it in, or choose another pad; connected: '
@@ -128,9 +158,9 @@ def is_wanted(wanted: object, pad: PadInfo) -> bool:
         return pad.index == int(word)
     if is_guid(word):
         return bool(pad.guid) and same_guid(word) == same_guid(pad.guid)
-    return word.lower() in pad.name.lower()
+    return word.lower() in pad.full_name.lower() or word == pad.label
 
 
 def describe(pads: Iterable[PadInfo]) -> str:
     """Return a list of pads in words, each with its index."""
-    return ', '.join('{}: {}'.format(pad.index, pad.name) for pad in pads) or 'none'
+    return ', '.join('{}: {}'.format(pad.index, pad.label or pad.name) for pad in pads) or 'none'

@@ -37,7 +37,8 @@ class Stage(QWidget):
     def __init__(self, parent=None):
         super().__init__(parent)
         self._tiles = {}
-        self._large = ()
+        self._large = self._large_places = ()
+        self._expected = ()
         self._shapes = ()
         self._driven = self._awaited = ()
         self._looked_at = ''
@@ -111,10 +112,15 @@ class Stage(QWidget):
         """Let map and pictures change places; one that is closed comes large."""
         self.show_map(MAP_BESIDE if self._map_state == MAP_LARGE else MAP_LARGE)
 
-    def show_tiles(self, tiles):
-        """Have just these tiles: {name: :class:`BotWindow`}, in order."""
-        if list(tiles.items()) != list(self._tiles.items()):
-            self._tiles = dict(tiles)
+    def show_tiles(self, tiles, expected=None):
+        """Have just these tiles: {name: :class:`BotWindow`}, in order.
+
+        :param expected: names of these and of those that come next, in order: they have their
+            places already, so that no tile is moved by each one that comes; None: as before
+        """
+        expected = self._expected if expected is None else tuple(expected)
+        if list(tiles.items()) != list(self._tiles.items()) or expected != self._expected:
+            self._tiles, self._expected = dict(tiles), expected
             for tile in tiles.values():
                 if not tile.torn_off and tile.parentWidget() is not self:
                     tile.setParent(self)
@@ -159,8 +165,9 @@ class Stage(QWidget):
 
     def refresh(self):
         """Place the tiles anew: a tile came, went, was torn off, or has another shape."""
-        names = self.names
-        self._large = choose_large(names, self._driven, self._looked_at, self._style)
+        self._large_places = choose_large(self._places(), self._driven, self._looked_at,
+                                          self._style)
+        self._large = tuple(name for name in self._large_places if name in self._tiles)
         self._shapes = self._shapes_now()
         for name, tile in self._tiles.items():
             tile.show_hud(self._numbers_shown)
@@ -173,7 +180,8 @@ class Stage(QWidget):
         marked = self._looked_at or (next(iter(self._large), '') if self.hasFocus() else '')
         for name, tile in self._tiles.items():
             tile.show_looked_at(name == marked)
-            tile.update()
+            if name == marked:
+                tile.update()
 
     def focusInEvent(self, event):  # noqa: N802
         """Show that the keys go to the pictures."""
@@ -192,11 +200,21 @@ class Stage(QWidget):
 
     def _shapes_now(self):
         """Return the shape of each tile's picture, those of the large tiles first."""
-        return tuple(round(self._tiles[name].picture_shape(), 2) for name in self._in_order())
+        return tuple(round(self._tiles[name].picture_shape(), 2) if name in self._tiles
+                     else USUAL_SHAPE for name in self._in_order())
+
+    def _places(self):
+        """Return whose tiles have a place on the stage, in order: those on it and those to come."""
+        names = self.names
+        if not names:
+            return ()
+        places = [name for name in self._expected if name in names or name not in self._tiles]
+        return (*places, *(name for name in names if name not in places))
 
     def _in_order(self):
-        """Return the names, those of the large tiles first."""
-        return self._large + tuple(name for name in self.names if name not in self._large)
+        """Return whose tiles have a place, those of the large ones first."""
+        return self._large_places + tuple(name for name in self._places()
+                                          if name not in self._large_places)
 
     def picture_px(self, width, height):
         """Return the area that would be picture in a room of this size [px²]."""
@@ -217,7 +235,7 @@ class Stage(QWidget):
         return large, small
 
     def _arranged(self, width, height):
-        count = max(1, len(self._large))
+        count = max(1, len(self._large_places))
         unit = self.fontMetrics().height()
         shapes = self._shapes or (USUAL_SHAPE,)
         large, small = self._with_map(shapes[:count], shapes[count:], USUAL_SHAPE, width, height)
@@ -226,12 +244,13 @@ class Stage(QWidget):
 
     def _place(self):
         """Give each tile its rectangle."""
-        tiles = tuple(self._tiles[name] for name in self._in_order())
+        tiles = tuple(map(self._tiles.get, self._in_order()))
         self._invitation.setVisible(not self._tiles)
         self._invitation.setGeometry(self.rect())
-        count = len(self._large)
+        count = len(self._large_places)
         for index, tile in enumerate(tiles):
-            tile.full_rate = index < count
+            if tile is not None:
+                tile.full_rate = index < count
         large, small = self._with_map(tiles[:count], tiles[count:], self._map, self.width(),
                                       self.height()) if tiles else ((), ())
         if self._map is not None and self._map not in large + small:
@@ -240,9 +259,10 @@ class Stage(QWidget):
             return
         found = self._arranged(self.width(), self.height())
         for index, (tile, box) in enumerate(zip(large + small, found.large + found.small)):
-            tile.show_large(index < len(large))
-            tile.setGeometry(QRect(box.x, box.y, box.width, box.height))
-            tile.show()
+            if tile is not None:
+                tile.show_large(index < len(large))
+                tile.setGeometry(QRect(box.x, box.y, box.width, box.height))
+                tile.show()
         self.place_float()
 
     def show_float(self, widget):

@@ -46,8 +46,8 @@ class RobotGate:
     ``/<robot>/mhri_guard/state`` (``std_msgs/String``), which it answers by
     ``/<robot>/mhri_guard/heard`` (``std_msgs/String``). While the brake is asked for, see
     :class:`mhri.ros.driving.brake_eye.BrakeEye`; while the robot is checked or stopped, see
-    :class:`mhri.ros.driving.own_navigation.OwnNavigation`. Apart from its callbacks it is not thread-safe:
-    hold ``lock``.
+    :class:`mhri.ros.driving.own_navigation.OwnNavigation`. Apart from its callbacks it is not
+    thread-safe: hold ``lock``.
 
     :param name: the robot
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
