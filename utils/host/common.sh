@@ -141,6 +141,20 @@ install_missing() {
   fi
 }
 
+# install_link: the library of mhri_link, in a place of mhri's own. This version has wheels for
+# Python 3.8 and later, for PCs and for ARM. Only the link needs it.
+install_link() {
+  local library=eclipse-zenoh==1.5.1
+  [ "$(cat "$WS/link/installed" 2>/dev/null)" != "$library" ] || return 0
+  python3 -m pip --version >/dev/null 2>&1 || install_packages python3-pip
+  mkdir -p "$WS"
+  say "installing with pip, in $WS/link: $library"
+  python3 -m pip install --quiet --disable-pip-version-check --no-deps --upgrade \
+    --target "$WS/link" "$library" ||
+    die "pip could not install $library, which mhri_link needs: see its message above"
+  printf '%s' "$library" >"$WS/link/installed"
+}
+
 # source_setup FILE: sources it without set -u, as catkin's setup files read variables that may not
 # be set.
 source_setup() {
