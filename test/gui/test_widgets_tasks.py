@@ -62,7 +62,8 @@ def start(page, operator):
 
 
 def test_numbers_have_units_limits_and_defaults(page, operator, asked):
-    assert page.keys == ['goto', 'follow', 'patrol', 'return', 'formation', 'dance'] and page.kind is KINDS[0]
+    assert page.keys == ['goto', 'follow', 'patrol', 'return', 'formation', 'dance']
+    assert page.kind is KINDS[0]
     assert field(page, 'x').text() == 'to be given' and field(page, 'heading').text() == 'left out'
     assert field(page, 'speed').text() == '0.20 m/s' and field(page, 'timeout').text() == '120 s'
     field(page, 'speed').setValue(99.0)

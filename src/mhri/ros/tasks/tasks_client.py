@@ -4,9 +4,10 @@
 
 Speaks the protocol of the action ``/mhri_tasks/run`` (``mhri/RunTask``) itself: actionlib's client
 tells of its own goals alone, and the screen shows everybody's, those of a screen before it, too.
-Publishes ``/mhri_tasks/run/goal`` and ``/mhri_tasks/run/cancel``; calls ``/mhri_tasks/end``. Subscribes ``/mhri_tasks/list``,
-``/mhri_tasks/run/feedback`` and ``/mhri_tasks/run/result``, and believes only the ``mhri_tasks`` in
-force (:mod:`mhri.ros.driving.in_force`), by a service that every node of rospy has.
+Publishes ``/mhri_tasks/run/goal`` and ``/mhri_tasks/run/cancel``; calls ``/mhri_tasks/end``.
+Subscribes ``/mhri_tasks/list``, ``/mhri_tasks/run/feedback`` and ``/mhri_tasks/run/result``, and
+believes only the ``mhri_tasks`` in force (:mod:`mhri.ros.driving.in_force`), by a service that
+every node of rospy has.
 """
 from dataclasses import replace
 import itertools
