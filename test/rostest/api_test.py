@@ -134,7 +134,7 @@ class ApiTest(unittest.TestCase):
         for robot, kind, node in (('bot1', 'turtlebot2', '/bot1/base'),
                                   ('bot2', 'turtlebot3', '/bot2/base')):
             template = robot_types()[0][kind]
-            own = {'/tf'} | {'/{}/{}'.format(robot, topic) for topic in (
+            own = {'/tf', '/tf_static'} | {'/{}/{}'.format(robot, topic) for topic in (
                 *template.command, *template.imu, *template.odometry, *template.scan,
                 *template.cloud, *template.battery, template.motor_power.name,
                 *camera_topics(template))}

@@ -30,6 +30,12 @@ Robots
                        here); beside it come five more, e.g. mhri-demo_panel.png, _bot_window,
                        _depth, _stopped and _map. What is there is overwritten.
 
+  --link "NAME=ADDR..."  robots that have a ROS master of their own, e.g.
+                       --link "bot1=192.168.0.7 bot2=192.168.0.8": their addresses, where mhri_link
+                       runs as the operator's guide says ("Robots on a bad radio"). ADDR may also be
+                       an endpoint such as udp/192.168.0.7:7447. Installs the library for it, zenoh,
+                       below build/.ws.
+
 Network
   --ip ADDR            this computer's address, as the robots reach it. Default: the first IPv4
                        address of 'hostname -I'. With --sim, or a master on this machine:
@@ -64,6 +70,7 @@ HELP
 
 SIM=
 SIM_TYPES=
+LINKS=()
 IP=
 MASTER=
 DEMO=false
@@ -74,6 +81,7 @@ STOPPED_WITH=
 LAUNCH_PID=
 
 parse_arguments() {
+  local links
   while [ $# -gt 0 ]; do
     case "$1" in
       -h | --help) help_text; exit 0 ;;
@@ -81,6 +89,7 @@ parse_arguments() {
         SIM=$(value "$@"); shift
         if [[ ${2:-} =~ ^[a-z] && $2 != *:=* ]]; then SIM_TYPES=$2; shift; fi ;;
       --sim-types) SIM_TYPES=$(value "$@"); shift ;;
+      --link) links=$(value "$@"); read -r -a LINKS <<<"$links"; shift ;;
       --ip) IP=$(value "$@"); shift ;;
       --master) MASTER=$(value "$@"); shift ;;
       --screenshot) PICTURE=$(value "$@"); shift ;;
@@ -102,6 +111,7 @@ check_arguments() {
     usage_error "--sim: '$SIM_TYPES' is not a list of robot types: names with spaces between"
   [ -z "$SIM_TYPES" ] || [ -n "$SIM" ] || "$DEMO" ||
     usage_error "--sim-types lists the types for the robots of --sim N: give --sim as well"
+  check_links
   [ -z "$IP" ] || check_ip --ip "$IP" 192.168.0.103
   [[ -z $MASTER || $MASTER =~ ^http://[A-Za-z0-9]([A-Za-z0-9.-]*)?:[0-9]{1,5}/?$ ]] ||
     usage_error "--master: '$MASTER' is not an address such as http://192.168.0.103:11311"
@@ -120,6 +130,18 @@ check_arguments() {
   for arg in "${LAUNCH_ARGS[@]}"; do
     [[ $arg =~ ^[a-z][a-z0-9_]*:= ]] || usage_error "'$arg' is not ARG:=VALUE"
     [[ $arg != *[[:cntrl:]]* ]] || usage_error "${arg%%:=*}: a control character is in '$arg'"
+  done
+}
+
+# check_links: makes an endpoint of each bare address in LINKS.
+check_links() {
+  local index link
+  for index in "${!LINKS[@]}"; do
+    link=${LINKS[index]}
+    [[ $link == *=*/* ]] || link=${link/=/=tcp/}:7447
+    [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*=(tcp|udp)/[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] ||
+      usage_error "--link: '${LINKS[index]}' is not NAME=ADDRESS such as bot1=192.168.0.7"
+    LINKS[index]=$link
   done
 }
 
@@ -248,6 +270,7 @@ prepare_code() {
     return
   fi
   install_missing run
+  [ "${#LINKS[@]}" = 0 ] || install_link
   if [ "$SPACE" = install ]; then
     needs_plain_path "catkin's installation"
     build_workspace OFF install
@@ -279,6 +302,7 @@ stop() {
 launch() {
   local status=0 args=("sim:=${SIM:-0}" "${LAUNCH_ARGS[@]}")
   [ -z "$SIM_TYPES" ] || args+=("sim_types:=$SIM_TYPES")
+  [ "${#LINKS[@]}" = 0 ] || args+=("links:=${LINKS[*]}")
   if "$DEMO"; then
     args+=("demo:=true" "screenshot:=$PICTURE" "demo_result:=$SCRATCH/demo_result")
   fi

@@ -289,9 +289,9 @@ class Demo(QObject):
             self._save(widget.grab(), '{}_{}.png'.format(stem, name))
 
     def _take_screenshot(self):
-        """Write the whole screen to the file asked for."""
+        """Write the whole window to the file asked for, as it is now: not what was painted last."""
         if self._screenshot:
-            self._save(self._program.window.screen().grabWindow(0), self._screenshot)
+            self._save(self._program.window.grab(), self._screenshot)
 
     def _save(self, picture, path):
         self._written.append((path, self._writer.submit(picture.toImage().save, path, 'PNG')))

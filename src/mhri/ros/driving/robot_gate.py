@@ -56,13 +56,14 @@ class RobotGate:
     :param lock: held by the callbacks
     :param on_foreign_stop: called with the robot if another run of the gates has stopped it
     :param on_displaced: called with the robot if somebody else has spoken to its guard
+    :param frames: :class:`mhri.ros.map.tf_feed.TfFeed`, None: without tf
     """
 
     def __init__(self, name, robot_type, session, command, lock, on_foreign_stop, on_displaced,
-                 clock=time.monotonic):
+                 clock=time.monotonic, frames=None):
         self.name = name
         self.robot_type = robot_type
-        self._eye = BrakeEye(name, robot_type, clock)
+        self._eye = BrakeEye(name, robot_type, clock, frames)
         self.rule = GateRule(robot_type.limits, command, self._eye.brake.allow)
         self._clock = clock
         self._brake_asked = False

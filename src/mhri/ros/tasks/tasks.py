@@ -10,7 +10,8 @@ Interfaces (global names; SI units):
   0.6 s after it) and ``/mhri_tasks/list`` (``mhri/TaskList``, latched, on change)
 - subscribes ``/gates/state`` (``mhri/GatesState``) and ``/robot_controller/stop_all``
   (``std_msgs/Bool``), each from the node in force alone; of every robot that the gates know its
-  odometry and ``/vrpn_client_node/<robot>/pose``; of robots on a task laser and battery as well
+  odometry and ``/vrpn_client_node/<robot>/pose``; of robots on a task laser, or depth
+  camera, and battery as well
 - knows where robots are placed: :mod:`mhri.ros.map.place_keeper`
 
 The action server has a lock of its own, held while it calls :meth:`Tasks._on_goal`: nothing of it
@@ -39,6 +40,7 @@ from mhri.ros.graph.rospy_inside import PromptPublisher
 from mhri.ros.map.map_source import MapSource
 from mhri.ros.map.place_keeper import PlaceKeeper
 from mhri.ros.map.place_services import PlaceServices
+from mhri.ros.map.tf_feed import TfFeed
 from mhri.ros.tasks.seen_robots import SeenRobots
 from mhri.ros.tasks.starter import Starter
 from mhri.ros.tasks.words import kind_message, state_message
@@ -94,9 +96,10 @@ class Tasks:
         self._lock = threading.RLock()
         self._wake = threading.Event()
         self._done = threading.Event()
-        self._seen = SeenRobots(types, clock)
+        frames = TfFeed(clock)
+        self._seen = SeenRobots(types, clock, frames)
         self._map = MapSource(grid)
-        self.places = PlaceKeeper(self._seen, self._map, clock)
+        self.places = PlaceKeeper(self._seen, self._map, clock, frames)
         self._starter = Starter(kinds, self._seen, self.places, clock)
         self._goals = {}
         # {robot: its newest RobotRun}: a robot has one task.
@@ -308,9 +311,9 @@ class Tasks:
         if gate is not None:
             known.update(obeys=gate.obeys, stands=gate.stands)
         if robot is not None:
-            known.update(robot.ages(), has_laser=robot.has_laser, battery=robot.charge,
-                         senses=self._seen.senses(robot, now, busy, self.places.place,
-                                                  self.places.fence()))
+            known.update(robot.ages(), has_laser=robot.has_eye, looks=robot.looks(),
+                         battery=robot.charge, senses=self._seen.senses(
+                             robot, now, busy, self.places.place, self.places.fence()))
         if run.placed or self.places.fence():
             place = self.places.place(name)
             age_s = 0.0 if math.isnan(place.age_s) else place.age_s
