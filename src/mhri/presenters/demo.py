@@ -18,7 +18,7 @@ from mhri.gui.driving.hands import CENTRE, DemoFailed, Errand, Grip, Hands, READ
 from mhri.gui.screen.stale_cover import StaleCover
 
 POLL_MS = 50
-PATIENCE_S = 30.0
+PATIENCE_S = 60.0
 # Where two of them patrol [m], in the hall of the simulated building.
 ROUTES = (((10.0, 0.8), (8.0, 0.8)), ((5.2, 1.0), (3.4, 1.0)))
 
@@ -196,10 +196,12 @@ class Demo(QObject):
             self._release, lambda: not self._operator.view().stop_all, again_s=1.0)
         for name in (two, three):
             hands.click('check_' + name)
-        hands.press(Qt.Key_M, 'm')
+        yield 'the map to be large', Errand(
+            lambda: hands.press(Qt.Key_M, 'm'), host.map.pane.isVisible)
         scene = lambda: host.map.pane.view.scene  # noqa: E731
-        yield 'four robots on the map', lambda: host.map.pane.isVisible() and all(
-            scene().robot(name) and scene().robot(name).pose for name in (one, two, three, four))
+        for name in (one, two, three, four):
+            yield '{} to be on the map'.format(name), lambda name=name: scene().robot(
+                name) is not None and scene().robot(name).pose is not None
         for name, tool, places in ((one, 'route', ROUTES[0]), (four, 'route', ROUTES[1]),
                                    (three, 'leader', None)):
             yield '{} to be looked at'.format(name), Errand(
