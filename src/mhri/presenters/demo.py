@@ -13,9 +13,9 @@ import time
 
 from python_qt_binding.QtCore import QObject, QPoint, Qt, QTimer
 
+from mhri.core.screen.view_rows import PICTURES, RGB
 from mhri.core.screen.views import LIVE, PROOF_STOPPED
 from mhri.gui.driving.hands import CENTRE, DemoFailed, Errand, Grip, Hands, READY
-from mhri.core.screen.view_rows import PICTURES, RGB
 from mhri.gui.screen.stale_cover import StaleCover
 
 POLL_MS = 50
