@@ -168,7 +168,8 @@ class SimTest(unittest.TestCase):
         publishers, subscribers, types = graph()
         for name, (robot_type, _, _, imu, commands, more) in ROBOTS.items():
             prefix, node = '/' + name + '/', '/' + name + '/base'
-            wanted = {'/tf': 'tf2_msgs/TFMessage', prefix + 'odom': 'nav_msgs/Odometry',
+            wanted = {'/tf': 'tf2_msgs/TFMessage', '/tf_static': 'tf2_msgs/TFMessage',
+                      prefix + 'odom': 'nav_msgs/Odometry',
                       prefix + imu: 'sensor_msgs/Imu', prefix + 'scan': 'sensor_msgs/LaserScan'}
             wanted.update({prefix + topic: 'sensor_msgs/BatteryState' for topic in more})
             wanted.update(cameras(prefix, name == 'bot1'))
