@@ -381,8 +381,7 @@ class SimTest(unittest.TestCase):
                  ('/no/such/plan.yaml', good, None, '_plan:=/no/such/plan.yaml')]
         started = []
         for number, (said, parameters, *more) in enumerate(cases):
-            name, *arguments = more or [None]
-            name = name or 'odd{}'.format(number)
+            name, arguments = (more or [None])[0] or 'odd{}'.format(number), more[1:]
             for key, value in parameters.items():
                 rospy.set_param('/{}/{}'.format(name, key), value)
             process = self.system.node('sim_robot', '__ns:=' + name, '__name:=base', *arguments)
