@@ -13,7 +13,8 @@ import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from support.ros_system import System, wait_for  # noqa: E402
+from support.live_screen import LiveScreen  # noqa: E402
+from support.ros_system import System  # noqa: E402
 
 NAMES = ['bot{}'.format(number) for number in range(1, 13)]
 WORLD = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'support', 'map_world.py')
@@ -22,37 +23,18 @@ PROMISED = 0.15
 LEAST_HZ = 9.0
 
 
-class Screen:
+class Screen(LiveScreen):
     """The screen in this process, with its map."""
 
     def __init__(self):
         import psutil
-        from python_qt_binding.QtWidgets import QApplication
-        from mhri.presenters.screen_host import ScreenHost
-        from mhri.ros.screen.backend import ScreenBackend
+        super().__init__((1920, 1080), NAMES)
         self._process = psutil.Process()
-        self._app = QApplication(['panel'])
-        self.host = ScreenHost(ScreenBackend(['panel']))
         self._drawn, self.drawn_hz = 0, 0.0
         self.host.map.pane.view.painted.connect(self._count)
-        self.host.screen.resize(1920, 1080)
-        self.host.screen.show()
-        self.host.start(NAMES)
-        self.until(lambda: len(self.host.windows) == len(NAMES) and all(
-            self.host.operator.robot_view(name).link == 'live' for name in NAMES), 'the robots')
 
     def _count(self):
         self._drawn += 1
-
-    def until(self, condition, what):
-        """Let Qt work until a condition comes true."""
-        wait_for(lambda: (self._app.processEvents(), condition())[1], 60, what)
-
-    def run(self, seconds):
-        """Let Qt work for some seconds, without a measurement's own work."""
-        from python_qt_binding.QtCore import QTimer
-        QTimer.singleShot(round(seconds * 1000), self._app.quit)
-        self._app.exec_()
 
     def show_map(self, state):
         """Show the map, and wait for the scans of all robots; or close it."""

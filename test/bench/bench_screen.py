@@ -18,9 +18,10 @@ import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from bench_gui_stall import LoopWatch, row  # noqa: E402
+from bench_gui_stall import HEAD, LoopWatch, row  # noqa: E402
+from support.live_screen import LiveScreen  # noqa: E402
 from support.played_cameras import play_cameras  # noqa: E402
-from support.ros_system import System, wait_for  # noqa: E402
+from support.ros_system import System  # noqa: E402
 
 NAMES = ['bot{}'.format(number) for number in range(1, 13)]
 START_UP = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'support', 'start_up.py')
@@ -49,39 +50,19 @@ def print_start_up(system, times):
               .format(name, *map(statistics.median, zip(*measured)), times), flush=True)
 
 
-class Screen:
+class Screen(LiveScreen):
     """The screen in this process with twelve robots."""
 
     def __init__(self):
         import psutil
-        from python_qt_binding.QtWidgets import QApplication
-        from mhri.presenters.screen_host import ScreenHost
-        from mhri.ros.screen.backend import ScreenBackend
+        super().__init__((1920, 1080), NAMES)
         self._process = psutil.Process()
-        self._app = QApplication(['panel'])
-        self.host = ScreenHost(ScreenBackend(['panel']))
-        self.operator = self.host.operator
-        self.host.screen.resize(1920, 1080)
-        self.host.screen.show()
-        self.host.start(NAMES)
-        self.until(lambda: len(self.host.windows) == len(NAMES) and all(
-            self.operator.robot_view(name).link == 'live' for name in NAMES), 'the robots')
         self.host.screen.stage.set_style('one')
         self.host.screen.look_at(NAMES[0])
         self.until(lambda: all(self._has_picture(name) for name in NAMES), 'their pictures')
 
     def _has_picture(self, name):
         return self.host.windows[name].view('rgb').picture.frame is not None
-
-    def until(self, condition, what):
-        """Let Qt work until a condition comes true."""
-        wait_for(lambda: (self._app.processEvents(), condition())[1], 60, what)
-
-    def run(self, seconds):
-        """Let Qt work for some seconds, without a measurement's own work."""
-        from python_qt_binding.QtCore import QTimer
-        QTimer.singleShot(round(seconds * 1000), self._app.quit)
-        self._app.exec_()
 
     def gaps(self, seconds):
         """Return how long the event loop was blocked [ms], sorted."""
@@ -128,7 +109,7 @@ def main():
         player = play_cameras(system, NAMES, *((1.0, 15) if short else (4.0, 2)), odometry=True)
         print_start_up(system, 1 if short else 5)
         screen = Screen()
-        print('Qt event loop blocked [ms]                     turns     p50     p99     max')
+        print(HEAD)
         screen.measure('12 robots, one large, 11 thumbnails', seconds)
         screen.operator.select(NAMES[:1])
         screen.measure('the same, one of them checked', seconds)

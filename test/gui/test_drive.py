@@ -252,7 +252,7 @@ def test_a_robot_switched_off_is_gone_and_not_confirmed_and_comes_back(session):
     session.release()
     session.system.launch('turtlebot.launch', 'name:=bot3', 'type:=turtlebot3_waffle', 'x:=3',
                           'y:=1.5')
-    until(lambda: session.robot('bot3').link == 'live', 20, 'bot3 to be back')
+    until(lambda: session.robot('bot3').link == 'live', 60, 'bot3 to be back')
 
 
 def test_a_name_with_special_characters_is_refused_in_place(session):

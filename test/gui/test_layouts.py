@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The screen at every size, read pixel by pixel: pictures large, nothing clipped, all readable."""
+from dataclasses import replace
 import itertools
 import os
 import sys
@@ -169,6 +170,15 @@ def test_trouble_is_on_the_edge_of_a_tile_and_driving_on_that_of_another(scene):
         theme.PICTURE_GROUND.getRgb()[:3]
 
 
+def test_after_a_stop_every_edge_says_so_whatever_else_is_wrong(scene):
+    made = scene(SMALL, 6, **KINDS['stopped'])
+    made.robots = tuple(replace(robot, slow=True, note='bad link') for robot in made.robots)
+    screen = made.show()
+    pixels, ink = made.pixels(), theme.colour(theme.STOP, theme.over_picture(screen.palette()))
+    for name, tile in made.tiles.items():
+        assert colour_at(pixels, tile, screen, 1, tile.height() // 2) == ink.getRgb()[:3], name
+
+
 def test_the_one_looked_at_is_marked(scene):
     made = scene(SMALL, 3)
     screen = made.show()
@@ -280,3 +290,20 @@ def test_a_torn_off_tile_has_stop_and_a_way_back(scene, application):
     tile.setParent(screen.stage)
     screen.stage.refresh()
     assert screen.stage.names == ('bot1', 'bot2') and tile.tear_button.text() == 'Tear off'
+
+
+@pytest.mark.parametrize('style', ['auto', 'one', 'alike'])
+def test_tiles_that_come_one_by_one_move_none_that_is_there(scene, style):
+    made = scene(LARGE, 12)
+    stage, names = made.show().stage, list(made.tiles)
+    stage.set_style(style)
+    whole = {name: tile.geometry() for name, tile in made.tiles.items()}
+    shown = {}
+    for name in ['bot4', *(name for name in names if name != 'bot4')]:
+        shown[name] = made.tiles[name]
+        stage.show_tiles({name: shown[name] for name in names if name in shown}, names)
+        assert {name: tile.geometry() for name, tile in shown.items()} == {
+            name: whole[name] for name in shown}
+    # Those that do not come any more leave no gap.
+    stage.show_tiles({name: made.tiles[name] for name in names[:1]}, names[:1])
+    assert made.tiles['bot1'].geometry() == stage.rect()

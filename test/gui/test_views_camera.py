@@ -147,6 +147,12 @@ def test_an_old_picture_does_not_look_live(view, operator):
     assert view.picture.warning == ''
 
 
+def test_without_a_picture_it_says_why_and_the_tool_tip_what_ros_calls_it(view, operator):
+    view.show_kind('rgb')
+    view.show_status(StreamStatus(problem='it sends no picture', detail='nobody publishes /a/b'))
+    assert (view.picture.toolTip(), view.picture.frame) == ('nobody publishes /a/b', None)
+
+
 @pytest.mark.parametrize('status, text', [
     (StreamStatus(), ''),
     (LIVE, '29.9 Hz  41 ms old  0.8 MB/s  jpeg'),

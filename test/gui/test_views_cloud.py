@@ -227,8 +227,9 @@ def test_an_old_cloud_does_not_look_live(view, act, operator):
 
 
 def test_what_the_stream_says(view, act):
-    view.show_status(StreamStatus(problem='nobody publishes /bot1/points'))
-    assert view.canvas.words == 'nobody publishes /bot1/points'
+    view.show_status(StreamStatus(problem='no point cloud', detail='nobody publishes <b>/points'))
+    assert view.canvas.words == 'no point cloud'
+    assert 'nobody publishes &lt;b&gt;/points' in view.canvas.toolTip()
     act(lambda: view.show_value(a_room()))
     assert view.status_label.text() == '20,000 points'
     QTest.qWait(300)

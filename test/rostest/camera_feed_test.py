@@ -158,13 +158,14 @@ class CameraFeedTest(unittest.TestCase):
 
     def test_nobody_and_the_wrong_type(self):
         nothing = self.feed('nothing')
-        wait_for(lambda: nothing.status().problem == 'nobody publishes /nothing/camera/image_raw',
+        wait_for(lambda: nothing.status().detail == 'nobody publishes /nothing/camera/image_raw',
                  5.0, 'the reason')
+        self.assertEqual(nothing.status().problem, 'it sends no picture: start its driver')
         self.assertEqual(nothing.status().age_s, None)
         self.assertEqual(nothing.transports(), [])
         text = rospy.Publisher('/text/camera/image_raw/compressed', String, queue_size=1)
         feed = self.feed('text')
-        wait_for(lambda: 'nobody publishes' in feed.status().problem, 5.0, 'no picture, no offer')
+        wait_for(lambda: 'nobody publishes' in feed.status().detail, 5.0, 'no picture, no offer')
         text.unregister()
 
     def test_late_killed_and_replaced(self):

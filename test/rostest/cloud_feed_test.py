@@ -140,7 +140,7 @@ class CloudFeedTest(unittest.TestCase):
     def test_depth_without_a_lens_is_no_offer(self):
         self.speak(lensless__camera__depth__image_raw=Image())
         feed = self.feed('lensless')
-        wait_for(lambda: 'nobody publishes' in feed.status().problem, PATIENCE_S, 'the reason')
+        wait_for(lambda: 'nobody publishes' in feed.status().detail, PATIENCE_S, 'the reason')
 
     def test_clouds_come_before_depth(self):
         image = Image(height=1, width=1, encoding='16UC1', step=2, data=b'\1\1')
@@ -169,7 +169,7 @@ class CloudFeedTest(unittest.TestCase):
     def test_another_type_is_no_offer(self):
         self.speak(other__points=String('not a cloud'))
         feed = self.feed('other')
-        wait_for(lambda: 'nobody publishes /other/points' in feed.status().problem, PATIENCE_S,
+        wait_for(lambda: 'nobody publishes /other/points' in feed.status().detail, PATIENCE_S,
                  'the reason')
 
     def test_closed_it_takes_nothing(self):

@@ -9,15 +9,14 @@ import math
 import os
 from pathlib import Path
 import re
-import shutil
-import subprocess
 import sys
 
 import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from support.newcomer import blocks, last_words, Newcomer, PATIENCE_S  # noqa: E402
+from support.newcomer import (  # noqa: E402
+    blocks, last_words, Newcomer, PATIENCE_S, said_with_copy, shown_and_there)
 from support.ros_system import wait_for  # noqa: E402
 
 REPO = Path(__file__).resolve().parents[2]
@@ -30,11 +29,9 @@ LOOK = (100, 62)
 
 def test_the_guide_shows_the_example_package():
     """So that who copies the one has the other."""
-    files = {name: text for name, text in blocks(GUIDE.read_text()) if not name.startswith('sh')}
-    files['src/crawler_robot/__init__.py'] = files['CATKIN_IGNORE'] = ''
-    assert files == {path.relative_to(EXAMPLE).as_posix(): path.read_text()
-                     for path in EXAMPLE.rglob('*')
-                     if path.is_file() and '__pycache__' not in path.parts}
+    shown, there = shown_and_there(
+        GUIDE, EXAMPLE, ('src/crawler_robot/__init__.py', 'CATKIN_IGNORE'))
+    assert shown == there
 
 
 def test_the_example_package_is_no_second_package_of_this_workspace():
@@ -47,23 +44,12 @@ def test_the_example_package_is_no_second_package_of_this_workspace():
     assert rospkg.RosPack([str(EXAMPLE)]).list() == []
 
 
-def types_with(folder, **files):
-    """Return (exit status, output, errors) of mhri_types with a copy of the example in a folder.
+def types_with(folder, files=None):
+    """Return (exit status, output, errors) of ``mhri_types`` with a copy of the example.
 
-    :param files: name of a file of the package, ``/`` written as ``__``, and its new text
+    :param files: {file of the package: (old, new) text}
     """
-    package = folder / 'crawler_robot'
-    shutil.copytree(str(EXAMPLE), str(package))
-    (package / 'CATKIN_IGNORE').unlink()
-    for name, (old, new) in files.items():
-        path = package / name.replace('__', '/').replace('_xml', '.xml').replace('_yaml', '.yaml')
-        assert old in path.read_text()
-        path.write_text(path.read_text().replace(old, new))
-    done = subprocess.run(
-        [sys.executable, '-c', 'from mhri.nodes.mhri_types import main; main()'],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, env=dict(
-            os.environ, ROS_PACKAGE_PATH='{}:{}'.format(folder, os.environ['ROS_PACKAGE_PATH'])))
-    return done.returncode, done.stdout, done.stderr
+    return said_with_copy(EXAMPLE, folder / 'crawler_robot', files or {}, 'mhri_types')
 
 
 def test_mhri_types_lists_a_type_of_another_package(tmp_path):
@@ -74,17 +60,17 @@ def test_mhri_types_lists_a_type_of_another_package(tmp_path):
 
 
 @pytest.mark.parametrize('files, said', [
-    ({'resource__crawler_yaml': ('linear_mps: 0.2', 'linear_mps: fast')},
+    ({'resource/crawler.yaml': ('linear_mps: 0.2', 'linear_mps: fast')},
      "resource/crawler.yaml: limits.linear_mps: expected a number from 0.001 to 50, got 'fast'; "),
-    ({'resource__crawler_yaml': ('name: crawler', 'name: turtlebot3')},
+    ({'resource/crawler.yaml': ('name: crawler', 'name: turtlebot3')},
      "resource/crawler.yaml: name: there is a type 'turtlebot3' already, choose another name; "),
-    ({'package_xml': ('crawler.yaml', 'lost.yaml')},
+    ({'package.xml': ('crawler.yaml', 'lost.yaml')},
      'resource/lost.yaml: cannot be read (No such file or directory), though '),
-    ({'package_xml': ('robot_type=', 'robot_kind=')}, 'unknown attribute robot_kind; write <mhri '),
-    ({'package_xml': ('<license>BSD-3-Clause</license>', '')}, 'cannot be understood: '),
+    ({'package.xml': ('robot_type=', 'robot_kind=')}, 'unknown attribute robot_kind; write <mhri '),
+    ({'package.xml': ('<license>BSD-3-Clause</license>', '')}, 'cannot be understood: '),
 ])
 def test_mhri_types_names_an_export_that_is_left_out(tmp_path, files, said):
-    status, output, errors = types_with(tmp_path, **files)
+    status, output, errors = types_with(tmp_path, files)
     assert status == 1 and errors.count('\n') == 1
     assert errors.startswith('left out: package crawler_robot: {}/'.format(
         tmp_path / 'crawler_robot'))

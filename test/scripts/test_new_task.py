@@ -4,15 +4,14 @@
 import os
 from pathlib import Path
 import re
-import shutil
-import subprocess
 import sys
 
 import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from support.newcomer import blocks, last_words, Newcomer, PATIENCE_S  # noqa: E402
+from support.newcomer import (  # noqa: E402
+    blocks, last_words, Newcomer, PATIENCE_S, said_with_copy, shown_and_there)
 from support.ros_system import wait_for  # noqa: E402
 
 REPO = Path(__file__).resolve().parents[2]
@@ -22,31 +21,16 @@ EXAMPLE = REPO / 'test' / 'example_task_package'
 
 def test_the_guide_shows_the_example_package():
     """So that who copies the one has the other."""
-    files = {name: text for name, text in blocks(GUIDE.read_text()) if not name.startswith('sh')}
-    files['src/lab_tasks/__init__.py'] = files['CATKIN_IGNORE'] = ''
-    assert files == {path.relative_to(EXAMPLE).as_posix(): path.read_text()
-                     for path in EXAMPLE.rglob('*')
-                     if path.is_file() and '__pycache__' not in path.parts}
+    shown, there = shown_and_there(GUIDE, EXAMPLE, ('src/lab_tasks/__init__.py', 'CATKIN_IGNORE'))
+    assert shown == there
 
 
-def help_with(folder, **files):
+def help_with(folder, files=None):
     """Return (exit status, output, errors) of ``mhri_task --help`` with a copy of the example.
 
-    :param files: name of a file of the package, ``/`` written as ``__``, and (old, new) text
+    :param files: {file of the package: (old, new) text}
     """
-    package = folder / 'lab_tasks'
-    shutil.copytree(str(EXAMPLE), str(package))
-    (package / 'CATKIN_IGNORE').unlink()
-    for name, (old, new) in files.items():
-        path = package / name.replace('__', '/').replace('_xml', '.xml').replace('_py', '.py')
-        assert old in path.read_text()
-        path.write_text(path.read_text().replace(old, new))
-    done = subprocess.run(
-        [sys.executable, '-c', 'from mhri.nodes.mhri_task import main; main()', '--help'],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, env=dict(
-            os.environ, PYTHONPATH='{}:{}'.format(package / 'src', os.environ['PYTHONPATH']),
-            ROS_PACKAGE_PATH='{}:{}'.format(folder, os.environ['ROS_PACKAGE_PATH'])))
-    return done.returncode, done.stdout, done.stderr
+    return said_with_copy(EXAMPLE, folder / 'lab_tasks', files or {}, 'mhri_task', '--help')
 
 
 def test_the_help_lists_a_task_of_another_package(tmp_path):
@@ -56,7 +40,7 @@ def test_the_help_lists_a_task_of_another_package(tmp_path):
     assert re.search(r'^    turn +how fast it turns \[rad/s\]; else 0.5$', output, re.M)
 
 
-TASK = 'src__lab_tasks__look_around_py'
+TASK = 'src/lab_tasks/look_around.py'
 
 
 @pytest.mark.parametrize('files, said', [
@@ -68,13 +52,13 @@ TASK = 'src__lab_tasks__look_around_py'
     ({TASK: (', TIMEOUT_S), make', ',), make')},
      'it has no field timeout: add mhri.core.tasks.goto.TIMEOUT_S; '),
     ({TASK: ('ROW = TaskKind(', 'ROW = dict(key=(')}, 'cannot be imported (SyntaxError: '),
-    ({'package_xml': ('task="lab_tasks.look_around"', 'task=""')},
+    ({'package.xml': ('task="lab_tasks.look_around"', 'task=""')},
      'a task is exported by itself; write <mhri task="package.module"/>; '),
-    ({'package_xml': ('look_around"/>', 'look_around" window="a.B"/>')},
+    ({'package.xml': ('look_around"/>', 'look_around" window="a.B"/>')},
      'a task is exported by itself; '),
 ])
 def test_a_task_that_is_left_out_is_named(tmp_path, files, said):
-    status, output, errors = help_with(tmp_path, **files)
+    status, output, errors = help_with(tmp_path, files)
     assert status == 1 and errors.count('\n') == 1, errors
     assert errors.startswith('left out: package lab_tasks: ')
     assert said in errors

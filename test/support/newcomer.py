@@ -4,7 +4,9 @@
 import os
 from pathlib import Path
 import re
+import shutil
 import subprocess
+import sys
 
 from support.ros_system import System
 
@@ -21,6 +23,39 @@ def blocks(text):
             kind = re.match(r'`([^`]+)`', paragraph).group(1)
         found.append((kind, match.group(2)))
     return found
+
+
+def shown_and_there(guide, example, empty):
+    """Return ({file: text} that a page of the guide shows, the same of the example package).
+
+    :param empty: files without a word, which no page can show
+    """
+    shown = {name: text for name, text in blocks(guide.read_text()) if not name.startswith('sh')}
+    shown.update(dict.fromkeys(empty, ''))
+    return shown, {path.relative_to(example).as_posix(): path.read_text()
+                   for path in example.rglob('*')
+                   if path.is_file() and '__pycache__' not in path.parts}
+
+
+def said_with_copy(example, package, changes, node, *words):
+    """Return (exit status, output, errors) of a node beside a copy of an example package.
+
+    :param package: where the copy is made
+    :param changes: {file of the package: (old, new) text}
+    :param node: a module of :mod:`mhri.nodes`
+    """
+    shutil.copytree(str(example), str(package))
+    (package / 'CATKIN_IGNORE').unlink()
+    for name, (old, new) in changes.items():
+        path = package / name
+        assert old in path.read_text()
+        path.write_text(path.read_text().replace(old, new))
+    done = subprocess.run(
+        [sys.executable, '-c', 'from mhri.nodes.{} import main; main()'.format(node), *words],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, env=dict(
+            os.environ, **{name: '{}:{}'.format(place, os.environ[name]) for name, place in (
+                ('PYTHONPATH', package / 'src'), ('ROS_PACKAGE_PATH', package.parent))}))
+    return done.returncode, done.stdout, done.stderr
 
 
 class Newcomer:

@@ -60,6 +60,8 @@ class TilesHost(QObject):
         self._torn = {}
         self._to_tear = set()
         self._due = []
+        self._robots = ()
+        self._missing = ''
         self._drawn_at = {}
         self._stopped = False
         self._timer = QTimer(self)
@@ -72,27 +74,31 @@ class TilesHost(QObject):
         QGuiApplication.instance().screenRemoved.connect(self._on_screen_removed)
 
     def show_view(self, view):
-        """Follow a :class:`PanelView`: make a tile that is missing, and draw all of them soon."""
+        """Follow a :class:`PanelView`: have a missing tile made, and all of them drawn, soon."""
         robots = view.robots[:MOST_TILES]
         names = [robot.name for robot in robots]
         for name in [name for name in self.windows if name not in names]:
             self.drop(name)
-        # One with each drawing: making a tile takes some time.
-        missing = next((robot for robot in robots
-                        if robot.name not in self.windows and robot.type_label), None)
-        if missing is not None:
-            self.make(missing.name)
-        self._stage.show_tiles(
-            {name: self.windows[name] for name in names if name in self.windows},
-            [robot.name for robot in robots if robot.type_label])
+        self._robots = robots
+        self._show_tiles()
         self._stage.show_awaited(names)
         now = time.monotonic()
         self._due = sorted((robot for robot in robots if robot.name in self.hosts),
                            key=lambda robot: self._pressing(robot.name, now))
+        # One with each view, and in a turn of its own: making a tile takes some time.
+        self._missing = next((robot.name for robot in robots
+                              if robot.name not in self.windows and robot.type_label), '')
         self._stopped = view.stop_all
         self._timer.start()
         self._cameras.settle(wish for robot in self._due
                              for wish in self.hosts[robot.name].wishes(robot.selected))
+
+    def _show_tiles(self):
+        """Let the stage have the tiles, and know of those that come next."""
+        self._stage.show_tiles(
+            {robot.name: self.windows[robot.name] for robot in self._robots
+             if robot.name in self.windows},
+            [robot.name for robot in self._robots if robot.type_label])
 
     @property
     def budget_note(self):
@@ -105,10 +111,14 @@ class TilesHost(QObject):
         return waited_s * (LARGE_FIRST if self.windows[name].header.large else 1.0)
 
     def draw_next(self):
-        """Draw the most pressing tile that is due, and return whether another is.
+        """Make or draw the most pressing tile that is due, and return whether another is.
 
         One with each turn of the event loop, so that a click never waits for all.
         """
+        if self._missing not in ('', *self.windows):
+            self.make(self._missing)
+            self._show_tiles()
+            return True
         if not self._due:
             self._timer.stop()
             return False

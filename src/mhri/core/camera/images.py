@@ -58,6 +58,7 @@ class StreamStatus:
     bad one, or why no picture comes; '' if there is nothing to say. ``stale``: the newest good
     picture is older than the newest bad one, or than ``old_after_s`` [s], which is longer for a
     picture that is held back. ``thinned`` says that it is held back, and why; '' if it is not.
+    ``detail`` is the problem in the words of ROS, '' where it has none.
     """
 
     transport: str = ''
@@ -70,6 +71,7 @@ class StreamStatus:
     stale: bool = False
     thinned: str = ''
     old_after_s: float = OLD_AFTER_S
+    detail: str = ''
 
 
 def check_size(what: str, width: int, height: int) -> None:

@@ -7,7 +7,7 @@ from python_qt_binding.QtWidgets import (
 
 from mhri.core.camera.images import DEPTH
 from mhri.gui.screen import theme, words
-from mhri.gui.screen.labels import Sign, TextLine
+from mhri.gui.screen.labels import plain_tip, Sign, TextLine
 from mhri.gui.screen.pending import Pace
 from mhri.gui.camera.picture import PictureView
 
@@ -196,6 +196,7 @@ class CameraView(QWidget):
         self.picture.show_warning(warning if self.picture.frame is not None else '')
         if self.picture.frame is None and status.problem:
             self.show_placeholder(status.problem)
+        self.picture.setToolTip(plain_tip(status.detail if self.picture.frame is None else ''))
         if not self._note_timer.isActive():
             trouble = old or (status.bad and status.problem)
             text = stream_text(status, slowed)

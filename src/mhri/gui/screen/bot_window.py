@@ -382,9 +382,9 @@ class BotWindow(QWidget):
             self.drive_requested.emit(self.name)
 
     def paintEvent(self, event):  # noqa: N802
-        """Paint the edge: trouble, else whether it is driven; a line around it if looked at."""
+        """Paint the edge: a stop, trouble, else who drives; a line around it if looked at."""
         ink, _, width = LOOKS[self._drive]
-        if self._trouble:
+        if self._trouble and ink != theme.STOP:
             ink, width = self._trouble, EDGE_PX
         painter, palette = QPainter(self), self.header.palette()
         theme.paint_edge(painter, self.rect(), EDGE_PX, theme.PICTURE_GROUND)

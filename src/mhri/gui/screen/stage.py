@@ -200,8 +200,8 @@ class Stage(QWidget):
 
     def _shapes_now(self):
         """Return the shape of each tile's picture, those of the large tiles first."""
-        return tuple(round(self._tiles[name].picture_shape(), 2) if name in self._tiles
-                     else USUAL_SHAPE for name in self._in_order())
+        return tuple(round(self._tiles[name].picture_shape() if name in self._tiles
+                           else USUAL_SHAPE, 2) for name in self._in_order())
 
     def _places(self):
         """Return whose tiles have a place on the stage, in order: those on it and those to come."""

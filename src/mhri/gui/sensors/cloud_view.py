@@ -10,7 +10,7 @@ from mhri.core.sensors.cloud_picture import (
 from mhri.core.sensors.orbit import fitted, read_orbit
 from mhri.gui.camera.camera_view import stream_text
 from mhri.gui.screen import theme, words
-from mhri.gui.screen.labels import TextLine
+from mhri.gui.screen.labels import plain_tip, TextLine
 from mhri.gui.screen.pending import Pace
 from mhri.gui.sensors.cloud_canvas import CloudCanvas
 from mhri.gui.sensors.cloud_drawing import CloudDrawing
@@ -178,6 +178,8 @@ class CloudView(QWidget):
         """Show a :class:`mhri.core.camera.images.StreamStatus`; numbers four times a second."""
         if self._cloud is None and status.problem:
             self.canvas.clear(status.problem)
+        self.canvas.setToolTip(
+            self._cloud is None and plain_tip(status.detail) or _HELP)
         self._stream = stream_text(status)
         self._say()
 

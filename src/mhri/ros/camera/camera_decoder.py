@@ -46,7 +46,7 @@ class Decoder:
         self._transport = ''
         self._good_at = self._bad_at = None
         self._shown = self._bad = 0
-        self._problem = self._hint = ''
+        self._problem = self._hint = self._detail = ''
         self._grant = AS_IT_COMES
         self._period_s = 0.0
         threading.Thread(target=self._run, daemon=True, name='camera ' + name).start()
@@ -74,10 +74,10 @@ class Decoder:
             self._meter.look_back(max(WINDOW_S, _MISSED * self._period_s))
             self._changed.notify_all()
 
-    def explain(self, hint):
-        """Say why nothing comes; '' if something should."""
+    def explain(self, hint, detail=''):
+        """Say why nothing comes, in plain words and in those of ROS; '' if something should."""
         with self._changed:
-            self._hint = tidy_text(hint)
+            self._hint, self._detail = tidy_text(hint), tidy_text(detail)
 
     def hears(self, now):
         """Tell whether pictures come."""
@@ -111,7 +111,7 @@ class Decoder:
                 self._transport, rate_hz, age, bits_per_s, self._shown, self._bad,
                 self._grant.words if self._grant.rate_hz == 0.0 else self._hint or self._problem,
                 age is not None and (bad_since or age > old_after_s),
-                self._grant.words, old_after_s)
+                self._grant.words, old_after_s, self._detail)
 
     def _run(self):
         """Decode the newest message whenever one is due (the decoder's thread)."""

@@ -17,7 +17,7 @@ from mhri.core.robots.names import topic_of
 from mhri.core.camera.stream_meter import WINDOW_S
 from mhri.core.camera.transports import AUTO, choose_offer, find_offers, may_carry, RAW
 from mhri.ros.camera.camera_decoder import Decoder
-from mhri.ros.camera.samples import Samples
+from mhri.ros.camera.samples import no_answer, Samples
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.subscription import Subscription, reachable
 
@@ -25,6 +25,8 @@ LOOK_S = 1.0           # between looks at the master while nothing comes
 LOOK_AGAIN_S = 5.0     # ... and while pictures come: a better transport may turn up
 # How long a subscription must last before it tells how often the camera sends [s].
 SETTLED_S = WINDOW_S + 0.5
+# What an operator calls it.
+_WORDS = {'rgb': 'picture', 'depth': 'depth picture'}
 
 
 class CameraFeed:
@@ -51,6 +53,7 @@ class CameraFeed:
                  depth_range_m=None):
         self.robot = robot
         self.kind = kind
+        self.word = _WORDS[kind]
         self._topics = [topic_of(robot, topic) for topic in topics]
         self._transport = transport
         self._clock = clock
@@ -251,7 +254,7 @@ class CameraFeed:
             self._offers = offers if self._session is session else []
         offer, line = choose_offer(offers, transport), self._line
         if offer is None:
-            session.explain(self._nothing(transport, offers))
+            session.explain(*self._nothing(transport, offers))
             if line and not may_carry(self.kind, transport, line.topic):
                 self._hold(None)
         elif grant.sampled:
@@ -265,17 +268,18 @@ class CameraFeed:
     def _subscribe(self, session, offer):
         """Change over to an offer if its sender answers."""
         if not reachable(rospy.get_name(), offer.topic):
-            session.explain('{} is registered, but its sender does not answer'.format(offer.topic))
+            session.explain(*no_answer(offer.topic))
             return
-        session.explain('nothing has come on {} yet'.format(offer.topic))
+        session.explain('no {} has come yet'.format(self.word), 'waiting for ' + offer.topic)
         self._hold(*self.line_of(session, offer))
 
     def _nothing(self, transport, offers):
-        """Say why there is nothing to subscribe."""
+        """Say why there is nothing to subscribe, and in the words of ROS."""
         if offers:
             return '{} offers {}, not {}'.format(
-                self.robot, ', '.join(offer.transport for offer in offers), transport)
-        return 'nobody publishes {}'.format(' or '.join(self._topics) or 'a picture')
+                self.robot, ', '.join(offer.transport for offer in offers), transport), ''
+        return 'it sends no {}: start its driver'.format(self.word), \
+            'nobody publishes ' + (' or '.join(self._topics) or 'a picture')
 
 
 def _give_back(subscription):

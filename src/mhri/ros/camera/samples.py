@@ -26,6 +26,12 @@ LOOK_S = 0.1
 FIRST = 4
 
 
+def no_answer(topic):
+    """Return what to say of a sender that is known and silent, and the same in words of ROS."""
+    return ('its camera is known, but does not answer',
+            '{} is registered, but its sender does not answer'.format(topic))
+
+
 class Samples:
     """Single messages of one topic as bytes; stands in for a :class:`Subscription`.
 
@@ -33,7 +39,8 @@ class Samples:
     the publisher alone. ``native_hz`` is how often the camera sends, None if unknown.
 
     :param on_bytes: called with (type, bytes-like) on a thread of this object
-    :param on_problem: called with a sentence if no publisher answers
+    :param on_problem: called with a sentence, and with more in the words of ROS, if no publisher
+        answers
     :param rate_hz: how often [Hz], > 0; may be changed
     :param native_hz: if it is known already
     """
@@ -92,7 +99,7 @@ class Samples:
         except MasterError as error:
             self._on_problem(str(error))
             return None
-        self._on_problem('{} is registered, but its sender does not answer'.format(self.topic))
+        self._on_problem(*no_answer(self.topic))
         return None
 
     def _publishers(self):

@@ -83,6 +83,10 @@ class RobotGate:
                              for topic in robot_type.command[:MOST_TOPICS]]
         self._links = [()] * len(self._publishers)
         self._obeying = [frozenset()] * len(self._publishers)
+        self._heard = PromptPublisher('/{}/mhri_guard/heard'.format(name), String)
+        self.power = MotorPower(name, robot_type)
+        self._navigation = OwnNavigation(name)
+        # A robot may be heard from here on.
         self._odometry = [
             rospy.Subscriber(topic_of(name, topic), rospy.AnyMsg, self._on_odometry, queue_size=1,
                              tcp_nodelay=True) for topic in robot_type.odometry]
@@ -90,9 +94,6 @@ class RobotGate:
                                       self._on_echo, queue_size=1, tcp_nodelay=True)
         self._state = rospy.Subscriber('/{}/mhri_guard/state'.format(name), String,
                                        self._on_guard_state, queue_size=1, tcp_nodelay=True)
-        self._heard = PromptPublisher('/{}/mhri_guard/heard'.format(name), String)
-        self.power = MotorPower(name, robot_type)
-        self._navigation = OwnNavigation(name)
         self._probe = LinkProbe(name, self._node_uri, self._on_round_trip)
         if len(robot_type.command) > MOST_TOPICS:
             rospy.logwarn('%s has %d velocity topics: the first %d are used', name,

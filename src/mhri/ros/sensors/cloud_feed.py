@@ -95,6 +95,7 @@ class LensedStream(CameraFeed):
 
     def __init__(self, robot, clouds, depths, clock):
         super().__init__(robot, clouds + depths, DEPTH, clock=clock)
+        self.word = 'point cloud'
         self._clouds = [topic_of(robot, topic) for topic in clouds]
         self._depths = [topic_of(robot, topic) for topic in depths]
         self.cloud_topic = ''

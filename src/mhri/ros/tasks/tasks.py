@@ -4,7 +4,8 @@
 
 Interfaces (global names; SI units):
 
-- serves the action ``/mhri_tasks/run`` (``mhri/RunTask``), any number of goals at a time
+- serves the action ``/mhri_tasks/run`` (``mhri/RunTask``), any number of goals at a time, and
+  ``/mhri_tasks/end`` (``mhri/EndTask``), which takes single robots out of their goals
 - publishes ``/mux_in/task`` (``mhri/TeamTwist``, 20 Hz while a robot is on a task, with zeros for
   0.6 s after it) and ``/mhri_tasks/list`` (``mhri/TaskList``, latched, on change)
 - subscribes ``/gates/state`` (``mhri/GatesState``) and ``/robot_controller/stop_all``
@@ -44,6 +45,7 @@ from mhri.ros.tasks.seen_robots import SeenRobots
 from mhri.ros.tasks.starter import Starter
 from mhri.ros.tasks.words import kind_message, state_message
 from mhri.ros.worker import Worker
+from mhri.srv import EndTask, EndTaskResponse
 
 TICK_S = 0.05
 FEEDBACK_EVERY = 4
@@ -62,7 +64,7 @@ class _Goal:
         self.key = goal.task
         self.parameters = goal.parameters
         self.team = tuple(goal.robots)
-        # In whose order places are counted.
+        # In whose order places are counted: see Starter.in_order.
         self.order = values.team or self.team
         self.values = values
         self.cancelled = False
@@ -123,6 +125,7 @@ class Tasks:
         self._map.start()
         self.places.start()
         PlaceServices(self._seen, self.places, self._map, self.is_busy, self._worker).start()
+        rospy.Service('/mhri_tasks/end', EndTask, self._on_end)
         self._gates_force.start()
         self._mux_force.start()
         self._worker.start()
@@ -215,10 +218,22 @@ class Tasks:
                     run.end(STOPPED, 'it was cancelled', self._clock())
         self._wake.set()
 
+    def _on_end(self, request):
+        """End what robots are busy with; the others on the same goals go on."""
+        with self._lock:
+            busy = [name for name in dict.fromkeys(request.robots) if self.is_busy(name)]
+            for name in busy:
+                self._runs[name].end(STOPPED, 'it was ended', self._clock())
+        self._wake.set()
+        return EndTaskResponse(bool(busy), 'ended: ' + ', '.join(busy) if busy
+                               else 'none of these robots is on a task')
+
     def _begin(self, goal):
         """Open what the robots of a goal need, and begin their runs (on the worker)."""
         drives, problem = self._starter.prepare(goal.key, goal.values, goal.team,
                                                 list(self._gates))
+        goal.team = tuple(self._starter.in_order(goal))
+        goal.order = goal.values.team or goal.team
         with self._lock:
             now = self._clock()
             for name in goal.team:
@@ -333,9 +348,10 @@ class Tasks:
         for goal, run in zip(goals, runs):
             goal.handle.publish_feedback(RunTaskFeedback(robots=run.robots))
         told = [(run.id, [(robot.robot, robot.state) for robot in run.robots]) for run in runs]
-        if told != self._told:
-            self._told = told
+        marks = sorted(self.places.marks())
+        if (told, marks) != self._told:
+            self._told = told, marks
             message = TaskList(tasks=[kind_message(kind) for kind in self._kinds.values()],
-                               runs=runs)
+                               runs=runs, marks=marks)
             message.header.stamp = rospy.Time.now()
             self._list.publish(message)

@@ -1,0 +1,39 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The screen in this process, with robots, to be measured."""
+from support.ros_system import wait_for
+
+PATIENCE_S = 60.0
+
+
+class LiveScreen:
+    """A screen that has begun: every robot is live, and has its tile.
+
+    :param size: of the window [px]
+    :param restored: names of the robots that are in its list as it begins
+    :param selected: names of further ones, which are checked
+    """
+
+    def __init__(self, size, restored=(), selected=()):
+        from python_qt_binding.QtWidgets import QApplication
+        from mhri.presenters.screen_host import ScreenHost
+        from mhri.ros.screen.backend import ScreenBackend
+        self._app = QApplication(['panel'])
+        self.host = ScreenHost(ScreenBackend(['panel']))
+        self.operator = self.host.operator
+        self.host.screen.resize(*size)
+        self.host.screen.show()
+        self.host.start(restored, selected)
+        names = (*restored, *selected)
+        self.until(lambda: len(self.host.windows) == len(names) and all(
+            self.operator.robot_view(name).link == 'live' for name in names), 'the robots')
+
+    def until(self, condition, what):
+        """Let Qt work until a condition comes true."""
+        wait_for(lambda: (self._app.processEvents(), condition())[1], PATIENCE_S, what)
+
+    def run(self, seconds):
+        """Let Qt work for some seconds, without a measurement's own work."""
+        from python_qt_binding.QtCore import QTimer
+        QTimer.singleShot(round(seconds * 1000), self._app.quit)
+        self._app.exec_()
