@@ -123,7 +123,7 @@ def main():
     parser.add_argument('--short', action='store_true', help='fewer seconds')
     short = parser.parse_args().short
     in_own_network()
-    seconds, settle_s = (2.5, 3.0) if short else (20.0, 10.0)
+    seconds, settle_s = (1.5, 1.5) if short else (20.0, 10.0)
     with System() as system:
         system.start_master()
         import rospy

@@ -235,8 +235,8 @@ def main():
     if args.publish:
         publish(args.publish)
         return
-    bench_codecs(20 if args.short else 300)
-    bench_feeds(2.0 if args.short else 15.0)
+    bench_codecs(10 if args.short else 300)
+    bench_feeds(1.0 if args.short else 15.0)
 
 
 if __name__ == '__main__':

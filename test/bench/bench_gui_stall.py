@@ -144,10 +144,10 @@ class Measurement(LiveScreen):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--short', action='store_true', help='a quarter of the time')
+    parser.add_argument('--short', action='store_true', help='fewer seconds')
     parser.add_argument('--simulated', action='store_true', help='cameras drawn here')
     options = parser.parse_args()
-    seconds = 4.0 if options.short else 16.0
+    seconds = 1.5 if options.short else 16.0
     with System() as system:
         system.screen()
         system.start_master()

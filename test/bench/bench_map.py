@@ -61,7 +61,7 @@ def main():
     """Print the figures."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--short', action='store_true', help='fewer seconds')
-    seconds = 5.0 if parser.parse_args().short else 20.0
+    seconds = 1.5 if parser.parse_args().short else 20.0
     with System() as system:
         system.screen()
         system.start_master()

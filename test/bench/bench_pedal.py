@@ -132,9 +132,9 @@ def measure_rudder(seconds):
 def main():
     """Print two tables."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--short', action='store_true', help='a quarter of the time')
+    parser.add_argument('--short', action='store_true', help='fewer seconds')
     options = parser.parse_args()
-    seconds, taps = (3.0, 20) if options.short else (12.0, 200)
+    seconds, taps = (1.0, 20) if options.short else (12.0, 200)
     with System() as system:
         system.start_master()
         import rospy

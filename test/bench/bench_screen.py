@@ -97,7 +97,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--short', action='store_true', help='fewer seconds')
     short = parser.parse_args().short
-    seconds = 4.0 if short else 15.0
+    seconds = 1.5 if short else 15.0
     with System() as system:
         system.screen()
         system.start_master()

@@ -170,7 +170,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--short', action='store_true', help='fewer seconds and events')
     short = parser.parse_args().short
-    seconds, rounds, events = (4.0, 2, 60) if short else (20.0, 5, 300)
+    seconds, rounds, events = (2.0, 1, 40) if short else (20.0, 5, 300)
     names = ['bot{}'.format(number + 1) for number in range(ROBOTS)]
     with System() as system:
         processes = start(system, names)

@@ -156,7 +156,7 @@ def main():
     """Print a table for each case, and the cost of a picture."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--short', action='store_true', help='fewer seconds')
-    seconds = 3.0 if parser.parse_args().short else 30.0
+    seconds = 1.5 if parser.parse_args().short else 30.0
     with System() as system:
         system.screen()
         system.start_master()

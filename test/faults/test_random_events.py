@@ -4,7 +4,7 @@
 
 Master, mux and gates are the real ones; two robots have the real guard; each has a computer of its
 own, whose link can be cut. ``MHRI_SEED`` repeats a run, ``MHRI_EVENTS`` is the number of events
-(default 60, a minute of them at most; ``MHRI_SECONDS`` for more), ``MHRI_KEEP`` a folder that stays
+(default 40, a minute of them at most; ``MHRI_SECONDS`` for more), ``MHRI_KEEP`` a folder that stays
 with all logs::
 
     MHRI_EVENTS=1000 MHRI_SEED=7 python3 -m pytest -s test/faults/test_random_events.py
@@ -28,12 +28,12 @@ from support.lag import LagMeter  # noqa: E402
 from support.random_world import JOY, OPERATORS, PAD, ROBOTS, World  # noqa: E402
 from support.reference_model import DRIVE, ReferenceModel, STAND  # noqa: E402
 
-EVENTS = int(os.environ.get('MHRI_EVENTS') or 60)
+EVENTS = int(os.environ.get('MHRI_EVENTS') or 40)
 # The short form is the same every time; a long one is new, unless it repeats one.
 SEED = int(os.environ.get('MHRI_SEED') or (
     random.SystemRandom().randrange(10 ** 6) if 'MHRI_EVENTS' in os.environ else 30))
 # No event is begun after so long [s].
-LIMIT_S = float(os.environ.get('MHRI_SECONDS') or (60 if EVENTS == 60 else 'inf'))
+LIMIT_S = float(os.environ.get('MHRI_SECONDS') or (60 if EVENTS == 40 else 'inf'))
 # The model is asked so often [s]; what a computer may be late by beside what is measured [s].
 GRID_S, SLACK_S = 0.02, 0.3
 CALM_EVERY = 30

@@ -177,6 +177,29 @@ def test_7_a_task_that_cannot_be_is_refused_in_place(session):
     assert view(session, 'bot2').task is None
 
 
+def test_7_one_of_a_team_is_stopped_alone(session):
+    page, both = session.host.tasks.page, ('bot1', 'bot2')
+    session.host.screen.arrangement.show_page(page)
+    before = {name: len(told(session, 'task.stopped', name)) for name in both}
+    again = Pace(AGAIN_S)
+
+    def stopped():
+        if again.due():
+            single = [part for part in page.findChildren(QPushButton, 'task_stop_one_button')
+                      if part.isVisible() and part.accessibleName() == 'stop Hold of bot1']
+            if single:
+                single[0].click()
+            else:
+                session.host.tasks.start('hold', list(both), {})
+        return len(told(session, 'task.stopped', 'bot1')) > before['bot1']
+    session.until(stopped, PATIENCE_S, 'the end of one part')
+    session.until(lambda: view(session, 'bot1').task is None, PATIENCE_S, 'no task')
+    assert view(session, 'bot1').carry_on == ''
+    assert len(told(session, 'task.stopped', 'bot2')) == before['bot2'], 'the other goes on'
+    session.host.tasks.stop(both)
+    session.until(lambda: view(session, 'bot2').task is None, PATIENCE_S, 'the end of the other')
+
+
 def test_8_killed_the_program_of_the_tasks_is_missed_and_its_robots_are_lost(session):
     session.host.tasks.start('square', ['bot2'], {'side': 1.0})
     under_way(session, 'bot2')

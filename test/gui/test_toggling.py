@@ -5,6 +5,7 @@
 The switches of the real window are clicked, against a simulated robot that goes on all the while.
 """
 import ctypes
+import faulthandler
 import gc
 import logging
 import os
@@ -200,6 +201,13 @@ def onlooker():
     made.close()
 
 
+def said(session, master, window):
+    """Return what is known where the topics are not given back; print where each thread is."""
+    faulthandler.dump_traceback(all_threads=True, file=sys.__stdout__)
+    return 'the topics to be given back: registered {}, fed {}, wanted {}, visible {}'.format(
+        panel_hears(master), heard(session), window.wanted(), window.isVisible())
+
+
 def hide(window):
     window.window().hide()
 
@@ -222,7 +230,7 @@ def test_a_window_not_seen_costs_nothing(session, master, window, onlooker, monk
     session.until(lambda: panel_hears(master) == everything, what='graph and picture')
     begun = time.monotonic()
     way(window)
-    session.until(lambda: panel_hears(master) == rest, what='the topics to be given back')
+    session.until(lambda: panel_hears(master) == rest, what=lambda: said(session, master, window))
     gone_s = time.monotonic() - begun
     assert {TOPIC_OF[key] for key in heard(session)} == rest
     session.until(lambda: not any(thread.name == 'camera bot1' for thread in threading.enumerate()),

@@ -56,6 +56,16 @@ def test_the_edge_is_painted(window, operator):
         assert (pixel == ink) == (name is not None)
 
 
+@pytest.mark.parametrize('width', [480, 720, 744, 800])
+def test_another_state_squeezes_no_name(window, operator, width):
+    window.resize(width, 600)
+    window.show_view(replace(VIEW, selected=True, driven=True))
+    operator.settle()
+    before = window.name_label.geometry()
+    window.show_view(replace(VIEW, selected=True, proof=CONFIRMED))
+    assert window.name_label.geometry() == before and window.name_label.shown_text() == 'bot1'
+
+
 def test_the_header_line(window):
     window._numbers._next = None
     window.show_view(VIEW)

@@ -26,8 +26,11 @@ KINDS = (
         FieldView('distance', 'm', 'kept', '0.8', 0.3, 10.0))),
     KindView('patrol', 'Patrol', 'along a route', (
         FieldView('route', 'm', 'its corners: [[x, y], ...]', ''),
-        FieldView('frame', '', 'of its places', "''"),
+        FieldView('frame', '', 'of its places', "''", choices=('', 'odom')),
         FieldView('rounds', '', 'how often', '0.0', 0.0, 10000.0))),
+    KindView('return', 'Return', 'to a mark', (FieldView('mark', '', 'its name', "''"),)),
+    KindView('formation', 'Formation', 'in shape', (
+        FieldView('shape', '', 'line or wedge', 'wedge', choices=('line', 'wedge')),)),
     KindView('dance', 'Dance', 'of a lab', (FieldView('broken', '', 'unreadable', '{', 0.0, 1.0),)))
 BOT = RobotView('bot1', link=LIVE, number=1)
 TASKS = TasksView(kinds=KINDS)
@@ -59,7 +62,7 @@ def start(page, operator):
 
 
 def test_numbers_have_units_limits_and_defaults(page, operator, asked):
-    assert page.keys == ['goto', 'follow', 'patrol', 'dance'] and page.kind is KINDS[0]
+    assert page.keys == ['goto', 'follow', 'patrol', 'return', 'formation', 'dance'] and page.kind is KINDS[0]
     assert field(page, 'x').text() == 'to be given' and field(page, 'heading').text() == 'left out'
     assert field(page, 'speed').text() == '0.20 m/s' and field(page, 'timeout').text() == '120 s'
     field(page, 'speed').setValue(99.0)
@@ -113,6 +116,36 @@ def test_a_leader_is_chosen_among_the_robots(page, operator, asked):
     assert asked == [('follow', {'leader': 'bot2', 'distance': 0.8})]
 
 
+def test_a_mark_is_chosen_among_those_there_are_or_left_out(page, operator, asked):
+    page.choose('return')
+    page.show_tasks(replace(TASKS, marks=('dock', 'door')), [BOT], [])
+    mark = field(page, 'mark')
+    assert [mark.itemText(place) for place in range(mark.count())] == ['dock', 'door']
+    assert mark.currentText() == ''
+    start(page, operator)
+    mark.setCurrentIndex(1)
+    page.show_tasks(replace(TASKS, marks=('dock', 'door', 'gate')), [BOT], [])
+    start(page, operator)
+    assert asked == [('return', {}), ('return', {'mark': 'door'})]
+
+
+def test_few_words_are_chosen_not_typed(page, operator, asked):
+    page.choose('formation')
+    shape = field(page, 'shape')
+    assert not shape.isEditable() and shape.currentText() == 'wedge'
+    start(page, operator)
+    operator.hit(shape, Qt.Key_Up)
+    start(page, operator)
+    page.choose('patrol')
+    assert field(page, 'frame').currentText() == 'left out'
+    field(page, 'route').setText('[[1, 0]]')
+    start(page, operator)
+    field(page, 'frame').setCurrentIndex(1)
+    start(page, operator)
+    assert [values.get('shape', values.get('frame')) for _, values in asked] == [
+        'wedge', 'line', None, 'odom']
+
+
 @pytest.mark.parametrize('typed, value, problem', [
     ('[[1, 0], [1, 2]]', [[1, 0], [1, 2]], ''), ('', None, 'route is missing: its corners'),
     ('[[1, 0], ', None, 'route: its brackets do not fit')])
@@ -162,7 +195,15 @@ def test_tasks_under_way_are_shown_and_ended(page, operator, heard):
     assert 'bot1  go to: 1.3 m to go' in texts
     assert 'bot2  go to waits: something is in its way' in texts
     operator.click(page.findChild(QPushButton, 'task_stop_button'))
-    assert stopped == [['bot1', 'bot2']]
+    assert page.findChild(QPushButton, 'task_stop_button').text() == 'Stop all of them'
+    single = [part for part in page.findChildren(QPushButton, 'task_stop_one_button')]
+    assert [part.accessibleName() for part in single] == [
+        'stop Go to of bot1', 'stop Go to of bot2']
+    operator.click(single[1])
+    assert stopped == [['bot1', 'bot2'], ['bot2']]
+    ended = replace(run, robots=(run.robots[0], replace(run.robots[1], state='stopped')))
+    page.show_tasks(replace(TASKS, runs=(ended,)), [BOT], [])
+    assert not any(part.isVisible() for part in single)
     page.show_tasks(TASKS, [BOT], [])
     assert page.under_way_label.isVisible()
 

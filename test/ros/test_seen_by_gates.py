@@ -42,7 +42,7 @@ def view(**values):
     (view(), gate(brake=RobotGate.BRAKE_SLOWS, free_way_m=0.6), True,
      {'note': 'brake: slows for something 0.6 m ahead', 'slow': True}),
     (view(), gate(brake=RobotGate.BRAKE_CANNOT), True,
-     {'note': 'no brake: it has no laser', 'slow': False}),
+     {'note': 'no brake: it has no laser or depth camera', 'slow': False}),
     (view(note='slow link', slow=True), gate(brake=RobotGate.BRAKE_CANNOT), True,
      {'note': 'slow link'}),
     (view(), gate(back_after_s=10.0), True,
@@ -69,8 +69,8 @@ def test_every_reason_to_stand_has_words():
 
 
 def test_the_words_of_the_brake_are_those_of_its_rule():
-    assert WORDS == ('', RobotGate.BRAKE_ON, RobotGate.BRAKE_SLOWS, RobotGate.BRAKE_NO_SCAN,
-                     RobotGate.BRAKE_CANNOT)
+    assert WORDS == ('', RobotGate.BRAKE_ON, RobotGate.BRAKE_SLOWS, RobotGate.BRAKE_UNSEEN,
+                     RobotGate.BRAKE_NO_SCAN, RobotGate.BRAKE_CANNOT)
 
 
 def test_what_is_not_known_is_none():

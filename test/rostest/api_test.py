@@ -19,7 +19,7 @@ from support.ros_system import System, wait_for  # noqa: E402
 INPUTS = ('mhri_joy', 'mhri_pedal', 'mhri_voice')
 # Behind what is installed: the message that takes the power from a TurtleBot2's motors.
 MESSAGES = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'support', 'messages')
-SERVICES = {'set_suspended': 'mhri/SetSuspended', 'take_control': 'std_srvs/Trigger',
+SERVICES = {'end': 'mhri/EndTask', 'set_suspended': 'mhri/SetSuspended', 'take_control': 'std_srvs/Trigger',
             'set_place': 'mhri/SetPlace', 'fit_place': 'mhri/FitPlace',
             'set_fence': 'mhri/SetFence', 'set_mark': 'mhri/SetMark'}
 EVERYWHERE = ('/rosout', '/clock')
@@ -133,7 +133,7 @@ class ApiTest(unittest.TestCase):
         for robot, kind, node in (('bot1', 'turtlebot2', '/bot1/base'),
                                   ('bot2', 'turtlebot3', '/bot2/base')):
             template = robot_types()[0][kind]
-            own = {'/tf'} | {'/{}/{}'.format(robot, topic) for topic in (
+            own = {'/tf', '/tf_static'} | {'/{}/{}'.format(robot, topic) for topic in (
                 *template.command, *template.imu, *template.odometry, *template.scan,
                 *template.cloud, *template.battery, template.motor_power.name,
                 *camera_topics(template))}

@@ -96,12 +96,23 @@ class Tasks(unittest.TestCase):
         return [(robot.state, robot.text) for robot in goal.get_result().robots]
 
     def on_its_way(self, robot='bot1', parameters='{x: 9.0, y: 2.0}'):
-        """Start a robot on a long way and wait until it moves; return (goal, since when)."""
-        begun = time.monotonic()
-        x = self.places[robot].last()[0]
-        goal = self.start(robot, 'goto', parameters.replace('9.0', '9.0' if x < 6.0 else '2.0'))
-        self.commands[robot].wait(moves, begun, 60.0)
-        return goal, begun
+        """Start a robot on a long way and wait until it moves; return (goal, since when).
+
+        Again where it did not come to move: on a busy machine that says nothing of the task.
+        """
+        for _ in range(5):
+            begun = time.monotonic()
+            x = self.places[robot].last()[0]
+            goal = self.start(robot, 'goto', parameters.replace('9.0', '9.0' if x < 6.0 else '2.0'))
+            wait_until(lambda: goal.get_comm_state() == actionlib.CommState.DONE or any(
+                moves(item.value) for item in self.commands[robot].since(begun)),
+                'it neither moves nor ends', 60.0)
+            if goal.get_comm_state() != actionlib.CommState.DONE:
+                return goal, begun
+            ended = self.ends(goal)
+            print('ended before it moved: {}'.format(ended))
+            self.assertEqual(ended[0][0], TaskState.LOST, ended)
+        raise AssertionError('again and again it ends before it moves')
 
     def rests_for_good(self, robot, since):
         """Wait for silence after the first zero; nothing but zeros may have come since that."""
@@ -121,9 +132,9 @@ class Tasks(unittest.TestCase):
 
     def test_the_terminal_drives_a_square_and_says_its_corners(self):
         # Away from everything.
-        there = self.ends(self.start('bot1', 'goto', '{x: 5.0, y: 2.0, heading: 0.0}'))
+        there = self.ends(self.start('bot1', 'goto', '{x: 5.0, y: 2.0, heading: 0.0, speed: 0.4}'))
         self.assertEqual(there[0][0], TaskState.DONE, there)
-        tool = task_tool('bot1', 'square', '0.6')
+        tool = task_tool('bot1', 'square', '0.4')
         self.addCleanup(tool.end)
         self.assertEqual(tool.wait(PATIENCE_S), 0, tool.said())
         for number in (1, 2, 3, 4):
@@ -158,7 +169,7 @@ class Tasks(unittest.TestCase):
     def test_a_follower_keeps_its_distance_and_returns(self):
         following = self.start('bot2', 'follow', '{leader: bot1, distance: 1.0}')
         x = self.places['bot1'].last()[0]
-        leading = self.start('bot1', 'goto', '{{x: {}, y: 2.0, speed: 0.15}}'.format(
+        leading = self.start('bot1', 'goto', '{{x: {}, y: 2.0, speed: 0.2}}'.format(
             5.0 if x < 3.5 else 2.5))
         self.assertEqual(self.ends(leading)[0][0], TaskState.DONE)
         wait_until(lambda: math.dist(self.places['bot1'].last(), self.places['bot2'].last()) < 1.25,

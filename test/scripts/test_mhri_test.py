@@ -106,11 +106,38 @@ def test_bad_tests_are_all_counted(package):
 
 
 def test_results_of_the_last_run_do_not_count(package):
-    status, output = run_tests(package, '--only', 'gui')
+    status, output = run_tests(package, '--only', 'gui', '--once')
     assert output.splitlines()[-1] == '1 passed, 1 failed', output
     shutil.rmtree(str(package.root / 'test' / 'unit'))
     status, output = run_tests(package, '--only', 'unit')
     assert output.splitlines()[-1] == '1 passed, 1 failed', output
+
+
+FAILS_AT_FIRST = '''import pathlib
+
+
+def test_it():
+    before = pathlib.Path(__file__ + '.ran')
+    assert before.exists() or before.touch()
+'''
+
+
+def test_what_failed_runs_once_more_and_stays_in_the_count(package):
+    for folder in ('gui', 'rostest'):
+        shutil.rmtree(str(package.root / 'test' / folder), ignore_errors=True)
+    node = NODE_TEST.format('p = __file__ + ".ran"\n'
+                            '        assert os.path.exists(p) or open(p, "w").close()', 'node')
+    write_tests(package, {'gui/test_one.py': FAILS_AT_FIRST, 'rostest/node.py': node,
+                          'rostest/node.test': ROSTEST.format(name='node')})
+    arguments = ('--only', 'gui', '--only', 'rostest')
+    status, output = run_tests(package, *arguments)
+    assert (output.splitlines()[-1], status) == ('3 passed, 0 failed, 2 failed at first', 0)
+    assert len([line for line in output.splitlines() if line.startswith('FAILED AT FIRST')]) == 2
+    status, output = run_tests(package, *arguments)
+    assert (output.splitlines()[-1], status) == ('3 passed, 0 failed', 0)
+    write_tests(package, {'gui/test_one.py': 'def test_it():\n    assert False\n'})
+    status, output = run_tests(package, *arguments)
+    assert (output.splitlines()[-1], status) == ('2 passed, 1 failed, 1 failed at first', 1)
 
 
 MEETING = '''import os
@@ -136,7 +163,7 @@ def test_files_that_measure_no_times_run_together(package, group, jobs, together
     write_tests(package, {group + '/test_one.py': MEETING, group + '/test_two.py': MEETING,
                           group + '/test_doctor_network.py': 'def test_alone():\n    pass\n'})
     status, output = package.run(
-        '--only', group, '--jobs', jobs, script=package.script.with_name('mhri_test.sh'),
+        '--only', group, '--jobs', jobs, '--once', script=package.script.with_name('mhri_test.sh'),
         limit_s=240, MEETING_S='60' if together else '0.5')
     assert output.splitlines()[-1] == ('3 passed, 0 failed' if together else '2 passed, 1 failed')
     assert re.search(r'^mhri: times: {}\w* \d+ s'.format(group), output, re.M), output

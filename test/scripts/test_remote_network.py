@@ -203,7 +203,7 @@ def path_m(rows, since):
     return sum(math.hypot(b[3] - a[3], b[4] - a[4]) for a, b in zip(rows, rows[1:]))
 
 
-def latencies_ms(operator, rows, turns=300):
+def latencies_ms(operator, rows, turns=100):
     """Return how long each of so many changes of the stick took to a robot's command topic [ms].
 
     A change that is not there when the next one is due counts as of the time until then.
@@ -241,7 +241,8 @@ def test_robot_stops_without_its_link_and_is_usable_with_it(lab, operator, name,
         stopped = first_standstill(rows(), cut) - cut
         during = latencies_ms(operator, others)
         say_latencies(other, 'link of {} cut'.format(name), during)
-        assert operator.witnesses[other].moving(), other + ' goes on'
+        # A robot that is held would wait for a centred stick for ever.
+        wait_for(operator.witnesses[other].moving, 20, other + ' to go on', poll_s=0.02)
         operator.stick.hold(0.0, 0.0)
         wait_for(operator.witnesses[other].at_rest, 20, other + ' to rest', poll_s=0.05)
     finally:
@@ -266,38 +267,47 @@ def test_robot_stops_without_its_link_and_is_usable_with_it(lab, operator, name,
 
 
 @pytest.mark.parametrize('outage_s', [0.2, 0.4, 0.55, 1.0, 2.0, 15.0])
-@pytest.mark.parametrize('name', ['bot1', 'bot2'])
-def test_what_an_outage_brings_back_moves_nothing(lab, operator, name, outage_s):
-    """A stick that is held through it, too: let go where the outage is too short to be noticed."""
-    robot, rows = lab.robots[name], lab.observer(name)
-    operator.drive(name)
-    wait_for(lambda: rows(3)[-1][1] > 0.05, 20, 'commands to ' + name)
-    cut = time.monotonic()
-    robot.unplug()
+def test_what_an_outage_brings_back_moves_nothing(lab, operator, outage_s):
+    """A stick that is held through it, too: let go where the outage is too short to be noticed.
+
+    Both robots lose their links at once.
+    """
+    rows = {name: lab.observer(name) for name in lab.robots}
+    operator.drive(*rows)
+    wait_for(lambda: all(seen(3)[-1][1] > 0.05 for seen in rows.values()), 20, 'commands to both')
+    cut, mended = {}, {}
     try:
-        wait_for(lambda: time.monotonic() > cut + min(0.3, 0.5 * outage_s), poll_s=0.005)
+        for name, robot in lab.robots.items():
+            cut[name] = time.monotonic()
+            robot.unplug()
+        begun = time.monotonic()
+        wait_for(lambda: time.monotonic() > begun + min(0.3, 0.5 * outage_s), poll_s=0.005)
         if outage_s < 1.0:
             operator.stick.hold(0.0, 0.0)
-        wait_for(lambda: time.monotonic() > cut + outage_s, 20, poll_s=0.005)
+        wait_for(lambda: time.monotonic() > begun + outage_s, 20, poll_s=0.005)
     finally:
-        robot.plug()
-    mended = time.monotonic()
-    wait_for(lambda: first_standstill(rows(), cut), 20, name + ' to stop', poll_s=0.05)
-    wait_for(operator.witnesses[name].live, START_S, 'word of ' + name, poll_s=0.05)
-    wait_for(lambda: time.monotonic() > mended + 4.0, 20, 'the rest of the backlog')
-    stopped = first_standstill(rows(), cut)
-    strayed = path_m(rows(), stopped)
-    print('MEASURED link of {} ({}) cut for {:.2f} s, stick {}: stands still after {:.0f} ms, '
-          'moved {:.3f} m by itself after that'.format(
-              name, 'guarded' if name in GUARDED else 'no guard', mended - cut,
-              'let go' if outage_s < 1.0 else 'held', 1e3 * (stopped - cut), strayed))
-    # Two or three commands were on their way, and a guard obeys what is less than a second old; the
-    # zero is right behind them.
-    assert strayed < 0.06, 'stale commands moved it'
+        for name, robot in lab.robots.items():
+            robot.plug()
+            mended[name] = time.monotonic()
+    for name, seen in rows.items():
+        wait_for(lambda: first_standstill(seen(), cut[name]), 20, name + ' to stop', poll_s=0.05)
+        wait_for(operator.witnesses[name].live, START_S, 'word of ' + name, poll_s=0.05)
+    wait_for(lambda: time.monotonic() > max(mended.values()) + 4.0, 20, 'the rest of the backlog')
+    for name, seen in rows.items():
+        stopped = first_standstill(seen(), cut[name])
+        strayed = path_m(seen(), stopped)
+        print('MEASURED link of {} ({}) cut for {:.2f} s, stick {}: stands still after {:.0f} ms, '
+              'moved {:.3f} m by itself after that'.format(
+                  name, 'guarded' if name in GUARDED else 'no guard', mended[name] - cut[name],
+                  'let go' if outage_s < 1.0 else 'held', 1e3 * (stopped - cut[name]), strayed))
+        # Two or three commands were on their way, and a guard obeys what is less than a second
+        # old; the zero is right behind them.
+        assert strayed < 0.06, 'stale commands moved ' + name
     operator.stick.hold(0.0, 0.0)
-    operator.drive(name)
+    operator.drive(*rows)
     operator.stick.hold(0.0, 0.0)
-    wait_for(operator.witnesses[name].at_rest, 20, name + ' to rest', poll_s=0.05)
+    for name in rows:
+        wait_for(operator.witnesses[name].at_rest, 20, name + ' to rest', poll_s=0.05)
 
 
 def test_robot_is_recorded_on_the_host(lab, operator):

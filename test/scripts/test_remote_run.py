@@ -118,7 +118,8 @@ def test_turtlebot2_with_all_that_belongs_to_it(remote, master):
     assert subscribers(master, '/bot1/mobile_base/commands/velocity') == ['/bot1/mobile_base']
     assert parameter(master, '/bot1/robot_type') == 'turtlebot2'
     assert parameter(master, '/bot1/mobile_base/odom_frame') == 'bot1/odom'
-    asked = {'max_linear_mps': 0.65, 'radius_m': 0.18, 'brake': True, 'back_after_s': 10}
+    asked = {'max_linear_mps': 0.65, 'radius_m': 0.18, 'laser_x_m': -0.087, 'brake': True,
+             'back_after_s': 10}
     assert {key: parameter(master, '/bot1/mhri_guard/' + key) for key in asked} == asked
     assert subscribers(master, '/bot1/scan') == ['/bot1/mhri_guard']
     assert parameter(master, '/bot1/camera/driver/rgb_frame_id') == 'bot1/camera_rgb_optical_frame'

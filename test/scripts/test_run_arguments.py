@@ -22,6 +22,12 @@ import pytest
     (['--sim', '3', 'turtlebot2;touch hacked'], 'is not a list of robot types'),
     (['--sim', '3', '--sim-types', '$(touch hacked)'], 'is not a list of robot types'),
     (['--sim-types', 'turtlebot2'], 'give --sim as well'),
+    (['--link'], '--link needs a value'),
+    (['--link', 'bot1'], "'bot1' is not NAME=ADDRESS"),
+    (['--link', 'bot1=192.168.0.7 bot2'], "'bot2' is not NAME=ADDRESS"),
+    (['--link', '1bot=192.168.0.7'], "'1bot=192.168.0.7'"),
+    (['--link', "bot1=tcp/x';touch hacked:1"], 'is not NAME=ADDRESS'),
+    (['--link', 'bot1=http/192.168.0.7:80'], 'is not NAME=ADDRESS'),
     (['--ip'], '--ip needs a value'),
     (['--ip', '300.1.1.1'], "'300.1.1.1' is not an IPv4 address"),
     (['--ip', '1.2.3'], "'1.2.3'"),
@@ -53,6 +59,7 @@ import pytest
     (['--master', 'https://host:11311'], "'https://host:11311'"),
     (['--demo', '--ip', '127.0.0.1'], 'leave out --ip and --master'),
     (['--demo', '--master', 'http://127.0.0.1:11311'], 'leave out --ip and --master'),
+    (['--demo', '--sim', '3'], '--demo plays with four robots'),
     (['--screenshot', 'x.png'], '--screenshot goes with --demo'),
     (['--demo', '--screenshot', '/nowhere/at/all.png'], 'there is no folder /nowhere/at'),
     (['--demo', '--screenshot', '/tmp'], '/tmp is a folder'),
@@ -122,6 +129,20 @@ def test_right_arguments_reach_the_launch_file(checkout, arguments, launched):
     status, output = checkout.run('--master', 'http://127.0.0.1:1', *arguments)
     assert status == 0, output
     assert checkout.called('roslaunch') == ['roslaunch mhri mhri.launch ' + ' '.join(launched)]
+
+
+def test_links_become_endpoints(checkout):
+    installed = checkout.root / 'build' / '.ws' / 'link' / 'installed'
+    installed.parent.mkdir(parents=True)
+    # As if pip had been there before.
+    installed.write_text('eclipse-zenoh==' + re.search(
+        r'eclipse-zenoh==([0-9.]+)', checkout.script.with_name('common.sh').read_text()).group(1))
+    status, output = checkout.run('--master', 'http://127.0.0.1:1', '--link',
+                                  'bot1=192.168.0.7 bot2=udp/192.168.0.8:7448')
+    assert status == 0, output
+    assert checkout.called('roslaunch') == [
+        'roslaunch mhri mhri.launch sim:=0 '
+        'links:=bot1=tcp/192.168.0.7:7447 bot2=udp/192.168.0.8:7448']
 
 
 def test_a_labs_own_source_can_be_the_enabling_one(checkout, tmp_path):

@@ -107,23 +107,23 @@ def publishers(proxy, topic):
         return []
 
 
-def test_demo_drives_three_robots_without_hands(start, tmp_path):
+def test_demo_drives_robots_and_sends_them_to_work_without_hands(start, tmp_path):
     before = NO_NETWORK if has_own_network() else ()
     settings = tmp_path / 'config' / 'mhri' / 'panel.json'
     settings.parent.mkdir(parents=True)
     settings.write_text('{"state": {"mode": "joy"}}\n')
     run = start('--demo', '--screenshot', 'drive.png', before=before)
-    status = run.wait(180)
+    status = run.wait(400)
     print('\n' + '\n'.join(line for line in run.output.splitlines() if 'bot' in line))
     assert status == 0, run.output
-    for robot in ('bot1', 'bot2', 'bot3'):
+    for robot in ('bot1', 'bot2', 'bot3', 'bot4'):
         assert re.search(r'\b{}\b'.format(robot), run.output), run.output
     assert 'the demo succeeded' in run.output
     picture = cv2.imread(str(tmp_path / 'drive.png'))
     assert picture is not None and picture.shape[0] >= 400 and picture.shape[1] >= 600
     assert picture.std() > 5, 'the picture shows something'
     pictures = ['drive{}.png'.format(end) for end in (
-        '', '_bot_window', '_depth', '_panel', '_stopped')]
+        '', '_bot_window', '_depth', '_map', '_panel', '_stopped')]
     assert sorted(path.name for path in tmp_path.glob('*.png')) == pictures
     manual = subprocess.run([str(SCRIPT), '--help'], stdout=subprocess.PIPE).stdout.decode()
     assert [name for name in pictures if name[5:-4] not in manual] == []
@@ -139,7 +139,7 @@ def test_new_checkout_builds_and_runs(start, tmp_path, name, arguments, space):
     shutil.copytree(str(REPO), str(tmp_path / name),
                     ignore=shutil.ignore_patterns('build', '.git', '__pycache__'))
     run = start('--demo', *arguments, script=tmp_path / name / 'utils' / 'host' / 'mhri_run.sh')
-    assert run.wait(240) == 0, run.output
+    assert run.wait(400) == 0, run.output
     workspace = tmp_path / name / 'build' / '.ws'
     place = tmp_path / name if space == 'devel' else workspace / space / 'share' / 'mhri'
     assert '{}/launch/mhri.launch'.format(place) in run.output

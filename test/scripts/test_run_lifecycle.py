@@ -186,10 +186,10 @@ def test_demo_has_an_exit_status(checkout, tmp_path, result, status, said):
     got, output = checkout.run('--demo', '--screenshot', 'a picture.png', FAKE_ROSLAUNCH=write)
     assert (got, said in output) == (status, True), output
     [call] = checkout.called('roslaunch')
-    assert 'sim:=3' in call and 'demo:=true' in call
+    assert 'sim:=4' in call and 'demo:=true' in call
     assert 'screenshot:={} demo_result:='.format(tmp_path / 'a picture.png') in call
 
 
 def test_demo_takes_the_number_of_robots(checkout):
-    checkout.run('--demo', '--sim', '4')
-    assert 'sim:=4' in checkout.called('roslaunch')[0]
+    checkout.run('--demo', '--sim', '5')
+    assert 'sim:=5' in checkout.called('roslaunch')[0]

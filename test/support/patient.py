@@ -67,7 +67,7 @@ def parse(arguments):
     parser.add_argument('--offset', type=float, default=0.0, help='of its clock [s]')
     parser.add_argument('--changed', action='store_true', help='odometry of another definition')
     parser.add_argument('--obey', help='topic of the velocity that its odometry follows')
-    parser.add_argument('--select', help='select this robot, as a panel does')
+    parser.add_argument('--select', help='select this robot again and again, as a panel does')
     parser.add_argument('--gates', nargs='*', help='speak as the gates do, which refused this')
     parser.add_argument('--watchdog', type=float, default=0.0)
     return parser.parse_args(arguments)
@@ -87,6 +87,7 @@ def main():
         panel = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1,
                                 latch=True)
         panel.publish(RobotSelect([options.select]))
+        rospy.Timer(rospy.Duration(0.5), lambda _: panel.publish(RobotSelect([options.select])))
     kind = Changed if options.changed else Odometry
     publisher = options.odometry and rospy.Publisher(options.odometry, kind, queue_size=1)
     print('ready', flush=True)

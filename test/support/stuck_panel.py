@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The panel with a view that hangs when it is told to: argv[1] is the folder for the telling.
 
-A file ``sleep`` or ``hold`` there, with seconds in it, lets the view block that long while it is
-painted: asleep, or with Python's lock held. ``stuck`` is there while it does; ``places`` says where
-the stop button, while it is shown, and the middle of the window are [px of the screen].
+A file ``sleep`` or ``hold`` there lets the view block while it is painted, asleep or with Python's
+lock held, until there is a file ``end``, or the seconds in the file have passed. ``stuck`` is there
+while it does; ``places`` says where the stop button, while it is shown, and the middle of the
+window are [px of the screen].
 """
 import ctypes
 import json
@@ -18,7 +19,25 @@ from python_qt_binding.QtWidgets import QWidget
 from mhri.gui.driving.stop_bar import StopBar
 import mhri.nodes.panel
 
-HANGS = {'sleep': time.sleep, 'hold': lambda s: ctypes.PyDLL(None).usleep(int(1e6 * s))}
+STEP_S = 0.02
+
+
+def sleep(end, seconds):
+    """Block until there is a file; Python's lock is free."""
+    for _ in range(int(seconds / STEP_S)):
+        if os.path.exists(end):
+            return
+        time.sleep(STEP_S)
+
+
+def hold(end, seconds):
+    """Block until there is a file, in one call of C with Python's lock held."""
+    ctypes.PyDLL(None).system(
+        'i=0; until [ -e "{}" ] || [ $i = {:.0f} ]; do i=$((i + 1)); sleep {}; done'.format(
+            end, seconds / STEP_S, STEP_S).encode())
+
+
+HANGS = {'sleep': sleep, 'hold': hold}
 
 
 class StuckView(QWidget):
@@ -60,7 +79,7 @@ class StuckView(QWidget):
         if self._todo is not None:
             (hang, seconds), self._todo = self._todo, None
             self._write('stuck', '')
-            hang(seconds)
+            hang(os.path.join(self._folder, 'end'), seconds)
             os.remove(os.path.join(self._folder, 'stuck'))
 
 

@@ -145,7 +145,8 @@ class World:
             if robot.run is None:
                 continue
             known = dict(obeys='task', odometry_age_s=0.0, scan_age_s=self.now_s - robot.scan_at,
-                         senses=robot.senses(self.now_s))
+                         senses=robot.senses(self.now_s),
+                         looks=robot.seen.looks(robot.odometry()))
             robot.last = robot.run.tick(Facts(self.now_s, **{**known, **facts}))
             robot.body.command(*robot.command(robot.last), self.now_s)
         for robot in self.robots:

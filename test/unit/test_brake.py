@@ -90,6 +90,56 @@ def test_what_came_too_near_to_be_seen_is_remembered_until_it_is_looked_at_again
     assert len(seen.around(near)) == 0
 
 
+def sector(degrees, met=math.nan, mount=Pose(0.0, 0.0, 0.0), looked=None):
+    """Return a scan of a sector around straight ahead, in which everything is as far."""
+    half = math.radians(degrees) / 2
+    return Scan(np.full(61, met), -half, 2 * half / 61, 0.1, 10.0, mount, looked)
+
+
+@pytest.mark.parametrize('degrees, wanted, allowed', [
+    (360, (-0.5, 0.0), -0.5), (358, (-0.5, 0.0), -0.5), (180, (-0.5, 0.0), -CRAWL_MPS),
+    (180, (-0.5, 3.0), -CRAWL_MPS), (180, (-0.06, 0.0), -0.06), (57, (0.5, 0.0), 0.5),
+    (57, (0.3, 0.3), 0.3), (180, (0.3, 1.0), 0.3), (57, (0.3, 3.0), 0.0), (57, (0.0, 3.0), 0.0)])
+def test_who_does_not_see_a_way_crawls_back_and_does_not_go_ahead(degrees, wanted, allowed):
+    seen, here = Surroundings(), Pose(2.0, 1.0, 0.5)
+    seen.see(sector(degrees), here)
+    found = braked(Velocity(*wanted), seen.around(here), RADIUS_M, 0.1, seen.looks(here))
+    assert (found.linear_mps, found.angular_rad_s) == pytest.approx((allowed, wanted[1]))
+
+
+def test_a_bend_out_of_sight_is_driven_more_slowly():
+    seen, here = Surroundings(), Pose(0.0, 0.0, 0.0)
+    seen.see(sector(57), here)
+    found = braked(Velocity(0.6, 1.0), seen.around(here), RADIUS_M, 0.1, seen.looks(here))
+    assert 0.0 < found.linear_mps < 0.6
+
+
+def test_where_it_looked_turns_with_the_robot():
+    seen = Surroundings()
+    seen.see(sector(57), Pose(0.0, 0.0, 0.0))
+    looks = seen.looks(Pose(0.0, 0.0, math.pi / 2))
+    assert list(looks(np.array([[1.0, 0.0], [0.0, -1.0]]))) == [False, True]
+
+
+def test_beams_that_measured_nothing_do_not_look():
+    looked = np.arange(61) < 20
+    scan = sector(60, looked=looked)
+    assert list(scan.faces(np.array([[1.0, -0.4], [1.0, 0.0], [1.0, 0.4]]))) == [True, False, False]
+
+
+@pytest.mark.parametrize('mount, met', [
+    (Pose(-0.064, 0.0, 0.0), (0.436, 0.0)), (Pose(0.1, 0.05, math.pi), (-0.4, 0.05)),
+    (Pose(0.0, 0.2, math.pi / 2), (0.0, 0.7))])
+def test_a_scan_is_taken_from_where_the_laser_sits(mount, met):
+    scan = Scan(np.array([0.5] + [math.nan] * 359), 0.0, 2 * math.pi / 360, 0.1, 10.0, mount)
+    assert scan.points()[0] == pytest.approx(met)
+    seen = Surroundings()
+    seen.see(scan, Pose(0.0, 0.0, 0.0))
+    # Looked at again from where it sits, it is gone.
+    seen.see(Scan(np.full(360, np.nan), 0.0, scan.step, 0.1, 10.0, mount), Pose(0.0, 0.0, 0.0))
+    assert len(seen.around(Pose(0.0, 0.0, 0.0))) == 0
+
+
 @pytest.mark.parametrize('seed', range(5))
 def test_random_drives_end_without_contact(seed):
     assert random_drive(seed, 15.0, True).contacts == 0

@@ -114,7 +114,8 @@ def test_its_figures_are_those_of_the_host():
 def test_it_sees_and_remembers_what_the_host_does(seed, step):
     """Random scans from random places; what the brake then allows hardly differs."""
     dice = random.Random(seed)
-    mine, host = GUARD['Sight'](0.2), brake.Surroundings()
+    laser_x_m = (0.0, -0.06, 0.2)[seed % 3]
+    mine, host = GUARD['Sight'](0.2, laser_x_m), brake.Surroundings()
     for number in range(5):
         pose = dice.uniform(-0.2, 0.2), dice.uniform(-0.2, 0.2), dice.uniform(-3.0, 3.0)
         ranges = [dice.choice((float('nan'), 0.0, dice.uniform(0.3, 3.0))) for _ in range(240)]
@@ -123,9 +124,10 @@ def test_it_sees_and_remembers_what_the_host_does(seed, step):
         mine.see(ranges, first, step, 0.45, 10.0, number)
         seen = np.array([far if 0.45 <= far <= 10.0 else math.nan for far in ranges])
         begin = first if step > 0.0 else first + 239 * step
-        host.see(brake.Scan(seen if step > 0.0 else seen[::-1], begin, abs(step), 0.45, 10.0),
-                 Pose(*pose))
+        host.see(brake.Scan(seen if step > 0.0 else seen[::-1], begin, abs(step), 0.45, 10.0,
+                            Pose(laser_x_m, 0.0, 0.0)), Pose(*pose))
         wanted = dice.uniform(-0.6, 0.6), dice.uniform(-1.0, 1.0)
-        expected = brake.braked(Velocity(*wanted), host.around(Pose(*pose)), 0.2, 0.0)
+        expected = brake.braked(Velocity(*wanted), host.around(Pose(*pose)), 0.2, 0.0,
+                                host.looks(Pose(*pose)))
         assert mine.allow(wanted, number) == pytest.approx(
             (expected.linear_mps, expected.angular_rad_s), abs=0.03)

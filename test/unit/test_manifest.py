@@ -24,6 +24,7 @@ USED = {
     'actionlib_msgs': 'our action',
     'cv_bridge': 'part of what a lab may rely on beside mhri: fixed in the design',
     'libturbojpeg': 'loaded with ctypes', 'message_runtime': 'our messages',
+    'openssl': 'makes keys',
     'roslaunch': 'starts everything', 'rqt_gui': 'the window of the panel'}
 TOOLS = {'python3-flake8': 'the linter', 'rosnode': 'a command', 'rosparam': 'a command',
          'rostest': 'runs them', 'rostopic': 'a command', 'topic_tools': 'a relay'}

@@ -53,6 +53,8 @@ CASES = {
     'gone': (panel([LOST]), '', 'bot5: switched off', ATTENTION),
     'idle_and_silent': (panel([READY, RobotView('x', link=SILENT, note='nothing')]), '', 'ready',
                         CALM),
+    'others_on_tasks': (panel([READY, RobotView('x', link=LIVE, driven=True, obeys='task')]), '',
+                        'joystick  \u2013  ready', CALM),
     'neutral': (panel([READY, IDLE]), 'neutral',
                 '1 of 2 robots  \u2013  Virtual joystick  \u2013  centre the stick', ATTENTION),
     'back_again': (panel([READY, replace(READY, name='bot7', waits=True)]), '',

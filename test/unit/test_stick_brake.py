@@ -9,7 +9,7 @@ import pytest
 from mhri.core.driving.brake import braked, CRAWL_MPS, Scan
 from mhri.core.driving.gate import GateRule, JOINING, OPERATOR, TASK
 from mhri.core.driving.limits import Velocity, ZERO
-from mhri.core.driving.stick_brake import CANNOT, NO_SCAN, OFF, ON, SLOWS, StickBrake
+from mhri.core.driving.stick_brake import CANNOT, NO_SCAN, OFF, ON, SLOWS, StickBrake, UNSEEN
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.robot_types import Limits
 
@@ -59,6 +59,13 @@ def test_it_slows_down_as_the_rule_says_and_tells_the_way(brake):
     assert word == SLOWS and way_m == pytest.approx(0.4, abs=0.03)
     assert brake.allow(Velocity(-0.5, 0.0), 1.0) == Velocity(-0.5, 0.0)
     assert brake.state(1.0)[0] == ON
+
+
+def test_what_nothing_looks_at_is_backed_into_at_a_crawl_and_said(brake):
+    brake.see(Scan(np.full(181, np.nan), -math.pi / 2, math.pi / 180, 0.12, 10.0), 1.0)
+    assert brake.allow(Velocity(-0.5, 0.0), 1.0) == Velocity(-CRAWL_MPS, 0.0)
+    assert brake.state(1.0)[0] == UNSEEN and math.isnan(brake.state(1.0)[1])
+    assert brake.allow(FAST, 1.0) == FAST and brake.state(1.0)[0] == ON
 
 
 def test_nothing_is_said_to_slow_what_nobody_drives(brake):

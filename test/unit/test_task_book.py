@@ -40,7 +40,7 @@ def kinds_of(book):
 def test_a_run_that_is_listed_has_begun_and_is_shown(book):
     assert book.take_news() == [('task.begun', 'bot1', 'square started')]
     assert book.of('bot1') == TaskView('Square', ON.text, False, 4.3)
-    assert book.of('bot2') is None and book.runs_of(('bot2', 'bot1')) == ['a']
+    assert book.of('bot2') is None and book.parts_of(('bot2', 'bot1')) == [('a', ())]
     assert book.view().label('square') == 'Square' and book.view().label('dance') == 'dance'
 
 
@@ -98,6 +98,27 @@ def test_what_was_cancelled_is_not_offered_again(book, by):
         book.cancel('a')
     book.hear_result('a', '', ended('stopped'), cancelled=by == 'somebody')
     assert book.left('bot1') is None
+
+
+def test_who_is_ended_alone_is_not_offered_again_and_the_others_are(book):
+    team = RunView('b', 'goto', '', tuple(replace(ON, robot=name) for name in ('x', 'y', 'z')))
+    book.hear_list(SQUARE, (RUN, team), 1.0, ('dock',))
+    assert book.view().marks == ('dock',)
+    assert book.parts_of(('x', 'bot1')) == [('a', ()), ('b', ('x',))]
+    book.cancel('b', ('x',))
+    book.cancel('b', ('y',))
+    for name in ('x', 'y', 'z'):
+        book.hear_feedback('b', tuple(
+            replace(one, state='stopped') if one.robot <= name else one for one in team.robots))
+    assert [book.left(name) is None for name in ('x', 'y', 'z')] == [True, True, False]
+    assert book.parts_of(('x', 'y', 'z')) == []
+
+
+def test_a_task_that_could_not_be_ended_is_told(book):
+    book.take_news()
+    book.keep_on(('bot1',), 'nobody answers')
+    assert book.take_news() == [
+        ('task.refused', 'bot1', 'its task is not ended: nobody answers')]
 
 
 @pytest.mark.parametrize('newer_first', [True, False])

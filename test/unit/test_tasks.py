@@ -223,7 +223,7 @@ def test_no_scan_no_way_and_it_is_said():
     for _ in range(10):
         world.step()
     assert robot.last.linear_mps == 0.0
-    assert (robot.run.state, 'laser has said nothing' in robot.run.text) == (WAITING, True)
+    assert (robot.run.state, 'depth camera has said nothing' in robot.run.text) == (WAITING, True)
     for _ in range(int(BLOCKED_AFTER_S / DT_S) + 2):
         world.step()
     assert robot.run.state == BLOCKED

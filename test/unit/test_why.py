@@ -65,7 +65,10 @@ SAID = {
     'brake': ({}, {'brake': BrakeView('slows', 0.1)}, AHEAD,
               'brake: something is in the way: back away or turn'),
     'brake without a scan': ({}, {'brake': BrakeView('no_scan')}, AHEAD,
-                             'brake: no laser data: back away, or switch the brake off'),
+                             'brake: no laser or depth data: back away, or switch the brake off'),
+    'brake where it sees nothing': ({}, {'brake': BrakeView('unseen')}, AHEAD,
+                                    'brake: it does not see that way: turn less, or turn to it '
+                                    'first'),
     'joins': ({}, {'waits': True, 'stands': 'joining'}, AHEAD, CENTRE),
     'limits zero': ({'limits': (0.0, 0.0)}, {}, AHEAD, 'the speed limit is 0: raise it'),
     'one limit zero': ({'limits': (0.0, 1.0)}, {}, AHEAD, 'the speed limit is 0: raise it'),
@@ -126,8 +129,9 @@ def test_it_is_said_once_it_has_been_so_for_a_moment():
     (BrakeView(), ''), (BrakeView('on'), ''),
     (BrakeView('slows', 0.62), 'brake: slows for something 0.6 m ahead'),
     (BrakeView('slows'), 'brake: slows for something ahead'),
-    (BrakeView('no_scan'), 'brake: no laser data, no way forward'),
-    (BrakeView('cannot'), 'no brake: it has no laser')])
+    (BrakeView('no_scan'), 'brake: no laser or depth data, no way forward'),
+    (BrakeView('unseen'), 'brake: slow, it does not see that way'),
+    (BrakeView('cannot'), 'no brake: it has no laser or depth camera')])
 def test_what_the_brake_does_in_words(brake, words):
     assert brake_words(brake) == words
     assert bool(standing_words(brake)) == brake.holds

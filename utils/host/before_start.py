@@ -33,7 +33,7 @@ INPUTS = ('joy', 'pedal', 'voice', 'none')
 MOST_ROBOTS = 12
 ROBOT = re.compile(r'[A-Za-z0-9_/]+\Z')
 # The launch file quotes these, and a quote in them could add options.
-QUOTED = ('screenshot', 'demo_result')
+QUOTED = ('screenshot', 'demo_result', 'links')
 
 
 def what_is_at(uri):

@@ -30,13 +30,13 @@ DEBIAN_RUN=(
   python3-cv-bridge python3-python-qt-binding python3-pyqt5 python3-pyqtgraph python3-pygame
   python3-evdev python3-pocketsphinx pocketsphinx-en-us python3-pyaudio
   python3-numpy python3-opencv python3-yaml python3-genpy python3-netifaces fonts-dejavu-core
-  libturbojpeg0 openssh-client
+  libturbojpeg0 openssh-client openssl
   xvfb xauth hostname util-linux
 )
 DEBIAN_TEST=(
   librostest-dev python3-rostest python3-roslib topic-tools python3-pytest python3-flake8
   python3-flake8-docstrings python3-mccabe python3-pip python3-psutil catkin-lint shellcheck
-  xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server openssl iproute2 nftables
+  xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server iproute2 nftables
 )
 # Only for the fast group of tests; Ubuntu uses the same names.
 FAST=(
@@ -50,7 +50,7 @@ UBUNTU_RUN=(
 )
 UBUNTU_TEST=(
   python3-pytest python3-flake8 python3-mccabe python3-pip python3-psutil python3-catkin-lint
-  shellcheck xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server openssl iproute2
+  shellcheck xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server iproute2
   nftables
 )
 
@@ -139,6 +139,20 @@ install_missing() {
     source_setup "$NOETIC/setup.bash"
     install_rosdeps
   fi
+}
+
+# install_link: the library of mhri_link, in a place of mhri's own. This version has wheels for
+# Python 3.8 and later, for PCs and for ARM. Only the link needs it.
+install_link() {
+  local library=eclipse-zenoh==1.5.1
+  [ "$(cat "$WS/link/installed" 2>/dev/null)" != "$library" ] || return 0
+  python3 -m pip --version >/dev/null 2>&1 || install_packages python3-pip
+  mkdir -p "$WS"
+  say "installing with pip, in $WS/link: $library"
+  python3 -m pip install --quiet --disable-pip-version-check --no-deps --upgrade \
+    --target "$WS/link" "$library" ||
+    die "pip could not install $library, which mhri_link needs: see its message above"
+  printf '%s' "$library" >"$WS/link/installed"
 }
 
 # source_setup FILE: sources it without set -u, as catkin's setup files read variables that may not

@@ -19,15 +19,22 @@ Robots
                        --sim 3 "turtlebot2 turtlebot3_burger turtlebot3_waffle"; another type is
                        turtlebot3_waffle_pi
   --sim-types TYPES    the same, as an option of its own
-  --demo               drive simulated robots by a script: discover, select two of three, drive
-                       both, change the selection while they move, stop all. Prints what each
-                       robot did, writes pictures and ends: 0 if all went well, else 1. Means
-                       --sim 3 unless --sim is given. Uses a master of its own, so it does not
+  --demo               drive simulated robots by a script: discover, select two of four, drive
+                       both, change the selection while they move, stop all; then two patrol, one
+                       is driven and one follows it, on the map. Prints what each robot did,
+                       writes pictures and ends: 0 if all went well, else 1. Means --sim 4
+                       unless --sim is given. Uses a master of its own, so it does not
                        disturb a running system, and neither reads nor writes the settings of the
                        screen.
   --screenshot FILE    where --demo writes the picture of the screen (PNG; default mhri-demo.png,
-                       here); beside it come four of its parts, e.g. mhri-demo_panel.png, _bot_window,
-                       _depth and _stopped. What is there is overwritten.
+                       here); beside it come five more, e.g. mhri-demo_panel.png, _bot_window,
+                       _depth, _stopped and _map. What is there is overwritten.
+
+  --link "NAME=ADDR..."  robots that have a ROS master of their own, e.g.
+                       --link "bot1=192.168.0.7 bot2=192.168.0.8": their addresses, where mhri_link
+                       runs as the operator's guide says ("Robots on a bad radio"). ADDR may also be
+                       an endpoint such as udp/192.168.0.7:7447. Installs the library for it, zenoh,
+                       below build/.ws.
 
 Network
   --ip ADDR            this computer's address, as the robots reach it. Default: the first IPv4
@@ -63,6 +70,7 @@ HELP
 
 SIM=
 SIM_TYPES=
+LINKS=()
 IP=
 MASTER=
 DEMO=false
@@ -73,6 +81,7 @@ STOPPED_WITH=
 LAUNCH_PID=
 
 parse_arguments() {
+  local links
   while [ $# -gt 0 ]; do
     case "$1" in
       -h | --help) help_text; exit 0 ;;
@@ -80,6 +89,7 @@ parse_arguments() {
         SIM=$(value "$@"); shift
         if [[ ${2:-} =~ ^[a-z] && $2 != *:=* ]]; then SIM_TYPES=$2; shift; fi ;;
       --sim-types) SIM_TYPES=$(value "$@"); shift ;;
+      --link) links=$(value "$@"); read -r -a LINKS <<<"$links"; shift ;;
       --ip) IP=$(value "$@"); shift ;;
       --master) MASTER=$(value "$@"); shift ;;
       --screenshot) PICTURE=$(value "$@"); shift ;;
@@ -101,6 +111,7 @@ check_arguments() {
     usage_error "--sim: '$SIM_TYPES' is not a list of robot types: names with spaces between"
   [ -z "$SIM_TYPES" ] || [ -n "$SIM" ] || "$DEMO" ||
     usage_error "--sim-types lists the types for the robots of --sim N: give --sim as well"
+  check_links
   [ -z "$IP" ] || check_ip --ip "$IP" 192.168.0.103
   [[ -z $MASTER || $MASTER =~ ^http://[A-Za-z0-9]([A-Za-z0-9.-]*)?:[0-9]{1,5}/?$ ]] ||
     usage_error "--master: '$MASTER' is not an address such as http://192.168.0.103:11311"
@@ -112,10 +123,25 @@ check_arguments() {
     usage_error "--demo runs on this machine alone, with its own master:" \
       "leave out --ip and --master"
   fi
+  if "$DEMO" && [ "${SIM:-4}" -lt 4 ]; then
+    usage_error "--demo plays with four robots: leave out --sim $SIM, or give more"
+  fi
   [ -z "$PICTURE" ] || "$DEMO" || usage_error "--screenshot goes with --demo"
   for arg in "${LAUNCH_ARGS[@]}"; do
     [[ $arg =~ ^[a-z][a-z0-9_]*:= ]] || usage_error "'$arg' is not ARG:=VALUE"
     [[ $arg != *[[:cntrl:]]* ]] || usage_error "${arg%%:=*}: a control character is in '$arg'"
+  done
+}
+
+# check_links: makes an endpoint of each bare address in LINKS.
+check_links() {
+  local index link
+  for index in "${!LINKS[@]}"; do
+    link=${LINKS[index]}
+    [[ $link == *=*/* ]] || link=${link/=/=tcp/}:7447
+    [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*=(tcp|udp)/[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] ||
+      usage_error "--link: '${LINKS[index]}' is not NAME=ADDRESS such as bot1=192.168.0.7"
+    LINKS[index]=$link
   done
 }
 
@@ -244,6 +270,7 @@ prepare_code() {
     return
   fi
   install_missing run
+  [ "${#LINKS[@]}" = 0 ] || install_link
   if [ "$SPACE" = install ]; then
     needs_plain_path "catkin's installation"
     build_workspace OFF install
@@ -275,6 +302,7 @@ stop() {
 launch() {
   local status=0 args=("sim:=${SIM:-0}" "${LAUNCH_ARGS[@]}")
   [ -z "$SIM_TYPES" ] || args+=("sim_types:=$SIM_TYPES")
+  [ "${#LINKS[@]}" = 0 ] || args+=("links:=${LINKS[*]}")
   if "$DEMO"; then
     args+=("demo:=true" "screenshot:=$PICTURE" "demo_result:=$SCRATCH/demo_result")
   fi
@@ -303,7 +331,7 @@ demo_verdict() {
   local verdict=
   [ ! -f "$SCRATCH/demo_result" ] || verdict=$(cat "$SCRATCH/demo_result")
   [ "$verdict" = ok ] || die "the demo failed: ${verdict:-it ended without a result}"
-  say "the demo succeeded; its pictures are $PICTURE and four beside it"
+  say "the demo succeeded; its pictures are $PICTURE and five beside it"
 }
 
 main() {
@@ -311,7 +339,7 @@ main() {
   check_arguments
   check_picture
   check_launch_arguments
-  if "$DEMO"; then SIM=${SIM:-3}; fi
+  if "$DEMO"; then SIM=${SIM:-4}; fi
   os_family >/dev/null
   choose_address
   make_scratch

@@ -14,7 +14,7 @@ TIMED=(rostest_timed scripts_timed faults_timed gui bench)
 
 help_text() {
   cat <<'HELP'
-Usage: mhri_test.sh [--only GROUP]... [--jobs N] [--bench]
+Usage: mhri_test.sh [--only GROUP]... [--jobs N] [--bench] [--once]
 
 Installs what is missing, builds in build/.ws and runs every test, on this machine only (127.0.0.1).
 The last line is the count, e.g. "412 passed, 0 failed"; the exit status is 0 only if something ran
@@ -25,6 +25,7 @@ and nothing failed.
   --jobs N       run N files at once; those that measure time run alone (default: the number of
                  processors, at most 4); 1: one after another
   --bench        run the benchmarks (test/bench) in full instead of their short form
+  --once         do not run a second time what failed (see below)
   -h, --help     this text
 
   fast     lint and rules without ROS: needs no build, no master and no screen; under a minute
@@ -34,6 +35,10 @@ and nothing failed.
   gui      the panel, under Xvfb            faults   what happens when parts are killed
   bench    each benchmark; prints its table
 
+What runs nodes, windows or scripts depends on what else the computer does. So where no more than
+four such files failed, they run once more at the end, alone, and count if they fail again; what
+failed at first is named and counted in the last line: look into it.
+
 The result files (JUnit) are in build/.ws/build/test_results. Works on Debian 12, and on Ubuntu 20.04
 with ROS Noetic. The first run needs a network to install what is missing, later runs do not.
 HELP
@@ -42,6 +47,7 @@ HELP
 ONLY=()
 BENCH=short
 JOBS=
+AGAIN=true
 RUN_PID=
 
 parse_arguments() {
@@ -49,6 +55,7 @@ parse_arguments() {
     case "$1" in
       -h | --help) help_text; exit 0 ;;
       --bench) BENCH=full ;;
+      --once) AGAIN=false ;;
       --only)
         [[ " ${GROUPS_IN_ORDER[*]} fast " == *" ${2:-} "* && -n ${2:-} ]] ||
           usage_error "--only: there is no group '${2:-}'; the groups are ${GROUPS_IN_ORDER[*]} fast"
@@ -133,6 +140,13 @@ run_all() {
   for target in "${timed[@]}"; do run 1 "$target"; done
 }
 
+# run_again: runs what failed once more.
+run_again() {
+  local targets target
+  targets=$(python3 "$REPO/utils/host/count_results.py" --set-aside "$RESULTS")
+  for target in $targets; do run 1 "$target"; done
+}
+
 # wanted GROUP: true if it was asked for.
 wanted() { [[ " ${ONLY[*]} " == *" $1 "* ]]; }
 
@@ -173,9 +187,10 @@ main() {
     source_setup "$WS/devel/setup.bash"
     if wanted lint; then install_tools; fi
     isolate
-    rm -rf "$RESULTS"
+    rm -rf "$RESULTS" "$RESULTS.first"
     if wanted fast; then run 1 fast; fi
     run_all
+    if $AGAIN; then run_again; fi
     catkin_test_results "$RESULTS" || true
   fi
   say "times: $(IFS=,; printf '%s' "${TIMES[*]}")"

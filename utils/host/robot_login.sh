@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 # shellcheck shell=bash
-# Shared by connect_turtlebot.sh and turtlebot_deploy.sh: checks of what goes to ssh and, through
-# it, to a shell on the robot. Sourced after common.sh, never run.
+# Shared by connect_turtlebot.sh, turtlebot_deploy.sh and mhri_keys.sh: checks of what goes to ssh
+# and, through it, to a shell on the robot; and one connection for several commands. Sourced after
+# common.sh, never run.
 
 # check_login USER IP
 check_login() {
@@ -21,4 +22,32 @@ check_ssh_port() {
 check_folder() {
   [[ $1 =~ ^[A-Za-z0-9_][A-Za-z0-9_.-]*(/[A-Za-z0-9_][A-Za-z0-9_.-]*)*$ ]] ||
     usage_error "--to: '$1' is not a folder in the home of the robot's user, such as mhri"
+}
+
+# The connection; those who make one set ROBOT_USER, ROBOT_IP and SSH_PORT, and make_scratch first.
+SOCKET=
+
+# connect: opens it, or dies.
+connect() {
+  SOCKET="$SCRATCH/ssh"
+  # The connection that carries the next ones; here ssh asks its own questions: the password, or
+  # whether a new robot's key is right. Should this script be killed, it ends by itself.
+  ssh -M -S "$SOCKET" -o ControlPersist=20 -o ConnectTimeout=10 \
+    -l "$ROBOT_USER" ${SSH_PORT:+-p "$SSH_PORT"} -- "$ROBOT_IP" true ||
+    die "ssh could not log in to $ROBOT_USER@$ROBOT_IP: see its message above. A robot that is" \
+      "new here, or was set up anew: log in once with 'ssh $ROBOT_USER@$ROBOT_IP' and compare its key"
+}
+
+# disconnect: for the exit trap; removes the scratch folder, too.
+disconnect() {
+  if [ -S "$SOCKET" ]; then
+    ssh -S "$SOCKET" -O exit -- "$ROBOT_IP" 2>/dev/null || true
+  fi
+  [ -z "$SCRATCH" ] || rm -rf "$SCRATCH"
+}
+
+# over_connection COMMAND
+over_connection() {
+  ssh -S "$SOCKET" -o ControlMaster=no -l "$ROBOT_USER" ${SSH_PORT:+-p "$SSH_PORT"} \
+    -- "$ROBOT_IP" "$1"
 }

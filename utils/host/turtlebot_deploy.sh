@@ -38,7 +38,6 @@ ROBOT_USER=
 ROBOT_IP=
 SSH_PORT=
 FOLDER=mhri
-SOCKET=
 
 # Runs on the robot, as sh: any robot has that. $1 is the folder in the home, $2 the link, $3 its
 # target. Links compare by target, other files by content.
@@ -90,8 +89,7 @@ parse_arguments() {
 
 # on_robot PROGRAM [ARG]: runs one of the programs above, over the open connection.
 on_robot() {
-  ssh -S "$SOCKET" -o ControlMaster=no -l "$ROBOT_USER" ${SSH_PORT:+-p "$SSH_PORT"} \
-    -- "$ROBOT_IP" "exec sh -c '$1' sh $FOLDER $LINK $LINK_TO"
+  over_connection "exec sh -c '$1' sh $FOLDER $LINK $LINK_TO"
 }
 
 # listing: prints checksum, x or -, and name of each file here, one per line.
@@ -116,23 +114,6 @@ differing() {
     listing
     printf '%s l %s\n' "$(printf '%s\n' "$LINK_TO" | sha256sum | cut -d ' ' -f 1)" "$LINK"
   )
-}
-
-connect() {
-  SOCKET="$SCRATCH/ssh"
-  # The connection that carries the next ones; here ssh asks its own questions: the password, or
-  # whether a new robot's key is right. Should this script be killed, it ends by itself.
-  ssh -M -S "$SOCKET" -o ControlPersist=20 -o ConnectTimeout=10 \
-    -l "$ROBOT_USER" ${SSH_PORT:+-p "$SSH_PORT"} -- "$ROBOT_IP" true ||
-    die "ssh could not log in to $ROBOT_USER@$ROBOT_IP: see its message above. A robot that is" \
-      "new here, or was set up anew: log in once with 'ssh $ROBOT_USER@$ROBOT_IP' and compare its key"
-}
-
-disconnect() {
-  if [ -S "$SOCKET" ]; then
-    ssh -S "$SOCKET" -O exit -- "$ROBOT_IP" 2>/dev/null || true
-  fi
-  [ -z "$SCRATCH" ] || rm -rf "$SCRATCH"
 }
 
 deploy() {

@@ -28,7 +28,7 @@ def parse(argv):
     parser.add_argument('--demo', action='store_true',
                         help='play a scripted drive without hands, then end')
     parser.add_argument('--screenshot', help='with --demo: write a picture (PNG) of the screen to '
-                                             'this file, and four of its parts beside it')
+                                             'this file, and five more beside it')
     parser.add_argument('--demo-result',
                         help='with --demo: write "ok", or the reason why not, to this file')
     return parser.parse_args(argv)

@@ -2,120 +2,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A scripted drive without hands, with the real panel, buttons, keys and stick.
 
-Looks for robots, selects two of three, drives both, changes the selection while they move, and
-stops all. It waits for what the robots' own odometry shows, never for a fixed time, and ends at the
-first step that fails.
+Looks for robots, selects two of four, drives both, changes the selection while they move, and
+stops all. Then two of them patrol, one is driven and one follows it, on the map. It waits for what
+the robots' own odometry shows, never for a fixed time, and ends at the first step that fails.
 """
 from concurrent.futures import ThreadPoolExecutor
 import math
 import os
 import time
 
-from python_qt_binding.QtCore import QEvent, QObject, QPoint, QPointF, Qt, QTimer
-from python_qt_binding.QtGui import QKeyEvent, QMouseEvent
-from python_qt_binding.QtWidgets import QApplication, QWidget
+from python_qt_binding.QtCore import QObject, QPoint, Qt, QTimer
 
 from mhri.core.screen.views import LIVE, PROOF_STOPPED
+from mhri.gui.driving.hands import CENTRE, DemoFailed, Errand, Grip, Hands, READY
 from mhri.gui.screen.stale_cover import StaleCover
 
 POLL_MS = 50
-# Endings of the bottom line.
-CENTRE, READY = 'centre the stick to drive', 'ready'
-PATIENCE_S = 20.0
-
-
-class DemoFailed(Exception):
-    """A step did not succeed in time; the text says which."""
-
-
-class Hands:
-    """A simulated mouse and keyboard: events as the window system sends them.
-
-    :param panel: :class:`mhri.gui.screen.screen.ScreenWidget`
-    """
-
-    def __init__(self, panel):
-        self._panel = panel
-
-    def widget(self, name, window=None):
-        """Return a widget of the panel, or of another window, by its object name.
-
-        :raises DemoFailed: there is none
-        """
-        found = (window or self._panel).findChild(QWidget, name)
-        if found is None:
-            raise DemoFailed('there is no visible {}'.format(name))
-        return found
-
-    def click(self, name, window=None):
-        """Press and release the left button in the middle of a widget."""
-        widget = self.widget(name, window)
-        point = widget.rect().center()
-        self._mouse(widget, QEvent.MouseButtonPress, point, Qt.LeftButton)
-        self._mouse(widget, QEvent.MouseButtonRelease, point, Qt.NoButton)
-
-    def hold_stick(self, forward, turn):
-        """Take the virtual joystick and hold it at fractions in [-1, 1]."""
-        stick = self.widget('joystick')
-        centre = stick.rect().center()
-        travel = stick.travel()
-        target = centre + QPoint(round(-turn * travel), round(-forward * travel))
-        self._mouse(stick, QEvent.MouseButtonPress, centre, Qt.LeftButton)
-        self._mouse(stick, QEvent.MouseMove, target, Qt.LeftButton)
-
-    def let_go(self):
-        """Release the virtual joystick."""
-        stick = self.widget('joystick')
-        self._mouse(stick, QEvent.MouseButtonRelease, stick.rect().center(), Qt.NoButton)
-
-    def press_stop_keys(self):
-        """Press Shift and the space bar."""
-        for kind in (QEvent.KeyPress, QEvent.KeyRelease):
-            event = QKeyEvent(kind, Qt.Key_Space, Qt.ShiftModifier, ' ')
-            QApplication.sendEvent(self._panel, event)
-
-    @staticmethod
-    def _mouse(widget, kind, point, buttons):
-        button = Qt.NoButton if kind == QEvent.MouseMove else Qt.LeftButton
-        where = QPointF(point)
-        QApplication.sendEvent(widget, QMouseEvent(
-            kind, where, QPointF(widget.mapToGlobal(point)), button, buttons, Qt.NoModifier))
-
-
-class Grip:
-    """Holds something (stick or key) until a condition is true.
-
-    If the mux asks for a centred stick meanwhile (a computer that stalled for half a second looks
-    like a silent source), it does what an operator does: it lets go and takes hold again.
-
-    :param take: function that takes it
-    :param let_go: function that lets it go
-    :param status: function that returns the panel's bottom line
-    :param condition: what to wait for
-    """
-
-    def __init__(self, take, let_go, status, condition):
-        self._take = take
-        self._let_go = let_go
-        self._status = status
-        self._condition = condition
-        self._held = None
-
-    def __call__(self):
-        """Look, and return whether the condition is true."""
-        if self._held is None:
-            self._held = True
-            self._take()
-        if self._condition():
-            return True
-        status = self._status()
-        if self._held and status.endswith(CENTRE):
-            self._held = False
-            self._let_go()
-        elif not self._held and status.endswith(READY):
-            self._held = True
-            self._take()
-        return False
+PATIENCE_S = 30.0
+# Where two of them patrol [m], in the hall of the simulated building.
+ROUTES = (((10.0, 0.8), (8.0, 0.8)), ((5.2, 1.0), (3.4, 1.0)))
 
 
 class Diary:
@@ -203,19 +108,10 @@ class Demo(QObject):
         return Grip(lambda: self._hands.hold_stick(forward, turn), self._hands.let_go,
                     lambda: self._operator.view().status, condition)
 
-    def _found_three(self):
-        """Return a condition: three robots are live; it looks again every second until then."""
-        looked_at = [-math.inf]
-
-        def found():
-            if sum(robot.link == LIVE for robot in self._operator.view().robots) >= 3:
-                return True
-            if time.monotonic() - looked_at[0] > 1.0:
-                looked_at[0] = time.monotonic()
-                self._hands.click('look_button')
-            return False
-
-        return found
+    def _found_four(self):
+        """Return a condition: four robots are live; it looks again every second until then."""
+        return Errand(lambda: self._hands.click('look_button'), lambda: sum(
+            robot.link == LIVE for robot in self._operator.view().robots) >= 4, again_s=1.0)
 
     @staticmethod
     def _views_open(tile):
@@ -233,17 +129,32 @@ class Demo(QObject):
         begun = self._diary.robots[name]['path']
         return lambda: self._diary.robots[name]['path'] - begun >= metres
 
+    def _stopped(self):
+        """Return a condition: every robot is proven stopped."""
+        return lambda: all(robot.proof and robot.proof.state == PROOF_STOPPED
+                           for robot in self._operator.view().robots)
+
     def _steps(self):
         """Yield (what to wait for, condition)."""
-        hands, operator = self._hands, self._operator
-        yield 'the mux to be there', lambda: operator.view().mode is not None
-        yield 'three robots to be found and live', self._found_three()
-        one, two, three = operator.selection.robots[:3]
-        self._say('found {}'.format(', '.join(operator.selection.robots)))
+        yield 'the mux to be there', lambda: self._operator.view().mode is not None
+        yield 'four robots to be found and live', self._found_four()
+        robots = self._operator.selection.robots
+        self._say('found {}'.format(', '.join(robots)))
+        robots = robots[:4]
+        yield from self._drive_group(*robots[:3])
+        yield from self._work_as_team(*robots)
+        yield 'the pictures to be written', lambda: all(one.done() for _, one in self._written)
+        for path, written in self._written:
+            if not written.result():
+                raise DemoFailed('cannot write the picture {}'.format(path))
+            self._say('wrote {}'.format(path))
+
+    def _drive_group(self, one, two, three):
+        """Drive two of three robots, and another two of them."""
+        hands, host = self._hands, self._program.host
         hands.click('check_' + one)
         hands.click('check_' + two)
-        yield 'the windows of both to open', lambda: {one, two} <= set(self._program.host.windows)
-        host = self._program.host
+        yield 'the windows of both to open', lambda: {one, two} <= set(host.windows)
         hands.click('camera_depth', host.windows[one])
         hands.click('camera_rgb', host.windows[two])
         self._say('selected {} and {}: driving both'.format(one, two))
@@ -271,18 +182,86 @@ class Demo(QObject):
         hands.click('views_button', host.windows[two])
         self._say('stop all')
         hands.press_stop_keys()
-        yield 'every robot to be proven stopped', lambda: all(
-            robot.proof and robot.proof.state == PROOF_STOPPED for robot in operator.view().robots)
+        yield 'every robot to be proven stopped', self._stopped()
         hands.let_go()
         yield 'every tile to say so', lambda: all(
             tile.hud.sentence.startswith('stopped') for tile in host.windows.values()) \
             and self._all_drawn()()
         self._take_pictures(stopped=host.screen)
-        yield 'the pictures to be written', lambda: all(one.done() for _, one in self._written)
-        for path, written in self._written:
-            if not written.result():
-                raise DemoFailed('cannot write the picture {}'.format(path))
-            self._say('wrote {}'.format(path))
+
+    def _work_as_team(self, one, two, three, four):
+        """Let two robots patrol, drive one, and have one follow it, all on the map."""
+        hands, host = self._hands, self._program.host
+        yield 'the stop to be released', Errand(
+            self._release, lambda: not self._operator.view().stop_all, again_s=1.0)
+        for name in (two, three):
+            hands.click('check_' + name)
+        hands.press(Qt.Key_M, 'm')
+        scene = lambda: host.map.pane.view.scene  # noqa: E731
+        yield 'four robots on the map', lambda: host.map.pane.isVisible() and all(
+            scene().robot(name) and scene().robot(name).pose for name in (one, two, three, four))
+        for name, tool, places in ((one, 'route', ROUTES[0]), (four, 'route', ROUTES[1]),
+                                   (three, 'leader', None)):
+            yield '{} to be looked at'.format(name), Errand(
+                lambda name=name: self._tap(name), lambda name=name: scene().targets() == (name,))
+            yield '{} to be on its task'.format(name), Errand(
+                lambda tool=tool, places=places: self._draw(tool, places, two),
+                lambda name=name: self._task(name) is not None)
+        self._say('{} and {} patrol, {} follows {}: driving that one'.format(one, four, three, two))
+        hands.click('check_' + two)
+        yield 'the panel to be ready', self._reads(READY)
+        # In a circle to the left: away from who patrols, however long it takes.
+        yield 'all four to be on their way', self._hold(0.45, 0.25, self._all_go(
+            two, {one: 0.3, two: 0.8, three: 0.4, four: 0.3}))
+        yield 'every tile to be drawn', self._all_drawn()
+        self._take_pictures(map=host.screen)
+        self._say('stop all')
+        hands.press_stop_keys()
+        yield 'every robot to be proven stopped', self._stopped()
+        hands.let_go()
+        yield 'every task to end', lambda: not any(map(self._task, (one, two, three, four)))
+
+    def _release(self):
+        """Release the stop: two buttons, the second where the first has been pressed."""
+        confirm = self._hands.widget('confirm_button')
+        self._hands.click('confirm_button' if confirm.isVisible() else 'release_button')
+
+    def _task(self, name):
+        """Return the task that a robot is on, None for none."""
+        return next((robot.task for robot in self._program.host.tasks.view.robots
+                     if robot.name == name), None)
+
+    def _tap(self, name):
+        """Click a robot on the map."""
+        view = self._program.host.map.pane.view
+        pose = view.scene.robot(name).pose
+        if pose is not None:
+            self._hands.tap(view, pose.x_m, pose.y_m)
+
+    def _draw(self, tool, places, leader):
+        """Draw a route for the robot that is looked at, or choose its leader."""
+        view = self._program.host.map.pane.view
+        self._hands.click('tool_' + tool)
+        if places is None:
+            self._tap(leader)
+            return
+        for place in places:
+            self._hands.tap(view, *place)
+        self._hands.click('done_button')
+
+    def _all_go(self, driven, metres):
+        """Return a condition: each robot has driven so far; whose task was lost is sent on."""
+        gone = [self._travelled(name, far_m) for name, far_m in metres.items()]
+        on_task = [name for name in metres if name != driven]
+        send_on = Errand(lambda: [self._hands.click('carry_on_' + name) for name in on_task
+                                  if self._task(name) is None], lambda: False)
+
+        def done():
+            if any(self._task(name) is None for name in on_task):
+                return send_on()
+            return all([condition() for condition in gone])
+
+        return done
 
     def _poll(self):
         """Go on if the present condition is true."""
@@ -310,9 +289,9 @@ class Demo(QObject):
             self._save(widget.grab(), '{}_{}.png'.format(stem, name))
 
     def _take_screenshot(self):
-        """Write the whole screen to the file asked for."""
+        """Write the whole window to the file asked for, as it is now: not what was painted last."""
         if self._screenshot:
-            self._save(self._program.window.screen().grabWindow(0), self._screenshot)
+            self._save(self._program.window.grab(), self._screenshot)
 
     def _save(self, picture, path):
         self._written.append((path, self._writer.submit(picture.toImage().save, path, 'PNG')))

@@ -208,7 +208,7 @@ class TaskHost:
                     self._client.send(start.goal)
 
     def stop(self, robots):
-        """End the tasks of robots; whoever is on the same goal ends with them."""
+        """End the tasks of robots; the others on the same goals go on."""
         self._waiting = [start for start in self._waiting
                          if not set(robots) & set(start.goal.robots)]
         self._client.cancel(robots)

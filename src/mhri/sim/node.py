@@ -5,9 +5,10 @@
 Publishes odometry at 50 Hz, IMU at 100 Hz, laser scan at 10 Hz, ``/tf`` at 50 Hz and, where the
 template has one, the battery at 1 Hz; on request also the true pose at 50 Hz as a motion capture
 system would tell it (``/vrpn_client_node/<robot>/pose``, frame ``world``), and where its odometry
-begins as a perfect localisation would (``/tf``, ``map`` to ``<robot>/odom``). Reads every velocity
-topic of the template, and what takes the power from its motors. Frames are ``<robot>/odom``,
-``<robot>/base_link``, ``<robot>/imu_link`` and ``<robot>/laser`` (REP-105).
+begins as a perfect localisation would (``/tf``, ``map`` to ``<robot>/odom``). Where its sensors
+sit is on ``/tf_static``. Reads every velocity topic of the template, and what takes the power from
+its motors. Frames are ``<robot>/odom``,
+``<robot>/base_link``, ``<robot>/imu_link``, ``<robot>/laser`` (REP-105) and that of the camera.
 """
 import math
 import threading
@@ -25,6 +26,7 @@ from mhri.core.map.places import composed, inverse
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.names import topic_of
 from mhri.ros.messages import message_class, MessageMissing, read_field
+from mhri.sim.camera import CAMERA_HEIGHT_M
 from mhri.sim.sensors import ImuSensor
 from mhri.sim.ticks import Due, Ticks
 
@@ -68,6 +70,14 @@ class PowerSwitch:
             self._set_power(value == self._spec.powered)
 
 
+def _transform(name, parent, child):
+    """Return the transform between two frames of a robot that lie in one place."""
+    transform = TransformStamped(child_frame_id='{}/{}'.format(name, child))
+    transform.header.frame_id = '{}/{}'.format(name, parent)
+    transform.transform.rotation.w = 1.0
+    return transform
+
+
 class SimRobot:
     """Publishes what a body and its sensors say, and passes commands to it.
 
@@ -96,8 +106,13 @@ class SimRobot:
         prefix = '/' + name + '/'
         self._odom_pub = rospy.Publisher(prefix + template.odometry[0], Odometry, queue_size=10)
         self._imu_pub = rospy.Publisher(prefix + template.imu[0], Imu, queue_size=10)
-        self._scan_pub = rospy.Publisher(prefix + template.scan[0], LaserScan, queue_size=2)
+        self._scan_pub = rospy.Publisher(prefix + template.scan[0], LaserScan,
+                                         queue_size=2) if template.scan else None
         self._tf_pub = rospy.Publisher('/tf', TFMessage, queue_size=10)
+        self._fixed_pub = rospy.Publisher('/tf_static', TFMessage, queue_size=10, latch=True)
+        for transform in self._fixed.transforms:
+            transform.header.stamp = rospy.Time.now()
+        self._fixed_pub.publish(self._fixed)
         self._battery_pub = rospy.Publisher(prefix + template.battery[0], BatteryState,
                                             queue_size=1) if template.battery else None
         self._mocap_pub = rospy.Publisher('/vrpn_client_node/{}/pose'.format(name), PoseStamped,
@@ -129,13 +144,14 @@ class SimRobot:
             angle_increment=laser.increment_rad, scan_time=SCAN_EVERY / RATE_HZ,
             range_min=laser.range_min_m, range_max=laser.range_max_m)
         self._scan.header.frame_id = name + '/laser'
-        self._tf = TFMessage()
-        for parent, child in (('odom', 'base_link'), ('base_link', 'imu_link'),
-                              ('base_link', 'laser')):
-            transform = TransformStamped(child_frame_id='{}/{}'.format(name, child))
-            transform.header.frame_id = '{}/{}'.format(name, parent)
-            transform.transform.rotation.w = 1.0
-            self._tf.transforms.append(transform)
+        self._tf = TFMessage([_transform(name, *frames) for frames in (
+            ('odom', 'base_link'), ('base_link', 'imu_link'), ('base_link', 'laser'))])
+        # What never moves, for whoever reads that alone.
+        camera = _transform(name, 'base_link', 'camera_rgb_optical_frame')
+        camera.transform.translation.z = CAMERA_HEIGHT_M
+        turn = camera.transform.rotation
+        turn.x, turn.y, turn.z, turn.w = -0.5, 0.5, -0.5, 0.5
+        self._fixed = TFMessage([_transform(name, 'base_link', 'laser'), camera])
         self._origin = TransformStamped(child_frame_id=name + '/odom') if placed else None
         if placed:
             self._origin.header.frame_id = 'map'
@@ -170,7 +186,8 @@ class SimRobot:
             self._publish_odometry(stamp)
             if self._mocap_pub is not None and self._mocap_pub.get_num_connections():
                 self._publish_true_pose(stamp)
-        if self._scan_due.at(tick) and self._scan_pub.get_num_connections():
+        if self._scan_pub is not None and self._scan_due.at(tick) \
+                and self._scan_pub.get_num_connections():
             self._publish_scan(stamp)
         if self._battery_pub is not None and self._battery_due.at(tick):
             self._publish_battery(stamp, now)

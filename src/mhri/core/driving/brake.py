@@ -7,7 +7,7 @@ within the way that is free, after the time that scan and command take: zero bef
 """
 from dataclasses import dataclass
 import math
-from typing import Iterable, Optional, Tuple
+from typing import Callable, Iterable, Optional, Tuple
 
 import numpy as np
 
@@ -18,6 +18,8 @@ from mhri.core.robots.mocap import Pose
 SCAN_OLD_S = 0.3
 # What is left between the robot and what is in its way [m].
 MARGIN_M = 0.08
+# So much more for who has only a depth camera: what is near and beside is out of its picture [m].
+NARROW_M = 0.05
 # What a TurtleBot loses with its smoother on is 0.8 to 1 m/s^2; and the time from a scan to the
 # moment at which the command that it led to acts.
 BRAKES_MPS2, REACTION_S = 0.5, 0.2
@@ -27,14 +29,30 @@ CRAWL_MPS = 0.1
 KEEP_M = 1.2
 _GRID_M = 0.03
 _EDGE_M = 0.05
+# No gap between the last beam and the first hides anything if it is twice as wide at most [rad].
+_GAP_RAD = 0.05
 # What was met no further off a robot than this was that robot [m].
 _BESIDE_M = 0.15
 _NOTHING = np.zeros((0, 2))
+# What is tried where a robot would come to a way at which nothing looks [share of its speed].
+_SLOWER = (1.0, 0.75, 0.5, 0.25, 0.1)
+_HERE = Pose(0.0, 0.0, 0.0)
+# For each point (n, 2) in the robot's frame [m]: is anything looking that way?
+Looks = Callable[[np.ndarray], np.ndarray]
+
+
+def everywhere(points: np.ndarray) -> np.ndarray:
+    """Return that each point is looked at."""
+    return np.ones(len(points), dtype=bool)
 
 
 @dataclass(frozen=True)
 class Scan:
-    """A laser scan: ranges [m] with NaN where nothing was measured, angles [rad], 0 is ahead."""
+    """A laser scan: ranges [m] with NaN where nothing was met, angles [rad], 0 is ahead.
+
+    ``mount`` is where its middle lies on the robot. ``looked`` tells for each beam whether it was
+    measured at all, None: every one was.
+    """
 
     ranges: np.ndarray
     angle_min: float
@@ -42,19 +60,37 @@ class Scan:
     range_min_m: float
     range_max_m: float
 
+    mount: Pose = _HERE
+    looked: Optional[np.ndarray] = None
+
     def points(self) -> np.ndarray:
         """Return what was met as an array (n, 2) in the robot's frame [m]."""
         met = np.isfinite(self.ranges)
         angles = self.angle_min + self.step * np.flatnonzero(met)
-        return self.ranges[met][:, None] * np.column_stack((np.cos(angles), np.sin(angles)))
+        beams = self.ranges[met][:, None] * np.column_stack((np.cos(angles), np.sin(angles)))
+        return _out_of(self.mount, beams)
+
+    def faces(self, points: np.ndarray) -> np.ndarray:
+        """Return for each point whether a beam goes that way, however far it reaches."""
+        return self._faced(_into(self.mount, points), _GAP_RAD)
 
     def looks_at(self, points: np.ndarray) -> np.ndarray:
         """Return for each point whether this scan would have met it."""
+        points = _into(self.mount, points)
         far = np.hypot(points[:, 0], points[:, 1])
-        turn = np.mod(np.arctan2(points[:, 1], points[:, 0]) - self.angle_min, 2.0 * math.pi)
-        seen: np.ndarray = ((turn <= abs(self.step) * len(self.ranges))
-                            & (far > self.range_min_m + _EDGE_M) & (far < self.range_max_m))
+        seen: np.ndarray = (self._faced(points) & (far > self.range_min_m + _EDGE_M)
+                            & (far < self.range_max_m))
         return seen
+
+    def _faced(self, points: np.ndarray, slack_rad: float = 0.0) -> np.ndarray:
+        turn = np.mod(np.arctan2(points[:, 1], points[:, 0]) - self.angle_min + slack_rad,
+                      2.0 * math.pi)
+        step, count = abs(self.step), len(self.ranges)
+        faced: np.ndarray = turn <= step * count + 2.0 * slack_rad
+        if self.looked is not None and count:
+            beam = np.rint((turn - slack_rad) / step).astype(int)
+            faced &= self.looked[np.clip(beam, 0, count - 1)]
+        return faced
 
 
 class Surroundings:
@@ -67,6 +103,7 @@ class Surroundings:
     def __init__(self) -> None:
         self._met = _NOTHING
         self._fresh = 0
+        self._newest: Optional[Tuple[Scan, Pose]] = None
 
     def see(self, scan: Scan, odometry: Pose) -> None:
         """Take in a scan that was made here."""
@@ -75,7 +112,8 @@ class Surroundings:
         if len(kept):
             # One of each cell; none is moved, which time after time would lead it astray.
             kept = kept[np.unique(np.round(kept / _GRID_M), axis=0, return_index=True)[1]]
-        fresh = scan.points() @ _turned(odometry.heading_rad).T + (odometry.x_m, odometry.y_m)
+        fresh = _out_of(odometry, scan.points())
+        self._newest = scan, odometry
         self._met, self._fresh = np.vstack((fresh, kept)), len(fresh)
 
     def forget(self, odometry: Pose, robots: Iterable[Tuple[float, float, float]]) -> None:
@@ -90,14 +128,31 @@ class Surroundings:
 
     def around(self, odometry: Pose) -> np.ndarray:
         """Return what is around the robot, were it here: an array (n, 2) in its frame [m]."""
-        found: np.ndarray = (self._met - (odometry.x_m, odometry.y_m)) @ _turned(
-            odometry.heading_rad)
-        return found
+        return _into(odometry, self._met)
+
+    def looks(self, odometry: Pose) -> Looks:
+        """Return what tells where the newest scan looks, seen from a robot that is here."""
+        if self._newest is None:
+            return lambda points: np.zeros(len(points), dtype=bool)
+        scan, seen_from = self._newest
+        return lambda points: scan.faces(_into(seen_from, _out_of(odometry, points)))
 
 
 def _turned(angle_rad: float) -> np.ndarray:
     cos, sin = math.cos(angle_rad), math.sin(angle_rad)
     return np.array(((cos, -sin), (sin, cos)))
+
+
+def _out_of(frame: Pose, points: np.ndarray) -> np.ndarray:
+    """Return points that are given in a frame in the one that the frame is given in."""
+    found: np.ndarray = points @ _turned(frame.heading_rad).T + (frame.x_m, frame.y_m)
+    return found
+
+
+def _into(frame: Pose, points: np.ndarray) -> np.ndarray:
+    """Return points in a frame that is given where they are."""
+    found: np.ndarray = (points - (frame.x_m, frame.y_m)) @ _turned(frame.heading_rad)
+    return found
 
 
 def free_way(points: np.ndarray, radius_m: float, velocity: Velocity) -> float:
@@ -142,8 +197,36 @@ def stopping_speed(way_m: float, delay_s: float) -> float:
     return math.sqrt(lag * lag + 2.0 * BRAKES_MPS2 * max(0.0, way_m)) - lag
 
 
+def fronts(velocity: Velocity, radius_m: float, delay_s: float) -> np.ndarray:
+    """Return where a disc's foremost point comes until the disc can stand, (n, 2) [m]."""
+    speed, turn = velocity.linear_mps, velocity.angular_rad_s
+    times = np.linspace(0.0, delay_s + abs(speed) / (2.0 * BRAKES_MPS2), 5)
+    angles = turn * times
+    if abs(turn) < 1e-6:
+        middle = np.column_stack((speed * times, np.zeros(len(times))))
+    else:
+        middle = speed / turn * np.column_stack((np.sin(angles), 1.0 - np.cos(angles)))
+    found: np.ndarray = middle + math.copysign(radius_m, speed) * np.column_stack(
+        (np.cos(angles), np.sin(angles)))
+    return found
+
+
+def seen_speed(velocity: Velocity, radius_m: float, delay_s: float, looks: Looks) -> float:
+    """Return how fast [m/s] a disc may go to stand before it comes where nothing looks.
+
+    Not at all where nothing looks ahead; a crawl where nothing looks back, to get away by.
+    """
+    speed = velocity.linear_mps
+    least = 0.0 if speed > 0.0 else max(speed, -CRAWL_MPS)
+    for share in _SLOWER:
+        slower = Velocity(share * speed, velocity.angular_rad_s)
+        if looks(fronts(slower, radius_m, delay_s)).all():
+            return max(slower.linear_mps, least) if speed > 0.0 else min(slower.linear_mps, least)
+    return least
+
+
 def braked(velocity: Velocity, points: np.ndarray, radius_m: float,
-           age_s: Optional[float]) -> Velocity:
+           age_s: Optional[float], looks: Looks = everywhere) -> Velocity:
     """Return the velocity that a robot may have; turning on the spot is always allowed.
 
     :param velocity: what is wanted
@@ -151,10 +234,14 @@ def braked(velocity: Velocity, points: np.ndarray, radius_m: float,
     :param radius_m: of the disc around all of the robot [m]
     :param age_s: of the newest scan [s], None before the first: no way forward then, and a crawl
         backward
+    :param looks: where its laser looks, see :func:`seen_speed`
     """
     wanted, turn = velocity.linear_mps, velocity.angular_rad_s
+    if wanted == 0.0:
+        return velocity
     if age_s is None or age_s > SCAN_OLD_S:
         return Velocity(min(0.0, max(wanted, -CRAWL_MPS)), turn)
+    wanted = seen_speed(velocity, radius_m + MARGIN_M, REACTION_S + age_s, looks)
     # Slower with the same turn is another arc: looked at once more.
     for _ in range(2):
         way_m = free_way(points, radius_m + MARGIN_M, Velocity(wanted, turn))

@@ -16,7 +16,7 @@ import math
 import re
 from typing import Optional, Tuple
 
-from mhri.core.driving.stick_brake import NO_SCAN, ON, SLOWS
+from mhri.core.driving.stick_brake import NO_SCAN, ON, SLOWS, UNSEEN
 
 # An echo comes every 0.1 s; three in a row may be lost.
 ECHO_S = 0.35
@@ -66,7 +66,7 @@ def read_state(text: str) -> GuardState:
     found = {part.group(1): part.group(2)
              for part in map(_STATE.match, text[:200].split()) if part}
     brake = found.get('brake', '')
-    return GuardState(brake if brake in ('', ON, SLOWS) else NO_SCAN,
+    return GuardState(brake if brake in ('', ON, SLOWS, UNSEEN) else NO_SCAN,
                       _number(found.get('way'), math.nan), _number(found.get('back_after'), 0.0))
 
 

@@ -6,38 +6,41 @@ from typing import Optional, Tuple
 
 import numpy as np
 
-from mhri.core.driving.brake import braked, free_way, MARGIN_M, Scan, SCAN_OLD_S, Surroundings
+from mhri.core.driving.brake import (
+    braked, free_way, MARGIN_M, REACTION_S, Scan, SCAN_OLD_S, seen_speed, Surroundings)
 from mhri.core.driving.limits import Velocity, ZERO
 from mhri.core.robots.mocap import Pose
 
-# What it does. NO_SCAN: nothing fresh from the laser, so no way forward; CANNOT: robots of this
-# type have no laser, it is driven without a brake.
-OFF, ON, SLOWS, NO_SCAN, CANNOT = '', 'on', 'slows', 'no_scan', 'cannot'
-WORDS = (OFF, ON, SLOWS, NO_SCAN, CANNOT)
+# What it does. UNSEEN: nothing looks that way, so it crawls back, or does not go; NO_SCAN: nothing
+# fresh from laser or depth camera, so no way forward; CANNOT: robots of this type have neither, it
+# is driven without a brake.
+OFF, ON, SLOWS, UNSEEN, NO_SCAN, CANNOT = '', 'on', 'slows', 'unseen', 'no_scan', 'cannot'
+WORDS = (OFF, ON, SLOWS, UNSEEN, NO_SCAN, CANNOT)
 _SLOWER_MPS = 0.005
 # A gate asks at least so often while its robot is driven [s].
 _ASKS_S = 0.3
 
 
 class StickBrake:
-    """What a robot's laser meets, and what is left of a command.
+    """What a robot's laser or depth camera meets, and what is left of a command.
 
     A scan may be taken in on one thread while another asks what is allowed; each is brief. Times
     are seconds of a clock that never goes back.
 
     :param radius_m: of the disc around all of the robot
-    :param has_laser: whether robots of its type have one
+    :param has_eye: whether robots of its type have one of them
     """
 
-    def __init__(self, radius_m: float, has_laser: bool) -> None:
+    def __init__(self, radius_m: float, has_eye: bool) -> None:
         self._radius_m = radius_m
-        self._has_laser = has_laser
+        self._has_eye = has_eye
         self._asked = False
         self._seen = Surroundings()
         self._pose: Optional[Pose] = None
         self._scan_at: Optional[float] = None
         self._wanted = ZERO
         self._slowed_at = -math.inf
+        self._unseen = False
 
     @property
     def asked(self) -> bool:
@@ -46,8 +49,8 @@ class StickBrake:
 
     @property
     def reads(self) -> bool:
-        """Whether it is asked for and needs the laser to be read."""
-        return self._asked and self._has_laser
+        """Whether it is asked for and needs what looks to be read."""
+        return self._asked and self._has_eye
 
     def ask(self, asked: bool) -> None:
         """Switch it on or off; what was seen before does not count after."""
@@ -61,9 +64,12 @@ class StickBrake:
             self._seen, self._scan_at = Surroundings(), None
         self._pose = pose
 
-    def see(self, scan: Scan, now: float) -> None:
-        """Take in a scan of this moment."""
-        pose = self._pose
+    def see(self, scan: Scan, now: float, pose: Optional[Pose] = None) -> None:
+        """Take in a scan that is heard now.
+
+        :param pose: where the robot was when it was made; None: where it was heard last
+        """
+        pose = (pose or self._pose) if self._pose is not None else None
         if pose is None:
             # Without odometry nothing can be remembered: it would move along with the robot.
             self._seen = Surroundings()
@@ -75,22 +81,27 @@ class StickBrake:
         self._wanted, self._slowed_at = velocity, -math.inf
         if not self.reads or velocity.linear_mps == 0.0:
             return velocity
-        allowed = braked(velocity, self._points(), self._radius_m, self._age(now))
-        if abs(velocity.linear_mps) - abs(allowed.linear_mps) > _SLOWER_MPS:
+        age_s, looks = self._age(now), self._seen.looks(self._pose or _HERE)
+        allowed = braked(velocity, self._points(), self._radius_m, age_s, looks)
+        if age_s is not None and abs(velocity.linear_mps) - abs(allowed.linear_mps) > _SLOWER_MPS:
             self._slowed_at = now
+            seen_mps = seen_speed(velocity, self._radius_m + MARGIN_M, REACTION_S + age_s, looks)
+            self._unseen = abs(seen_mps) - abs(allowed.linear_mps) <= _SLOWER_MPS
         return allowed
 
     def state(self, now: float) -> Tuple[str, float]:
         """Return (one of :data:`WORDS`, way to what slows it down [m], NaN while nothing does)."""
         if not self._asked:
             return OFF, math.nan
-        if not self._has_laser:
+        if not self._has_eye:
             return CANNOT, math.nan
         age_s = self._age(now)
         if age_s is None or age_s > SCAN_OLD_S:
             return NO_SCAN, math.nan
         if now - self._slowed_at > _ASKS_S:
             return ON, math.nan
+        if self._unseen:
+            return UNSEEN, math.nan
         # From the robot itself: the brake keeps a margin around it.
         return SLOWS, free_way(self._points(), self._radius_m + MARGIN_M, self._wanted) + MARGIN_M
 

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Several robots sent to one place: side by side there, not all on one point."""
-from itertools import permutations
 import math
 from typing import Callable, Dict, List, Mapping, Optional, Tuple
 
 import numpy as np
 
+from mhri.core.map.assignment import shared_out
 from mhri.core.map.grid import Grid, TAKEN_FROM
 from mhri.core.robots.mocap import Pose
 
@@ -14,8 +14,6 @@ from mhri.core.robots.mocap import Pose
 SPACING_RADII = 2.5
 # More than so many stand in several rows.
 _IN_A_ROW = 4
-# Every order of so many is tried; of more, each in turn takes the nearest place.
-_TRY_ALL = 6
 
 
 def has_room(grid: Grid, x_m: float, y_m: float, radius_m: float) -> bool:
@@ -50,7 +48,7 @@ def _places(goal: Pose, count: int, spacing_m: float,
 
 def spread(goal: Pose, robots: Mapping[str, Optional[Pose]], radius_m: float,
            free: Callable[[float, float], bool] = lambda x_m, y_m: True) -> Dict[str, Pose]:
-    """Return where each robot goes, all with the heading of the goal; the ways are short.
+    """Return where each robot goes, all with the heading of the goal; ways do not cross.
 
     :param robots: where they are, None if nobody knows
     :param radius_m: of the largest of them
@@ -61,20 +59,6 @@ def spread(goal: Pose, robots: Mapping[str, Optional[Pose]], radius_m: float,
     if len(names) == 1:
         return {names[0]: goal}
     places = _places(goal, len(names), SPACING_RADII * radius_m, free)
-
-    def way(name: str, place: Tuple[float, float]) -> float:
-        pose = robots[name]
-        return 0.0 if pose is None else math.hypot(place[0] - pose.x_m, place[1] - pose.y_m)
-
-    chosen: Dict[str, Tuple[float, float]]
-    if len(names) <= _TRY_ALL:
-        best = min(permutations(names, len(places)), key=lambda order: sum(
-            way(name, place) ** 2 for name, place in zip(order, places)))
-        chosen = dict(zip(best, places))
-    else:
-        chosen = {}
-        for place in places:
-            name = min((name for name in names if name not in chosen),
-                       key=lambda name: way(name, place))
-            chosen[name] = place
-    return {name: Pose(*chosen[name], goal.heading_rad) for name in names if name in chosen}
+    numbers = shared_out(list(robots.values()), places)
+    return {name: Pose(*places[number], goal.heading_rad)
+            for name, number in zip(names, numbers) if number is not None}

@@ -47,6 +47,15 @@ class TfTree:
         :param frame: the one that the pose is given in
         :param other: the one that is looked for
         """
+        found = self.matrix(frame, other)
+        if found is None:
+            return None
+        matrix, at_s = found
+        return Pose(float(matrix[0, 3]), float(matrix[1, 3]),
+                    math.atan2(matrix[1, 0], matrix[0, 0])), at_s
+
+    def matrix(self, frame: str, other: str) -> Optional[Tuple[np.ndarray, Optional[float]]]:
+        """Return the same with a matrix, which takes points of the other frame into this one."""
         up, down = self._to_root(frame), self._to_root(other)
         if up is None or down is None or up[-1][0] != down[-1][0]:
             return None
@@ -58,8 +67,7 @@ class TfTree:
             down, shared, times)
         if not np.isfinite(matrix).all():
             return None
-        return (Pose(float(matrix[0, 3]), float(matrix[1, 3]),
-                     math.atan2(matrix[1, 0], matrix[0, 0])), min(times) if times else None)
+        return matrix, min(times) if times else None
 
     def _to_root(self, frame: str) -> Optional[List[Tuple[str, Optional[_Edge]]]]:
         """Return the frames from one up to its root with their transforms; None in a loop."""

@@ -85,6 +85,8 @@ class RobotType:
     ``silent_after_s``: a robot is silent after this long without odometry [s]; 0 means that silence
     says nothing (it sends odometry only in motion). ``motor_power`` and ``hardware_stop`` are None
     if there is no such thing. ``radius_m`` is the radius of the disc around all of it [m].
+    Where tf does not say it, ``laser_x_m`` and ``depth_x_m`` are how far ahead of its middle laser
+    and depth camera sit, ``depth_z_m`` how high the camera sits [m], 0: nobody knows.
     ``instance`` is the first segment of all its topics if one node may
     have several such robots, each with its own first segment.
     """
@@ -107,6 +109,9 @@ class RobotType:
     known_by: Dict[str, str] = field(default_factory=dict)
     silent_after_s: float = SILENT_AFTER_S
     radius_m: float = RADIUS_M
+    laser_x_m: float = 0.0
+    depth_x_m: float = 0.0
+    depth_z_m: float = 0.0
     motor_power: Optional[MotorPowerSpec] = None
     hardware_stop: Optional[HardwareStopSpec] = None
     instance: Optional[str] = None
@@ -172,6 +177,7 @@ def parse_robot_type(text: str, origin: str) -> RobotType:
         models={key: _limits(item) for key, item in section.named_sections('models').items()},
         odometry_type=odometry_type, known_by=_known_by(section),
         silent_after_s=_silent_after_s(section), radius_m=_radius_m(section),
+        **_places(section),
         **{key: read(section) for key, read in _HARDWARE.items()},
         instance=section.text('instance', None), **_all_topics(section))
     _check_instance(section, robot_type)
@@ -216,6 +222,12 @@ def _silent_after_s(section: Section) -> float:
 def _radius_m(section: Section) -> float:
     """Read the radius of the disc around all of the robot."""
     return section.number('radius_m', 0.02, 10.0, RADIUS_M)
+
+
+def _places(section: Section) -> Dict[str, Any]:
+    """Read where laser and depth camera sit on the robot, as far as that is given."""
+    rows = ('laser_x_m', -10.0), ('depth_x_m', -10.0), ('depth_z_m', 0.0)
+    return {key: section.number(key, least, 10.0) for key, least in rows if key in section}
 
 
 def _topics(section: Section, key: str) -> Tuple[str, ...]:
@@ -326,6 +338,7 @@ def _overridden(robot_type: RobotType, overrides: object, origin: str) -> RobotT
         changes['silent_after_s'] = _silent_after_s(section)
     if 'radius_m' in section:
         changes['radius_m'] = _radius_m(section)
+    changes.update(_places(section))
     changes.update((key, section.text(key)) for key in ('label', 'window') if key in section)
     if 'limits' in section:
         limits = section.section('limits')

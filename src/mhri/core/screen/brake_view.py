@@ -4,7 +4,7 @@
 import math
 from dataclasses import dataclass
 
-from mhri.core.driving.stick_brake import CANNOT, NO_SCAN, SLOWS
+from mhri.core.driving.stick_brake import CANNOT, NO_SCAN, SLOWS, UNSEEN
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class BrakeView:
     @property
     def holds(self) -> bool:
         """Whether it may keep the robot still though the stick is held."""
-        return self.word in (SLOWS, NO_SCAN)
+        return self.word in (SLOWS, UNSEEN, NO_SCAN)
 
 
 def brake_words(brake: BrakeView) -> str:
@@ -33,9 +33,9 @@ def brake_words(brake: BrakeView) -> str:
         if not math.isfinite(brake.free_way_m):
             return 'brake: slows for something ahead'
         return 'brake: slows for something {:.1f} m ahead'.format(brake.free_way_m)
-    if brake.word == NO_SCAN:
-        return 'brake: no laser data, no way forward'
-    return 'no brake: it has no laser' if brake.word == CANNOT else ''
+    return {NO_SCAN: 'brake: no laser or depth data, no way forward',
+            UNSEEN: 'brake: slow, it does not see that way',
+            CANNOT: 'no brake: it has no laser or depth camera'}.get(brake.word, '')
 
 
 def standing_words(brake: BrakeView) -> str:
@@ -43,7 +43,9 @@ def standing_words(brake: BrakeView) -> str:
     if not brake.holds:
         return ''
     if brake.word == NO_SCAN:
-        return 'brake: no laser data: back away, or switch the brake off'
+        return 'brake: no laser or depth data: back away, or switch the brake off'
+    if brake.word == UNSEEN:
+        return 'brake: it does not see that way: turn less, or turn to it first'
     return 'brake: something is in the way: back away or turn'
 
 

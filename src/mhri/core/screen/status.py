@@ -113,7 +113,7 @@ def _driving(view: PanelView, waits_for: Optional[str]) -> _Line:
     if waiting:
         return '{}  \u2013  {}  \u2013  {}: centre the stick to drive'.format(
             who, label, ', '.join(waiting)), ATTENTION
-    driven = any(robot.driven for robot in view.robots)
+    driven = any(robot.driven and robot.selected for robot in view.robots)
     state = asked_and_done(view.robots) or ('driving' if driven else 'ready')
     return '{}  \u2013  {}  \u2013  {}'.format(who, label, state), CALM
 

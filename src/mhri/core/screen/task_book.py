@@ -62,12 +62,14 @@ class TaskBook:
         self._leaving: Dict[str, float] = {}
         self._ended: Dict[str, None] = {}
         self._left: Dict[str, Goal] = {}
-        self._cancelled: Dict[str, None] = {}
+        # Whom of a run the operator ended, () for all of it.
+        self._cancelled: Dict[str, Tuple[str, ...]] = {}
+        self._marks: Tuple[str, ...] = ()
         self._news: List[News] = []
 
     def view(self, problem: str = '') -> TasksView:
         """Return what there is to show."""
-        return TasksView(problem, self._kinds, tuple(self._runs.values()))
+        return TasksView(problem, self._kinds, tuple(self._runs.values()), self._marks)
 
     def take_news(self) -> List[News]:
         """Return what is new since the last call, the oldest first."""
@@ -78,14 +80,24 @@ class TaskBook:
         """Take note of a goal that was sent from here."""
         self._asked[goal_id] = goal, now_s
 
-    def cancel(self, goal_id: str) -> None:
-        """Take note that the operator ended a run: nobody is to continue it."""
-        self._cancelled[goal_id] = None
+    def cancel(self, goal_id: str, robots: Tuple[str, ...] = ()) -> None:
+        """Take note that the operator ended a run, or these robots' part: nobody continues it."""
+        before = self._cancelled.get(goal_id)
+        self._cancelled[goal_id] = () if before == () or not robots else (before or ()) + robots
+
+    def keep_on(self, robots: Tuple[str, ...], why: str) -> None:
+        """Take in that the tasks of robots could not be ended."""
+        self._news += [News('task.refused', robot, 'its task is not ended: ' + why)
+                       for robot in robots]
+
+    def _is_cancelled(self, goal_id: str, robot: str) -> bool:
+        robots = self._cancelled.get(goal_id)
+        return robots is not None and (not robots or robot in robots)
 
     def hear_list(self, kinds: Tuple[KindView, ...], runs: Tuple[RunView, ...],
-                  now_s: float) -> None:
-        """Take in what can be started, and what is under way."""
-        self._kinds = kinds
+                  now_s: float, marks: Tuple[str, ...] = ()) -> None:
+        """Take in what can be started, what is under way, and the names of the marks."""
+        self._kinds, self._marks = kinds, marks
         for run in runs:
             self._leaving.pop(run.id, None)
             if run.id not in self._ended:
@@ -123,8 +135,8 @@ class TaskBook:
             self._news.append(News('task.' + robot.state, robot.robot,
                                    ended_line(label, robot.state, robot.text)))
             # Who got another task is on that, whichever is heard of first.
-            if robot.state in _RESUMES and run.id not in self._cancelled \
-                    and self.of(robot.robot) is None:
+            if robot.state in _RESUMES and not self._is_cancelled(
+                    run.id, robot.robot) and self.of(robot.robot) is None:
                 self._left[robot.robot] = Goal(run.key, (robot.robot,), with_team(
                     run.parameters, tuple(one.robot for one in run.robots)))
 
@@ -192,10 +204,18 @@ class TaskBook:
                                     one.left_m)
         return None
 
-    def runs_of(self, robots: Tuple[str, ...]) -> List[str]:
-        """Return the ids of the goals that any of these robots is busy with."""
-        return [run.id for run in self._runs.values() if any(
-            one.robot in robots and one.state not in ENDS for one in run.robots)]
+    def parts_of(self, robots: Tuple[str, ...]) -> List[Tuple[str, Tuple[str, ...]]]:
+        """Return of the goals that any of these robots is busy with (id, which of them are it).
+
+        None of them is named where nobody else is busy with the goal.
+        """
+        parts = []
+        for run in self._runs.values():
+            busy = [one.robot for one in run.robots if one.state not in ENDS]
+            meant = tuple(robot for robot in busy if robot in robots)
+            if meant:
+                parts.append((run.id, () if len(meant) == len(busy) else meant))
+        return parts
 
     def left(self, robot: str) -> Optional[Goal]:
         """Return what a robot could continue, None for nothing, and while it is asked for."""

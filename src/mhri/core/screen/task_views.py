@@ -27,7 +27,7 @@ class FieldView:
     """A parameter of a task.
 
     ``default`` is YAML: '' where it has to be given, 'null' where it may be left out. ``least`` and
-    ``greatest`` are NaN of what is no number.
+    ``greatest`` are NaN of what is no number. ``choices`` are what a text may be, none: anything.
     """
 
     name: str
@@ -36,6 +36,7 @@ class FieldView:
     default: str = ''
     least: float = math.nan
     greatest: float = math.nan
+    choices: Tuple[str, ...] = ()
 
     @property
     def is_number(self) -> bool:
@@ -101,11 +102,15 @@ class RunView:
 
 @dataclass(frozen=True)
 class TasksView:
-    """All of it at one instant; ``problem`` says why no task can be started, '' where one can."""
+    """All of it at one instant; ``problem`` says why no task can be started, '' where one can.
+
+    ``marks`` are the names of the marks on the map.
+    """
 
     problem: str = ''
     kinds: Tuple[KindView, ...] = ()
     runs: Tuple[RunView, ...] = ()
+    marks: Tuple[str, ...] = ()
 
     def label(self, key: str) -> str:
         """Return what a task is called; an unknown one by its key."""

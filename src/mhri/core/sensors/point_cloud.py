@@ -136,6 +136,25 @@ def parse_cloud(raw: RawCloud, received_s: float = 0.0) -> Cloud:
         received_s)
 
 
+def slopes(lens: Lens, width: int, height: int) -> Tuple[np.ndarray, np.ndarray]:
+    """Return how far to the right (w,) and down (h,) pixels lie for each metre of their depth.
+
+    :param lens: of the camera; scaled to the picture if their sizes differ
+    :raises CloudError: the lens is impossible
+    """
+    numbers = np.array(lens[:4], float)
+    if not (np.isfinite(numbers).all() and min(lens.fx, lens.fy) > 0.0
+            and np.abs(numbers).max() < 1e6):
+        raise CloudError('camera_info: no possible focal length and centre; is the camera '
+                         'calibrated?')
+    across = width / lens.width if lens.width > 0 else 1.0
+    along = height / lens.height if lens.height > 0 else 1.0
+    # The centre of a pixel is at whole numbers.
+    centre_x, centre_y = (lens.cx + 0.5) * across - 0.5, (lens.cy + 0.5) * along - 0.5
+    return ((np.arange(width) - centre_x) / (lens.fx * across),
+            (np.arange(height) - centre_y) / (lens.fy * along))
+
+
 def from_depth(depth_m: np.ndarray, lens: Lens, frame_id: str = '',
                received_s: float = 0.0) -> Cloud:
     """Return the :class:`Cloud` of a depth picture, without distortion.
@@ -145,23 +164,12 @@ def from_depth(depth_m: np.ndarray, lens: Lens, frame_id: str = '',
     :raises CloudError: the lens is impossible
     """
     height, width = depth_m.shape
-    numbers = np.array(lens[:4], float)
-    if not (np.isfinite(numbers).all() and min(lens.fx, lens.fy) > 0.0
-            and np.abs(numbers).max() < 1e6):
-        raise CloudError('camera_info: no possible focal length and centre; is the camera '
-                         'calibrated?')
-    across = width / lens.width if lens.width > 0 else 1.0
-    along = height / lens.height if lens.height > 0 else 1.0
+    right, down = slopes(lens, width, height)
     step = max(1, -(-width * height // MOST_POINTS))
     depth = depth_m[::step]
-    rows, columns = np.arange(0, height, step), np.arange(width)
     points = np.empty((3,) + depth.shape, np.float32)
-    # The centre of a pixel is at whole numbers.
-    centre_x, centre_y = (lens.cx + 0.5) * across - 0.5, (lens.cy + 0.5) * along - 0.5
-    np.multiply(depth, ((columns - centre_x) / (lens.fx * across)).astype(np.float32),
-                out=points[0])
-    np.multiply(depth, ((rows - centre_y) / (lens.fy * along)).astype(np.float32)[:, None],
-                out=points[1])
+    np.multiply(depth, right.astype(np.float32), out=points[0])
+    np.multiply(depth, down[::step].astype(np.float32)[:, None], out=points[1])
     points[2] = depth
     points = points.reshape(3, -1)
     return Cloud(_chosen(points, _measured(points)).T, frame_id=frame_id, optical=True,

@@ -133,6 +133,7 @@ class Task:
 
 Corners = Tuple[Tuple[float, float], ...]
 Value = Union[float, str, None, Corners]
+Where = Callable[[str], Optional[Pose]]
 NUMBER, TEXT, ROUTE = 'number', 'text', 'route'
 
 
@@ -210,6 +211,9 @@ class TaskKind:
     :param make: function (values, start) -> :class:`Task`; it raises ValueError with a sentence
         where the robot cannot be started
     :param needs_place: robots have to be placed in the frame of the map; see :meth:`placed`
+    :param slots: function (values, count, where) -> the place (x, y) [m] in the frame of the map of
+        each of so many robots, none where nobody can tell; ``where`` returns the :class:`Pose` of a
+        robot by its name, or None. Who takes which is chosen so that their ways do not cross
     """
 
     key: str
@@ -218,6 +222,7 @@ class TaskKind:
     fields: Tuple[Field, ...]
     make: Callable[[Values, Start], Task]
     needs_place: bool = False
+    slots: Optional[Callable[[Values, int, Where], Corners]] = None
 
     def placed(self, values: Values) -> bool:
         """Tell whether a robot has to be placed for it, with these parameters."""

@@ -14,8 +14,8 @@ import numpy as np
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
 from mhri.core.tasks.base import (
-    beside, circles, Field, LOST, REQUIRED, Senses, Start, Step, Task, TaskKind, TEXT, Values,
-    WAITING, way)
+    beside, circles, Corners, Field, LOST, REQUIRED, Senses, Start, Step, Task, TaskKind, TEXT,
+    Values, WAITING, way, Where)
 from mhri.core.tasks.hold import ROW as HOLD
 from mhri.core.tasks.pilot import Pilot
 
@@ -199,6 +199,16 @@ def make(values: Values, start: Start) -> Formation:
     return Formation(start, leader, slot, values.number('speed'))
 
 
+def slots(values: Values, count: int, where: Where) -> Corners:
+    """Return the places around the leader as it stands now, the way it came straight behind it."""
+    leader = where(values.text('leader'))
+    if leader is None:
+        return ()
+    found = (slot_of(values.text('shape'), values.number('spacing'), number)
+             for number in range(count))
+    return tuple(beside(leader, -slot.behind_m, slot.left_m) for slot in found)
+
+
 ROW = TaskKind(
     'formation', 'Formation', 'in line, column or wedge with a leader; keeps its spacing in bends',
     (Field('leader', '', 'name of the robot in the middle of the line or at the head', REQUIRED,
@@ -206,4 +216,4 @@ ROW = TaskKind(
      Field('shape', '', 'line, column or wedge', WEDGE, kind=TEXT, choices=SHAPES),
      Field('spacing', 'm', 'from middle to middle', 0.8, 0.4, 10.0),
      Field('speed', 'm/s', 'the most it drives', 0.4, 0.02, 2.0), HOLD.fields[1]),
-    make, needs_place=True)
+    make, needs_place=True, slots=slots)

@@ -6,8 +6,8 @@ from typing import Optional, Tuple
 
 from mhri.core.robots.mocap import Pose
 from mhri.core.tasks.base import (
-    beside, BLOCKED, DONE, FAILED, Field, FRAME, REQUIRED, Senses, Start, Step, Target, Task,
-    TaskKind, Values, WAITING, way)
+    beside, BLOCKED, Corners, DONE, FAILED, Field, FRAME, REQUIRED, Senses, Start, Step, Target,
+    Task, TaskKind, Values, WAITING, way, Where)
 from mhri.core.tasks.fence import is_inside
 from mhri.core.tasks.pilot import Pilot
 
@@ -73,22 +73,35 @@ class Goto(Task):
         return Step(velocity, left_m=left_m, text='turns to its heading')
 
 
-def spread(place: Pose, start: Start) -> Tuple[float, float]:
-    """Return where in a team that stands side by side across its heading a robot stands [m]."""
+def spread(place: Pose, number: int) -> Tuple[float, float]:
+    """Return where one of a team that stands side by side across its heading stands [m].
+
+    :param number: its place in the team, from 0
+    """
     # 0, 1, -1, 2, -2 ... to the left and right of the place.
-    aside = SPREAD_M * ((start.place + 1) // 2) * (1.0 if start.place % 2 else -1.0)
+    aside = SPREAD_M * ((number + 1) // 2) * (1.0 if number % 2 else -1.0)
     return beside(place, 0.0, aside)
+
+
+def _middle(values: Values) -> Pose:
+    """Return the pose that a team is sent to."""
+    return Pose(values.number('x'), values.number('y'), values.maybe('heading') or 0.0)
+
+
+def slots(values: Values, count: int, _: Where) -> Corners:
+    """Return where the robots of a team stand in the end [m]; none by odometry: each has its own."""
+    return () if values.by_odometry() else tuple(
+        spread(_middle(values), number) for number in range(count))
 
 
 def target_of(values: Values, start: Start) -> Target:
     """Return where a robot of a team is sent: side by side across its heading."""
-    heading = values.maybe('heading')
-    place = spread(Pose(values.number('x'), values.number('y'), heading or 0.0), start)
-    return Target(*place, heading_rad=heading, by_odometry=values.by_odometry())
+    place = spread(_middle(values), start.place)
+    return Target(*place, heading_rad=values.maybe('heading'), by_odometry=values.by_odometry())
 
 
 def make(values: Values, start: Start) -> Goto:
-    """Begin; a team stands side by side across its heading, the first one on the place."""
+    """Begin; a team stands side by side across its heading, one of them on the place."""
     target = target_of(values, start)
     return Goto(start, target.x_m, target.y_m, target.heading_rad, values.number('speed'),
                 by_odometry=target.by_odometry)
@@ -100,4 +113,4 @@ ROW = TaskKind(
      Field('y', 'm', 'to the left of where its frame begins', REQUIRED, -1000.0, 1000.0),
      Field('heading', 'rad', 'where it looks at the end', None, -7.0, 7.0), SPEED, FRAME,
      TIMEOUT_S),
-    make, needs_place=True)
+    make, needs_place=True, slots=slots)

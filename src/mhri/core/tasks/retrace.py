@@ -93,7 +93,7 @@ def make(values: Values, start: Start) -> Task:
         if mark is None:
             raise ValueError('there is no mark {}; there are: {}'.format(
                 shown(values.text('mark')), ', '.join(sorted(start.marks)) or 'none'))
-        return Goto(start, *spread(mark, start), mark.heading_rad, values.number('speed'))
+        return Goto(start, *spread(mark, start.place), mark.heading_rad, values.number('speed'))
     most_m, places, gone_m = values.number('distance'), list(reversed(start.trail)), 0.0
     if not places:
         raise ValueError('it has no trail yet: nobody has seen it move')

@@ -17,7 +17,8 @@ from typing import List, Optional, Tuple
 
 import numpy as np
 
-from mhri.core.driving.brake import braked, SCAN_OLD_S
+from mhri.core.driving.brake import (
+    braked, everywhere, Looks, MARGIN_M, REACTION_S, SCAN_OLD_S, seen_speed)
 from mhri.core.driving.gate import HELD, OPERATOR, TASK
 from mhri.core.driving.limits import Velocity, ZERO
 from mhri.core.screen.battery import FLAT_AT
@@ -48,7 +49,8 @@ class Facts:
     ``stands`` what they say of it. Ages [s] are None before anything was heard; ``place_age_s`` is
     that of its place, 0 where the task needs none or it does not grow old, None where it is not
     placed; ``place_text`` says the same in words; ``settling`` that its place was just corrected by
-    far, '' where it was not. ``has_laser`` is false for a type without one, which has no brake.
+    far, '' where it was not. ``has_laser`` is false for a type with neither laser nor depth camera,
+    which has no brake; ``looks`` tells where the one it has looks.
     ``battery`` is in [0, 1], None where it is not known.
     """
 
@@ -64,6 +66,7 @@ class Facts:
     settling: str = ''
     scan_age_s: Optional[float] = None
     has_laser: bool = True
+    looks: Looks = everywhere
     battery: Optional[float] = None
     senses: Optional[Senses] = None
 
@@ -181,12 +184,14 @@ class RobotRun:
         if not all(map(math.isfinite, (step.velocity.linear_mps, step.velocity.angular_rad_s))):
             self.end(FAILED, 'its task asked for a velocity that is no number', facts.now_s)
             return ZERO
-        free = braked(step.velocity, senses.points, self._body.radius_m, facts.scan_age_s) \
+        free = braked(step.velocity, senses.points, self._body.radius_m, facts.scan_age_s,
+                      facts.looks) \
             if facts.has_laser else braked(step.velocity, robots, self._body.radius_m, 0.0)
         velocity = kept_inside(free, senses.pose, senses.fence, self._body)
         held = facts.settling or self._held(step, free, facts) or _at_fence(free, velocity)
         self._mark(held, facts.now_s)
-        self.state, self.text = (WAITING, held) if held else (RUNNING, step.text)
+        self.state, self.text = (WAITING, held) if held else (
+            RUNNING, step.text + self._unseen(step.velocity, free, facts))
         patience_s = PASSED_AFTER_S if held.startswith(_LETS_PASS) else BLOCKED_AFTER_S
         if held and self._held_since is not None \
                 and facts.now_s - self._held_since > patience_s:
@@ -209,9 +214,20 @@ class RobotRun:
             return _LETS_PASS + first
         if abs(velocity.linear_mps) > _STANDS_MPS:
             return ''
-        if facts.scan_age_s is None or facts.scan_age_s > SCAN_OLD_S:
-            return 'its laser has said nothing for {:.1f} s'.format(facts.scan_age_s or 0.0)
-        return 'something is in its way'
+        if facts.has_laser and (facts.scan_age_s is None or facts.scan_age_s > SCAN_OLD_S):
+            return 'its laser or depth camera has said nothing for {:.1f} s'.format(
+                facts.scan_age_s or 0.0)
+        return 'it does not see where it would go' \
+            if self._unseen(step.velocity, velocity, facts) else 'something is in its way'
+
+    def _unseen(self, wanted: Velocity, free: Velocity, facts: Facts) -> str:
+        """Return that the robot is slow for want of an eye on its way; '' where it is not."""
+        if not facts.has_laser or facts.scan_age_s is None or wanted.linear_mps == 0.0:
+            return ''
+        seen = seen_speed(wanted, self._body.radius_m + MARGIN_M, REACTION_S + facts.scan_age_s,
+                          facts.looks)
+        slow = abs(seen) < abs(wanted.linear_mps) and abs(free.linear_mps) >= abs(seen) - 1e-3
+        return ', slowly: it does not see that way' if slow else ''
 
     def _mark(self, held: str, now_s: float) -> None:
         """Note since when it is held; moved for a moment it is not."""
@@ -242,7 +258,7 @@ def missing_senses(facts: Facts) -> str:
             (facts.odometry_age_s is None or facts.odometry_age_s > OLD_S, 'its odometry'),
             (_unplaced(facts), 'its place: ' + facts.place_text),
             (facts.has_laser and (facts.scan_age_s is None or facts.scan_age_s > SCAN_OLD_S),
-             'its laser'),
+             'its laser or depth camera'),
             (facts.senses is None, 'its sensors')):
         if missing:
             return words

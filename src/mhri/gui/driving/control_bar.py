@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Who drives, where it is not this screen: one line, and two steps to take control."""
 from python_qt_binding.QtCore import Qt, QTimer, Signal
-from python_qt_binding.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QWidget
+from python_qt_binding.QtWidgets import QBoxLayout, QHBoxLayout, QPushButton, QSizePolicy, QWidget
 
 from mhri.core.screen.views import ControlView
 from mhri.gui.screen import theme
@@ -37,16 +37,23 @@ class ControlBar(QWidget):
         self._line.setObjectName('control_label')
         self.confirm_button = self._button('take_confirm_button', 'Take it')
         self.take_button = self._button('take_button', TAKE)
-        row = QHBoxLayout(self)
+        row = self._row = QBoxLayout(QBoxLayout.LeftToRight, self)
         row.setContentsMargins(2, 0, 2, 0)
-        row.addWidget(self._sign)
-        row.addWidget(self._line, 1)
+        told = QHBoxLayout()
+        told.addWidget(self._sign)
+        told.addWidget(self._line, 1)
+        row.addLayout(told, 1)
         row.addWidget(self.confirm_button)
         row.addWidget(self.take_button)
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
         self._countdown = QTimer(self)
         self._countdown.setSingleShot(True)
         self._countdown.setInterval(round(CONFIRM_WITHIN_S * 1000))
+
+    def show_narrow(self, narrow):
+        """Have the buttons below the words, where there is little width."""
+        self._row.setDirection(QBoxLayout.TopToBottom if narrow else QBoxLayout.LeftToRight)
+        self._line.set_wrapped(narrow)
 
     def _button(self, name, text):
         """Make a button for fingers, as wide as the widest of its words."""

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Asks over the foot of the screen, and never in a dialog, whether it is to be closed."""
 from python_qt_binding.QtCore import Qt, Signal
-from python_qt_binding.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QWidget
+from python_qt_binding.QtWidgets import QBoxLayout, QHBoxLayout, QPushButton, QSizePolicy, QWidget
 
 from mhri.gui.screen import theme, words
 from mhri.gui.screen.labels import Sign, TextLine
@@ -26,14 +26,20 @@ class LeaveBar(QWidget):
         self._line.set_wrapped(True)
         self.close_button = self._button('leave_button', 'Close')
         self.stay_button = self._button('stay_button', 'Stay')
-        row = QHBoxLayout(self)
+        row = self._row = QBoxLayout(QBoxLayout.LeftToRight, self)
         row.setContentsMargins(2, 0, 2, 0)
-        row.addWidget(self._sign)
-        row.addWidget(self._line, 1)
+        told = QHBoxLayout()
+        told.addWidget(self._sign)
+        told.addWidget(self._line, 1)
+        row.addLayout(told, 1)
         row.addWidget(self.close_button)
         row.addWidget(self.stay_button)
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
         self.hide()
+
+    def show_narrow(self, narrow):
+        """Have the buttons below the words, where there is little width."""
+        self._row.setDirection(QBoxLayout.TopToBottom if narrow else QBoxLayout.LeftToRight)
 
     def _button(self, name, text):
         """Make a button for fingers."""

@@ -47,6 +47,7 @@ class StopBar(QWidget):
         self._stopped = False
         self._cut_off = False
         self._offered = False
+        self._column = False
         self._note = ''
         self._words = NOBODY_HEARD
         self._asked = Pending(ANSWER_WITHIN_S)
@@ -103,7 +104,7 @@ class StopBar(QWidget):
         words.addWidget(self._headline)
         words.addWidget(self._note_line)
         words.addStretch()
-        second = QWidget(self._stopped_page)
+        second = self._second_place = QWidget(self._stopped_page)
         second.setSizePolicy(QSizePolicy.Fixed, QSizePolicy.Fixed)
         self._second = QStackedLayout(second)
         self._second.addWidget(self.release_button)
@@ -112,7 +113,8 @@ class StopBar(QWidget):
         unit = self.fontMetrics().height()
         row.setContentsMargins(unit, 6, unit, 6)
         row.setSpacing(unit // 2)
-        told, buttons = QHBoxLayout(), QHBoxLayout()
+        told, buttons = QHBoxLayout(), QBoxLayout(QBoxLayout.LeftToRight)
+        self._buttons = buttons
         for part in (told, buttons):
             part.setSpacing(unit // 2)
             row.addLayout(part)
@@ -123,16 +125,29 @@ class StopBar(QWidget):
         buttons.addWidget(second)
         row.setStretch(0, 1)
 
-    def show_narrow(self, narrow):
-        """Have the buttons of the second page below its words, where there is little width."""
+    def show_narrow(self, narrow, column=False):
+        """Have the buttons of the second page below its words, where there is little width.
+
+        :param column: whether there is so little that they are above each other as well
+        """
+        self._column = column
         self._row.setDirection(QBoxLayout.TopToBottom if narrow else QBoxLayout.LeftToRight)
+        self._buttons.setDirection(QBoxLayout.TopToBottom if column else QBoxLayout.LeftToRight)
+        self._note_line.set_wrapped(column)
+        self._second_place.setSizePolicy(
+            QSizePolicy.Preferred if column else QSizePolicy.Fixed, QSizePolicy.Fixed)
         self.stop_button.set_look('' if narrow else 'Shift+Space', 3.4 if narrow else 2.4)
+        self._keep_room()
 
     def resizeEvent(self, event):  # noqa: N802
         """Keep the room of the second step where there is enough of it, so that nothing jumps."""
         super().resizeEvent(event)
+        self._keep_room()
+
+    def _keep_room(self):
         keep = self.confirm_button.sizePolicy()
-        keep.setRetainSizeWhenHidden(self.width() > _ROOMY_UNITS * self.fontMetrics().height())
+        keep.setRetainSizeWhenHidden(
+            self._column or self.width() > _ROOMY_UNITS * self.fontMetrics().height())
         self.confirm_button.setSizePolicy(keep)
 
     def _button(self, name, text):

@@ -79,7 +79,8 @@ class StopButton(QAbstractButton):
     def sizeHint(self):  # noqa: N802
         """Return room for the text and for a gloved finger."""
         metrics = self.fontMetrics()
-        return QSize(metrics.horizontalAdvance(self.text()) + 4 * metrics.height(),
+        return QSize(metrics.horizontalAdvance(self.text()) + (
+            4 if self._hint else 1) * metrics.height(),
                      max(theme.touch_size(self), round(self._lines * metrics.height())))
 
     minimumSizeHint = sizeHint

@@ -97,10 +97,11 @@ class ScreenWidget(QWidget):
         """Load the form and set what a form cannot say."""
         self.setFont(theme.base_font(self.font()))
         load_form(ui_dir, 'screen.ui', self, _WIDGETS)
+        self.leave_bar = LeaveBar(self.foot)
+        self.foot_column.insertWidget(1, self.leave_bar)
         self.arrangement = ScreenLayout(self)
         self.drive_keys, self.key_help = DriveKeys(self), KeyHelp(self)
-        self.remove_steps, self.leave_bar = RemoveSteps(self), LeaveBar(self.foot)
-        self.foot_column.insertWidget(0, self.leave_bar)
+        self.remove_steps = RemoveSteps(self)
         mark_drive_area(self)
         # A click beside a text field ends the typing, so that the keys drive again.
         self.setFocusPolicy(Qt.ClickFocus)

@@ -1,14 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the parts of the screen are: the drawer at the left, the stage, the foot with STOP ALL.
-
-The foot is below everything, or at the bottom of the drawer, whichever leaves more to the pictures:
-a 4:3 picture on a wide screen leaves room beside it, a wide one leaves room below.
-"""
+"""Where the parts of the screen are: the drawer at the left, the stage, the foot with STOP ALL."""
 from python_qt_binding.QtCore import QEvent, QObject, Qt, Signal
-from python_qt_binding.QtWidgets import QBoxLayout, QLayout
+from python_qt_binding.QtWidgets import QLayout
 
-from mhri.core.screen.arrangement import AUTO, WORTH_MOVING
+from mhri.core.screen.arrangement import AUTO
+from mhri.gui.look.foot import COLUMN, Foot
 from mhri.gui.look.looks_page import LAYOUTS, LooksPage, TITLE
 from mhri.gui.screen import theme
 from mhri.gui.screen.stage import MAP_BESIDE, MAP_CLOSED, MAP_LARGE
@@ -20,8 +17,8 @@ _DRAWER_UNITS = 22.0
 _DRAWER_SHARE = 1 / 3
 # What the list has beyond its least height where robots and driving share a page.
 _LIST_UNITS = 6.0
-# Height of the foot at the bottom of the drawer.
-_SIDE_FOOT_UNITS = 13.0
+# Where the virtual joystick is.
+_IN_DRAWER, _OVER_PICTURE, _IN_COLUMN = range(3)
 
 
 class ScreenLayout(QObject):
@@ -36,9 +33,8 @@ class ScreenLayout(QObject):
     def __init__(self, screen):
         super().__init__(screen)
         self._screen = screen
-        self._in_side = False
         self._tall = True
-        self._floating = False
+        self._stick, self._stick_wanted = _IN_DRAWER, False
         self._busy = False
         self._begins_closed = self._drawer_chosen = False
         self._layout, self._theme = AUTO, theme.DARK
@@ -67,7 +63,7 @@ class ScreenLayout(QObject):
         screen.drawer_button.setChecked(True)
         screen.drawer_button.setFocusPolicy(Qt.TabFocus)
         screen.drawer_button.setMinimumHeight(theme.touch_size(screen))
-        self._move_foot(False)
+        self.foot = Foot(screen)
         self.looks = LooksPage(screen)
         self.add_page(TITLE, self.looks)
         self._show_choices()
@@ -185,24 +181,30 @@ class ScreenLayout(QObject):
         self.arrange()
 
     def show_stick(self, wanted):
-        """Let the virtual joystick float over the pictures where the drawer does not show it."""
-        screen = self._screen
+        """Let the virtual joystick be beside or over the pictures where no drawer shows it."""
+        self._stick_wanted = wanted
+        self._place_stick()
+
+    def _place_stick(self):
+        """Put the virtual joystick where it belongs, unless somebody holds it."""
+        screen, wanted = self._screen, self._stick_wanted
         in_drawer = self.drawer_open and (
             screen.pages.currentWidget() is (screen.robots_page if self._tall
                                              else screen.drive_page))
-        floating = wanted and not in_drawer and bool(screen.stage.names)
+        place = _IN_DRAWER if in_drawer or not wanted or not screen.stage.names else \
+            _IN_COLUMN if self.foot.has_room_for_stick() else _OVER_PICTURE
         if screen.joystick.dragging:
             return
-        if floating == self._floating:
+        if place == self._stick:
             screen.stage.place_float()
             return
-        self._floating = floating
-        if floating:
-            self._screen.stage.show_float(self._screen.joystick)
-        else:
-            self._screen.stage.show_float(None)
-            self._screen.drive_side.layout().insertWidget(1, self._screen.joystick, 1)
-            self._screen.joystick.show()
+        self._stick = place
+        screen.stage.show_float(screen.joystick if place == _OVER_PICTURE else None)
+        if place == _IN_COLUMN:
+            screen.foot_column.insertWidget(1, screen.joystick, 3)
+        elif place == _IN_DRAWER:
+            screen.drive_side.layout().insertWidget(1, screen.joystick, 1)
+        screen.joystick.show()
 
     def eventFilter(self, watched, event):  # noqa: N802
         """Follow the size of the screen and its font."""
@@ -230,30 +232,14 @@ class ScreenLayout(QObject):
         is_open = self.drawer_open
         side = max(screen.drawer.minimumSizeHint().width(), screen.splitter.sizes()[0]) \
             if is_open else 0
-        foot = screen.foot.sizeHint().height()
-        width, height = screen.width(), screen.height()
-        beside = screen.stage.picture_px(width - side, height) if is_open else 0.0
-        below = screen.stage.picture_px(width - side, height - foot)
-        share = beside / below if below else 2.0
-        fits = screen.drawer.minimumSizeHint().height() + _SIDE_FOOT_UNITS * \
-            screen.fontMetrics().height() <= height
-        in_side = is_open and fits and share > (1.0 if self._in_side else WORTH_MOVING)
-        if in_side != self._in_side and not screen.joystick.dragging:
-            self._move_foot(in_side)
+        place = self.foot.choose(side)
+        if place != self.foot.place and not screen.joystick.dragging:
+            self.foot.move(place)
+            self._place_stick()
+        self.foot.fit()
         screen.side.setVisible(is_open)
-        self._fit_drawer(height - (foot if not self._in_side else screen.foot.sizeHint().height()))
-
-    def _move_foot(self, in_side):
-        """Put the foot at the bottom of the drawer, or below everything."""
-        screen = self._screen
-        self._in_side = in_side
-        screen.foot_row.setDirection(QBoxLayout.BottomToTop if in_side else QBoxLayout.LeftToRight)
-        screen.foot_row.setStretch(0, 0 if in_side else 2)
-        screen.foot_row.setStretch(1, 0 if in_side else 1)
-        screen.stop_bar.show_narrow(in_side)
-        screen.status_line.show_wrapped(in_side)
-        (screen.side_column if in_side else screen.screen_layout).addWidget(screen.foot)
-        screen.foot.show()
+        if self.foot.place != COLUMN:
+            self._fit_drawer(screen.height() - screen.foot.sizeHint().height())
 
     def _fit_drawer(self, height):
         """Have robots and driving on one page where both fit, else on two."""
@@ -261,7 +247,7 @@ class ScreenLayout(QObject):
         needed = screen.tabs.sizeHint().height() + 24 + round(
             _LIST_UNITS * screen.fontMetrics().height()) + sum(
             part.minimumSizeHint().height() for part in (screen.robots_side, screen.drive_side))
-        if self._floating:
+        if self._stick != _IN_DRAWER:
             needed += screen.joystick.minimumSizeHint().height()
         tall = height >= needed
         if tall == self._tall or screen.joystick.dragging:

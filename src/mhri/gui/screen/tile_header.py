@@ -171,6 +171,8 @@ class TileHeader(QWidget):
             self._leave_out(_LEFT_OUT[:count])
             if self._needed(natural if count < _BEFORE_NAME else 1) <= self.width():
                 break
+        # Showing a part that was left out after all has squeezed the others.
+        self._row.activate()
 
     def _leave_out(self, parts):
         """Show everything but some parts of :data:`_LEFT_OUT`."""

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The fields of a task, made from its description: number, text, or the name of a robot."""
+"""The fields of a task, made from its description: number, text, choice, or a name."""
 import math
 
 from python_qt_binding.QtCore import Qt
@@ -12,8 +12,9 @@ from mhri.core.screen.task_views import typed_value
 from mhri.gui.screen import theme
 
 LEFT_OUT, MISSING = 'left out', 'to be given'
-# The field that takes the name of a robot.
-LEADER = 'leader'
+# The fields that take the name of a robot, or of a mark, and what is said of it.
+LEADER, MARK = 'leader', 'mark'
+_WHICH = {LEADER: 'which robot', MARK: 'which mark'}
 # How numbers of a unit are shown: unit on the screen, factor, decimals, step.
 _SHOWN = {'rad': ('\u00b0', 180.0 / math.pi, 0, 15.0), 's': (' s', 1.0, 0, 10.0),
           'm/s': (' m/s', 1.0, 2, 0.05), '': ('', 1.0, 0, 1.0)}
@@ -89,8 +90,30 @@ class TextField(QLineEdit):
         return typed_value(self.text())
 
 
-class RobotField(QComboBox):
-    """The name of a robot: one of the list, or typed.
+class ChoiceField(QComboBox):
+    """One of a few words.
+
+    :param field: :class:`mhri.core.screen.task_views.FieldView`
+    """
+
+    def __init__(self, field, parent=None):
+        super().__init__(parent)
+        self.may_be_left_out = True
+        for choice in field.choices:
+            self.addItem(choice or LEFT_OUT, choice)
+        self.setCurrentIndex(max(0, self.findData(field.default_value)))
+
+    def wheelEvent(self, event):  # noqa: N802
+        """Leave the wheel to whatever scrolls."""
+        event.ignore()
+
+    def given(self):
+        """Return the word, None where it is left out."""
+        return self.currentData() or None
+
+
+class NameField(QComboBox):
+    """The name of a robot or a mark: one of those there are, or typed.
 
     :param field: :class:`mhri.core.screen.task_views.FieldView`
     """
@@ -101,10 +124,10 @@ class RobotField(QComboBox):
         self.setEditable(True)
         self.setInsertPolicy(QComboBox.NoInsert)
         self.lineEdit().setMaxLength(_MOST_TEXT)
-        self.lineEdit().setPlaceholderText('which robot')
+        self.lineEdit().setPlaceholderText(_WHICH[field.name])
 
     def show_names(self, names):
-        """Offer robots; what was chosen or typed stays."""
+        """Offer names; what was chosen or typed stays."""
         if [self.itemText(place) for place in range(self.count())] != list(names):
             text = self.currentText()
             self.clear()
@@ -120,13 +143,22 @@ class RobotField(QComboBox):
         return self.currentText().strip() or None
 
 
+def _class_of(field):
+    """Return the widget's class for a :class:`mhri.core.screen.task_views.FieldView`."""
+    if field.is_number:
+        return NumberField
+    if field.choices:
+        return ChoiceField
+    return NameField if field.name in _WHICH else TextField
+
+
 class TaskFields(QWidget):
     """One line for each field of a task: its name, the field, and what it is."""
 
     def __init__(self, parent=None):
         super().__init__(parent)
         self._kind = None
-        self._names = ()
+        self._names = {}
         self._kept = {}
         self._fields = {}
         self._inside = None
@@ -154,7 +186,7 @@ class TaskFields(QWidget):
                 self._kept[kind] = self._make(kind)
             self._inside, self._fields = self._kept[kind]
             self._inside.show()
-        self.show_names(self._names)
+        self._offer()
 
     def _make(self, kind):
         """Make the fields of a task; return (their widget, {name: field})."""
@@ -163,9 +195,7 @@ class TaskFields(QWidget):
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setColumnStretch(1, 1)
         for row, field in enumerate(kind.fields):
-            made = NumberField if field.is_number else \
-                RobotField if field.name == LEADER else TextField
-            widget = fields[field.name] = made(field, inside)
+            widget = fields[field.name] = _class_of(field)(field, inside)
             widget.setObjectName('task_field_' + field.name)
             widget.setAccessibleName('{} [{}]'.format(field.text, field.unit))
             widget.setToolTip(field.text)
@@ -193,12 +223,15 @@ class TaskFields(QWidget):
         button.clicked.connect(step)
         return button
 
-    def show_names(self, names):
-        """Offer robots where a field takes one."""
-        self._names = tuple(names)
-        for field in self._fields.values():
-            if isinstance(field, RobotField):
-                field.show_names(self._names)
+    def show_names(self, robots, marks=()):
+        """Offer robots and marks where a field takes one."""
+        self._names = {LEADER: tuple(robots), MARK: tuple(marks)}
+        self._offer()
+
+    def _offer(self):
+        for name, field in self._fields.items():
+            if isinstance(field, NameField):
+                field.show_names(self._names.get(name, ()))
 
     def given(self):
         """Return ({name: value}, problem): what was entered, and in words what is wrong with it."""

@@ -33,7 +33,7 @@ def run_lines(run, label):
 
 
 class RunRow(QFrame):
-    """A task under way: a line for each of its robots, and "Stop".
+    """A task under way: a line for each of its robots, and "Stop"; of several for each as well.
 
     :param goal_id: id of its goal
     """
@@ -58,7 +58,7 @@ class RunRow(QFrame):
         self.stop_button.setMinimumHeight(theme.touch_size(self))
         self._grid = QGridLayout(self)
         self._grid.setColumnStretch(1, 1)
-        self._grid.addWidget(self.stop_button, 0, 2, -1, 1, Qt.AlignTop)
+        self._grid.addWidget(self.stop_button, 0, 2, Qt.AlignTop)
 
     def _connect(self):
         """Wire the button."""
@@ -71,6 +71,7 @@ class RunRow(QFrame):
     def show_run(self, run, label):
         """Show a :class:`mhri.core.screen.task_views.RunView`."""
         self._robots = tuple(robot.robot for robot in run.robots)
+        busy = [robot.robot for robot in run.robots if robot.state not in ENDS]
         self.stop_button.setAccessibleName('stop {} of {}'.format(label, ', '.join(self._robots)))
         lines = run_lines(run, label)
         while len(self._lines) < len(lines):
@@ -80,18 +81,35 @@ class RunRow(QFrame):
             line.setWordWrap(True)
             self._grid.addWidget(sign, row, 0, Qt.AlignTop)
             self._grid.addWidget(line, row, 1, Qt.AlignTop)
-            self._lines.append((sign, line))
-        for (text, waits), (sign, line) in zip(lines, self._lines):
+            self._lines.append((sign, line, self._single_button(row)))
+        for name, (text, waits), (sign, line, button) in zip(self._robots, lines, self._lines):
             sign.show_sign(theme.TASK_WAITS if waits else theme.ON_TASK)
+            button.setAccessibleName('stop {} of {}'.format(label, name))
+            button.setVisible(len(busy) > 1 and name in busy)
             if text != line.text():
                 line.setText(text)
+        several = len(self._robots) > 1
+        self.stop_button.setText('Stop all of them' if several else 'Stop')
+        if several:
+            self._grid.addWidget(self.stop_button, len(self._lines), 1, 1, 2)
+
+    def _single_button(self, row):
+        """Make the button that ends the part of one robot."""
+        button = QPushButton('Stop', self)
+        button.setObjectName('task_stop_one_button')
+        button.setFocusPolicy(Qt.TabFocus)
+        button.setMinimumHeight(theme.touch_size(self))
+        button.clicked.connect(lambda: self.stop_requested.emit([self._robots[row]]))
+        self._grid.addWidget(button, row, 2, Qt.AlignTop)
+        return button
 
 
 class TasksPage(QWidget):
     """Values in (:meth:`show_tasks`, :meth:`show_problem`), signals out.
 
     Child widgets: ``task_combo``, a ``task_field_<name>`` for each field, ``task_start_button``,
-    and a ``task_stop_button`` for each task under way.
+    and a ``task_stop_button`` for each task under way, for each robot of several a
+    ``task_stop_one_button``.
     """
 
     #: key of a task, its parameters {name: value}
@@ -202,7 +220,7 @@ class TasksPage(QWidget):
         """
         if tasks.kinds != self._kinds:
             self._show_kinds(tasks.kinds)
-        self.fields.show_names(names)
+        self.fields.show_names(names, tasks.marks)
         self._show_runs(tasks)
         if tasks.problem:
             self.show_problem(tasks.problem, lasts=False)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the obstacle brake of the gates sees of a robot: its laser, and where it is."""
+"""What the obstacle brake of the gates knows of a robot: what it sees, and where it is."""
 import importlib
 import threading
 import time
@@ -8,12 +8,15 @@ import time
 import rospy
 from sensor_msgs.msg import LaserScan
 
+from mhri.core.driving.brake import NARROW_M
 from mhri.core.driving.stick_brake import StickBrake
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.names import topic_of
 from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.robots.robot_link import ODOMETRY_READERS
 from mhri.ros.sensors.beams import read_beams
+from mhri.ros.sensors.depth_scans import DepthScans
+from mhri.ros.sensors.mounts import Mounts
 from mhri.ros.sensors.refusals import Refusals
 
 # A robot is no further from where it was read last than a few centimetres [s].
@@ -23,15 +26,23 @@ POSE_EVERY_S = 0.04
 class BrakeEye:
     """Reads a robot's laser (``sensor_msgs/LaserScan``) for its brake, while that is asked for.
 
-    Everything is read on the threads of the sensors; ``brake`` is
-    :class:`mhri.core.driving.stick_brake.StickBrake`, for the gate to ask.
+    Robots of a type without a laser are read their depth camera, see
+    :class:`mhri.ros.sensors.depth_scans.DepthScans`; where either sits tf says, see
+    :class:`mhri.ros.sensors.mounts.Mounts`. Everything is read on the threads of the sensors;
+    ``brake`` is :class:`mhri.core.driving.stick_brake.StickBrake`, for the gate to ask.
 
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
+    :param frames: :class:`mhri.ros.map.tf_feed.TfFeed`, opened here; None: without tf
     """
 
-    def __init__(self, name, robot_type, clock=time.monotonic):
-        self.brake = StickBrake(robot_type.radius_m, bool(robot_type.scan))
+    def __init__(self, name, robot_type, clock=time.monotonic, frames=None):
+        self.brake = StickBrake(robot_type.radius_m + (0.0 if robot_type.scan else NARROW_M),
+                                bool(robot_type.scan or robot_type.depth))
         self._clock = clock
+        self._frames = frames
+        self._mounts = Mounts(robot_type, frames)
+        self._depth = None if robot_type.scan or not robot_type.depth else DepthScans(
+            name, robot_type.depth, self._mounts, self._on_depth, clock)
         self._topics = [topic_of(name, topic) for topic in robot_type.scan]
         module, class_name, self._read = ODOMETRY_READERS[robot_type.odometry_type]
         try:
@@ -48,13 +59,15 @@ class BrakeEye:
         if wanted == self.brake.asked:
             return
         self.brake.ask(wanted)
-        if self._topics:
+        if self._topics or self._depth:
             # Asking the master may take a while, and must not hold up a command.
             threading.Thread(target=self._settle, name='brake_eye', daemon=True).start()
 
     def _settle(self):
         with self._settling:
-            if self.brake.asked and not self._subscribers:
+            if self._depth is not None:
+                (self._depth.open if self.brake.asked else self._depth.close)()
+            elif self.brake.asked and not self._subscribers:
                 self._subscribers = [
                     rospy.Subscriber(topic, LaserScan, self._on_scan, queue_size=1,
                                      buff_size=1 << 20, tcp_nodelay=True)
@@ -63,6 +76,8 @@ class BrakeEye:
                 subscribers, self._subscribers = self._subscribers, []
                 for subscriber in subscribers:
                     unsubscribe(subscriber)
+            if self.brake.asked and self._frames is not None:
+                self._frames.open()
 
     def on_odometry(self, message, now):
         """Take in the bytes of an odometry message (``rospy.AnyMsg``)."""
@@ -72,6 +87,7 @@ class BrakeEye:
         message = self._refusals.read(message, self._odometry)
         motion = None if message is None else self._read(message)
         if motion is not None and motion.is_possible():
+            self._mounts.see_odometry(message)
             self.brake.move(Pose(motion.x_m, motion.y_m, motion.heading_rad))
 
     def _on_scan(self, message):
@@ -80,9 +96,13 @@ class BrakeEye:
         if message is None:
             return
         try:
-            self.brake.see(read_beams(message), now)
+            self.brake.see(read_beams(message, self._mounts), now)
         except ValueError as error:
             self._refusals.note(error)
+
+    def _on_depth(self, scan, received_s, _):
+        if self.brake.asked:
+            self.brake.see(scan, received_s)
 
     def close(self):
         """Stop looking (blocking: it asks the master)."""

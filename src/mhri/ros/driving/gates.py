@@ -10,6 +10,7 @@ Interfaces (global names; SI units):
   ``/gates_in/group_speed`` (``mhri/GroupSpeed``) only from the operator in control
 - publishes ``/gates/state`` (``mhri/GatesState``, latched, on change and at 2 Hz), and for each
   robot the topics of :class:`mhri.ros.driving.robot_gate.RobotGate`
+- subscribes ``/tf_static`` once the obstacle brake is asked for
 - serves ``/gates/take_control`` (``std_srvs/Trigger``) and ``/gates/set_motor_power``
   (``std_srvs/SetBool``: false cuts the motor power of every robot that offers it)
 
@@ -34,6 +35,7 @@ from mhri.ros.driving.neighbour import Neighbour
 from mhri.ros.driving.robot_gate import RobotGate
 from mhri.ros.driving.roster import Roster
 from mhri.ros.graph.rospy_inside import caller_of, link_of, on_publisher_gone
+from mhri.ros.map.tf_feed import TfFeed
 
 TICK_S = 0.05
 # How long somebody who was refused is named [s].
@@ -65,6 +67,8 @@ class Gates:
         self._session = '{:x}'.format(time.time_ns())
         self._strangers = Strangers(clock)
         self._states = []
+        # What moves says nothing of where a laser sits on its robot.
+        self._frames = TfFeed(clock, moving=False)
         self._neighbour = Neighbour('the mux', lambda: self.on_change(), lambda: self.on_change())
         self._mux = InForce(STOP_SERVICE, self._refuse, self._on_new_mux)
         self._roster = Roster(types, self._open, self._close_gate, self._unheard)
@@ -279,7 +283,7 @@ class Gates:
         gate = RobotGate(name, robot_type, self._session, self._command, self._lock,
                          self._on_foreign_stop,
                          lambda robot: self._refuse('somebody', robot + '/mhri_guard/command'),
-                         self._clock)
+                         self._clock, self._frames)
         with self._lock:
             now = self._clock()
             if self._closed:

@@ -7,7 +7,7 @@ from mhri.ros.graph.rospy_inside import PromptPublisher
 
 
 class OwnNavigation:
-    """Cancels the goals of ``/<robot>/move_base`` while the robot must obey nobody but the operator.
+    """Cancels the goals of ``/<robot>/move_base`` when the operator alone has the robot.
 
     Publishes ``/<robot>/move_base/cancel`` (``actionlib_msgs/GoalID``) with no id and no time,
     which ends every goal (http://wiki.ros.org/actionlib/DetailedDescription). A navigation speaks

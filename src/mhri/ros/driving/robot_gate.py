@@ -46,8 +46,8 @@ class RobotGate:
     ``/<robot>/mhri_guard/state`` (``std_msgs/String``), which it answers by
     ``/<robot>/mhri_guard/heard`` (``std_msgs/String``). While the brake is asked for, see
     :class:`mhri.ros.driving.brake_eye.BrakeEye`; while the robot is checked or stopped, see
-    :class:`mhri.ros.driving.own_navigation.OwnNavigation`. Apart from its callbacks it is not thread-safe:
-    hold ``lock``.
+    :class:`mhri.ros.driving.own_navigation.OwnNavigation`. Apart from its callbacks it is not
+    thread-safe: hold ``lock``.
 
     :param name: the robot
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
@@ -56,13 +56,14 @@ class RobotGate:
     :param lock: held by the callbacks
     :param on_foreign_stop: called with the robot if another run of the gates has stopped it
     :param on_displaced: called with the robot if somebody else has spoken to its guard
+    :param frames: :class:`mhri.ros.map.tf_feed.TfFeed`, None: without tf
     """
 
     def __init__(self, name, robot_type, session, command, lock, on_foreign_stop, on_displaced,
-                 clock=time.monotonic):
+                 clock=time.monotonic, frames=None):
         self.name = name
         self.robot_type = robot_type
-        self._eye = BrakeEye(name, robot_type, clock)
+        self._eye = BrakeEye(name, robot_type, clock, frames)
         self.rule = GateRule(robot_type.limits, command, self._eye.brake.allow)
         self._clock = clock
         self._brake_asked = False
@@ -82,6 +83,10 @@ class RobotGate:
                              for topic in robot_type.command[:MOST_TOPICS]]
         self._links = [()] * len(self._publishers)
         self._obeying = [frozenset()] * len(self._publishers)
+        self._heard = PromptPublisher('/{}/mhri_guard/heard'.format(name), String)
+        self.power = MotorPower(name, robot_type)
+        self._navigation = OwnNavigation(name)
+        # A robot may be heard from here on.
         self._odometry = [
             rospy.Subscriber(topic_of(name, topic), rospy.AnyMsg, self._on_odometry, queue_size=1,
                              tcp_nodelay=True) for topic in robot_type.odometry]
@@ -89,9 +94,6 @@ class RobotGate:
                                       self._on_echo, queue_size=1, tcp_nodelay=True)
         self._state = rospy.Subscriber('/{}/mhri_guard/state'.format(name), String,
                                        self._on_guard_state, queue_size=1, tcp_nodelay=True)
-        self._heard = PromptPublisher('/{}/mhri_guard/heard'.format(name), String)
-        self.power = MotorPower(name, robot_type)
-        self._navigation = OwnNavigation(name)
         self._probe = LinkProbe(name, self._node_uri, self._on_round_trip)
         if len(robot_type.command) > MOST_TOPICS:
             rospy.logwarn('%s has %d velocity topics: the first %d are used', name,

@@ -38,14 +38,15 @@ class PlaceKeeper:
     :param seen: :class:`mhri.ros.tasks.seen_robots.SeenRobots`
     :param map_source: its ``is_there`` tells whether there is a map
     :param clock: seconds, monotonic
+    :param frames: :class:`TfFeed` that is opened here; None: one of its own
     """
 
-    def __init__(self, seen, map_source, clock):
+    def __init__(self, seen, map_source, clock, frames=None):
         self._seen = seen
         self._map = map_source
         self._clock = clock
         self._lock = threading.Lock()
-        self._tf = TfFeed(clock)
+        self._tf = frames or TfFeed(clock)
         self._robots = {}
         self._corrections = {}
         self._places = {}

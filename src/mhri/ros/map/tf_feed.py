@@ -49,23 +49,28 @@ class TfFeed:
 
     :param clock: seconds, monotonic: a transform is as old as its hearing, whatever clock its
         sender has
+    :param moving: False: hear ``/tf_static`` alone
     """
 
-    def __init__(self, clock):
+    def __init__(self, clock, moving=True):
         self._clock = clock
+        self._moving = moving
         self._lock = threading.Lock()
         self._tree = TfTree()
         self._subscribers = []
+        self._opening = threading.Lock()
         self._refusals = Refusals('/tf', clock)
         self._thread = threading.local()
         self._closed = threading.Event()
 
     def open(self):
         """Begin to listen (blocking: it asks the master)."""
-        if not self._subscribers:
+        with self._opening:
+            if self._subscribers:
+                return
             self._subscribers = [
-                rospy.Subscriber('/tf', bytes_of(TFMessage), self._hear, False),
-                rospy.Subscriber('/tf_static', bytes_of(TFMessage), self._hear, True)]
+                rospy.Subscriber(topic, bytes_of(TFMessage), self._hear, topic == '/tf_static')
+                for topic in ('/tf', '/tf_static') if self._moving or topic == '/tf_static']
 
     def close(self):
         """Stop listening (blocking: it asks the master)."""
@@ -97,6 +102,12 @@ class TfFeed:
         """Return where a frame lies in another one, as :meth:`TfTree.find` has it."""
         with self._lock:
             return self._tree.find(frame, other)
+
+    def matrix(self, frame, other):
+        """Return the matrix of a frame in another one, as :meth:`TfTree.matrix` has it."""
+        with self._lock:
+            found = self._tree.matrix(frame, other)
+        return None if found is None else found[0]
 
     def knows(self, frame):
         """Tell whether anything was said of a frame."""

@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What a tile can show of its robot: a feed for each view, opened while it is wanted."""
+import rospy
+
 from mhri.core.screen.view_rows import load, RECORD, VIEW_ROWS
 from mhri.ros.sensors.mocap_feed import MocapFeed
 
@@ -17,6 +19,7 @@ class BotFeeds:
 
     def __init__(self, robot, robot_type, worker):
         self.robot_type = robot_type
+        self._robot = robot
         self._worker = worker
         made = {row.key: load(row.feed).of(robot, robot_type, row.key) for row in VIEW_ROWS}
         self._feeds = {key: feed for key, feed in made.items() if feed is not None}
@@ -37,11 +40,15 @@ class BotFeeds:
 
     def _switch(self):
         """Open and close feeds until they match the newest wish (blocking, on the worker)."""
-        for key in self._open - self._wanted:
-            self._feeds[key].close()
-        for key in self._wanted - self._open:
-            self._feeds[key].open()
-        self._open = self._wanted
+        wanted, before = self._wanted, self._open
+        self._open = before & wanted
+        for feeds, act in ((before - wanted, 'close'), (wanted - before, 'open')):
+            for key in feeds:
+                try:
+                    getattr(self._feeds[key], act)()
+                except Exception as error:  # of rospy: it must not keep the others as they are
+                    rospy.logerr('%s: cannot %s its %s: %r', self._robot, act, key, error)
+        self._open = wanted
 
     def close(self):
         """Close every feed (blocking: it asks the master)."""

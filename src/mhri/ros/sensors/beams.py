@@ -2,15 +2,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A laser scan as the obstacle brake takes it."""
 from mhri.core.driving.brake import Scan
+from mhri.core.robots.mocap import Pose
 from mhri.core.sensors.plausible import beams_problem, measured_ranges, thinned
 
 # A finer scan is thinned: its nearest beams count.
 MOST_BEAMS = 400
+_MIDDLE = Pose(0.0, 0.0, 0.0)
 
 
-def read_beams(message):
+def read_beams(message, mounts=None):
     """Return a ``sensor_msgs/LaserScan`` as :class:`mhri.core.driving.brake.Scan`.
 
+    :param mounts: :class:`mhri.ros.sensors.mounts.Mounts`; None: the laser sits in the middle
     :raises ValueError: says what of it cannot be
     """
     problem = beams_problem(len(message.ranges), message.angle_min, message.angle_increment)
@@ -20,7 +23,10 @@ def read_beams(message):
         message.ranges, message.range_min, message.range_max), MOST_BEAMS)
     step = message.angle_increment
     first, step = message.angle_min + 0.5 * (together - 1) * step, together * step
+    mount, turned_over = mounts.laser(message.header.frame_id) if mounts else (_MIDDLE, False)
+    if turned_over:
+        first, step = -first, -step
     if step < 0.0:
         # Mounted upside down it counts to the right.
         ranges, first, step = ranges[::-1], first + (len(ranges) - 1) * step, -step
-    return Scan(ranges, first, step, message.range_min, message.range_max)
+    return Scan(ranges, first, step, message.range_min, message.range_max, mount)

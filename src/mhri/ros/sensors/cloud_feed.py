@@ -86,8 +86,12 @@ class _DepthSamples(_WithLens, Samples):
     """Single pictures, and their lens."""
 
 
-class _CloudStream(CameraFeed):
-    """Finds, subscribes and decodes clouds as a camera's feed does pictures."""
+class LensedStream(CameraFeed):
+    """Finds, subscribes and decodes clouds as a camera's feed does pictures.
+
+    :param clouds: topics of clouds relative to the robot, in order of preference
+    :param depths: topics of depth pictures relative to it, without transport; used with their lens
+    """
 
     def __init__(self, robot, clouds, depths, clock):
         super().__init__(robot, clouds + depths, DEPTH, clock=clock)
@@ -97,9 +101,11 @@ class _CloudStream(CameraFeed):
         self.cloud_topic = ''
 
     def new_session(self, wanted):
+        """Return the decoder of one opening."""
         return CloudDecoder(self.robot, wanted, self._clock)
 
     def find_offers(self, published):
+        """Return the offers, best first: clouds, then depth pictures that have a lens."""
         offers = [Offer('cloud', topic) for topic in self._clouds
                   if published.get(topic) == CLOUD_TYPE]
         self.cloud_topic = offers[0].topic if offers else ''
@@ -107,9 +113,11 @@ class _CloudStream(CameraFeed):
         return offers + find_offers(DEPTH, depths, published)
 
     def line_of(self, session, offer):
+        """Return the class of a subscription to an offer with its lens, and its arguments."""
         return self._with_lens(_Depths, session, offer, super().line_of(session, offer))
 
     def samples_of(self, session, offer, grant, native_hz):
+        """Return the same of single pictures."""
         return self._with_lens(_DepthSamples, session, offer,
                                super().samples_of(session, offer, grant, native_hz))
 
@@ -139,7 +147,7 @@ class CloudFeed:
         return cls(robot, kind.cloud, kind.depth) if kind.cloud or kind.depth else None
 
     def __init__(self, robot, clouds, depths=(), clock=time.monotonic):
-        self._stream = _CloudStream(robot, list(clouds), list(depths), clock)
+        self._stream = LensedStream(robot, list(clouds), list(depths), clock)
         self._stream.set_view(max_hz=MOST_HZ)
 
     def open(self):

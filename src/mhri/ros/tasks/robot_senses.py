@@ -8,18 +8,21 @@ import time
 import rospy
 from sensor_msgs.msg import BatteryState, LaserScan
 
-from mhri.core.driving.brake import Surroundings
+from mhri.core.driving.brake import NARROW_M, Surroundings
 from mhri.core.map.places import Odometry, OLD_S
 from mhri.core.map.tf_tree import frame_name
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.names import topic_of
+from mhri.core.robots.pose_track import PoseTrack
 from mhri.core.tasks.base import Body
 from mhri.core.tasks.retrace import Trail
 from mhri.ros.convert import header_of
 from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.robots.robot_link import battery_fraction, ODOMETRY_READERS
 from mhri.ros.sensors.beams import read_beams
+from mhri.ros.sensors.depth_scans import DepthScans
 from mhri.ros.sensors.mocap_feed import MocapFeed
+from mhri.ros.sensors.mounts import Mounts
 from mhri.ros.sensors.refusals import Refusals
 
 
@@ -64,14 +67,17 @@ class RobotSenses:
     """A robot's odometry and motion capture at all times; the rest from :meth:`open` on.
 
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
+    :param frames: :class:`mhri.ros.map.tf_feed.TfFeed`, None: without tf
     """
 
-    def __init__(self, name, robot_type, clock=time.monotonic):
+    def __init__(self, name, robot_type, clock=time.monotonic, frames=None):
         self.name = name
         self.robot_type = robot_type
         self._clock = clock
         self._begun_at = clock()
-        self.body = Body(robot_type.radius_m, robot_type.limits)
+        by_depth = self.has_eye and not self.has_laser
+        self.body = Body(robot_type.radius_m + (NARROW_M if by_depth else 0.0),
+                         robot_type.limits)
         self.trail = Trail()
         # By its odometry: the pose, the newest :class:`Odometry`, and the name of its frame.
         self.pose = self.odometry = None
@@ -79,7 +85,11 @@ class RobotSenses:
         # By motion capture: (pose, when it was heard [s]).
         self.seen_at = None
         self._odometry = self._open_odometry()
-        self._scan = self._battery = None
+        self._scan = self._depth = self._battery = None
+        # (scan, when it was heard [s], its stamp [s]), newer than what was looked at.
+        self._depth_scan = self._scan_at = None
+        self._mounts = Mounts(robot_type, frames)
+        self._track = PoseTrack()
         self._charge = None
         self._mocap = MocapFeed(name, clock)
         self._mocap.open()
@@ -103,9 +113,13 @@ class RobotSenses:
         return self._clock() - self._begun_at
 
     def open(self):
-        """Begin to listen to laser and battery (blocking: it asks the master)."""
+        """Begin to listen to laser or depth camera, and battery (blocking: it asks the master)."""
         if self._scan is None and self.has_laser:
             self._scan = _Newest(self._topics('scan'), LaserScan, self._clock, buff_size=1 << 20)
+        if self._depth is None and self.has_eye and not self.has_laser:
+            self._depth = DepthScans(self.name, self.robot_type.depth, self._mounts,
+                                     self._on_depth, self._clock)
+            self._depth.open()
         if self._battery is None and self.robot_type.battery:
             self._battery = _Newest(self._topics('battery'), BatteryState, self._clock)
 
@@ -119,15 +133,22 @@ class RobotSenses:
         """Whether robots of its type have a laser."""
         return bool(self.robot_type.scan)
 
+    @property
+    def has_eye(self):
+        """Whether they have a laser, or at least a depth camera, for the obstacle brake."""
+        return self.has_laser or bool(self.robot_type.depth)
+
+    def _on_depth(self, *scan):
+        self._depth_scan = scan
+
     def look(self):
         """Read what has come since the last time."""
         message = self._odometry.take() if self._odometry else None
         if message is not None:
             self._go(message)
         self.seen_at = self._mocap.take() or self.seen_at
-        scan = self._scan.take() if self._scan else None
-        if scan is not None and self.pose is not None:
-            self._see(scan)
+        if self.pose is not None:
+            self._see()
         battery = self._battery.take() if self._battery else None
         if battery is not None:
             self._charge = battery_fraction(battery)
@@ -139,15 +160,33 @@ class RobotSenses:
         self.pose = Pose(motion.x_m, motion.y_m, motion.heading_rad)
         header = header_of(message, type(message))
         if header is not None:
+            self._track.add(header[1], self.pose)
+            self._mounts.see_odometry(message)
             self.odometry_frame = frame_name(message.header.frame_id)
         self.odometry = Odometry(self.pose, self._odometry.heard_at, header and header[0])
         self.trail.add(self.pose, self._clock())
 
-    def _see(self, message):
+    def _see(self):
+        """Take in what laser or depth camera have measured, where the robot was at that time."""
+        found = self._read_laser() if self._scan else self._depth_scan
+        self._depth_scan = None
+        if found is not None:
+            scan, self._scan_at, stamp_s = found
+            self._surroundings.see(scan, self._track.at(stamp_s) or self.pose)
+
+    def _read_laser(self):
+        heard_at = self._scan.heard_at
+        message = self._scan.take()
         try:
-            self._surroundings.see(read_beams(message), self.pose)
+            return message and (read_beams(message, self._mounts), heard_at or self._clock(),
+                                message.header.stamp.to_sec())
         except ValueError as error:
             self._scan.note(error)
+        return None
+
+    def looks(self):
+        """Return what tells where its laser or depth camera looks, as the brake has it."""
+        return self._surroundings.looks(self.pose)
 
     def points(self, robots=()):
         """Return what its laser has met, in its frame, were it where it was heard last.
@@ -165,7 +204,7 @@ class RobotSenses:
     def ages(self):
         """Return {what: age [s], None before the first}, as :class:`Facts` has them."""
         return dict(odometry_age_s=self._odometry.age_s() if self._odometry else None,
-                    scan_age_s=self._scan.age_s() if self._scan else None)
+                    scan_age_s=None if self._scan_at is None else self._clock() - self._scan_at)
 
     @property
     def charge(self):
@@ -174,6 +213,6 @@ class RobotSenses:
 
     def close(self):
         """Stop listening (blocking: it asks the master)."""
-        for feed in (self._odometry, self._scan, self._battery, self._mocap):
+        for feed in (self._odometry, self._scan, self._depth, self._battery, self._mocap):
             if feed is not None:
                 feed.close()

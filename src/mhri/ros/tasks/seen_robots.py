@@ -21,11 +21,13 @@ class SeenRobots:
 
     :param types: {name: RobotType}
     :param clock: seconds, monotonic
+    :param frames: :class:`mhri.ros.map.tf_feed.TfFeed`, None: without tf
     """
 
-    def __init__(self, types, clock):
+    def __init__(self, types, clock, frames=None):
         self._types = types
         self._clock = clock
+        self._frames = frames
         self._lock = threading.Lock()
         self._robots = {}
         self._numbers = {}
@@ -41,7 +43,7 @@ class SeenRobots:
         for robot in gone:
             robot.close()
         for name, robot_type in self._types_of(new).items():
-            robot = RobotSenses(name, robot_type, self._clock)
+            robot = RobotSenses(name, robot_type, self._clock, self._frames)
             with self._lock:
                 self._robots[name] = robot
 

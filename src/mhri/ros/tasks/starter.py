@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Goals made into runs: whether a goal can be understood, and who can begin it."""
 from mhri.core.config import ConfigError
+from mhri.core.map.assignment import shared_out
 from mhri.core.robots.names import name_problem
 from mhri.core.tasks.base import FAILED, LOST, Start, TEAM
 from mhri.core.tasks.delegated import DelegatedRun
@@ -88,6 +89,25 @@ class Starter:
     def _drive(self, bag, topic, name):
         robot = self._seen.get(name)
         return read_drive(bag, [topic] if topic else robot.odometry_topics if robot else [])
+
+    def in_order(self, goal):
+        """Return the robots of a goal, the first on the first place: so that no ways cross.
+
+        :param goal: as for :meth:`run`; as they were given, where nobody knows who is where
+        """
+        names, slots = list(goal.team), self._kinds[goal.key].slots
+        if slots is None or goal.values.team or len(names) < 2:
+            return names
+        places = slots(goal.values, len(names), self._where)
+        if len(places) < len(names):
+            return names
+        taken = shared_out([self._where(name) for name in names], places)
+        return sorted(names, key=lambda name: taken[names.index(name)])
+
+    def _where(self, name):
+        """Return the :class:`Pose` of a robot in the frame of the map, None where nobody knows."""
+        robot, place = self._seen.get(name), self._places.place(name)
+        return place.pose(robot.pose) if robot is not None and place.is_fresh else None
 
     def run(self, goal, name, drives, problem, now):
         """Return the run of one robot; one that cannot be begun has ended.

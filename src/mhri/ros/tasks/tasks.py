@@ -4,12 +4,14 @@
 
 Interfaces (global names; SI units):
 
-- serves the action ``/mhri_tasks/run`` (``mhri/RunTask``), any number of goals at a time
+- serves the action ``/mhri_tasks/run`` (``mhri/RunTask``), any number of goals at a time, and
+  ``/mhri_tasks/end`` (``mhri/EndTask``), which takes single robots out of their goals
 - publishes ``/mux_in/task`` (``mhri/TeamTwist``, 20 Hz while a robot is on a task, with zeros for
   0.6 s after it) and ``/mhri_tasks/list`` (``mhri/TaskList``, latched, on change)
 - subscribes ``/gates/state`` (``mhri/GatesState``) and ``/robot_controller/stop_all``
   (``std_msgs/Bool``), each from the node in force alone; of every robot that the gates know its
-  odometry and ``/vrpn_client_node/<robot>/pose``; of robots on a task laser and battery as well
+  odometry and ``/vrpn_client_node/<robot>/pose``; of robots on a task laser, or depth
+  camera, and battery as well
 - knows where robots are placed: :mod:`mhri.ros.map.place_keeper`
 
 The action server has a lock of its own, held while it calls :meth:`Tasks._on_goal`: nothing of it
@@ -38,10 +40,12 @@ from mhri.ros.graph.rospy_inside import PromptPublisher
 from mhri.ros.map.map_source import MapSource
 from mhri.ros.map.place_keeper import PlaceKeeper
 from mhri.ros.map.place_services import PlaceServices
+from mhri.ros.map.tf_feed import TfFeed
 from mhri.ros.tasks.seen_robots import SeenRobots
 from mhri.ros.tasks.starter import Starter
 from mhri.ros.tasks.words import kind_message, state_message
 from mhri.ros.worker import Worker
+from mhri.srv import EndTask, EndTaskResponse
 
 TICK_S = 0.05
 FEEDBACK_EVERY = 4
@@ -60,7 +64,7 @@ class _Goal:
         self.key = goal.task
         self.parameters = goal.parameters
         self.team = tuple(goal.robots)
-        # In whose order places are counted.
+        # In whose order places are counted: see Starter.in_order.
         self.order = values.team or self.team
         self.values = values
         self.cancelled = False
@@ -92,9 +96,10 @@ class Tasks:
         self._lock = threading.RLock()
         self._wake = threading.Event()
         self._done = threading.Event()
-        self._seen = SeenRobots(types, clock)
+        frames = TfFeed(clock)
+        self._seen = SeenRobots(types, clock, frames)
         self._map = MapSource(grid)
-        self.places = PlaceKeeper(self._seen, self._map, clock)
+        self.places = PlaceKeeper(self._seen, self._map, clock, frames)
         self._starter = Starter(kinds, self._seen, self.places, clock)
         self._goals = {}
         # {robot: its newest RobotRun}: a robot has one task.
@@ -120,6 +125,7 @@ class Tasks:
         self._map.start()
         self.places.start()
         PlaceServices(self._seen, self.places, self._map, self.is_busy, self._worker).start()
+        rospy.Service('/mhri_tasks/end', EndTask, self._on_end)
         self._gates_force.start()
         self._mux_force.start()
         self._worker.start()
@@ -212,10 +218,22 @@ class Tasks:
                     run.end(STOPPED, 'it was cancelled', self._clock())
         self._wake.set()
 
+    def _on_end(self, request):
+        """End what robots are busy with; the others on the same goals go on."""
+        with self._lock:
+            busy = [name for name in dict.fromkeys(request.robots) if self.is_busy(name)]
+            for name in busy:
+                self._runs[name].end(STOPPED, 'it was ended', self._clock())
+        self._wake.set()
+        return EndTaskResponse(bool(busy), 'ended: ' + ', '.join(busy) if busy
+                               else 'none of these robots is on a task')
+
     def _begin(self, goal):
         """Open what the robots of a goal need, and begin their runs (on the worker)."""
         drives, problem = self._starter.prepare(goal.key, goal.values, goal.team,
                                                 list(self._gates))
+        goal.team = tuple(self._starter.in_order(goal))
+        goal.order = goal.values.team or goal.team
         with self._lock:
             now = self._clock()
             for name in goal.team:
@@ -293,9 +311,9 @@ class Tasks:
         if gate is not None:
             known.update(obeys=gate.obeys, stands=gate.stands)
         if robot is not None:
-            known.update(robot.ages(), has_laser=robot.has_laser, battery=robot.charge,
-                         senses=self._seen.senses(robot, now, busy, self.places.place,
-                                                  self.places.fence()))
+            known.update(robot.ages(), has_laser=robot.has_eye, looks=robot.looks(),
+                         battery=robot.charge, senses=self._seen.senses(
+                             robot, now, busy, self.places.place, self.places.fence()))
         if run.placed or self.places.fence():
             place = self.places.place(name)
             age_s = 0.0 if math.isnan(place.age_s) else place.age_s
@@ -330,9 +348,10 @@ class Tasks:
         for goal, run in zip(goals, runs):
             goal.handle.publish_feedback(RunTaskFeedback(robots=run.robots))
         told = [(run.id, [(robot.robot, robot.state) for robot in run.robots]) for run in runs]
-        if told != self._told:
-            self._told = told
+        marks = sorted(self.places.marks())
+        if (told, marks) != self._told:
+            self._told = told, marks
             message = TaskList(tasks=[kind_message(kind) for kind in self._kinds.values()],
-                               runs=runs)
+                               runs=runs, marks=marks)
             message.header.stamp = rospy.Time.now()
             self._list.publish(message)

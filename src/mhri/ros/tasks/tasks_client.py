@@ -4,7 +4,7 @@
 
 Speaks the protocol of the action ``/mhri_tasks/run`` (``mhri/RunTask``) itself: actionlib's client
 tells of its own goals alone, and the screen shows everybody's, those of a screen before it, too.
-Publishes ``/mhri_tasks/run/goal`` and ``/mhri_tasks/run/cancel``. Subscribes ``/mhri_tasks/list``,
+Publishes ``/mhri_tasks/run/goal`` and ``/mhri_tasks/run/cancel``; calls ``/mhri_tasks/end``. Subscribes ``/mhri_tasks/list``,
 ``/mhri_tasks/run/feedback`` and ``/mhri_tasks/run/result``, and believes only the ``mhri_tasks`` in
 force (:mod:`mhri.ros.driving.in_force`), by a service that every node of rospy has.
 """
@@ -26,10 +26,14 @@ from mhri.msg import (
 from mhri.ros.driving.in_force import InForce, Strangers
 from mhri.ros.graph.rospy_inside import publishers
 from mhri.ros.worker import Worker
+from mhri.srv import EndTask
 
 SERVICE = '/mhri_tasks/get_loggers'
 # Feedback comes at 5 Hz while anything is under way; the first one takes a moment [s].
 SILENT_S = 3.0
+# A call waits so long for its service [s].
+CALL_S = 1.0
+_END = '/mhri_tasks/end'
 
 
 class TasksClient:
@@ -79,7 +83,7 @@ class TasksClient:
             self._heard_at = self._clock()
             self._book.hear_list(tuple(map(_kind, message.tasks)), tuple(
                 RunView(run.id, run.task, run.parameters, _progress(run.robots))
-                for run in message.runs), self._heard_at)
+                for run in message.runs), self._heard_at, tuple(map(tidy_text, message.marks)))
 
     def _hear_feedback(self, message):
         with self._lock:
@@ -141,17 +145,30 @@ class TasksClient:
         self._goal.publish(message)
 
     def cancel(self, robots):
-        """End the tasks of robots; whoever is on the same goal ends with them.
+        """End the tasks of robots; the others on the same goals go on.
 
         :returns: whether there was any
         """
         with self._lock:
-            ids = self._book.runs_of(tuple(robots))
-            for goal_id in ids:
-                self._book.cancel(goal_id)
-        for goal_id in ids:
-            self._cancel.publish(GoalID(id=goal_id))
-        return bool(ids)
+            parts = self._book.parts_of(tuple(robots))
+            for goal_id, some in parts:
+                self._book.cancel(goal_id, some)
+        for goal_id, some in parts:
+            if some:
+                self._worker.do(self._end, some)
+            else:
+                self._cancel.publish(GoalID(id=goal_id))
+        return bool(parts)
+
+    def _end(self, robots):
+        """Take robots out of their goals (on the worker: it waits for the answer)."""
+        try:
+            rospy.wait_for_service(_END, timeout=CALL_S)
+            rospy.ServiceProxy(_END, EndTask)(robots)
+        except (rospy.ServiceException, rospy.ROSException, OSError) as error:
+            rospy.logwarn('%s: %s', _END, error)
+            with self._lock:
+                self._book.keep_on(robots, 'the task service does not answer')
 
     def close(self, forget=False):
         """End; returns at once.
@@ -172,7 +189,7 @@ def _kind(message):
     """Return the :class:`KindView` of a ``mhri/TaskKind``."""
     return KindView(message.key, tidy_text(message.label), tidy_text(message.text), tuple(
         FieldView(field.name, tidy_text(field.unit), tidy_text(field.text), field.default_value,
-                  field.least, field.greatest) for field in message.fields))
+                  field.least, field.greatest, tuple(field.choices)) for field in message.fields))
 
 
 def _progress(states):

@@ -19,7 +19,8 @@ def _field_message(field):
     default = '' if field.default == REQUIRED else yaml.safe_dump(
         field.default, default_flow_style=True).split('\n')[0]
     return TaskField(name=field.name, unit=field.unit, text=field.text, default_value=default,
-                     least=field.least, greatest=field.greatest)
+                     least=field.least, greatest=field.greatest,
+                     choices=list(field.choices))
 
 
 def state_message(run):

@@ -1,0 +1,152 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The host's side of the link: on the host's master the robot looks like any other."""
+import time
+
+import rospy
+
+from mhri.core.link.carried import (
+    COMMAND, DOWN, full_topic, GUARD_COMMAND, GUARD_ECHO, PICTURE, STATE, TF, TF_STATIC, TF_TYPE)
+from mhri.core.link.frames import About, unpack_about
+from mhri.core.link.peer import held_s
+from mhri.core.link.renaming import stamp_of
+from mhri.ros.graph.master_api import MasterError
+from mhri.ros.link.robot_side import PARAMETERS
+from mhri.ros.link.side import ABOUT, Side
+from mhri.ros.messages import bytes_of, message_class, MessageMissing
+
+QUEUE = 5
+PICTURE_TYPES = ('sensor_msgs/Image', 'sensor_msgs/CompressedImage', 'sensor_msgs/PointCloud2')
+LATCHED = (TF_STATIC, 'mhri_guard/state')
+
+
+class HostSide(Side):
+    """Publishes what comes up, below the robot's name, and sends down what the gates command.
+
+    Publishes the topics that the robot's side offers, with their types, and ``/tf``, ``/tf_static``
+    (``tf2_msgs/TFMessage``); subscribes ``/<robot>/mhri_guard/command``
+    (``geometry_msgs/TwistStamped``) and ``/<robot>/mhri_guard/heard`` (``std_msgs/String``) once
+    the robot has a guard. Sets ``/<robot>/robot_type``, ``robot_model`` and ``mhri``.
+
+    :param set_parameter: called with (name, value), blocking
+    """
+
+    def __init__(self, name, carrier, set_parameter, **options):
+        super().__init__(name, carrier, 'down', **options)
+        self._set_parameter = set_parameter
+        self._about = About({}, ())
+        self._news = None
+        self._publishers = {}
+        self._unusable = set()
+        self._down = []
+
+    def said(self):
+        """Name what is known of the robot, and which of its topics somebody here listens to."""
+        wanted = [place for place, (topic, _) in enumerate(self._about.topics)
+                  if topic.lstrip('/') in self._publishers
+                  and self._publishers[topic.lstrip('/')].get_num_connections()]
+        return (self._about.name if self._about.topics else ''), tuple(wanted)
+
+    def on_peer(self, beat, now):
+        """Nothing: the beat itself says that the robot is there."""
+
+    def on_frame(self, topic, frame, now):
+        """Publish a message, or note what the robot says of itself."""
+        if topic == ABOUT:
+            self._news = unpack_about(frame.body)
+            self.to_do.set()
+            return
+        publisher = self._publishers.get(topic)
+        if publisher is not None:
+            kind = publisher.type
+            self.note_age(COMMAND if topic == GUARD_ECHO else
+                          PICTURE if kind in PICTURE_TYPES else STATE, frame, now)
+            message = publisher.data_class()
+            message._buff = frame.body
+            publisher.publish(message)
+
+    def work(self, now):
+        """Open the topics that are new."""
+        news = self._news
+        if news is None or news == self._about:
+            return
+        try:
+            for key in PARAMETERS:
+                value = news.parameters.get(key)
+                if value is not None and value != self._about.parameters.get(key):
+                    self._set_parameter('/{}/{}'.format(self.name, key), value)
+        except MasterError as error:
+            rospy.logwarn_throttle(10.0, '{}: {}'.format(self.name, error))
+            return
+        for topic, kind in news.topics:
+            self._advertise(topic, kind)
+        if not self._down and GUARD_ECHO in self._publishers:
+            self._down = [self._subscribe(*row) for row in DOWN]
+        with self.lock:
+            self._about = news
+
+    def _advertise(self, topic, kind):
+        """Publish one of the robot's topics, if its type is known here."""
+        key = topic.lstrip('/')
+        if key in self._publishers or topic in self._unusable:
+            return
+        try:
+            if topic in (TF, TF_STATIC) and kind != TF_TYPE:
+                raise MessageMissing('{} is no {}'.format(kind, TF_TYPE))
+            found = bytes_of(message_class(kind))
+        except MessageMissing as error:
+            self._unusable.add(topic)
+            rospy.logwarn('%s: %s is not carried: %s', self.name, topic, error)
+            return
+        publisher = rospy.Publisher(
+            full_topic('/' + self.name, topic), found, queue_size=QUEUE, tcp_nodelay=True,
+            latch=topic in LATCHED, subscriber_listener=Listener(self.to_say.set))
+        with self.lock:
+            self._publishers[key] = publisher
+
+    def _subscribe(self, stream, kind):
+        # No queue: of what waited, the stop among the commands must not be lost.
+        return rospy.Subscriber(
+            full_topic('/' + self.name, stream.topic), bytes_of(message_class(kind)),
+            lambda message: self._on_command(stream, message._buff), tcp_nodelay=True)
+
+    def _on_command(self, stream, data):
+        """Send down what the gates said, as old as it is: this node may have hung meanwhile."""
+        held = held_s(stamp_of(data), time.time()) if stream.topic == GUARD_COMMAND else 0.0
+        self.send(stream.topic, stream.urgency, data, held_s=held)
+
+    def fill(self, status):
+        """Fill a ``DiagnosticStatusWrapper`` with the figures of the link."""
+        with self.lock:
+            now, peer = self.clock(), self.peer
+            heard = peer.heard(now)
+            status.summary(status.OK if heard else status.WARN, 'linked' if heard else (
+                'the robot is not heard' if peer.silence_s(now) < 1e9 else
+                'the robot was never heard: is mhri_link running on it, and is --connect right?'))
+            status.add('round trip [ms]', '{:.1f}'.format(1000.0 * peer.round_trip_s()))
+            status.add('beats lost [%]', '{:.0f}'.format(100.0 * peer.loss()))
+            status.add('refused', self.refused)
+        for urgency, ages in sorted(self.ages().items()):
+            if ages:
+                status.add('age of {} [ms]'.format(urgency), '{:.1f} median, {:.1f} most'.format(
+                    1000.0 * ages[len(ages) // 2], 1000.0 * ages[-1]))
+        return status
+
+    def close(self):
+        """Nothing to end: the guard on the robot ends what is being driven."""
+
+
+class Listener(rospy.SubscribeListener):
+    """Calls a function when somebody begins or ends to listen."""
+
+    def __init__(self, call):
+        super().__init__()
+        self._call = call
+
+    def peer_subscribe(self, *_):
+        """Somebody listens."""
+        self._call()
+
+    def peer_unsubscribe(self, *_):
+        """Somebody has ended to."""
+        self._call()

@@ -1,0 +1,199 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The robot's side of the link, on the robot's own master."""
+import rospy
+
+from mhri.core.link.carried import (
+    DOWN, FRAME_NAMES, full_topic, GUARD_COMMAND, Pace, TF, TF_STATIC, up_streams, worth_carrying)
+from mhri.core.link.frames import About, pack_about
+from mhri.core.link.peer import may_pass
+from mhri.core.link.renaming import first_text, renamer, rewritten, Transforms
+from mhri.core.robots.robot_types import resolve_robot_type
+from mhri.ros.graph.master_api import MasterApi, MasterError
+from mhri.ros.graph.subscription import Subscription
+from mhri.ros.link.side import Side
+from mhri.ros.messages import bytes_of, message_class
+
+PARAMETERS = ('robot_type', 'robot_model', 'mhri')
+LOOK_S = 1.0
+# What nobody on the host listens to any more stays subscribed for a while [s].
+LINGER_S = 5.0
+LATCHED_S = 1.0
+
+
+class Carried:
+    """One stream while somebody on the host listens to it.
+
+    :param stream: :class:`mhri.core.link.carried.Stream`
+    :param send: called with (stream, bytes, number of names in it)
+    """
+
+    def __init__(self, namespace, stream, rename, send, clock):
+        self.wanted_at = clock()
+        self.stream = stream
+        self._send = send
+        self._clock = clock
+        self._pace = Pace(stream.rate_hz)
+        self._newest = None
+        self._sent_at = clock()
+        self._transforms = None
+        if stream.topic in (TF, TF_STATIC):
+            self._transforms = Transforms(rename, stream.latched)
+        self._subscription = Subscription(full_topic(namespace, stream.topic), self._hear)
+
+    def _hear(self, kind, data):
+        """Send a message on, or keep it for the next time (on rospy's thread)."""
+        if self._transforms is not None:
+            try:
+                self._transforms.add(bytes(data))
+            except ValueError as error:
+                rospy.logwarn_throttle(10.0, '{}: {}'.format(self.stream.topic, error))
+                return
+        elif self.stream.latched:
+            self._newest = bytes(data)
+        now = self._clock()
+        if self._pace.lets(now):
+            self._go(kind, bytes(data), now)
+
+    def _go(self, kind, data, now):
+        if self._transforms is not None:
+            data = self._transforms.take()
+        if data is not None:
+            self._sent_at = now
+            self._send(self.stream, data, FRAME_NAMES.get(kind, 0))
+
+    def again(self, now):
+        """Send what is latched once more: the radio may have lost it, or somebody came later."""
+        if self.stream.latched and now - self._sent_at >= LATCHED_S:
+            self._go('', self._newest, now)
+
+    def close(self):
+        """Stop listening (blocking: it asks the master)."""
+        self._subscription.close()
+
+
+class RobotSide(Side):
+    """Sends up what is listened to on the host, and gives the guard what comes down.
+
+    Subscribes the topics of the robot's type, ``mhri_guard/echo``, ``mhri_guard/state``,
+    ``mhri_guard/dropped``, ``/tf`` and ``/tf_static`` while a node on the host listens to them.
+    Publishes ``mhri_guard/command`` (``geometry_msgs/TwistStamped``; nothing older than 0.3 s but
+    stops) and ``mhri_guard/heard`` (``std_msgs/String``), both for the guard.
+
+    :param namespace: of the robot on its own master, such as ``/bot1``, or '' for none
+    :param types: {name: RobotType}
+    :param shared: frames that keep their names
+    """
+
+    def __init__(self, name, carrier, namespace, types, shared, **options):
+        super().__init__(name, carrier, 'up', **options)
+        self.dropped = 0
+        self._namespace = namespace
+        self._types = types
+        self._rename = renamer(name, shared)
+        self._about = About({}, ())
+        self._told_at = self._looked_at = 0.0
+        self._wanted = ()
+        self._streams = {}
+        self._open = {}
+        self._publishers = {
+            stream.topic: rospy.Publisher(
+                full_topic(namespace, stream.topic), bytes_of(message_class(kind)), queue_size=10,
+                tcp_nodelay=True) for stream, kind in DOWN}
+
+    def said(self):
+        """Name what this robot says of itself."""
+        return self._about.name, ()
+
+    def on_peer(self, beat, now):
+        """Take in which topics somebody on the host listens to."""
+        wanted = ()
+        if beat.about == self._about.name:
+            wanted = tuple(self._about.topics[place][0] for place in beat.wanted
+                           if 0 <= place < len(self._about.topics))
+        elif now - self._told_at >= 0.5 and self._about.topics:
+            self._told_at = now
+            self.send_about(pack_about(self._about))
+        if wanted != self._wanted:
+            self._wanted = wanted
+            self.to_do.set()
+
+    def on_frame(self, topic, frame, now):
+        """Give the guard a command, unless it is late."""
+        publisher = self._publishers.get(topic)
+        if publisher is None:
+            return
+        age_s = self.note_age('command', frame, now)
+        if topic == GUARD_COMMAND and not may_pass(first_text(frame.body), age_s):
+            self.dropped += 1
+            return
+        message = publisher.data_class()
+        message._buff = frame.body
+        publisher.publish(message)
+
+    def work(self, now):
+        """Look at the master now and then; open and close what is listened to."""
+        if now - self._looked_at >= LOOK_S:
+            self._looked_at = now
+            try:
+                self._look()
+            except MasterError as error:
+                rospy.logdebug('%s', error)
+        with self.lock:
+            wanted = self._wanted if self.peer.heard(now) else ()
+        for topic in wanted:
+            if topic in self._open:
+                self._open[topic].wanted_at = now
+            elif topic in self._streams:
+                self._open[topic] = Carried(self._namespace, self._streams[topic], self._rename,
+                                            self._up, self.clock)
+        for topic, carried in list(self._open.items()):
+            if now - carried.wanted_at > LINGER_S:
+                del self._open[topic]
+                carried.close()
+            elif topic in wanted:
+                carried.again(now)
+
+    def _up(self, stream, data, names):
+        with self.lock:
+            if stream.topic not in self._wanted or not self.peer.heard(self.clock()):
+                return
+            try:
+                self.send(stream.topic, stream.urgency, data,
+                          lambda number: rewritten(data, number, names, self._rename))
+            except ValueError as error:
+                rospy.logwarn_throttle(10.0, '{}: {}'.format(stream.topic, error))
+
+    def _look(self):
+        """Learn the robot's type and topics; what was there once stays, whatever a master forgets.
+
+        :raises MasterError: it cannot be asked now
+        """
+        api = MasterApi(rospy.get_name(), timeout_s=1.0)
+        state, types, *found = api.call_many(
+            [('getSystemState',), ('getTopicTypes',)]
+            + [('getParam', full_topic(self._namespace, key)) for key in PARAMETERS])
+        parameters = dict(self._about.parameters)
+        parameters.update((key, value) for key, value in zip(PARAMETERS, found)
+                          if value is not None)
+        kind, errors = resolve_robot_type(self._types, self.name, parameters)
+        for error in errors:
+            rospy.logwarn_throttle(60.0, '{}'.format(error))
+        streams = {full_topic(self._namespace, stream.topic): stream
+                   for stream in up_streams(kind)}
+        own = rospy.get_name()
+        there = {streams[topic].topic for topic, nodes in state[0]
+                 if topic in streams and any(node != own for node in nodes)}
+        topics = dict(self._about.topics)
+        kinds = dict(map(tuple, types))
+        for stream in worth_carrying(list(streams.values()), there):
+            kind = kinds.get(full_topic(self._namespace, stream.topic), '')
+            if kind not in ('', '*'):
+                topics[stream.topic] = kind
+                self._streams[stream.topic] = stream
+        with self.lock:
+            self._about = About(parameters, tuple(sorted(topics.items())))
+
+    def close(self):
+        """Say nothing more; the guard ends what is being driven."""
+        rospy.loginfo('%s: %d late commands kept from the guard', self.name, self.dropped)

@@ -1,0 +1,159 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What both sides of the link do: beat, measure the other side, pack and unpack."""
+import collections
+import os
+import threading
+import time
+
+import rospy
+
+from mhri.core.link.carried import COMMAND, STATE
+from mhri.core.link.frames import (
+    Beat, FrameError, Newest, pack, pack_beat, unpack, unpack_beat)
+from mhri.core.link.peer import BEAT_S, Peer
+
+# Streams of the link itself; no topic begins with an underscore.
+BEAT, ABOUT = '_beat', '_about'
+# So many ages of each class are kept for the diagnostics.
+_AGES = 200
+
+
+def boot_clock():
+    """Return the seconds of a clock that goes on while the computer sleeps."""
+    return time.clock_gettime(time.CLOCK_BOOTTIME)
+
+
+class Side:
+    """One side of a robot's link.
+
+    :param name: the robot
+    :param carrier: :class:`mhri.ros.link.carrier.Carrier`
+    :param way: the way that this side sends, ``up`` or ``down``
+    """
+
+    def __init__(self, name, carrier, way, clock=boot_clock):
+        self.name = name
+        self.clock = clock
+        self.peer = Peer()
+        self.lock = threading.RLock()
+        # Set to beat at once, or to work at once.
+        self.to_say, self.to_do = threading.Event(), threading.Event()
+        self.refused = 0
+        self._carrier = carrier
+        self._way = way
+        self._session = int.from_bytes(os.urandom(4), 'big')
+        self._senders = {}
+        self._numbers = collections.Counter()
+        self._newest = collections.defaultdict(Newest)
+        self._ages = {}
+        self._was_heard = False
+
+    def start(self):
+        """Begin to listen and to beat; returns at once."""
+        self._carrier.listen('up' if self._way == 'down' else 'down', self._hear)
+        # Not in one thread: a master that hangs holds up the work, and must not hold up the beats.
+        for tick, asked in ((self._beat, self.to_say), (self.work, self.to_do)):
+            threading.Thread(target=self._run, args=(tick, asked), name='link',
+                             daemon=True).start()
+        return self
+
+    def send(self, topic, urgency, body, make=None, held_s=0.0):
+        """Send a message of a stream now, or drop it.
+
+        :param held_s: how old it is already [s]
+        :param make: called with the number of the message, returns what is sent instead of ``body``
+        """
+        with self.lock:
+            sender = self._senders.get(topic)
+            if sender is None:
+                sender = self._senders[topic] = self._carrier.sender(self._way, topic, urgency)
+            self._numbers[topic] += 1
+            number = self._numbers[topic]
+            sender(pack(self._session, number, self.clock() - held_s,
+                        make(number) if make else body))
+
+    def _hear(self, topic, data):
+        """Take in a message (on zenoh's thread)."""
+        now = self.clock()
+        try:
+            frame = unpack(data)
+            with self.lock:
+                if not self._newest_of(topic).takes(frame):
+                    return
+                if topic == BEAT:
+                    self._on_beat(frame, now)
+                else:
+                    self.on_frame(topic, frame, now)
+        except ValueError as error:
+            self.refused += 1
+            rospy.logwarn_throttle(1.0, '{}: refused a message of {:.60}: {}'.format(
+                self.name, topic, error))
+        except rospy.ROSException:
+            # The topics are closed while the node is being ended.
+            if not rospy.is_shutdown():
+                raise
+
+    def _newest_of(self, topic):
+        if topic not in self._newest and len(self._newest) > 300:
+            raise FrameError('too many topics')
+        return self._newest[topic]
+
+    def _on_beat(self, frame, now):
+        beat = unpack_beat(frame.body)
+        self.peer.on_beat(frame, beat, now)
+        self.on_peer(beat, now)
+
+    def note_age(self, urgency, frame, now):
+        """Return the age of a message [s], None if unknown, and keep it for the diagnostics."""
+        age_s = self.peer.age_s(frame, now)
+        if age_s is not None:
+            self._ages.setdefault(urgency, collections.deque(maxlen=_AGES)).append((now, age_s))
+        return age_s
+
+    def ages(self):
+        """Return {class: sorted ages [s] of the last 10 s} of what came in."""
+        with self.lock:
+            now = self.clock()
+            return {urgency: sorted(age_s for at, age_s in ages if now - at < 10.0)
+                    for urgency, ages in self._ages.items()}
+
+    def _run(self, tick, asked):
+        while not rospy.is_shutdown():
+            asked.wait(0.75 * BEAT_S)
+            asked.clear()
+            try:
+                tick(self.clock())
+            except Exception as error:  # without this thread the link would be dead
+                if not rospy.is_shutdown():
+                    rospy.logerr_throttle(1.0, '{}: the link failed: {!r}'.format(self.name, error))
+
+    def _beat(self, now):
+        with self.lock:
+            heard = self.peer.heard(now)
+            if heard != self._was_heard:
+                self._was_heard = heard
+                (rospy.loginfo if heard else rospy.logwarn)(
+                    '%s: the other side of the link is %s', self.name,
+                    'there' if heard else 'not heard any more')
+            self.send(BEAT, COMMAND, pack_beat(Beat(self.peer.echo(now), *self.said())))
+
+    def send_about(self, body):
+        """Send what the robot says of itself."""
+        self.send(ABOUT, STATE, body)
+
+    def on_peer(self, beat, now):
+        """Take in what the other side's beat says; under the lock."""
+        raise NotImplementedError
+
+    def on_frame(self, topic, frame, now):
+        """Take in a message of a stream; under the lock."""
+        raise NotImplementedError
+
+    def said(self):
+        """Return (about, wanted) of the next beat; under the lock."""
+        raise NotImplementedError
+
+    def work(self, now):
+        """Do what takes a while: without the lock, and on a thread of its own."""
+        raise NotImplementedError

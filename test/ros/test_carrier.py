@@ -1,0 +1,70 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What carries the link: endpoints, the library, and bytes between two sessions on loopback."""
+import importlib
+import os
+import sys
+
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from mhri.core.link.carried import COMMAND  # noqa: E402
+from mhri.ros.link import carrier  # noqa: E402
+from support.ros_system import free_port, wait_for  # noqa: E402
+
+
+@pytest.mark.parametrize('endpoint', [
+    'tcp/192.168.0.7:7447', 'udp/robot.local:7447', 'tcp/0.0.0.0:1', 'tcp/[::]:7447'])
+def test_endpoints(endpoint):
+    carrier.check_endpoints('connect', [endpoint])
+
+
+@pytest.mark.parametrize('endpoint', [
+    '192.168.0.7', 'tcp/192.168.0.7', 'http/192.168.0.7:80', 'tcp/192.168.0.7:99999', 'tcp/:7447',
+    'tcp/a b:1', 'tcp/a:1\n', 'unixsock-stream//tmp/x'])
+def test_what_is_no_endpoint_is_refused_with_the_remedy(endpoint):
+    with pytest.raises(carrier.CarrierError, match='--connect: .* such as tcp/'):
+        carrier.Carrier('bot1', connect=[endpoint])
+
+
+def test_without_the_library_it_says_what_to_do(monkeypatch):
+    def missing(name):
+        raise ImportError('No module named ' + name)
+    monkeypatch.setattr(importlib, 'import_module', missing)
+    with pytest.raises(carrier.LibraryMissing, match='mhri_run.sh.*pip3 install eclipse-zenoh=='):
+        carrier.load_library()
+
+
+def test_a_port_that_is_taken_is_named():
+    endpoint = 'tcp/127.0.0.1:{}'.format(free_port())
+    first = carrier.Carrier('bot1', listen=[endpoint])
+    try:
+        with pytest.raises(carrier.CarrierError, match='cannot listen on ' + endpoint):
+            carrier.Carrier('bot1', listen=[endpoint])
+    finally:
+        first.close()
+
+
+@pytest.mark.parametrize('protocol', ['tcp', 'udp'])
+def test_bytes_arrive_whoever_came_first(protocol):
+    """The one that calls waits for the other, finds it again, and hears its own robot alone."""
+    endpoint = '{}/127.0.0.1:{}'.format(protocol, free_port())
+    heard = []
+    host = carrier.Carrier('bot1', connect=[endpoint])
+    host.listen('up', lambda topic, data: heard.append((topic, data)))
+    try:
+        for body in (b'first run', b'second run'):
+            robot = carrier.Carrier('bot1', listen=[endpoint])
+            send = robot.sender('up', 'camera/image', COMMAND)
+            send_elsewhere = robot.sender('down', 'camera/image', COMMAND)
+
+            def arrives():
+                send_elsewhere(b'wrong way')
+                send(body)
+                return ('camera/image', body) in heard
+            wait_for(arrives, 60.0, 'bytes over ' + protocol, 0.05)
+            robot.close()
+        assert {data for _, data in heard} == {b'first run', b'second run'}
+    finally:
+        host.close()

@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws the guide's pictures that need no running system: ``guide_pictures.py <folder>``.
+
+``one.png`` is the screen with one robot and the drawer closed, ``doctor.png`` the doctor's page.
+"""
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.xvfb import start_xvfb  # noqa: E402
+
+if __name__ == '__main__' and not os.environ.get('DISPLAY'):
+    SERVER, os.environ['DISPLAY'] = start_xvfb('1600x1200x24')
+
+from python_qt_binding.QtWidgets import QApplication  # noqa: E402
+
+from mhri.core.doctor.facts import FINE, UNRESOLVED  # noqa: E402
+from mhri.core.doctor.judgement import diagnose  # noqa: E402
+from mhri.gui.doctor.doctor_page import DoctorPage  # noqa: E402
+from mhri.gui.screen import theme  # noqa: E402
+from mhri.ros.resources import resource_path  # noqa: E402
+from support import doctor_world, layout_pictures  # noqa: E402
+
+DOCTOR_SIZE, ONE_SIZE = (760, 420), (1280, 720)
+
+
+def draw_doctor(path):
+    """Draw what the doctor says of a robot whose address the host does not know."""
+    world = doctor_world.World()
+    for spoil in (doctor_world.answer(state=UNRESOLVED, host='bot1-laptop'),
+                  doctor_world.parameter(bot1={})):
+        spoil(world)
+    page = DoctorPage()
+    theme.apply(page, theme.DARK)
+    page.setContentsMargins(8, 8, 8, 8)
+    page.resize(*DOCTOR_SIZE)
+    # What is fine with this computer is invented, and says little.
+    page.show_findings([item for item in diagnose(
+        world.facts(), doctor_world.TYPES, doctor_world.IGNORE)
+        if item.severity != FINE or item.about != 'this computer'], 0.4)
+    page.show()
+    QApplication.processEvents()
+    page.grab().save(path)
+
+
+def draw_one(application, path):
+    """Draw the screen with one robot: a picture that is bound by its height."""
+    layout_pictures.Scene.frames = layout_pictures.frames()
+    scene = layout_pictures.Scene(application, resource_path(), ONE_SIZE, 1)
+    scene.screen.drawer_button.setChecked(False)
+    scene.show().grab().save(path)
+
+
+def main(folder):
+    """Draw all of them, in the style that needs no desktop."""
+    application = QApplication([sys.argv[0], '-style', 'Fusion'])
+    draw_doctor(os.path.join(folder, 'doctor.png'))
+    draw_one(application, os.path.join(folder, 'one.png'))
+
+
+if __name__ == '__main__':
+    main(sys.argv[1])
+    if 'SERVER' in globals():
+        SERVER.terminate()

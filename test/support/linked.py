@@ -1,0 +1,136 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A host and a robot on masters of their own, linked by mhri_link, and an operator of the test's.
+
+The robot is witnessed on its own master, by a process there: what the host sees proves nothing
+while the link is down.
+"""
+import collections
+import sys
+import threading
+import time
+
+import psutil
+
+from support.ros_system import free_port, System, wait_for
+
+# Slow computers start slowly.
+LONG_S = 90.0
+OBSERVER = '''
+import os, time, rospy
+from nav_msgs.msg import Odometry
+def moved(m):
+    t = m.twist.twist
+    os.write(1, b'%.4f %.4f %.4f\\n' % (time.monotonic(), t.linear.x, t.angular.z))
+rospy.init_node('observer')
+rospy.Subscriber('/bot1/odom', Odometry, moved, queue_size=10, tcp_nodelay=True)
+rospy.spin()
+'''
+
+
+class Operator:
+    """Selects bot1 and holds a stick, on threads of its own."""
+
+    def __init__(self):
+        import rospy
+        from mhri.msg import ControlMode, RobotSelect
+        from support.robots import Stick
+        self.stick = Stick()
+        self._mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=1, latch=True)
+        self._select = rospy.Publisher('/robot_controller/robot_select', RobotSelect,
+                                       queue_size=1, latch=True)
+        self._mode.publish('pedal')
+        threading.Thread(target=self._run, args=(rospy.is_shutdown,), daemon=True).start()
+
+    def _run(self, ended):
+        while not ended():
+            self._select.publish(['bot1'])
+            time.sleep(0.3)
+
+
+class Linked:
+    """The two systems; ``protocol`` is ``tcp`` or ``udp``."""
+
+    def __init__(self, protocol='tcp'):
+        self._states = collections.deque(maxlen=1)
+        self.host = System()
+        self.robot = System(adopt=False)
+        self.endpoint = '{}/127.0.0.1:{}'.format(protocol, free_port())
+        for system in (self.host, self.robot):
+            system.start_master()
+        self.robot.launch('turtlebot.launch', 'name:=bot1', 'type:=turtlebot3_waffle', 'x:=2.0',
+                          'y:=1.5')
+        self.link_of_robot = self.robot.launch(
+            'link.launch', 'side:=robot', 'name:=bot1', 'listen:=' + self.endpoint)
+        self.observer = self.robot.start(sys.executable, '-c', OBSERVER)
+        self.host.node('mux', '__name:=mux')
+        self.host.node('gates')
+        self.link_of_host = self.start_host_side()
+
+    def start_host_side(self):
+        """Start the host's side; it is one process, so that it can be killed."""
+        self.link_of_host = self.host.node('mhri_link', '--side', 'host', '--name', 'bot1',
+                                           '--connect', self.endpoint, '__ns:=/bot1')
+        return self.link_of_host
+
+    def node_of_robot(self):
+        """Return the process of the robot's side, which roslaunch starts again if it is killed."""
+        def find():
+            for child in psutil.Process(self.link_of_robot.pid).children():
+                try:
+                    if any(part.endswith('/mhri_link') for part in child.cmdline()):
+                        return child
+                except psutil.NoSuchProcess:
+                    pass
+            return None
+        return wait_for(find, LONG_S, 'the side of the robot')
+
+    def watch_gates(self):
+        """Begin to read /gates/state, for :meth:`gate`."""
+        import rospy
+        from mhri.msg import GatesState
+        rospy.Subscriber('/gates/state', GatesState, self._states.append, queue_size=1)
+
+    def gate(self):
+        """Return what the gates said last of bot1."""
+        return wait_for(lambda: next((gate for gate in (
+            self._states[-1].robots if self._states else ()) if gate.name == 'bot1'), None),
+            LONG_S, 'the gates to know bot1')
+
+    def rows(self):
+        """Return what the robot did, by its own odometry: (time, m/s, rad/s) in a list."""
+        with open(self.observer.log) as log:
+            rows = [line.split() for line in log.read().splitlines()[-400:]]
+        return [tuple(map(float, row)) for row in rows if len(row) == 3]
+
+    def moves(self):
+        """Tell whether the robot moves now."""
+        rows = self.rows()
+        return bool(rows) and time.monotonic() - rows[-1][0] < 0.5 and abs(rows[-1][2]) > 0.05
+
+    def stood_at(self, since):
+        """Return when it began to stand still for three readings in a row, None if it moves."""
+        rows = [row for row in self.rows() if row[0] >= since]
+        for index in range(len(rows) - 2):
+            if all(abs(row[1]) < 0.01 and abs(row[2]) < 0.02 for row in rows[index:index + 3]):
+                return rows[index][0]
+        return None
+
+    def drive(self, operator, timeout_s=LONG_S):
+        """Turn the robot on the spot; the gates ask for neutral first."""
+        def through():
+            operator.stick.hold(0.0, 0.0)
+            time.sleep(0.15)
+            operator.stick.hold(0.0, 0.4)
+            deadline = time.monotonic() + 0.8
+            while time.monotonic() < deadline:
+                if self.moves():
+                    return True
+                time.sleep(0.02)
+            return False
+        wait_for(through, timeout_s, 'bot1 to move')
+
+    def close(self):
+        """End both systems."""
+        self.robot.close()
+        self.host.close()
