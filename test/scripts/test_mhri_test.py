@@ -66,6 +66,10 @@ def package(tmp_path_factory):
     shutil.copy(str(REPO / 'plugin.xml'), str(made.root))
     made.environment['DISPLAY'] = ''
     made.environment['CI'] = 'true'
+    # The library of the link, which the small tests do not need.
+    library = re.search('eclipse-zenoh==[0-9.]+', (REPO / 'utils/host/common.sh').read_text())
+    (made.root / 'build/.ws/link').mkdir(parents=True)
+    (made.root / 'build/.ws/link/installed').write_text(library.group())
     write_tests(made, SMALL_TESTS)
     return made
 

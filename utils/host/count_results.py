@@ -58,10 +58,12 @@ def failed_files(folder):
 def target_of(path):
     """Return the make target, without its prefix, that writes a result file; None: not again."""
     name = os.path.basename(path)[:-len('.xml')]
-    found = re.match('(?:MISSING-)?pytest-((?:scripts|faults)_(?:calm|timed)|gui|bench)-(test_.+)$', name)
+    if name.startswith('MISSING-'):
+        name = name[len('MISSING-'):]
+    found = re.match('pytest-((?:scripts|faults)_(?:calm|timed)|gui|bench)-(test_.+)$', name)
     if found:
         return '{}_{}'.format(*found.groups())
-    found = re.match('(?:MISSING-)?(?:rosunit-|rostest-test_rostest_)(.+)$', name)
+    found = re.match('(?:rosunit-|rostest-test_rostest_)(.+)$', name)
     if found:
         return 'rostest_test_rostest_{}.test'.format(found.group(1))
     return None

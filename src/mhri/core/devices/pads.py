@@ -3,7 +3,7 @@
 """Which of several pads to use, and which profile says what its axes mean."""
 from collections import Counter
 from dataclasses import dataclass, replace
-from typing import Iterable, List, Optional, Sequence, Tuple
+from typing import Dict, Iterable, List, Optional, Sequence, Tuple
 
 from mhri.core.config import ConfigError
 from mhri.core.driving.profile import Profile, parse_profile
@@ -120,11 +120,11 @@ def tell_apart(pads: Iterable[PadInfo]) -> List[PadInfo]:
     """
     pads = list(pads)
     names = Counter(pad.name for pad in pads)
-    seen: Counter[str] = Counter()
+    seen: Dict[str, int] = {}
     told = []
     for pad in pads:
         label = pad.full_name if names[pad.name] > 1 else pad.name
-        seen[label] += 1
+        seen[label] = seen.get(label, 0) + 1
         told.append(replace(pad, label='{} ({})'.format(label, seen[label])
                             if seen[label] > 1 else label))
     return told
