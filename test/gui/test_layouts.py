@@ -179,6 +179,22 @@ def test_after_a_stop_every_edge_says_so_whatever_else_is_wrong(scene):
         assert colour_at(pixels, tile, screen, 1, tile.height() // 2) == ink.getRgb()[:3], name
 
 
+@pytest.mark.parametrize('size', [(1024, 600), SMALL, LARGE])
+def test_no_switch_of_a_tile_is_clipped(scene, size):
+    made = scene(size, 3, **KINDS['group'])
+    made.screen.drawer_button.setChecked(size == LARGE)
+    made.show()
+    tile = made.tiles['bot1']
+    tile.offer({'rgb', 'depth', 'scan', 'imu', 'cloud', 'record'})
+    tile.views_button.click()
+    made.show()
+    switches = visible(tile.switches, QAbstractButton)
+    assert len(switches) == 6
+    for switch in switches:
+        assert switch.width() >= switch.sizeHint().width(), switch.text()
+        assert switch.visibleRegion().boundingRect() == switch.rect(), switch.text()
+
+
 def test_the_one_looked_at_is_marked(scene):
     made = scene(SMALL, 3)
     screen = made.show()

@@ -336,6 +336,9 @@ def test_the_words_of_the_bottom_line_give_way(operator, width, shown):
     button.show_headline(Headline('bot1 lost while driven 14:02:06 (2 more)', ALARM), 3)
     button.resize(width, 40)
     assert button.shown_text() == shown
+    button.resize(130, 40)
+    button.show_headline(Headline('bot1 lost while driven 14:02:06', ALARM), 1)
+    assert button.shown_text() == '1 event'
     button.show_headline(Headline('', CALM), 0)
     assert button.shown_text() == 'Events' and button.minimumSizeHint().width() <= 130
 

@@ -78,6 +78,8 @@ ROBOT_CASES = {
     'charge_unknown': ([{'battery': None}], None, ''),
     'no_number': ([{'battery': float('nan')}], None, ''),
     'bad_link': ([{'figures': BAD}], 'quality.bad', 'bad link: slow link: 900 ms round trip'),
+    'losing_link': ([{'figures': LinkFigures(loss=0.06)}], 'quality.bad',
+                    'bad link: 6 % of its messages lost'),
     'good_link': ([{'figures': BAD}, {'figures': LinkFigures()}], 'quality.good',
                   'the link is good again'),
     'guarded': ([{'guarded': True}], None, ''),

@@ -13,6 +13,7 @@ import time
 
 from python_qt_binding.QtCore import QObject, QPoint, Qt, QTimer
 
+from mhri.core.screen.view_rows import PICTURES, RGB
 from mhri.core.screen.views import LIVE, PROOF_STOPPED
 from mhri.gui.driving.hands import CENTRE, DemoFailed, Errand, Grip, Hands, READY
 from mhri.gui.screen.stale_cover import StaleCover
@@ -124,6 +125,12 @@ class Demo(QObject):
         return lambda: not any(cover.isVisible() for cover in
                                self._program.host.screen.findChildren(StaleCover))
 
+    def _pictures_there(self):
+        """Return a condition: a picture has come in every tile that shows one."""
+        return lambda: all(tile.view(RGB).picture.frame is not None
+                           for tile in self._program.host.windows.values()
+                           if tile.shown() & PICTURES)
+
     def _travelled(self, name, metres):
         """Return a condition: the robot has driven this far from here."""
         begun = self._diary.robots[name]['path']
@@ -158,6 +165,7 @@ class Demo(QObject):
         hands.click('camera_depth', host.windows[one])
         hands.click('camera_rgb', host.windows[two])
         self._say('selected {} and {}: driving both'.format(one, two))
+        yield 'the pictures to come', self._pictures_there()
         yield 'the panel to be ready', self._reads(READY)
         yield '{} and {} to move'.format(one, two), self._hold(
             0.4, 0.0, self._both(self._travelled(one, 0.25), self._moves(one, two)))

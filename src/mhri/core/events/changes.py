@@ -156,7 +156,8 @@ class RobotChanges:
         """Report a link that is bad, or good again."""
         warning = link_warning(view.figures)
         if self._bad.take(bool(warning), BAD_LINK_S if warning else GOOD_LINK_S, now):
-            yield ('quality.bad', 'bad link: ' + warning) if warning else \
+            words = 'bad link: ' + warning.replace('bad link: ', '')
+            yield ('quality.bad', words) if warning else \
                 ('quality.good', 'the link is good again')
 
     def _see_power(self, view: RobotView) -> _Told:

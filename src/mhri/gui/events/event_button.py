@@ -43,7 +43,8 @@ class EventButton(QPushButton):
         if (text, headline.severity) == (self.text(), self._severity):
             return
         self._severity = headline.severity
-        self._texts = (text, text.partition(' (')[0], '{} events'.format(count)) \
+        number = '{} event{}'.format(count, '' if count == 1 else 's')
+        self._texts = (text, text.partition(' (')[0], number) \
             if headline.severity != CALM else (text,)
         self.setText(text)
         self.setToolTip(plain_tip(text))
