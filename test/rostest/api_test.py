@@ -19,13 +19,8 @@ from support.ros_system import System, wait_for  # noqa: E402
 INPUTS = ('mhri_joy', 'mhri_pedal', 'mhri_voice')
 # Behind what is installed: the message that takes the power from a TurtleBot2's motors.
 MESSAGES = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'support', 'messages')
-<<<<<<< HEAD
-SERVICES = {'end': 'mhri/EndTask', 'set_suspended': 'mhri/SetSuspended',
-            'take_control': 'std_srvs/Trigger',
-=======
 SERVICES = {'end': 'mhri/EndTask',
             'set_suspended': 'mhri/SetSuspended', 'take_control': 'std_srvs/Trigger',
->>>>>>> h-demo12
             'set_place': 'mhri/SetPlace', 'fit_place': 'mhri/FitPlace',
             'set_fence': 'mhri/SetFence', 'set_mark': 'mhri/SetMark'}
 EVERYWHERE = ('/rosout', '/clock')

@@ -89,11 +89,7 @@ def _middle(values: Values) -> Pose:
 
 
 def slots(values: Values, count: int, _: Where) -> Corners:
-<<<<<<< HEAD
-    """Return where the robots of a team end [m]; none by odometry, where each has its own."""
-=======
     """Return where the robots of a team end [m]; none by odometry: each has its own."""
->>>>>>> h-demo12
     return () if values.by_odometry() else tuple(
         spread(_middle(values), number) for number in range(count))
 
