@@ -196,7 +196,8 @@ class WherePlaced(unittest.TestCase):
         wait_until(lambda: rospy.get_param('/mhri_tasks/kept', {}).get('fence')
                    and 'bot5' in rospy.get_param('/mhri_tasks/kept')['hand'], 'not kept', 30.0)
         killed = [process for process in psutil.process_iter(['cmdline'])
-                  if '__name:=mhri_tasks' in (process.info['cmdline'] or ())]
+                  if '__name:=mhri_tasks' in (process.info['cmdline'] or ())
+                  and os.environ['ROS_MASTER_URI'] == process.environ().get('ROS_MASTER_URI')]
         for process in killed:
             process.kill()
         psutil.wait_procs(killed, 30.0)
