@@ -3,6 +3,7 @@
 """The doctor examines its own computer: variables, addresses, folders, packages."""
 import importlib.util
 import os
+import shutil
 import socket
 import threading
 import time
@@ -20,6 +21,7 @@ from mhri.core.recording.recording import ros_home
 _MODULES = {'python3-evdev': 'evdev', 'python3-numpy': 'numpy', 'python3-opencv': 'cv2',
             'python3-pygame': 'pygame', 'python3-pyqtgraph': 'pyqtgraph', 'python3-yaml': 'yaml'}
 _LIBRARIES = {'libturbojpeg': jpeg.available}
+_PROGRAMS = ('openssl',)
 # Optional: without rqt the panel has its own window; only a TurtleBot 2 runs nodelets.
 _OPTIONAL = ('nodelet', 'rqt_gui', 'rqt_gui_py')
 
@@ -143,6 +145,8 @@ def _packages(package_path):
         module = _MODULES.get(name)
         if name in _LIBRARIES:
             found[name] = '' if _LIBRARIES[name]() else 'the library cannot be loaded'
+        elif name in _PROGRAMS:
+            found[name] = '' if shutil.which(name) else 'the program is not installed'
         elif module is not None:
             found[name] = '' if _has_module(module) else \
                 'no Python module "{}"'.format(module)
