@@ -66,7 +66,7 @@ def main():
     if rospy.get_namespace() == '/':
         # Started by hand. On the host it has to be a node of the robot; rospy knows its namespace
         # from the start only.
-        os.execv(sys.executable, [sys.executable] + sys.argv + ['__ns:=/' + options.name])
+        os.execv(sys.argv[0], sys.argv + ['__ns:=/' + options.name])
     rospy.init_node('mhri_link', disable_rostime=True)
     log.install()
     try:
