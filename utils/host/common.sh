@@ -146,10 +146,10 @@ install_missing() {
 install_link() {
   local library=eclipse-zenoh==1.5.1
   [ "$(cat "$WS/link/installed" 2>/dev/null)" != "$library" ] || return 0
-  python3 -m pip --version >/dev/null 2>&1 || install_packages python3-pip
+  python3 -I -m pip --version >/dev/null 2>&1 || install_packages python3-pip
   mkdir -p "$WS"
   say "installing with pip, in $WS/link: $library"
-  python3 -m pip install --quiet --disable-pip-version-check --no-deps --upgrade \
+  python3 -I -m pip install --quiet --disable-pip-version-check --no-deps --upgrade \
     --target "$WS/link" "$library" ||
     die "pip could not install $library, which mhri_link needs: see its message above"
   printf '%s' "$library" >"$WS/link/installed"
