@@ -6,6 +6,7 @@ import time
 import traceback
 
 import pytest
+from python_qt_binding.QtGui import QFontMetricsF
 from python_qt_binding.QtWidgets import QApplication, QPushButton, QVBoxLayout, QWidget
 
 from mhri.gui.screen import theme
@@ -104,6 +105,24 @@ def test_it_lies_over_everything_and_lets_clicks_through(window, operator, heard
     assert cover.geometry() == window.rect()
     cover.drawn()
     assert not cover.isVisible(), 'at once: it would say what is not so'
+
+
+def test_its_words_are_whole_over_a_small_tile(window, operator):
+    clock = Clock()
+    cover = StaleCover(window, clock)
+    cover.drawn()
+    clock.now += 3.2
+    window.resize(240, 240)
+    cover.look()
+    operator.settle()
+    unit = cover.fontMetrics().height()
+    rows = cover._rows(unit)
+    assert [line for _, _, line in rows] == cover.texts()
+    for font, room, line in rows:
+        words = max(QFontMetricsF(font).horizontalAdvance(word) for word in line.split())
+        assert words <= room.width() and room.right() <= cover.width(), line
+    assert rows[1][1].top() >= rows[0][1].bottom() and rows[1][1].bottom() < cover.height()
+    cover.end()
 
 
 class Failing(QWidget):

@@ -4,7 +4,7 @@
 import time
 
 from python_qt_binding.QtCore import QEvent, QRectF, Qt, QTimer
-from python_qt_binding.QtGui import QPainter, QPalette, QPen
+from python_qt_binding.QtGui import QFontMetricsF, QPainter, QPalette, QPen
 from python_qt_binding.QtWidgets import QWidget
 
 from mhri.core.screen.text import tidy_text
@@ -16,6 +16,8 @@ OLD_AFTER_S = 0.6
 # A part that could not be painted is told for so long after the last time.
 SLIP_SHOWN_S = 2.0
 _HATCH_UNITS = 3.0
+_WRAPPED = int(Qt.AlignLeft | Qt.AlignTop | Qt.TextWordWrap)
+_MOST_PX = 10000.0
 
 
 class StaleCover(QWidget):
@@ -109,8 +111,8 @@ class StaleCover(QWidget):
         step = max(8, round(_HATCH_UNITS * unit))
         for x in range(-self.height(), self.width(), step):
             painter.drawLine(x, self.height(), x + self.height(), 0)
-        lines = self.texts()
-        band = QRectF(0, 0, self.width(), (len(lines) + 1.6) * 1.2 * unit)
+        rows = self._rows(unit)
+        band = QRectF(0, 0, self.width(), rows[-1][1].bottom() + 0.5 * unit)
         painter.fillRect(band, self.palette().color(QPalette.Window))
         painter.setPen(QPen(ink, 4))
         painter.drawRect(QRectF(self.rect()).adjusted(2, 2, -2, -2))
@@ -119,9 +121,20 @@ class StaleCover(QWidget):
         theme.paint_sign(painter, QRectF(unit, 0.6 * unit, side, side), theme.OCTAGON, ink,
                          self.palette().color(QPalette.Window))
         painter.setPen(theme.colour(theme.TEXT, self.palette()))
-        for row, line in enumerate(lines):
-            painter.setFont(theme.larger(self.font(), 1.3 if row == 0 else 1.0, bold=row == 0))
-            room = QRectF(4 * unit, (0.5 + 1.2 * row) * unit, self.width() - 5 * unit, 1.6 * unit)
-            painter.drawText(room, int(Qt.AlignLeft | Qt.AlignVCenter | Qt.TextSingleLine),
-                             painter.fontMetrics().elidedText(line, Qt.ElideRight,
-                                                              int(room.width())))
+        for font, room, line in rows:
+            painter.setFont(font)
+            painter.drawText(room, _WRAPPED, line)
+
+    def _rows(self, unit):
+        """Return (font, where, text) of each line, below each other, broken where it is narrow."""
+        found, top, width = [], 0.6 * unit, self.width() - 5.0 * unit
+        for row, line in enumerate(self.texts()):
+            font = theme.larger(self.font(), 1.3 if row == 0 else 1.0, bold=row == 0)
+            metrics = QFontMetricsF(font)
+            if row > 1:
+                # Why it failed is for whoever mends it: it is in the log, too.
+                line = metrics.elidedText(line, Qt.ElideRight, width)
+            room = metrics.boundingRect(QRectF(4 * unit, top, width, _MOST_PX), _WRAPPED, line)
+            found.append((font, QRectF(4 * unit, top, width, room.height() + 1.0), line))
+            top += room.height() + 0.2 * unit
+        return found
