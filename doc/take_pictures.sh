@@ -12,7 +12,7 @@ unset DISPLAY WAYLAND_DISPLAY
 "$here/../utils/host/mhri_run.sh" --demo --screenshot "$folder/screen.png"
 mkdir -p "$here/images"
 mv "$folder/screen.png" "$here/images/screen.png"
-for name in panel bot_window depth stopped map; do
+for name in bot_window depth stopped map; do
   mv "$folder/screen_$name.png" "$here/images/$name.png"
 done
 (
