@@ -114,6 +114,16 @@ def test_a_bend_out_of_sight_is_driven_more_slowly():
     assert 0.0 < found.linear_mps < 0.6
 
 
+@pytest.mark.parametrize('degrees, all_round', [
+    (360, True), (355, True), (353, False), (57, False), (0, False)])
+def test_who_looks_all_round_is_not_asked_for_each_way(degrees, all_round):
+    assert sector(degrees).all_round == all_round
+    if all_round:
+        angles = np.linspace(-math.pi, math.pi, 721)
+        assert sector(degrees).faces(np.column_stack((np.cos(angles), np.sin(angles)))).all()
+    assert not sector(degrees, looked=np.ones(61, dtype=bool)).all_round
+
+
 def test_where_it_looked_turns_with_the_robot():
     seen = Surroundings()
     seen.see(sector(57), Pose(0.0, 0.0, 0.0))

@@ -63,6 +63,12 @@ class Scan:
     mount: Pose = _HERE
     looked: Optional[np.ndarray] = None
 
+    @property
+    def all_round(self) -> bool:
+        """Whether its beams leave no gap that anything could hide in."""
+        return self.looked is None and (
+            abs(self.step) * len(self.ranges) + 2.0 * _GAP_RAD >= 2.0 * math.pi)
+
     def points(self) -> np.ndarray:
         """Return what was met as an array (n, 2) in the robot's frame [m]."""
         met = np.isfinite(self.ranges)
@@ -135,6 +141,8 @@ class Surroundings:
         if self._newest is None:
             return lambda points: np.zeros(len(points), dtype=bool)
         scan, seen_from = self._newest
+        if scan.all_round:
+            return everywhere
         return lambda points: scan.faces(_into(seen_from, _out_of(odometry, points)))
 
 
@@ -217,6 +225,8 @@ def seen_speed(velocity: Velocity, radius_m: float, delay_s: float, looks: Looks
     Not at all where nothing looks ahead; a crawl where nothing looks back, to get away by.
     """
     speed = velocity.linear_mps
+    if looks is everywhere:
+        return speed
     least = 0.0 if speed > 0.0 else max(speed, -CRAWL_MPS)
     for share in _SLOWER:
         slower = Velocity(share * speed, velocity.angular_rad_s)
