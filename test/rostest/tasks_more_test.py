@@ -15,7 +15,7 @@ import unittest
 
 import actionlib
 from geometry_msgs.msg import Point32, Pose2D, PoseStamped, Twist
-from move_base_msgs.msg import MoveBaseAction, MoveBaseResult
+from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseResult
 from nav_msgs.msg import Odometry
 import psutil
 import rosbag
@@ -282,6 +282,23 @@ class TasksMore(unittest.TestCase):
             finally:
                 for process in hung:
                     process.resume()
+
+    def test_a_goal_that_somebody_sends_under_stop_all_or_to_a_checked_robot_ends(self):
+        anybody = rospy.Publisher('/bot3/move_base/goal', MoveBaseActionGoal, queue_size=1)
+        wait_until(anybody.get_num_connections, 'its navigation does not listen', 60.0)
+        for what, ends in (('stop-all', lambda: self.set_stop(True)),
+                           ('checked', lambda: self.operator.check('bot3'))):
+            self.setUp()
+            ends()
+            self.state.wait_robot('bot3', lambda gate: gate.obeys or gate.stands, what, 60.0)
+            self.commands.wait_silence(1.2, 60.0)
+            since = time.monotonic()
+            anybody.publish(MoveBaseActionGoal())
+            self.commands.wait(moves, since, 60.0)
+            wait_until(lambda: not self.navigation.goals, what + ': its navigation goes on', 60.0)
+            self.commands.wait_silence(1.2, 60.0)
+            last = [item for item in self.commands.since(since) if moves(item.value)][-1]
+            measured('{}, a goal of somebody: drove for'.format(what), last.at - since)
 
     def test_when_mhri_tasks_is_killed_the_next_one_cancels_its_goals(self):
         self.sent()

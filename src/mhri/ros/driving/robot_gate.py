@@ -19,10 +19,10 @@ from mhri.msg import RobotGate as RobotGateMessage
 from mhri.ros.convert import to_twist
 from mhri.ros.driving.brake_eye import BrakeEye
 from mhri.ros.driving.motor_power import MotorPower
-from mhri.ros.driving.own_navigation import OwnNavigation
 from mhri.ros.graph.rospy_inside import (
     listeners, PromptPublisher, publisher_uri, unsubscribe)
 from mhri.ros.robots.link_probe import LinkProbe
+from mhri.ros.robots.own_navigation import OwnNavigation
 
 # A link that has confirmed nothing for this long is lost: the robot is held, with one zero behind
 # the little still on its way. Before that (from 0.1 s on) only zeros are written into it.
@@ -46,7 +46,7 @@ class RobotGate:
     ``/<robot>/mhri_guard/state`` (``std_msgs/String``), which it answers by
     ``/<robot>/mhri_guard/heard`` (``std_msgs/String``). While the brake is asked for, see
     :class:`mhri.ros.driving.brake_eye.BrakeEye`; while the robot is checked or stopped, see
-    :class:`mhri.ros.driving.own_navigation.OwnNavigation`. Apart from its callbacks it is not
+    :class:`mhri.ros.robots.own_navigation.OwnNavigation`. Apart from its callbacks it is not
     thread-safe: hold ``lock``.
 
     :param name: the robot
@@ -225,7 +225,7 @@ class RobotGate:
 
     def send(self, velocity):
         """Publish what the rule returned (None: nothing)."""
-        self._navigation.end_while(self.rule.checked or self.rule.state == STOPPED)
+        self._navigation.end_while(self.rule.checked or self.rule.state == STOPPED, self._clock())
         if velocity is None:
             return
         if velocity.is_zero():

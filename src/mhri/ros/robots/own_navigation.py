@@ -1,13 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The end of what a robot's own navigation drives, whoever sent the goal."""
+import math
+
 from actionlib_msgs.msg import GoalID
 
 from mhri.ros.graph.rospy_inside import PromptPublisher
 
+# A goal that somebody sends meanwhile, or a navigation that starts only now, hears it so soon [s].
+AGAIN_S = 0.5
+
 
 class OwnNavigation:
-    """Cancels the goals of ``/<robot>/move_base`` when the operator alone has the robot.
+    """Cancels the goals of ``/<robot>/move_base`` while the operator alone has the robot.
 
     Publishes ``/<robot>/move_base/cancel`` (``actionlib_msgs/GoalID``) with no id and no time,
     which ends every goal (http://wiki.ros.org/actionlib/DetailedDescription). A navigation speaks
@@ -18,15 +23,15 @@ class OwnNavigation:
 
     def __init__(self, name):
         self._cancel = PromptPublisher('/{}/move_base/cancel'.format(name), GoalID)
-        self._told = ()
+        self._told_at = -math.inf
 
-    def end_while(self, ends):
-        """Let it end its goals, once, if they must end; and again if it connects only now."""
-        links = self._cancel.links() if ends else ()
-        if links is not self._told:
-            if any(all(link is not known for known in self._told) for link in links):
-                self._cancel.publish_urgent(GoalID())
-            self._told = links
+    def end_while(self, ends, now):
+        """Let it end its goals as long as they must end: at once, and twice a second."""
+        if not ends:
+            self._told_at = -math.inf
+        elif now - self._told_at >= AGAIN_S:
+            self._told_at = now
+            self._cancel.publish_urgent(GoalID())
 
     def close(self):
         """Unregister (blocking: it asks the master)."""
