@@ -159,7 +159,7 @@ class ScreenHost(QObject):
         self._mode = view.mode or self._mode
         self.screen.show_view(view)
         self._feel_losses(view)
-        self.tiles.show_view(view)
+        self.tiles.show_view(view, [name for name, _ in self._to_add])
         self.events.show(view)
         self._tell_budget()
         self.pad.show_view(view)
