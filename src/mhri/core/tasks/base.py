@@ -27,6 +27,8 @@ NOWHERE = np.zeros((0, 2))
 MOST_CORNERS = 1000
 # The parameter that every task has: see Values.team.
 TEAM = 'team'
+# Before the name of a mark: no robot's name has a space.
+MARK = 'mark '
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,8 @@ class Senses:
     ``points`` is an array (n, 2) of what its laser has met, in its own frame [m]: x ahead, y to the
     left. ``others`` are the other robots that are placed, by their names; none where it is not.
     ``fence`` is an array (n, 2) of the corners of what no task leaves, in the frame of ``pose``
-    [m], empty where there is none.
+    [m], empty where there is none. ``floor`` is where the free floor of the map ends around the
+    robot, an array (n, 2) in its own frame [m]; a task is shown it among ``points`` as well.
     """
 
     now_s: float
@@ -69,6 +72,7 @@ class Senses:
     points: np.ndarray = field(default_factory=lambda: NOWHERE)
     others: Mapping[str, Other] = field(default_factory=dict)
     fence: np.ndarray = field(default_factory=lambda: NOWHERE)
+    floor: np.ndarray = field(default_factory=lambda: NOWHERE)
 
 
 @dataclass(frozen=True)
@@ -213,7 +217,7 @@ class TaskKind:
     :param needs_place: robots have to be placed in the frame of the map; see :meth:`placed`
     :param slots: function (values, count, where) -> the place (x, y) [m] in the frame of the map of
         each of so many robots, none where nobody can tell; ``where`` returns the :class:`Pose` of a
-        robot by its name, or None. Who takes which is chosen so that their ways do not cross
+        robot by its name, of a mark by :data:`MARK` and its name, or None. Who takes which is chosen so that their ways do not cross
     """
 
     key: str

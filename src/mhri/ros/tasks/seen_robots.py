@@ -8,11 +8,13 @@ import numpy as np
 import rospy
 
 from mhri.core.robots.robot_types import resolve_robot_type
-from mhri.core.tasks.base import circles, Other, Senses
+from mhri.core.tasks.base import circles, NOWHERE, Other, Senses
 from mhri.ros.graph.look import robot_facts
 from mhri.ros.graph.master_api import MasterApi
 from mhri.ros.tasks.robot_senses import RobotSenses
 
+# Of the map no more is looked at than what a robot may have to stand before [m].
+FLOOR_M = 1.5
 NUMBERS_PARAMETER = '/mhri/robot_numbers'
 
 
@@ -89,13 +91,14 @@ class SeenRobots:
         with self._lock:
             return self._robots.get(name)
 
-    def senses(self, robot, now_s, busy, place_of, fence=()):
+    def senses(self, robot, now_s, busy, place_of, fence=(), floor=None):
         """Return the :class:`Senses` of a robot, None before it is heard.
 
         :param robot: a :class:`RobotSenses`
         :param busy: names of the robots that are on a task
         :param place_of: function from a name to its :class:`mhri.core.map.places.Place`
         :param fence: corners (x, y) [m] in the frame of the map
+        :param floor: the :class:`mhri.core.map.floor.Floor` of the map, None without one
         """
         odometry, place = robot.pose, place_of(robot.name)
         if odometry is None:
@@ -105,7 +108,8 @@ class SeenRobots:
         others = self._others(robot, busy, place_of) if placed else {}
         return Senses(now_s, pose, odometry, robot.captured(),
                       robot.points(circles(pose, others.values())), others,
-                      np.array(fence if placed else ()).reshape(-1, 2))
+                      np.array(fence if placed else ()).reshape(-1, 2),
+                      floor.edge(pose, FLOOR_M) if floor and placed else NOWHERE)
 
     def _others(self, robot, busy, place_of):
         """Return the other robots that are placed."""
