@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Where the free floor of a map ends: what no task drives over, whether a laser sees it or not."""
 import math
+from typing import Dict, Tuple
 
 import numpy as np
 
@@ -10,6 +11,8 @@ from mhri.core.robots.mocap import Pose
 
 # No two points of an edge are further apart than this [m]: no robot fits between them.
 _APART_M = 0.1
+# Edges are worked out for squares of this size, and so many are kept [m].
+_SQUARE_M, _MOST_SQUARES = 0.5, 300
 
 
 class Floor:
@@ -22,6 +25,7 @@ class Floor:
         self._free = np.pad((grid.cells < TAKEN_FROM) & (grid.cells != UNKNOWN), 1,
                             constant_values=True)
         parts = math.ceil(self._size_m / _APART_M)
+        self._known: Dict[Tuple[int, int, float], np.ndarray] = {}
         self._along = (np.arange(parts) + 0.5) / parts
 
     def edge(self, pose: Pose, within_m: float) -> np.ndarray:
@@ -31,22 +35,32 @@ class Floor:
         get away from there.
 
         :param pose: in the frame of the map
-        :param within_m: no further off than this, roughly [m]
+        :param within_m: no further ahead or aside than this [m]
         """
         cos, sin = math.cos(self._origin.heading_rad), math.sin(self._origin.heading_rad)
         gap_x, gap_y = pose.x_m - self._origin.x_m, pose.y_m - self._origin.y_m
         # Where it is in cells, those of the rim counted.
         x = (cos * gap_x + sin * gap_y) / self._size_m + 1.0
         y = (cos * gap_y - sin * gap_x) / self._size_m + 1.0
-        reach = within_m / self._size_m + 1.0
-        rows, columns = (slice(max(0, int(at - reach)), max(0, int(at + reach) + 1))
-                         for at in (y, x))
-        free = self._free[rows, columns]
-        row, column = math.floor(y) - rows.start, math.floor(x) - columns.start
-        if not (0 <= row < free.shape[0] and 0 <= column < free.shape[1] and free[row, column]):
+        height, width = self._free.shape
+        if not (0 <= y < height and 0 <= x < width and self._free[int(y), int(x)]):
             return np.zeros((0, 2))
-        return self._seen(self._sides(free) + (columns.start, rows.start), x, y,
+        seen = self._seen(self._around(x, y, within_m), x, y,
                           pose.heading_rad - self._origin.heading_rad)
+        return seen[(np.abs(seen) < within_m).all(axis=1)]
+
+    def _around(self, x: float, y: float, within_m: float) -> np.ndarray:
+        """Return all edges around the square that a place in cells lies in, (n, 2) in cells."""
+        square = max(1, round(_SQUARE_M / self._size_m))
+        key = int(x) // square, int(y) // square, within_m
+        if key not in self._known:
+            while len(self._known) >= _MOST_SQUARES:
+                del self._known[next(iter(self._known))]
+            reach = math.ceil(1.5 * within_m / self._size_m)
+            first, last = (tuple(max(0, (part + more) * square + side) for part in key[:2])
+                           for more, side in ((0, -reach), (1, reach)))
+            self._known[key] = self._sides(self._free[first[1]:last[1], first[0]:last[0]]) + first
+        return self._known[key]
 
     def _sides(self, free: np.ndarray) -> np.ndarray:
         """Return points on the sides between free and other cells, (n, 2): x, y in cells."""

@@ -25,6 +25,8 @@ ENDS = (DONE, TIMEOUT, BLOCKED, LOST, TAKEN_OVER, STOPPED, FAILED)
 
 NOWHERE = np.zeros((0, 2))
 MOST_CORNERS = 1000
+_TURNS = np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False)
+_CIRCLE = np.column_stack((np.cos(_TURNS), np.sin(_TURNS)))
 # The parameter that every task has: see Values.team.
 TEAM = 'team'
 # Before the name of a mark: no robot's name has a space.
@@ -300,12 +302,9 @@ def discs(pose: Pose, others: Iterable[Other], more_m: float) -> np.ndarray:
 
     :param more_m: they are taken for so much larger: they move
     """
-    rows = [NOWHERE]
-    turns = np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False) - pose.heading_rad
-    for x_m, y_m, radius_m in circles(pose, others):
-        rows.append((radius_m + more_m) * np.column_stack((np.cos(turns), np.sin(turns)))
-                    + (x_m, y_m))
-    return np.vstack(rows)
+    seen = np.array(circles(pose, others)).reshape(-1, 3)
+    edges: np.ndarray = seen[:, None, :2] + (seen[:, 2:] + more_m)[..., None] * _CIRCLE
+    return edges.reshape(-1, 2)
 
 
 def within(pose: Pose, other: Pose) -> Tuple[float, float]:

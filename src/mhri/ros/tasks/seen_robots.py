@@ -33,6 +33,8 @@ class SeenRobots:
         self._lock = threading.Lock()
         self._robots = {}
         self._numbers = {}
+        # (robot, its pose in the frame of the map, its rank) of all that are placed, after a look.
+        self._placed = None
 
     def know(self, names):
         """See exactly these robots (blocking: it asks the master).
@@ -73,6 +75,7 @@ class SeenRobots:
 
     def look(self):
         """Read what has come of every robot."""
+        self._placed = None
         for robot in self.all():
             robot.look()
 
@@ -113,15 +116,13 @@ class SeenRobots:
 
     def _others(self, robot, busy, place_of):
         """Return the other robots that are placed."""
-        rank, others = self._rank(robot.name), {}
-        for other in self.all():
-            place = place_of(other.name)
-            pose = place.pose(other.pose)
-            if other is not robot and pose is not None and place.is_fresh:
-                others[other.name] = Other(pose, other.name in busy
-                                           and self._rank(other.name) < rank,
-                                           other.body.radius_m)
-        return others
+        if self._placed is None:
+            self._placed = [(other, pose, self._rank(other.name)) for other, pose in (
+                (other, _pose_of(other, place_of(other.name))) for other in self.all())
+                            if pose is not None]
+        rank = self._rank(robot.name)
+        return {other.name: Other(pose, other.name in busy and number < rank, other.body.radius_m)
+                for other, pose, number in self._placed if other is not robot}
 
     def _rank(self, name):
         """Return what says who goes first: the robot's number, else that in its name."""
@@ -129,3 +130,8 @@ class SeenRobots:
         digits = re.search(r'(\d{1,9})\Z', name)
         named = int(digits.group(1)) if digits else 10 ** 9
         return (number if isinstance(number, int) else named, name)
+
+
+def _pose_of(robot, place):
+    """Return the :class:`Pose` of a robot in the frame of the map, None where it is not known."""
+    return place.pose(robot.pose) if place.is_fresh else None
