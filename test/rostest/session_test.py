@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Sessions of two simulated robots, as ``mhri_session`` records them and others read them."""
+import io
 import os
 import shutil
 import signal
@@ -12,7 +13,6 @@ import time
 import unittest
 
 import rosbag
-import rosnode
 import rospy
 import rostest
 from std_srvs.srv import SetBool, Trigger
@@ -21,7 +21,8 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 
 from mhri.core.session.folder import (  # noqa: E402
     bags_of, marks_of, read_events, read_info, robots_of)
-from mhri.msg import RobotSelect, SeenPicture, SessionEvent, SessionState  # noqa: E402
+from mhri.msg import (  # noqa: E402
+    Places, RobotSelect, SeenPicture, SessionEvent, SessionState)
 from mhri.srv import AddNote, MarkSession  # noqa: E402
 from sensor_msgs.msg import CompressedImage  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
@@ -67,10 +68,12 @@ class SessionTest(unittest.TestCase):
 
     def start(self, **parameters):
         """Start the node, and wait until it hears both robots."""
-        for name, value in dict(parameters, folder=self.home, stop_free_mb=1, warn_free_mb=1).items():
+        usual = {'folder': self.home, 'stop_free_mb': 1, 'warn_free_mb': 1}
+        for name, value in dict(usual, **parameters).items():
             rospy.set_param('/mhri_session/' + name, value)
         self.state = SessionState()
-        process = subprocess.Popen(['rosrun', 'mhri', 'mhri_session'])
+        process = subprocess.Popen(['rosrun', 'mhri', 'mhri_session'],
+                                   env=dict(os.environ, ROS_HOME=self.home))
         self.processes.append(process)
         self.service = {name: rospy.ServiceProxy('/mhri_session/' + name, kind) for name, kind in (
             ('record', SetBool), ('mark', MarkSession), ('note', AddNote), ('still', Trigger))}
@@ -91,6 +94,12 @@ class SessionTest(unittest.TestCase):
         before = self.state.messages
         wait_for(lambda: self.state.messages > before + more, PATIENCE_S, 'messages in the bags')
 
+    @staticmethod
+    def are_placed():
+        """Whether both robots are known to be somewhere on the map."""
+        places = rospy.wait_for_message('/mhri_tasks/places', Places, PATIENCE_S)
+        return {place.robot for place in places.robots if place.by} == set(ROBOTS)
+
     def events(self, folder):
         with open(os.path.join(folder, 'events.jsonl'), encoding='utf-8') as file:
             return read_events(file.read())
@@ -104,6 +113,7 @@ class SessionTest(unittest.TestCase):
         selector.publish(['bot1'])
         wait_for(lambda: any(event.kind == 'selection' for event in self.events(folder)),
                  PATIENCE_S, 'the selection among the events')
+        wait_for(self.are_placed, PATIENCE_S, 'both robots on the map')
         marked = self.service['mark']('')
         self.assertTrue(marked.success, marked.message)
         self.assertEqual(marked.id, 'm1')
@@ -118,7 +128,7 @@ class SessionTest(unittest.TestCase):
         self.assertEqual([name for name in bags if name.endswith('.active')], [])
         for name in bags:
             path = os.path.join(folder, name)
-            self.assertIn('rosbag', run('rosbag', 'info', path).lower() + 'rosbag')
+            self.assertIn('/bot1/odom', run('rosbag', 'info', path))
             with rosbag.Bag(path) as bag:
                 topics = bag.get_type_and_topic_info().topics
                 self.assertLess(bag.get_end_time() - bag.get_start_time(), 4.0)
@@ -158,7 +168,6 @@ class SessionTest(unittest.TestCase):
         told = rospy.Publisher('/panel/events', SessionEvent, queue_size=5)
         wait_for(lambda: publisher.get_num_connections() and told.get_num_connections(),
                  PATIENCE_S, 'the session hears the screen')
-        import io
         buffer = io.BytesIO()
         picture.serialize(buffer)
         topic = '/bot1/camera/rgb/image_raw/compressed'
@@ -208,9 +217,7 @@ class SessionTest(unittest.TestCase):
         run('rosbag', 'reindex', path)
         last = times_of(path, '/bot1/odom')[-1]
         print('MEASURED lost to SIGKILL: {:.2f} s'.format(killed - last))
-        self.assertLess(max(0.0, [at for at in heard if at < killed][-1] - last), 1.5)
-        os.utime(path)
-        # (rosnode cleanup, as the master does once it is named anew.)
+        self.assertLess(max(0.0, [at for at in heard if at < killed][-1] - last), 3.0)
         self.start()
         wait_for(lambda: self.state.recording, PATIENCE_S, 'it goes on')
         self.assertEqual(self.state.folder, folder)
@@ -220,25 +227,16 @@ class SessionTest(unittest.TestCase):
         self.assertTrue(any(event.data.get('lost') for event in self.events(folder)))
 
     def test_a_folder_that_takes_nothing_is_said(self):
-        """Nothing but words come of a place where no files go."""
-        self.start()
-        os.environ.setdefault('ROS_HOME', os.path.expanduser('~/.ros'))
-        rospy.set_param('/mhri_session/folder', '/proc/nowhere')
-        self.processes[-1].send_signal(signal.SIGTERM)
-        self.processes[-1].wait(PATIENCE_S)
-        self.home, home = '/proc/nowhere', self.home
-        try:
-            self.start()
-            folder = self.record()
-            self.assertFalse(folder.startswith('/proc'))
-            self.assertIn('belongs to the system', self.state.problem)
-            self.service['record'](False)
-            shutil.rmtree(folder)
-        finally:
-            self.home = home
+        """Sessions go where they usually do, and the state says so."""
+        self.start(folder='/proc/nowhere')
+        folder = self.record()
+        self.assertTrue(folder.startswith(self.home))
+        self.assertIn('belongs to the system', self.state.problem)
+        self.service['record'](False)
+        self.assertTrue(any('belongs to the system' in event.text
+                            for event in self.events(folder)))
 
 
 if __name__ == '__main__':
     rospy.init_node('session_test')
-    assert rosnode
     rostest.rosrun('mhri', 'session', SessionTest, sys.argv)
