@@ -4,8 +4,8 @@
 
 Everything here runs on the GUI thread; nothing waits.
 """
-from mhri.core.driving.sources import VIRTUAL_JOYSTICK
 from mhri.core.screen.views import ROS_CONNECTED
+from mhri.core.screen.why import VIRTUAL_JOYSTICK
 from mhri.gui.session.note_bar import NoteBar
 from mhri.gui.session.record_button import RecordButton
 from mhri.ros.session.session_client import SessionClient
@@ -44,6 +44,7 @@ class SessionHost:
         self._screen.drive_keys.command_pressed.connect(self._on_command)
         self.button.clicked.connect(self.toggle)
         self.note_bar.noted.connect(self._client.note)
+        self.note_bar.left.connect(self._screen.stage.setFocus)
         self._events.told.connect(self._client.tell)
 
     def _on_command(self, command):

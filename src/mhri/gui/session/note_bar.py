@@ -17,6 +17,8 @@ class NoteBar(QWidget):
 
     #: the mark's name and what was typed
     noted = Signal(str, str)
+    #: it had the keyboard, and has gone
+    left = Signal()
 
     def __init__(self, parent=None):
         super().__init__(parent)
@@ -93,7 +95,7 @@ class NoteBar(QWidget):
     def _leave(self):
         """Go, and give the keyboard back."""
         self._timer.stop()
-        focus = self.focusWidget()
-        if focus is not None and focus.hasFocus() and self.parentWidget() is not None:
-            self.window().setFocus()
+        had_keyboard = self.edit.hasFocus() or self.keep_button.hasFocus()
         self.hide()
+        if had_keyboard:
+            self.left.emit()
