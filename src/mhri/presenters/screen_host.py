@@ -251,7 +251,8 @@ class ScreenHost(QObject):
     def asks_before_closing(self):
         """Return what to ask before the screen is closed, '' while nothing drives or records."""
         # One that is closed must not look: it would have the seat of the one that drives now.
-        return '' if self._closed else close_question(self.operator.view().robots)
+        return '' if self._closed else close_question(
+            self.operator.view().robots, self.session.recorded)
 
     def _select(self, names):
         self.operator.select(names)

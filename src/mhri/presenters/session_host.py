@@ -55,6 +55,11 @@ class SessionHost:
         elif command == 'stills':
             self._still()
 
+    @property
+    def recorded(self):
+        """Whether the session is recorded now."""
+        return self._client.view().on
+
     def toggle(self):
         """Record the session, or end it."""
         self._client.record(not self._client.view().on)

@@ -10,7 +10,6 @@ import time
 from sensor_msgs.msg import CompressedImage
 
 
-
 class PassedOn:
     """The pictures of all cameras of one program."""
 
