@@ -11,7 +11,7 @@ from mhri.core.session.folder import (
 from mhri.ros.recording.bag_file import words_of
 
 # A recording that was killed longer ago is not gone on with [s].
-GOES_ON_S = 30.0
+GOES_ON_S = 120.0
 
 
 class SessionFolder:
