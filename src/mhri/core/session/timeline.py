@@ -14,6 +14,14 @@ _SELECTED = 'selected: '
 LEAST_JUMP_S = 0.5
 
 
+def duration_text(seconds: float) -> str:
+    """Return a time from the start, e.g. "2:11" or "1:02:11"."""
+    minutes, rest = divmod(int(max(0.0, seconds) + 1e-6), 60)
+    hours, minutes = divmod(minutes, 60)
+    return '{}:{:02d}:{:02d}'.format(hours, minutes, rest) if hours else \
+        '{}:{:02d}'.format(minutes, rest)
+
+
 @dataclass(frozen=True)
 class Tick:
     """One moment worth a jump, ``at_s`` from the start of the session.

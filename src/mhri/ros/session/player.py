@@ -19,6 +19,7 @@ from mhri.core.session.foreign import may_be_replayed
 from mhri.core.session.playing import Playing, RUN_UP_S
 from mhri.msg import ReplayState
 from mhri.ros.driving.in_force import STOP_SERVICE, TAKE_SERVICE
+from mhri.ros.tasks.tasks_client import SERVICE as TASKS_SERVICE
 from mhri.srv import (
     ControlReplay, ControlReplayRequest, ControlReplayResponse, SetPlace, SetPlaceResponse)
 
@@ -147,7 +148,8 @@ class Player:
             rospy.Service('/mhri_replay/control', ControlReplay, self._on_control),
             rospy.Service(STOP_SERVICE, SetBool, _no(SetBoolResponse)),
             rospy.Service(TAKE_SERVICE, Trigger, _no(TriggerResponse)),
-            rospy.Service('/mhri_tasks/set_place', SetPlace, _no(SetPlaceResponse))]
+            rospy.Service('/mhri_tasks/set_place', SetPlace, _no(SetPlaceResponse)),
+            rospy.Service(TASKS_SERVICE, Trigger, _no(TriggerResponse))]
 
     def start(self):
         """Begin, at the start of the session and playing; returns at once."""
