@@ -27,6 +27,7 @@ SELECTED = ((0.0, ()), (5.0, ('bot1',)), (12.0, ('bot1', 'bot2')), (50.0, ('bot2
 STOPPED = ((0.0, False), (30.0, True), (36.0, False))
 # bot2 says nothing then.
 LOST_S = (40.0, 48.0)
+ASKED_MPS = 0.1
 MARKS = ((15.0, 'm1', 'a red bag below the stairs'), (45.0, 'm2', 'smoke'))
 
 
@@ -36,7 +37,9 @@ def at(rows, time_s):
 
 
 def pose(robot, time_s):
-    """Return (x, y, yaw) of a robot [m, m, rad]."""
+    """Return (x, y, yaw) of a robot [m, m, rad]; it stands while everything is stopped."""
+    stopped_s = STOPPED[2][0] - STOPPED[1][0]
+    time_s = min(time_s, STOPPED[1][0]) + max(0.0, time_s - STOPPED[1][0] - stopped_s)
     if robot == 'bot1':
         return 0.1 * time_s, 0.0, 0.0
     return math.cos(0.1 * time_s), math.sin(0.1 * time_s), 0.0
@@ -84,7 +87,9 @@ def rows_between(begin_s, end_s):
             latched(time_s, topic, kind(at(rows, time_s)))
     for step in range(round(10 * begin_s), round(10 * end_s)):
         time_s = 0.1 * step
-        found.append((time_s, '/robot_controller/twist', Twist(), False))
+        asked = Twist()
+        asked.linear.x = 0.0 if at(STOPPED, time_s) else ASKED_MPS
+        found.append((time_s, '/robot_controller/twist', asked, False))
         if step % 5 == 0 or any(abs(time_s - since) < 0.01 for rows in (SELECTED, STOPPED)
                                 for since, _ in rows):
             latched(time_s + 0.001, '/gates/state', gates_state(time_s + 0.001))

@@ -88,7 +88,7 @@ class ReplayHost(ScreenHost):
         screen = self.screen
         screen.stop_bar.show_idle(NOTHING_DRIVES)
         screen.key_help.show_rows(REPLAY_ROWS)
-        for part in (screen.drive_side, screen.look_button, screen.add_button, screen.name_edit,
+        for part in (screen.drive_side, self.tasks.page, screen.add_button, screen.name_edit,
                      screen.remove_button, screen.all_button, screen.none_button):
             part.setEnabled(False)
 
@@ -108,7 +108,8 @@ class ReplayHost(ScreenHost):
         screen = self.screen
         screen.joystick.show_active(False)
         screen.drive_note.show_text(NOTHING_DRIVES)
-        for part in (screen.record_button, screen.all_button, screen.none_button):
+        for part in (screen.record_button, screen.all_button, screen.none_button,
+                     screen.look_button, screen.doctor_button):
             part.setEnabled(False)
         for tile in self.windows.values():
             tile.header.show_replay()

@@ -77,32 +77,36 @@ class ReplayClock:
 
     def __init__(self, real: Callable[[], float]) -> None:
         self._real = real
-        # (heard at, position, speed, what is added to be clock time, number of jumps, start)
-        self._anchor = (real(), 0.0, 0.0, 0.0, -1, 0.0)
+        # (heard at, position, the furthest, speed, what is added to be clock time, jumps, start)
+        self._anchor = (real(), 0.0, 0.0, 0.0, 0.0, -1, 0.0)
         self._last = 0.0
 
-    def hear(self, start: float, position_s: float, speed: float, jumps: int) -> None:
+    def hear(self, start: float, position_s: float, until_s: float, speed: float,
+             jumps: int) -> None:
         """Take in the player's word.
 
         :param start: of the session [s since 1970]
+        :param until_s: it goes no further than this before the next word
         :param speed: 0 while it pauses
         :param jumps: how often it has jumped; what was heard before counts no more
         """
-        offset_s, known = self._anchor[3], self._anchor[4]
+        offset_s, known = self._anchor[4:6]
         if jumps != known and position_s + offset_s < self._last:
             offset_s = self._last + _AGES_S - position_s
-        self._anchor = (self._real(), position_s, speed, offset_s, jumps, start)
+        self._anchor = (self._real(), position_s, max(position_s, until_s), speed, offset_s, jumps,
+                        start)
 
     def _now_s(self) -> float:
         """Return the position in the session."""
-        heard_at, position_s, speed, *_ = self._anchor
-        return position_s + speed * min(max(0.0, self._real() - heard_at), _TRUSTED_S)
+        heard_at, position_s, until_s, speed, *_ = self._anchor
+        return min(until_s, position_s + speed * min(
+            max(0.0, self._real() - heard_at), _TRUSTED_S))
 
     def __call__(self) -> float:
         """Return seconds that never go back."""
-        self._last = max(self._last, self._now_s() + self._anchor[3])
+        self._last = max(self._last, self._now_s() + self._anchor[4])
         return self._last
 
     def wall(self) -> float:
         """Return the time of day of the session [s since 1970]."""
-        return self._anchor[5] + self._now_s()
+        return self._anchor[6] + self._now_s()

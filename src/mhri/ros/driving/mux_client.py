@@ -51,6 +51,7 @@ class MuxClient:
         self._limits = None
         self._waits_for = None
         self._asked, self._asked_at = (0.0, 0.0), 0.0
+        self._speaks = speaks
         #: what keeps the active source from driving, as a sentence; '' for nothing
         self.advice = ''
         #: whether the dead-man buttons of pads must be held
@@ -125,7 +126,12 @@ class MuxClient:
 
     def asked(self):
         """Return what the mux commands now (m/s, rad/s); it repeats whatever is not zero."""
-        return self._asked if time.monotonic() - self._asked_at < ASKED_S else (0.0, 0.0)
+        return self._asked if not self._speaks or time.monotonic() - self._asked_at < ASKED_S \
+            else (0.0, 0.0)
+
+    def tell(self, asked, limits):
+        """Take in what the mux commanded then, and its limits (None: not known)."""
+        self._asked, self._limits = asked, limits
 
     def _on_advice(self, message):
         self.advice = tidy_text(message.data)

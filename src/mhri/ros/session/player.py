@@ -9,6 +9,7 @@ service ``/mhri_replay/control`` (``mhri/ControlReplay``). It serves the service
 knows the drive and task services, and refuses whatever they are asked: a screen then believes what
 they said when it was recorded.
 """
+import struct
 import threading
 import time
 
@@ -31,11 +32,18 @@ REPEAT_S = 0.5
 NEW_S = 2.0
 # A large one that is late by more is left out: the next one is due [s].
 LATE_S = 0.3
+# Messages of a topic may come so much later than the word of a jump [s].
+HEARD_S = 0.15
 # How much faster than in truth the run-up of a seek goes.
 RUN_UP_SPEED = 16.0
 _LARGE = frozenset(('sensor_msgs/Image', 'sensor_msgs/CompressedImage', 'sensor_msgs/PointCloud2'))
 # Screens count the age of these by the session's own time: to repeat them would make them new.
 _AGED = frozenset(('nav_msgs/Odometry', 'turtlesim/Pose', 'mhri/GatesState'))
+# Velocities are not published; these two are told as numbers in the state.
+_ASKED, _LIMITS = '/robot_controller/twist', '/mux/speed_limit'
+# A command that was not repeated for so long was over [s].
+ASKED_S = 0.3
+_TWIST = struct.Struct('<6d')
 _NS = 10 ** 9
 
 
@@ -123,6 +131,37 @@ class Stage:
                 publisher.publish(message)
 
 
+class Said:
+    """What the operator asked for, and the speed limit, at a moment of the session."""
+
+    def __init__(self):
+        self._newest = {}
+
+    @staticmethod
+    def reads(connection):
+        """Tell whether a connection's messages say it."""
+        return connection.kind == 'geometry_msgs/Twist' and connection.topic in (_ASKED, _LIMITS)
+
+    def hear(self, recorded):
+        """Take in a message."""
+        if len(recorded.data) == _TWIST.size:
+            twist = _TWIST.unpack(recorded.data)
+            self._newest[recorded.connection.topic] = recorded.time_ns, (twist[0], twist[5])
+
+    def forget(self):
+        """Forget everything: the session jumps."""
+        self._newest = {}
+
+    def asked(self, time_ns):
+        """Return (m/s, rad/s) as asked for at a time, () for nothing."""
+        at_ns, value = self._newest.get(_ASKED, (None, ()))
+        return value if at_ns is not None and 0 <= time_ns - at_ns < ASKED_S * _NS else ()
+
+    def limits(self):
+        """Return (m/s, rad/s), () if they are not known."""
+        return self._newest.get(_LIMITS, (None, ()))[1]
+
+
 class Player:
     """Plays a session on the ROS graph, in a thread of its own.
 
@@ -142,7 +181,7 @@ class Player:
         self._told = None
         self._coming = iter(())
         self._next = None
-        self._stage = Stage(kept.bags.connections(), kept.prefix)
+        self._stage, self._said = Stage(kept.bags.connections(), kept.prefix), Said()
         self._state = rospy.Publisher('/mhri_replay/state', ReplayState, queue_size=10, latch=True)
         self._services = [
             rospy.Service('/mhri_replay/control', ControlReplay, self._on_control),
@@ -216,7 +255,7 @@ class Player:
             recorded, self._next = self._next, None
             late_s = (time_ns - recorded.time_ns) / _NS / self._playing.speed
             if late_s < LATE_S or recorded.connection.kind not in _LARGE:
-                self._stage.say(recorded)
+                self._say(recorded)
         self._stage.go_to(time_ns)
         return STATE_S
 
@@ -227,18 +266,19 @@ class Player:
         """
         self._jumps += 1
         begin_s = max(0.0, position_s - RUN_UP_S)
-        self._tell(begin_s, RUN_UP_SPEED, False, settled=False)
+        self._tell(begin_s, RUN_UP_SPEED, False, position_s)
         self._stage.forget()
-        aim_ns, plays = self._ns(position_s), self._stage.plays
+        self._said.forget()
+        aim_ns, plays = self._ns(position_s), self._plays
         self._stage.go_to(aim_ns)
-        newest = self._bags.newest(aim_ns, plays)
-        for recorded in self._bags.newest(self._ns(begin_s), lambda kind: plays(kind)
-                                          and kind.kind not in _LARGE):
-            self._stage.say(recorded)
+        for recorded in self._bags.newest(self._ns(begin_s), _small(plays)):
+            self._say(recorded)
+        # By the clock of a screen this was said before what follows, even if it hears it late.
+        time.sleep(HEARD_S)
         self._run_up(begin_s, position_s)
-        for recorded in newest:
-            if recorded.connection.kind in _LARGE:
-                self._stage.say(recorded)
+        for recorded in self._bags.newest(aim_ns, lambda kind: plays(kind)
+                                          and kind.kind in _LARGE):
+            self._say(recorded)
         self._coming, self._next = self._bags.after(aim_ns, plays), None
         with self._changed:
             if self._aim is None:
@@ -247,25 +287,40 @@ class Player:
 
     def _run_up(self, begin_s, end_s):
         """Play the moment before the aim of a seek, without pictures."""
-        begun, plays = self._clock(), self._stage.plays
-        self._tell(begin_s, RUN_UP_SPEED, True, settled=False)
-        for recorded in self._bags.after(self._ns(begin_s), lambda kind: plays(kind)
-                                         and kind.kind not in _LARGE):
+        begun = self._clock()
+        self._tell(begin_s, RUN_UP_SPEED, True, end_s)
+        for recorded in self._bags.after(self._ns(begin_s), _small(self._plays)):
             if recorded.time_ns > self._ns(end_s) or self._aim is not None:
                 return
             due_s = ((recorded.time_ns - self._start_ns) / _NS - begin_s) / RUN_UP_SPEED
             wait_s = due_s - (self._clock() - begun)
             if wait_s > 0.002:
                 time.sleep(wait_s)
+            self._say(recorded)
+
+    def _plays(self, connection):
+        return self._stage.plays(connection) or self._said.reads(connection)
+
+    def _say(self, recorded):
+        if self._said.reads(recorded.connection):
+            self._said.hear(recorded)
+        else:
             self._stage.say(recorded)
 
-    def _tell(self, position_s, speed, playing, settled=True):
-        """Publish the state."""
-        self._told, self._told_at = playing if settled else None, self._clock()
+    def _tell(self, position_s, speed, playing, aim_s=None):
+        """Publish the state; ``aim_s`` is where it is on its way to, None while it is there."""
+        self._told, self._told_at = playing if aim_s is None else None, self._clock()
         self._state.publish(
             session=self._kept.name, start=rospy.Time(*divmod(self._start_ns, _NS)),
             length_s=self._playing.length_s, position_s=position_s, speed=speed, playing=playing,
-            settled=settled, jumps=self._jumps)
+            settled=aim_s is None, until_s=self._playing.length_s if aim_s is None else aim_s,
+            jumps=self._jumps, asked=self._said.asked(self._ns(position_s)),
+            limits=self._said.limits())
+
+
+def _small(wanted):
+    """Return a filter that leaves out pictures and clouds as well."""
+    return lambda connection: wanted(connection) and connection.kind not in _LARGE
 
 
 def _no(answer):

@@ -66,7 +66,9 @@ class ReplayBackend(ScreenBackend):
 
     def _on_state(self, state):
         self._state = state
-        self.clock.hear(state.start.to_sec(), state.position_s,
+        if self._mux is not None:
+            self._mux.tell(tuple(state.asked) or (0.0, 0.0), tuple(state.limits) or None)
+        self.clock.hear(state.start.to_sec(), state.position_s, state.until_s,
                         state.speed if state.playing else 0.0, state.jumps)
 
     def _on_selected(self, message):
