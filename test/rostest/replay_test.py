@@ -181,8 +181,10 @@ class ReplayTest(unittest.TestCase):
         broken = os.path.join(self.home, 'broken.bag')
         with open(broken, 'wb') as stream:
             stream.write(b'no bag')
+        empty = os.path.join(self.home, 'empty')
+        os.mkdir(empty)
         for path, words in ((os.path.join(self.home, 'nowhere'), b'no such file'),
-                            (self.home, b'there is no bag'), (broken, b'cannot be read')):
+                            (empty, b'there is no bag'), (broken, b'cannot be read')):
             done = subprocess.run([REPLAY, path], stderr=subprocess.PIPE, timeout=PATIENCE_S)
             self.assertEqual(done.returncode, 1)
             self.assertIn(words, done.stderr)
