@@ -44,9 +44,10 @@ class ScreenHost(QObject):
     """The screen, its tiles and what feeds them; rqt and the standalone window hold one each.
 
     :param operator: :class:`mhri.ros.screen.backend.ScreenBackend`, started by :meth:`start`
+    :param events: makes its :class:`mhri.presenters.event_host.EventHost`
     """
 
-    def __init__(self, operator, parent=None):
+    def __init__(self, operator, parent=None, events=EventHost):
         super().__init__(parent)
         self.operator = operator
         self._to_add = []
@@ -58,7 +59,7 @@ class ScreenHost(QObject):
         self._build()
         self.requests = RequestsHost(operator, self.screen.show_look_result, self._select,
                                      self.tiles.recording_wish, lambda: self.session.mark())
-        self.events = EventHost(operator.recordings.status, self.screen)
+        self.events = events(operator.recordings.status, self.screen)
         self.session = SessionHost(self.screen, self.events, self.tiles.save_stills)
         self.doctor = DoctorHost(operator, self.screen)
         self.pad = PadHost(operator, self.screen, parent=self)
@@ -139,7 +140,8 @@ class ScreenHost(QObject):
         self._draw_timer.start()
         self._stick_timer.start()
         self._lease_timer.start()
-        self._stop_watch.start()
+        if self.operator.speaks:
+            self._stop_watch.start()
         self.events.start()
         self.draw()
 
