@@ -30,6 +30,12 @@ Robots
                        here); beside it come five more, e.g. mhri-demo_panel.png, _bot_window,
                        _depth, _stopped and _map. What is there is overwritten.
 
+  --drill NAME         practise: starts the robots and the building of a drill, referees it, and prints
+                       and keeps what came of it. NAME: figure_of_eight, maze, search,
+                       two_corridors, lost_link, stop_in_time, or the path of a file of your own
+  --scripted           with --drill: a scripted operator drives, without a screen, then everything
+                       ends
+
   --link "NAME=ADDR..."  robots that have a ROS master of their own, e.g.
                        --link "bot1=192.168.0.7 bot2=192.168.0.8": their addresses, where mhri_link
                        runs as the operator's guide says ("Robots on a bad radio"). ADDR may also be
@@ -74,6 +80,8 @@ LINKS=()
 IP=
 MASTER=
 DEMO=false
+DRILL=
+SCRIPTED=false
 PICTURE=
 SPACE=devel
 LAUNCH_ARGS=()
@@ -94,6 +102,8 @@ parse_arguments() {
       --master) MASTER=$(value "$@"); shift ;;
       --screenshot) PICTURE=$(value "$@"); shift ;;
       --demo) DEMO=true ;;
+      --drill) DRILL=$(value "$@"); shift ;;
+      --scripted) SCRIPTED=true ;;
       --install-space) SPACE=install ;;
       -*) usage_error "there is no option $1" ;;
       *:=*) LAUNCH_ARGS+=("$1") ;;
@@ -112,6 +122,7 @@ check_arguments() {
   [ -z "$SIM_TYPES" ] || [ -n "$SIM" ] || "$DEMO" ||
     usage_error "--sim-types lists the types for the robots of --sim N: give --sim as well"
   check_links
+  check_drill
   [ -z "$IP" ] || check_ip --ip "$IP" 192.168.0.103
   [[ -z $MASTER || $MASTER =~ ^http://[A-Za-z0-9]([A-Za-z0-9.-]*)?:[0-9]{1,5}/?$ ]] ||
     usage_error "--master: '$MASTER' is not an address such as http://192.168.0.103:11311"
@@ -131,6 +142,37 @@ check_arguments() {
     [[ $arg =~ ^[a-z][a-z0-9_]*:= ]] || usage_error "'$arg' is not ARG:=VALUE"
     [[ $arg != *[[:cntrl:]]* ]] || usage_error "${arg%%:=*}: a control character is in '$arg'"
   done
+}
+
+# check_drill: a drill brings its own robots.
+check_drill() {
+  local known
+  if [ -z "$DRILL" ]; then
+    ! "$SCRIPTED" || usage_error "--scripted goes with --drill NAME"
+    return 0
+  fi
+  if "$DEMO" || [ -n "$SIM$SIM_TYPES" ]; then
+    usage_error "--drill brings its own robots: leave out --sim and --demo"
+  fi
+  [[ $DRILL != *[[:space:]\'\"]* ]] || usage_error "--drill: a space or quote is in '$DRILL'"
+  if [[ $DRILL == *.yaml ]]; then
+    [ -f "$DRILL" ] || usage_error "--drill: there is no file $DRILL"
+    DRILL=$(realpath -- "$DRILL")
+    return 0
+  fi
+  known=$(cd "$REPO/resource/drills" && printf '%s ' *.yaml)
+  [[ " $known" == *" $DRILL.yaml "* ]] ||
+    usage_error "--drill: there is no drill '$DRILL'; there are ${known//.yaml/}"
+}
+
+# choose_drill: sets robots and building to those of the drill.
+choose_drill() {
+  local lines
+  [ -n "$DRILL" ] || return 0
+  lines=$(rosrun mhri mhri_drill --arguments "$DRILL") || die "the drill $DRILL cannot be used: see above"
+  { read -r SIM; read -r SIM_TYPES; read -r PLAN; } <<<"$lines"
+  LAUNCH_ARGS+=("sim_plan:=$PLAN" "drill:=$DRILL")
+  if "$SCRIPTED"; then LAUNCH_ARGS+=("drill_args:=--scripted" gui:=none inputs:=none); fi
 }
 
 # check_links: makes an endpoint of each bare address in LINKS.
@@ -202,7 +244,7 @@ choose_address() {
     check_own_address
     return
   fi
-  if is_loopback "$master_host" || { [ -n "$SIM" ] && [ -z "$MASTER" ]; }; then
+  if is_loopback "$master_host" || { [ -n "$SIM$DRILL" ] && [ -z "$MASTER" ]; }; then
     IP=127.0.0.1
     return
   fi
@@ -347,6 +389,7 @@ main() {
   trap 'stop 130' INT
   trap 'stop 143' TERM HUP
   prepare_code
+  choose_drill
   # Again, for a machine that had no Python or no YAML before.
   check_launch_arguments
   choose_network

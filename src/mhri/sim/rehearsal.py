@@ -13,7 +13,7 @@ import numpy as np
 
 from mhri.core.drill.delay_line import DelayLine
 from mhri.core.drill.faults import FaultBook
-from mhri.core.drill.operator import RATE_HZ, ScriptedOperator, Seen
+from mhri.core.drill.operator import ahead_of, RATE_HZ, ScriptedOperator, Seen
 from mhri.core.drill.referee import Doing, Referee, TruePose
 from mhri.core.drill.results import result_of
 from mhri.sim.body import Body, Bumper
@@ -21,23 +21,9 @@ from mhri.sim.sensors import Laser
 
 STEP_S = 0.02
 SEES_EVERY, ACTS_EVERY = 5, round(1.0 / RATE_HZ / STEP_S) or 1
-# The operator looks this far to both sides for what is ahead [rad].
-AHEAD_RAD = 0.35
 PERSON_M = 0.25
 # The panel's own limits [m/s, rad/s].
 LIMITS = (0.5, 1.5)
-
-
-def ahead_of(ranges, increment_rad, front_m, range_min_m):
-    """Return the free way straight ahead [m] of a scan that begins there, from the front on.
-
-    What is nearer than the laser measures (0) counts as being there.
-    """
-    side = int(AHEAD_RAD / increment_rad)
-    near = [range_min_m if distance <= 0.0 else distance
-            for distance in (*ranges[:side + 1], *ranges[-side:])]
-    near = [distance for distance in near if distance == distance]
-    return max(0.0, min(near, default=math.inf) - front_m)
 
 
 class _Robot:

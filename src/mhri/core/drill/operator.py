@@ -23,10 +23,25 @@ ASIDE_RAD, SLOW_M = 0.7, 0.6
 LEAST_FORWARD = 0.25
 # It stops if this is nearer to the robot's front [m], and waits until it has gone.
 AHEAD_M = 0.45
+# It looks this far to both sides for what is ahead [rad].
+AHEAD_RAD = 0.35
 # Nothing heard for so long: it lets go [s].
 NOT_HEARD_S = 1.0
 # It looks and acts so often [Hz].
 RATE_HZ = 20.0
+
+
+def ahead_of(ranges: Sequence[float], increment_rad: float, front_m: float,
+             range_min_m: float) -> float:
+    """Return the free way straight ahead [m] of a scan that begins there, from the front on.
+
+    What is nearer than the laser measures (0) counts as being there.
+    """
+    side = int(AHEAD_RAD / increment_rad)
+    near = [range_min_m if distance <= 0.0 else distance
+            for distance in (*ranges[:side + 1], *ranges[-side:])]
+    near = [distance for distance in near if distance == distance]
+    return max(0.0, min(near, default=math.inf) - front_m)
 
 
 @dataclass(frozen=True)
