@@ -30,11 +30,10 @@ Robots
                        here); beside it come five more, e.g. mhri-demo_panel.png, _bot_window,
                        _depth, _stopped and _map. What is there is overwritten.
 
-  --drill NAME         practise: starts the robots and the building of a drill, referees it, and prints
-                       and keeps what came of it. NAME: figure_of_eight, maze, search,
-                       two_corridors, lost_link, stop_in_time, or the path of a file of your own
-  --scripted           with --drill: a scripted operator drives, without a screen, then everything
-                       ends
+  --drill NAME         practise: starts the robots and building of a drill; prints and keeps the result.
+                       NAME: figure_of_eight, maze, search, two_corridors, lost_link, stop_in_time,
+                       or a file of your own (.yaml)
+  --scripted           with --drill: a scripted operator drives, without a screen; then all ends
 
   --link "NAME=ADDR..."  robots that have a ROS master of their own, e.g.
                        --link "bot1=192.168.0.7 bot2=192.168.0.8": their addresses, where mhri_link
@@ -147,13 +146,10 @@ check_arguments() {
 # check_drill: a drill brings its own robots.
 check_drill() {
   local known
-  if [ -z "$DRILL" ]; then
-    ! "$SCRIPTED" || usage_error "--scripted goes with --drill NAME"
-    return 0
-  fi
-  if "$DEMO" || [ -n "$SIM$SIM_TYPES" ]; then
+  [ -n "$DRILL" ] || ! "$SCRIPTED" || usage_error "--scripted goes with --drill NAME"
+  [ -n "$DRILL" ] || return 0
+  ! "$DEMO" && [ -z "$SIM$SIM_TYPES" ] ||
     usage_error "--drill brings its own robots: leave out --sim and --demo"
-  fi
   [[ $DRILL != *[[:space:]\'\"]* ]] || usage_error "--drill: a space or quote is in '$DRILL'"
   if [[ $DRILL == *.yaml ]]; then
     [ -f "$DRILL" ] || usage_error "--drill: there is no file $DRILL"
@@ -366,6 +362,7 @@ launch() {
 check_panel() {
   local status=0
   [ ! -s "$SCRATCH/panel_status" ] || status=$(cat "$SCRATCH/panel_status")
+  [ "$status" = 0 ] || ! "$SCRIPTED" || die "the drill was not completed: see above"
   [ "$status" = 0 ] || die "the panel failed (its exit status was $status): see above"
 }
 

@@ -112,11 +112,11 @@ class Run:
         rows = look_in(self._world, time.monotonic)
         poses, others = {}, []
         for row in rows:
-            name = row['name'].decode()
+            name, x, y = row['name'].decode(), float(row['x']), float(row['y'])
             if name in self._drill.bodies:
-                poses[name] = TruePose(row['x'], row['y'], row['yaw'])
+                poses[name] = TruePose(x, y, float(row['yaw']))
             else:
-                others.append((row['x'], row['y'], row['radius']))
+                others.append((x, y, float(row['radius'])))
         return poses, others
 
     def wait_for_robots(self):
