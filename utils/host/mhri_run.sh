@@ -148,7 +148,7 @@ check_drill() {
   local known
   [ -n "$DRILL" ] || ! "$SCRIPTED" || usage_error "--scripted goes with --drill NAME"
   [ -n "$DRILL" ] || return 0
-  ! "$DEMO" && [ -z "$SIM$SIM_TYPES" ] ||
+  [ "$DEMO$SIM$SIM_TYPES" = false ] ||
     usage_error "--drill brings its own robots: leave out --sim and --demo"
   [[ $DRILL != *[[:space:]\'\"]* ]] || usage_error "--drill: a space or quote is in '$DRILL'"
   if [[ $DRILL == *.yaml ]]; then
