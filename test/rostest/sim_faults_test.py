@@ -74,8 +74,8 @@ class SimFaults(unittest.TestCase):
         return view.robots[0]
 
     def see_until(self, good, what):
-        wait_for(lambda: good(self.look()), PATIENCE_S, lambda: '{}; {}; {}'.format(what, self.look(), self.status),
-                 poll_s=0.05)
+        wait_for(lambda: good(self.look()), PATIENCE_S, lambda: '{}; {}; {}'.format(
+            what, self.look(), self.status), poll_s=0.05)
 
     def hear(self, kind):
         self.see_until(lambda _: any(change.kind.startswith(kind) for change in self.events), kind)

@@ -112,7 +112,7 @@ class Run:
         rows = look_in(self._world, time.monotonic)
         poses, others = {}, []
         for row in rows:
-            name, x, y = row['name'].decode(), float(row['x']), float(row['y'])
+            name, x, y = str(row['name'], 'ascii'), float(row['x']), float(row['y'])
             if name in self._drill.bodies:
                 poses[name] = TruePose(x, y, float(row['yaw']))
             else:

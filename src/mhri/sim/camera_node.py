@@ -144,7 +144,8 @@ class SimCamera:
         self._depth = _Stream(
             prefix + template.depth[0], 'compressedDepth', '16UC1', frame_id,
             lambda depth: encode_depth(depth, depth_format), failing) if template.depth else None
-        self._cloud = _Cloud(prefix + template.cloud[0], frame_id, failing) if template.cloud else None
+        self._cloud = _Cloud(prefix + template.cloud[0], frame_id,
+                             failing) if template.cloud else None
 
     def start(self):
         """Begin; it ends with the node, or with :meth:`stop`."""

@@ -144,8 +144,8 @@ class Failing:
         x, y = body.x + away * math.cos(body.yaw), body.y + away * math.sin(body.yaw)
         if self._distance(x, y) < PERSON.radius_m:
             self._book.end('person')
-            raise FaultRefused('person: there is no room {:g} m before {}: choose another distance, '
-                               'or turn it'.format(ahead, self._name))
+            raise FaultRefused('person: there is no room {:g} m before {}: choose another '
+                               'distance, or turn it'.format(ahead, self._name))
         self._person = self._person or Person(self._name, self._world_path, self._clock)
         self._person.stand(x, y)
 
@@ -153,7 +153,8 @@ class Failing:
         """End as a crashed driver does, without a word; come back after a while, standing here."""
         body = self._body
         place = ['_{}:={!r}'.format(key, getattr(body, key)) for key in ('x', 'y', 'yaw')]
-        arguments = [word for word in sys.argv if word.partition(':=')[0] not in ('_x', '_y', '_yaw')]
+        arguments = [word for word in sys.argv
+                     if word.partition(':=')[0] not in ('_x', '_y', '_yaw')]
         os.execv(sys.executable, [sys.executable, '-c', _COME_BACK, repr(duration_s), *arguments,
                                   *place])
 
@@ -223,8 +224,8 @@ class Failing:
                 self._care_for_person(now)
         for linear, angular in commands:
             body.command(linear, angular, now)
-        share = self._book.value('wheel_slow', now)
-        body.left_share = 0.0 if self.has('motor_stuck') else 1.0 if share is None else share / 100.0
+        slow = self._book.value('wheel_slow', now)
+        body.left_share = 0.0 if self.has('motor_stuck') else 1.0 if slow is None else slow / 100.0
         body.slip = math.radians(self._book.value('drift', now) or 0.0)
         for send in messages:
             send()

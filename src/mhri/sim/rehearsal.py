@@ -100,8 +100,8 @@ class Rehearsal:
             kind, limits = bodies[name]
             self._robots[name] = _Robot(kind, limits, plan.starts[number], plan,
                                         lambda name=name: self._around(name), chance)
-        self.referee = Referee(scenario, {name: kind.radius_m for name, (kind, _) in bodies.items()},
-                               plan.distance, plan.walls)
+        radii = {name: kind.radius_m for name, (kind, _) in bodies.items()}
+        self.referee = Referee(scenario, radii, plan.distance, plan.walls)
         self._operator = ScriptedOperator(scenario.routes, LIMITS[1])
         self._due = sorted(scenario.faults, key=lambda fault: fault.at_s)
         self._checked = ''

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page of a drill: one HTML file that stands alone, with the table and a picture of the ways."""
+"""The page of a drill: one HTML file that stands alone, with the table and a map of the ways."""
 from html import escape
 from typing import Any, List, Mapping, Sequence
 
@@ -16,8 +16,8 @@ _STYLE = ('body{font:16px/1.5 sans-serif;max-width:46em;margin:2em auto;padding:
           'svg{width:100%;height:auto;background:#fafafa;border:1px solid #ddd}'
           'small{color:#555}')
 NOTE = ('Terms after Olsen and Goodrich (2003), Olsen and Wood (2004) and Crandall et al. (2005); '
-        'tasks after the standard test methods for response robots of ASTM E54.09 and NIST. Nothing '
-        'here is certified.')
+        'tasks after the standard test methods for response robots of ASTM E54.09 and NIST. '
+        'Nothing here is certified.')
 
 
 def _cells(kind: str, texts: Sequence[str]) -> str:

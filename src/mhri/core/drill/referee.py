@@ -18,7 +18,7 @@ Terms and formulas are after the literature, not certified by anybody:
 """
 from dataclasses import dataclass, field
 import math
-from typing import Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple
+from typing import Callable, List, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
