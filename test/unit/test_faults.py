@@ -6,7 +6,7 @@ import math
 import pytest
 
 from mhri.core.drill.delay_line import DelayLine
-from mhri.core.drill.faults import FaultBook, FAULTS, FaultRefused
+from mhri.core.drill.faults import failing_in, FaultBook, FAULTS, FaultRefused
 
 NAN = float('nan')
 
@@ -75,3 +75,12 @@ def test_a_bad_link_loses_its_share():
     line = DelayLine(lambda: next(chances))
     assert [line.put(item, 0.0, 0.0, 0.3) for item in 'abc'] == [False, True, False]
     assert line.take(0.0) == ['b']
+
+
+def test_an_answer_tells_what_fails():
+    book = FaultBook()
+    assert failing_in('bot1: nothing fails') == ()
+    for fault in FAULTS:
+        book.begin(fault.key, NAN, 3.0, 0.0)
+        assert failing_in('bot1: ' + book.words(0.0)[-1]) == (fault.key,)
+    assert failing_in('; '.join(book.words(0.0))) == tuple(fault.key for fault in FAULTS)

@@ -3,7 +3,7 @@
 """The faults that a simulated robot can have: a table, and which of them it has now."""
 from dataclasses import dataclass
 import math
-from typing import Dict, List, NamedTuple, Optional
+from typing import Dict, List, NamedTuple, Optional, Tuple
 
 # What a link that is down for longer teaches can be had by asking again [s].
 MOST_S = 3600.0
@@ -139,3 +139,8 @@ class FaultBook:
         return ['{}{}'.format(ROWS[key].words(has.value), '' if math.isinf(has.until) else
                               ', {:.0f} s left'.format(math.ceil(has.until - now)))
                 for key, has in self._has.items() if now < has.until]
+
+
+def failing_in(words: str) -> Tuple[str, ...]:
+    """Return the keys of the faults that a robot's answer names, e.g. "bot1: laser silent"."""
+    return tuple(fault.key for fault in FAULTS if fault.label in words)
