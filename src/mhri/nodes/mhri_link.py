@@ -26,9 +26,10 @@ from mhri.ros.diagnostics import publish_diagnostics
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
-from mhri.ros.link.carrier import Carrier, CarrierError, LibraryMissing
+from mhri.ros.link.carrier import Carrier, CarrierError, LibraryMissing, load_library
 from mhri.ros.link.host_side import HostSide
 from mhri.ros.link.key_folder import AUTO, find_folder, KeyFolder, watch_keys
+from mhri.ros.link.knocks import tell_knocks
 from mhri.ros.link.reception import Reception
 from mhri.ros.resources import robot_types
 
@@ -77,6 +78,8 @@ def call(options):
     keys = KeyFolder(folder, options.side, options.name) if folder else None
     try:
         secrets = keys.read() if keys else None
+        if keys:
+            tell_knocks(load_library(), options.name)
         ends = [[endpoint(word, bool(keys)) for word in words.split()]
                 for words in (options.listen, options.connect)]
         carrier = Carrier(*ends, secrets=secrets)
