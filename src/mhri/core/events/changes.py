@@ -141,7 +141,7 @@ class RobotChanges:
     def _see_control(self, view: RobotView) -> _Told:
         """Report what the robot says of who has control, where several hosts are linked to it."""
         if view.said and view.said != self._old.said:
-            yield 'control.said', view.said
+            yield 'linked.said', view.said
 
     def _see_battery(self, view: RobotView) -> _Told:
         """Report a battery that is low, flat, or charged again."""

@@ -190,11 +190,15 @@ class RobotRow(QWidget):
         """Wire the check box; only clicks count, not what the view sets."""
         self.box.clicked.connect(self._on_box)
         self.carry_on_button.clicked.connect(self._on_carry_on)
-        self.ask_button.clicked.connect(lambda: self.ask_requested.emit(self.name))
+        self.ask_button.clicked.connect(self._on_ask)
 
     def _on_carry_on(self):
         """Tell of a click on "Continue"."""
         self.carry_on_requested.emit(self.name)
+
+    def _on_ask(self):
+        """Tell of a click on "Ask for control"."""
+        self.ask_requested.emit(self.name)
 
     def _on_box(self, on):
         """Tell of a click on the box."""
