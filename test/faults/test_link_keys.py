@@ -295,8 +295,8 @@ def test_one_host_at_a_time_and_the_other_asks_twice(lab):
         def taken():
             answers.append(take())
             return answers[-1].success
-        threading.Thread(target=attacker.attack, args=(lambda: bool(answers) and answers[-1].success,
-                                                       LONG_S), daemon=True).start()
+        threading.Thread(target=attacker.attack, daemon=True, args=(
+            lambda: bool(answers) and answers[-1].success, LONG_S)).start()
         wait_for(taken, LONG_S, lambda: 'control: {}'.format(answers[-1:]), 0.7)
         assert any('desk has control and is told' in answer.message for answer in answers)
     finally:

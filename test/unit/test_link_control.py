@@ -149,7 +149,8 @@ def test_what_the_robot_says_comes_back(row):
 
 
 @pytest.mark.parametrize('body', [
-    b'', b'{}', b'[]', b'["","",1,"",0,""]', b'["","",true,"",true,""]', b'["../x","",true,"",0,""]',
+    b'', b'{}', b'[]',
+    b'["","",1,"",0,""]', b'["","",true,"",true,""]', b'["../x","",true,"",0,""]',
     b'["","",true,"",0,"",1]', b'["robot:bot1","",true,"",0,""]', b'\xff' * 10])
 def test_what_is_no_word_on_control(body):
     with pytest.raises(FrameError):

@@ -7,8 +7,8 @@ and one for each robot on the host's, ``mhri_link --side host --name bot1 --conn
 tcp/192.168.0.7:7447``. Either may listen or connect; ``udp/`` in place of ``tcp/`` drops what is
 lost in place of repeating it. Neither needs the other to be there, at the start or later.
 
-With keys (``utils/host/mhri_keys.sh``) the endpoints are ``tls/`` or ``quic/``, and who has none, or
-one that was withdrawn, is not let in. Keys that are replaced take effect within seconds.
+With keys (``utils/host/mhri_keys.sh``) the endpoints are ``tls/`` or ``quic/``, and who has none,
+or one that was withdrawn, is not let in. Keys that are replaced take effect within seconds.
 
 It is called ``/<name>/mhri_link`` on both masters.
 """
@@ -60,8 +60,9 @@ def parse(words):
                         'default its name; / for a robot without one')
     parser.add_argument('--shared-frames', default=' '.join(SHARED_FRAMES),
                         help='on the robot: frames that do not get its name (default: %(default)s)')
-    parser.add_argument('--keys', default=AUTO, metavar='FOLDER', help='where the keys are, or off; '
-                        'by default where mhri_keys.sh puts them, and without any: off')
+    parser.add_argument('--keys', default=AUTO, metavar='FOLDER',
+                        help='where the keys are, or off; by default where mhri_keys.sh puts '
+                        'them, and without any: off')
     parser.add_argument('--host', default=host_of(socket.gethostname()), metavar='NAME',
                         help='on a host without keys: its name on the link (default: %(default)s)')
     options = parser.parse_args(words)
@@ -73,7 +74,7 @@ def parse(words):
 
 
 def call(options):
-    """Return (:class:`KeyFolder` or None, :class:`Carrier`); ends with 1 and why where it cannot."""
+    """Return (:class:`KeyFolder` or None, :class:`Carrier`); ends with 1 and why it cannot."""
     folder = find_folder(options.keys)
     keys = KeyFolder(folder, options.side, options.name) if folder else None
     try:
@@ -87,7 +88,8 @@ def call(options):
         rospy.logfatal('%s', error)
         sys.exit(1)
     if keys:
-        rospy.loginfo('%s: linked by keys alone; here is the key of %s', options.name, keys.keys.own)
+        rospy.loginfo('%s: linked by keys alone; here is the key of %s', options.name,
+                      keys.keys.own)
     else:
         rospy.logwarn('%s: linked without keys: whoever reaches the endpoint can drive the robot '
                       '(mhri_keys.sh makes keys)', options.name)

@@ -92,8 +92,8 @@ def check_own(keys: Keys, side: str, robot: str) -> None:
         raise KeysError('the key in place is that of {}, and this is a host: put one in place that '
                         '"mhri_keys.sh host NAME" made'.format(keys.own))
     if side == 'robot' and (role not in (ROBOT, WATCHED) or name != robot):
-        raise KeysError('the key in place is that of {}, and this is the robot {}: put one in place '
-                        'that "mhri_keys.sh robot {}" made'.format(keys.own, robot, robot))
+        raise KeysError('the key in place is that of {}, and this is the robot {}: put one in '
+                        'place that "mhri_keys.sh robot {}" made'.format(keys.own, robot, robot))
 
 
 def partners(keys: Keys, side: str, robot: str) -> List[str]:
