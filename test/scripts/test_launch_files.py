@@ -127,7 +127,8 @@ def test_a_robot_with_a_master_of_its_own_has_link_and_guard(more, namespaces):
     config = load(LAUNCH / 'link.launch', 'side:=robot', 'name:=bot1', *more)
     assert sorted(node.namespace for node in config.nodes) == namespaces
     args = next(node.args for node in config.nodes if node.type == 'mhri_link')
-    assert '--side robot' in args and "--listen 'tcp/0.0.0.0:7447'" in args
+    assert '--side robot' in args and "--listen '0.0.0.0:7447' " in args
+    assert "--keys 'auto'" in args
 
 
 def test_test_nodes_have_names_of_their_own():

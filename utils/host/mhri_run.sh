@@ -39,7 +39,9 @@ Robots
                        --link "bot1=192.168.0.7 bot2=192.168.0.8": their addresses, where mhri_link
                        runs as the operator's guide says ("Robots on a bad radio"). ADDR may also be
                        an endpoint such as udp/192.168.0.7:7447. Installs the library for it, zenoh,
-                       below build/.ws.
+                       below build/.ws. Where mhri_keys.sh has put a key in place on this computer,
+                       the link is by keys (TLS) alone.
+  --keys FOLDER        with --link: the keys are in FOLDER; off: link without keys
 
   --replay PATH        show a session again: the folder of one that was recorded, a folder of bags,
                        or a bag of any program whose topics are those of a robot type. Uses a master
@@ -83,6 +85,7 @@ HELP
 SIM=
 SIM_TYPES=
 LINKS=()
+KEYS=
 IP=
 MASTER=
 DEMO=false
@@ -104,6 +107,7 @@ parse_arguments() {
         SIM=$(value "$@"); shift
         if [[ ${2:-} =~ ^[a-z] && $2 != *:=* ]]; then SIM_TYPES=$2; shift; fi ;;
       --sim-types) SIM_TYPES=$(value "$@"); shift ;;
+      --keys) KEYS=$(value "$@"); shift ;;
       --link) links=$(value "$@"); read -r -a LINKS <<<"$links"; shift ;;
       --ip) IP=$(value "$@"); shift ;;
       --master) MASTER=$(value "$@"); shift ;;
@@ -130,6 +134,7 @@ check_arguments() {
   [ -z "$SIM_TYPES" ] || [ -n "$SIM" ] || "$DEMO" ||
     usage_error "--sim-types lists the types for the robots of --sim N: give --sim as well"
   check_links
+  [ -z "$KEYS" ] || [ "${#LINKS[@]}" != 0 ] || usage_error "--keys goes with --link"
   check_replay
   check_drill
   [ -z "$IP" ] || check_ip --ip "$IP" 192.168.0.103
@@ -198,8 +203,9 @@ check_links() {
   local index link
   for index in "${!LINKS[@]}"; do
     link=${LINKS[index]}
-    [[ $link == *=*/* ]] || link=${link/=/=tcp/}:7447
-    [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*=(tcp|udp)/[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] ||
+    # Without a protocol mhri_link takes tls/ where keys are in place, else tcp/.
+    [[ $link == *=*/* ]] || link=$link:7447
+    [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*=((tcp|udp|tls|quic)/)?[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] ||
       usage_error "--link: '${LINKS[index]}' is not NAME=ADDRESS such as bot1=192.168.0.7"
     LINKS[index]=$link
   done
@@ -363,7 +369,7 @@ stop() {
 launch() {
   local status=0 file=mhri.launch args=("sim:=${SIM:-0}" "${LAUNCH_ARGS[@]}")
   [ -z "$SIM_TYPES" ] || args+=("sim_types:=$SIM_TYPES")
-  [ "${#LINKS[@]}" = 0 ] || args+=("links:=${LINKS[*]}")
+  [ "${#LINKS[@]}" = 0 ] || args+=("links:=${LINKS[*]}" "keys:=${KEYS:-auto}")
   if "$DEMO"; then
     args+=("demo:=true" "screenshot:=$PICTURE" "demo_result:=$SCRATCH/demo_result")
   fi

@@ -7,23 +7,30 @@ and one for each robot on the host's, ``mhri_link --side host --name bot1 --conn
 tcp/192.168.0.7:7447``. Either may listen or connect; ``udp/`` in place of ``tcp/`` drops what is
 lost in place of repeating it. Neither needs the other to be there, at the start or later.
 
+With keys (``utils/host/mhri_keys.sh``) the endpoints are ``tls/`` or ``quic/``, and who has none,
+or one that was withdrawn, is not let in. Keys that are replaced take effect within seconds.
+
 It is called ``/<name>/mhri_link`` on both masters.
 """
 import argparse
 import os
+import socket
 import sys
 
 import rospy
 
 from mhri.core.link.carried import SHARED_FRAMES, split_frames
+from mhri.core.link.keys import endpoint, host_of, is_host, KeysError
 from mhri.core.robots.names import name_problem, tidy_name
 from mhri.ros.diagnostics import publish_diagnostics
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
-from mhri.ros.link.carrier import Carrier, CarrierError, LibraryMissing
+from mhri.ros.link.carrier import Carrier, CarrierError, LibraryMissing, load_library
 from mhri.ros.link.host_side import HostSide
-from mhri.ros.link.robot_side import RobotSide
+from mhri.ros.link.key_folder import AUTO, find_folder, KeyFolder, watch_keys
+from mhri.ros.link.knocks import tell_knocks
+from mhri.ros.link.reception import Reception
 from mhri.ros.resources import robot_types
 
 
@@ -53,10 +60,40 @@ def parse(words):
                         'default its name; / for a robot without one')
     parser.add_argument('--shared-frames', default=' '.join(SHARED_FRAMES),
                         help='on the robot: frames that do not get its name (default: %(default)s)')
+    parser.add_argument('--keys', default=AUTO, metavar='FOLDER',
+                        help='where the keys are, or off; by default where mhri_keys.sh puts '
+                        'them, and without any: off')
+    parser.add_argument('--host', default=host_of(socket.gethostname()), metavar='NAME',
+                        help='on a host without keys: its name on the link (default: %(default)s)')
     options = parser.parse_args(words)
+    if not is_host(options.host):
+        parser.error('--host: {!r} is no name such as host:lab'.format(options.host[:60]))
     if not (options.listen or options.connect):
         parser.error('give --listen or --connect, e.g. --connect tcp/192.168.0.7:7447')
     return options
+
+
+def call(options):
+    """Return (:class:`KeyFolder` or None, :class:`Carrier`); ends with 1 and why it cannot."""
+    folder = find_folder(options.keys)
+    keys = KeyFolder(folder, options.side, options.name) if folder else None
+    try:
+        secrets = keys.read() if keys else None
+        if keys:
+            tell_knocks(load_library(), options.name)
+        ends = [[endpoint(word, bool(keys)) for word in words.split()]
+                for words in (options.listen, options.connect)]
+        carrier = Carrier(*ends, secrets=secrets)
+    except (CarrierError, KeysError, LibraryMissing) as error:
+        rospy.logfatal('%s', error)
+        sys.exit(1)
+    if keys:
+        rospy.loginfo('%s: linked by keys alone; here is the key of %s', options.name,
+                      keys.keys.own)
+    else:
+        rospy.logwarn('%s: linked without keys: whoever reaches the endpoint can drive the robot '
+                      '(mhri_keys.sh makes keys)', options.name)
+    return keys, carrier
 
 
 def main():
@@ -69,14 +106,13 @@ def main():
         os.execv(sys.argv[0], sys.argv + ['__ns:=/' + options.name])
     rospy.init_node('mhri_link', disable_rostime=True)
     log.install()
-    try:
-        carrier = Carrier(options.name, options.listen.split(), options.connect.split())
-    except (CarrierError, LibraryMissing) as error:
-        rospy.logfatal('%s', error)
-        sys.exit(1)
+    keys, carrier = call(options)
     watch = MasterWatch().start()
+    own = keys.keys.own if keys else None
     if options.side == 'host':
-        side = HostSide(options.name, carrier, watch.set_parameter)
+        host = own or options.host
+        side = HostSide(options.name, carrier.between(options.name, host), watch.set_parameter,
+                        host, bool(keys))
         publish_diagnostics({'link to ' + options.name: side.fill})
     else:
         types, errors = robot_types()
@@ -84,9 +120,11 @@ def main():
             rospy.logwarn('robot type left out: %s', error)
         namespace = tidy_name(options.namespace if options.namespace is not None
                               else options.name)
-        side = RobotSide(options.name, carrier, '/' + namespace if namespace else '', types,
+        side = Reception(options.name, carrier, own, '/' + namespace if namespace else '', types,
                          split_frames(options.shared_frames))
     rospy.on_shutdown(side.close)
     side.start()
+    if keys:
+        watch_keys(keys, carrier)
     rospy.spin()
     carrier.close()
