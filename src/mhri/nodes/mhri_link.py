@@ -7,10 +7,15 @@ and one for each robot on the host's, ``mhri_link --side host --name bot1 --conn
 tcp/192.168.0.7:7447``. Either may listen or connect; ``udp/`` in place of ``tcp/`` drops what is
 lost in place of repeating it. Neither needs the other to be there, at the start or later.
 
+Where neither reaches the other, both call a router that both reach, with ``--router
+tcp/192.0.2.1:7447`` in place of ``--listen`` and ``--connect``: a ``zenohd``, or ``mhri_link --side
+router --listen tcp/0.0.0.0:7447``, which needs no ROS master.
+
 It is called ``/<name>/mhri_link`` on both masters.
 """
 import argparse
 import os
+import signal
 import sys
 
 import rospy
@@ -42,26 +47,59 @@ def parse(words):
     """Return the options of a command line; ends with status 2 and a line where they are wrong."""
     parser = argparse.ArgumentParser(
         prog='mhri_link', description='Link a robot on a ROS master of its own to the host.')
-    parser.add_argument('--side', choices=('robot', 'host'), required=True,
-                        help='whose master this node is on')
-    parser.add_argument('--name', type=robot_name, required=True, help='the robot')
+    parser.add_argument('--side', choices=('robot', 'host', 'router'), required=True,
+                        help='whose master this node is on; router: on none, it stands between')
+    parser.add_argument('--name', type=robot_name, default='', help='the robot')
     parser.add_argument('--listen', default='', metavar='ENDPOINTS',
                         help='where the other side may call, e.g. tcp/0.0.0.0:7447')
     parser.add_argument('--connect', default='', metavar='ENDPOINTS',
                         help='whom to call, e.g. tcp/192.168.0.7:7447')
+    parser.add_argument('--router', default='', metavar='ENDPOINT', help='a router that both sides '
+                        'call, in place of --listen and --connect')
     parser.add_argument('--namespace', help='on the robot: its namespace on its own master, by '
                         'default its name; / for a robot without one')
     parser.add_argument('--shared-frames', default=' '.join(SHARED_FRAMES),
                         help='on the robot: frames that do not get its name (default: %(default)s)')
     options = parser.parse_args(words)
-    if not (options.listen or options.connect):
-        parser.error('give --listen or --connect, e.g. --connect tcp/192.168.0.7:7447')
+    check(parser, options)
     return options
+
+
+def check(parser, options):
+    """End with status 2 and a line where options do not go together."""
+    if options.side == 'router':
+        if not options.listen or options.connect or options.router or options.name:
+            parser.error('a router has --listen alone, e.g. --listen tcp/0.0.0.0:7447')
+        return
+    if not options.name:
+        parser.error('give the robot with --name')
+    if options.router and (options.listen or options.connect):
+        parser.error('--router stands in place of --listen and --connect')
+    if not (options.listen or options.connect or options.router):
+        parser.error('give --listen, --connect or --router, e.g. --connect tcp/192.168.0.7:7447')
+
+
+def route(options):
+    """Be the router until a signal comes."""
+    try:
+        carrier = Carrier('', options.listen.split(), route=True)
+    except (CarrierError, LibraryMissing) as error:
+        sys.exit('mhri_link: {}'.format(error))
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: sys.exit(0))
+    print('mhri_link: routing on', options.listen, flush=True)
+    try:
+        signal.pause()
+    finally:
+        carrier.close()
 
 
 def main():
     """Run until shut down; without the library, or with a wrong endpoint, exit with 1 and why."""
     options = parse(rospy.myargv()[1:])
+    if options.side == 'router':
+        route(options)
+        return
     limit_handshakes()
     if rospy.get_namespace() == '/':
         # Started by hand. On the host it has to be a node of the robot; rospy knows its namespace
@@ -70,7 +108,8 @@ def main():
     rospy.init_node('mhri_link', disable_rostime=True)
     log.install()
     try:
-        carrier = Carrier(options.name, options.listen.split(), options.connect.split())
+        carrier = Carrier(options.name, options.listen.split(), options.connect.split(),
+                          options.router)
     except (CarrierError, LibraryMissing) as error:
         rospy.logfatal('%s', error)
         sys.exit(1)

@@ -64,21 +64,28 @@ class Carrier:
 
     :param listen: endpoints on which the other side may call, e.g. ``['tcp/0.0.0.0:7447']``
     :param connect: endpoints to call
+    :param router: endpoint of a zenoh router that both sides call, '' for none
+    :param route: be such a router
     :raises LibraryMissing: see :func:`load_library`
     :raises CarrierError: an endpoint cannot be listened on
     """
 
-    def __init__(self, robot, listen=(), connect=()):
+    def __init__(self, robot, listen=(), connect=(), router='', route=False):
         check_endpoints('listen', listen)
         check_endpoints('connect', connect)
+        check_endpoints('router', [router] if router else ())
         self._zenoh = load_library()
         self._robot = robot
         settings = {
-            'mode': 'peer', 'listen/endpoints': list(listen), 'connect/endpoints': list(connect),
+            'mode': 'router' if route else 'peer', 'listen/endpoints': list(listen),
+            'connect/endpoints': list(connect) + ([router] if router else []),
             'connect/timeout_ms': -1, 'connect/exit_on_failure': False,
             'connect/retry': {'period_init_ms': _KNOCK_MS, 'period_max_ms': _KNOCK_MOST_MS,
                               'period_increase_factor': 1.5},
-            'scouting/multicast/enabled': False, 'scouting/gossip/enabled': False,
+            # A router passes nothing on between peers of which it hears no gossip. Whom the others
+            # gossip about is never called.
+            'scouting/multicast/enabled': False, 'scouting/gossip/enabled': bool(router or route),
+            'scouting/gossip/autoconnect': {'router': [], 'peer': []},
             'transport/unicast/open_timeout': _OPEN_MS, 'transport/link/tx/lease': _LEASE_MS}
         config = self._zenoh.Config()
         for key, value in settings.items():
