@@ -31,7 +31,7 @@ the robot's password unless ssh has a key for it.
   --type TYPE, --model MODEL, --launch FILE, --setup FILE, --ip ADDR, --port PORT, --no-camera,
   --no-smoother, --no-guard, --brake, --back-after SECONDS
 
-  --link               the robot gets a ROS master of its own, and mhri_link links it to the one here
+  --link               the robot gets a ROS master of its own, linked to the one here by mhri_link
                        ("Robots on a bad radio" in the guide). Needs 'turtlebot_deploy.sh --link'
                        once. --port is that of both masters. A robot out of reach for more than two
                        minutes ends with its ssh connection: start such a one on the robot itself,
