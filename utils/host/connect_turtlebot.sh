@@ -36,8 +36,8 @@ the robot's password unless ssh has a key for it.
                        once. --port is that of both masters. A robot out of reach for more than two
                        minutes ends with its ssh connection: start such a one on the robot itself,
                        with turtle_remote.sh, and give mhri_run.sh --link here
-  --listen ENDPOINT    with --link: where the robot is called (default tcp/0.0.0.0:7447)
-  --router ENDPOINT    with --link: robot and host call this router instead, e.g. tcp/192.0.2.1:7447
+  --listen ENDPOINT    with --link: where the robot is called (default 0.0.0.0:7447)
+  --router ENDPOINT    with --link: robot and host call this router instead, e.g. 192.0.2.1:7447
 
 Exit status: 2 wrong option, 255 ssh could not connect or lost the robot, else that of
 turtle_remote.sh: 1 could not start or the robot's launch ended, 129, 130 or 143 ended from here.
@@ -142,7 +142,7 @@ choose_address() {
 
 # link_here: starts this computer's side of the link, on the master here.
 link_here() {
-  local setup="$WS/devel/setup.bash" master address="${LISTEN:-tcp/:7447}"
+  local setup="$WS/devel/setup.bash" master protocol='' address="${LISTEN:-:7447}"
   [ -f "$setup" ] || setup="$REPO/../../setup.bash"
   [ -f "$setup" ] || die "mhri is not built here yet: start it first, with mhri_run.sh"
   source_setup "$setup"
@@ -153,7 +153,8 @@ link_here() {
   /usr/bin/python3 "$REPO/utils/remote/turtle_check.py" host "$master" "$PORT" "$master" "$NAME" ||
     exit 1
   # The robot may listen on another address, too, but this one it has.
-  address="connect:=${address%%/*}/$ROBOT_IP:${address##*:}"
+  if [[ $address == */* ]]; then protocol=${address%%/*}/; fi
+  address="connect:=$protocol$ROBOT_IP:${address##*:}"
   [ -z "$ROUTER" ] || address="router:=$ROUTER"
   make_scratch
   ROS_MASTER_URI="http://$master:$PORT" ROS_IP=$master ROS_HOSTNAME=$master MHRI_RUN_ID=$RUN_ID \

@@ -35,6 +35,8 @@ Robots
                        runs as the operator's guide says ("Robots on a bad radio"). ADDR may also be
                        an endpoint such as udp/192.168.0.7:7447. Installs the library for it, zenoh,
                        below build/.ws.
+  --router ENDPOINT    a router, such as 192.0.2.1:7447, behind which those robots of --link are
+                       that it gives no address for: --link "bot1 bot2=192.168.0.8"
 
 Network
   --ip ADDR            this computer's address, as the robots reach it. Default: the first IPv4
@@ -71,6 +73,7 @@ HELP
 SIM=
 SIM_TYPES=
 LINKS=()
+ROUTER=
 IP=
 MASTER=
 DEMO=false
@@ -90,6 +93,7 @@ parse_arguments() {
         if [[ ${2:-} =~ ^[a-z] && $2 != *:=* ]]; then SIM_TYPES=$2; shift; fi ;;
       --sim-types) SIM_TYPES=$(value "$@"); shift ;;
       --link) links=$(value "$@"); read -r -a LINKS <<<"$links"; shift ;;
+      --router) ROUTER=$(value "$@"); shift ;;
       --ip) IP=$(value "$@"); shift ;;
       --master) MASTER=$(value "$@"); shift ;;
       --screenshot) PICTURE=$(value "$@"); shift ;;
@@ -136,10 +140,14 @@ check_arguments() {
 # check_links: makes an endpoint of each bare address in LINKS.
 check_links() {
   local index link
+  [ -z "$ROUTER" ] || check_endpoint --router "$ROUTER"
+  [ -z "$ROUTER" ] || [ "${#LINKS[@]}" -gt 0 ] ||
+    usage_error "--router: name the robots behind it, such as --link \"bot1 bot2\""
   for index in "${!LINKS[@]}"; do
     link=${LINKS[index]}
-    [[ $link == *=*/* ]] || link=${link/=/=tcp/}:7447
-    [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*=(tcp|udp)/[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] ||
+    if [ -n "$ROUTER" ] && [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*$ ]]; then continue; fi
+    [[ $link == *=*:* ]] || link=$link:7447
+    [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*=((tcp|udp|tls|quic)/)?[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] ||
       usage_error "--link: '${LINKS[index]}' is not NAME=ADDRESS such as bot1=192.168.0.7"
     LINKS[index]=$link
   done
@@ -303,6 +311,7 @@ launch() {
   local status=0 args=("sim:=${SIM:-0}" "${LAUNCH_ARGS[@]}")
   [ -z "$SIM_TYPES" ] || args+=("sim_types:=$SIM_TYPES")
   [ "${#LINKS[@]}" = 0 ] || args+=("links:=${LINKS[*]}")
+  [ -z "$ROUTER" ] || args+=("router:=$ROUTER")
   if "$DEMO"; then
     args+=("demo:=true" "screenshot:=$PICTURE" "demo_result:=$SCRATCH/demo_result")
   fi

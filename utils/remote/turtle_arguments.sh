@@ -72,11 +72,11 @@ check_guard() {
   fi
 }
 
-# check_endpoint OPTION ENDPOINT
+# check_endpoint OPTION ENDPOINT: ADDRESS:PORT, with or without a protocol.
 check_endpoint() {
   local port=${2##*:}
-  if ! [[ $2 =~ ^(tcp|udp|tls|quic)/[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] || [ "$((10#$port))" -gt 65535 ]; then
-    usage_error "$1: '$2' is not an endpoint such as tcp/192.168.0.7:7447"
+  if ! [[ $2 =~ ^((tcp|udp|tls|quic)/)?[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] || [ "$((10#$port))" -gt 65535 ]; then
+    usage_error "$1: '$2' is not an endpoint such as 192.168.0.7:7447 or udp/192.168.0.7:7447"
   fi
 }
 

@@ -51,6 +51,8 @@ start_master() {
 start_link() {
   local where=(--listen "$LISTEN")
   [ -z "$ROUTER" ] || where=(--router "$ROUTER")
+  # Beside these files is where mhri_keys.sh puts them.
+  [ ! -e "$HERE/keys/own.pem" ] || where+=(--keys "$HERE/keys")
   held env "${LINK_ENV[@]}" "$GUARD_PYTHON" "$LINK_PLACE/scripts/mhri_link" --side robot \
     --name "$NAME" "${where[@]}" </dev/null &
   LINK_PID=$!

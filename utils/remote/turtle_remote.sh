@@ -56,10 +56,11 @@ A bad radio
                        reaches, and link it to the host with mhri_link: see "Robots on a bad radio"
                        in the guide. No HOST_IP: the host calls, now or later. Needs ROS Noetic,
                        and 'turtlebot_deploy.sh --link' once
-  --listen ENDPOINT    with --link: where the host calls (default tcp/0.0.0.0:7447). On a radio that
-                       loses packets try udp/0.0.0.0:7447
-  --router ENDPOINT    with --link: instead call a zenoh router that the host calls, too, such as
-                       tcp/192.0.2.1:7447
+  --listen ENDPOINT    with --link: where the host calls (default 0.0.0.0:7447). On a radio that
+                       loses packets try udp/0.0.0.0:7447, or with keys quic/0.0.0.0:7447
+  --router ENDPOINT    with --link: instead call a router that the host calls, too, such as
+                       192.0.2.1:7447
+                       With a key in place (mhri_keys.sh put), the link is by keys alone
 
 Other
   --setup FILE         the setup.bash of the robot's workspace. Default: what this shell has already
@@ -149,7 +150,7 @@ check_arguments() {
   check_robot
   check_guard
   check_link_options
-  LISTEN=${LISTEN:-tcp/0.0.0.0:7447}
+  LISTEN=${LISTEN:-0.0.0.0:7447}
   [ -z "$SETUP" ] || [ -f "$SETUP" ] || usage_error "--setup: there is no file '$SETUP'"
 }
 

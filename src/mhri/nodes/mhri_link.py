@@ -8,19 +8,24 @@ tcp/192.168.0.7:7447``. Either may listen or connect; ``udp/`` in place of ``tcp
 lost in place of repeating it. Neither needs the other to be there, at the start or later.
 
 Where neither reaches the other, both call a router that both reach, with ``--router
-tcp/192.0.2.1:7447`` in place of ``--listen`` and ``--connect``: a ``zenohd``, or ``mhri_link --side
-router --listen tcp/0.0.0.0:7447``, which needs no ROS master.
+192.0.2.1:7447`` in place of ``--listen`` and ``--connect``: a ``zenohd``, or ``mhri_link --side
+router --listen 0.0.0.0:7447``, which needs no ROS master.
+
+With keys (``utils/host/mhri_keys.sh``) the endpoints are ``tls/`` or ``quic/``, and who has none, or
+one that was withdrawn, is not let in. Keys that are replaced take effect within seconds.
 
 It is called ``/<name>/mhri_link`` on both masters.
 """
 import argparse
 import os
 import signal
+import socket
 import sys
 
 import rospy
 
 from mhri.core.link.carried import SHARED_FRAMES, split_frames
+from mhri.core.link.keys import endpoint, host_of, is_host, KeysError
 from mhri.core.robots.names import name_problem, tidy_name
 from mhri.ros.diagnostics import publish_diagnostics
 from mhri.ros.graph import log
@@ -28,7 +33,8 @@ from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.link.carrier import Carrier, CarrierError, LibraryMissing
 from mhri.ros.link.host_side import HostSide
-from mhri.ros.link.robot_side import RobotSide
+from mhri.ros.link.key_folder import AUTO, find_folder, KeyFolder, watch_keys
+from mhri.ros.link.reception import Reception
 from mhri.ros.resources import robot_types
 
 
@@ -60,7 +66,13 @@ def parse(words):
                         'default its name; / for a robot without one')
     parser.add_argument('--shared-frames', default=' '.join(SHARED_FRAMES),
                         help='on the robot: frames that do not get its name (default: %(default)s)')
+    parser.add_argument('--keys', default=AUTO, metavar='FOLDER', help='where the keys are, or off; '
+                        'by default where mhri_keys.sh puts them, and without any: off')
+    parser.add_argument('--host', default=host_of(socket.gethostname()), metavar='NAME',
+                        help='on a host without keys: its name on the link (default: %(default)s)')
     options = parser.parse_args(words)
+    if not is_host(options.host):
+        parser.error('--host: {!r} is no name such as host:lab'.format(options.host[:60]))
     check(parser, options)
     return options
 
@@ -69,7 +81,7 @@ def check(parser, options):
     """End with status 2 and a line where options do not go together."""
     if options.side == 'router':
         if not options.listen or options.connect or options.router or options.name:
-            parser.error('a router has --listen alone, e.g. --listen tcp/0.0.0.0:7447')
+            parser.error('a router has --listen alone, e.g. --listen 0.0.0.0:7447')
         return
     if not options.name:
         parser.error('give the robot with --name')
@@ -79,11 +91,27 @@ def check(parser, options):
         parser.error('give --listen, --connect or --router, e.g. --connect tcp/192.168.0.7:7447')
 
 
+def call(options):
+    """Return (:class:`KeyFolder` or None, :class:`Carrier`).
+
+    :raises CarrierError: an endpoint cannot be used
+    :raises KeysError: the keys cannot
+    :raises LibraryMissing: there is no zenoh
+    """
+    folder = find_folder(options.keys)
+    keys = KeyFolder(folder, options.side, options.name) if folder else None
+    secrets = keys.read() if keys else None
+    ends = [[endpoint(word, bool(keys)) for word in words.split()]
+            for words in (options.listen, options.connect or options.router)]
+    place = 'router' if options.side == 'router' else 'routed' if options.router else 'peer'
+    return keys, Carrier(*ends, secrets=secrets, place=place)
+
+
 def route(options):
-    """Be the router until a signal comes."""
+    """Be the router until a signal comes; with keys that cannot be used end with 1 and why."""
     try:
-        carrier = Carrier('', options.listen.split(), route=True)
-    except (CarrierError, LibraryMissing) as error:
+        _, carrier = call(options)
+    except (CarrierError, KeysError, LibraryMissing) as error:
         sys.exit('mhri_link: {}'.format(error))
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: sys.exit(0))
@@ -108,14 +136,21 @@ def main():
     rospy.init_node('mhri_link', disable_rostime=True)
     log.install()
     try:
-        carrier = Carrier(options.name, options.listen.split(), options.connect.split(),
-                          options.router)
-    except (CarrierError, LibraryMissing) as error:
+        keys, carrier = call(options)
+    except (CarrierError, KeysError, LibraryMissing) as error:
         rospy.logfatal('%s', error)
         sys.exit(1)
+    if keys:
+        rospy.loginfo('%s: linked by keys alone; here is the key of %s', options.name, keys.keys.own)
+    else:
+        rospy.logwarn('%s: linked without keys: whoever reaches the endpoint can drive the robot '
+                      '(mhri_keys.sh makes keys)', options.name)
     watch = MasterWatch().start()
+    own = keys.keys.own if keys else None
     if options.side == 'host':
-        side = HostSide(options.name, carrier, watch.set_parameter)
+        host = own or options.host
+        side = HostSide(options.name, carrier.between(options.name, host), watch.set_parameter,
+                        host, bool(keys))
         publish_diagnostics({'link to ' + options.name: side.fill})
     else:
         types, errors = robot_types()
@@ -123,9 +158,11 @@ def main():
             rospy.logwarn('robot type left out: %s', error)
         namespace = tidy_name(options.namespace if options.namespace is not None
                               else options.name)
-        side = RobotSide(options.name, carrier, '/' + namespace if namespace else '', types,
+        side = Reception(options.name, carrier, own, '/' + namespace if namespace else '', types,
                          split_frames(options.shared_frames))
     rospy.on_shutdown(side.close)
     side.start()
+    if keys:
+        watch_keys(keys, carrier)
     rospy.spin()
     carrier.close()

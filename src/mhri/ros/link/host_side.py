@@ -7,12 +7,15 @@ import rospy
 
 from mhri.core.link.carried import (
     COMMAND, DOWN, full_topic, GUARD_COMMAND, GUARD_ECHO, PICTURE, STATE, TF, TF_STATIC, TF_TYPE)
+from mhri.core.link.control import unpack_standing
 from mhri.core.link.frames import About, unpack_about
+from mhri.core.link.keys import called
 from mhri.core.link.peer import held_s
 from mhri.core.link.renaming import stamp_of
 from mhri.ros.graph.master_api import MasterError
 from mhri.ros.link.robot_side import PARAMETERS
-from mhri.ros.link.side import ABOUT, Side
+from mhri.ros.link.host_control import HostControl
+from mhri.ros.link.side import ABOUT, CONTROL, Side
 from mhri.ros.messages import bytes_of, message_class, MessageMissing
 
 QUEUE = 5
@@ -29,10 +32,14 @@ class HostSide(Side):
     the robot has a guard. Sets ``/<robot>/robot_type``, ``robot_model`` and ``mhri``.
 
     :param set_parameter: called with (name, value), blocking
+    :param host: what this computer is called on the link
+    :param secret: with keys
     """
 
-    def __init__(self, name, carrier, set_parameter, **options):
+    def __init__(self, name, carrier, set_parameter, host, secret, **options):
         super().__init__(name, carrier, 'down', **options)
+        self._control = HostControl(
+            name, host, secret, lambda body: self.send(CONTROL, COMMAND, body))
         self._set_parameter = set_parameter
         self._about = About({}, ())
         self._news = None
@@ -56,6 +63,9 @@ class HostSide(Side):
             self._news = unpack_about(frame.body)
             self.to_do.set()
             return
+        if topic == CONTROL:
+            self._control.on_standing(unpack_standing(frame.body))
+            return
         publisher = self._publishers.get(topic)
         if publisher is not None:
             kind = publisher.type
@@ -67,6 +77,7 @@ class HostSide(Side):
 
     def work(self, now):
         """Open the topics that are new."""
+        self._control.tick(self.peer.heard(now))
         news = self._news
         if news is None or news == self._about:
             return
@@ -126,6 +137,9 @@ class HostSide(Side):
             status.add('round trip [ms]', '{:.1f}'.format(1000.0 * peer.round_trip_s()))
             status.add('beats lost [%]', '{:.0f}'.format(100.0 * peer.loss()))
             status.add('refused', self.refused)
+            status.add('keys', 'TLS both ways' if self._control.state.keys else
+                       'none: whoever reaches the robot can drive it')
+            status.add('control', called(self._control.state.holder) or 'nobody')
         for urgency, ages in sorted(self.ages().items()):
             if ages:
                 status.add('age of {} [ms]'.format(urgency), '{:.1f} median, {:.1f} most'.format(
@@ -133,7 +147,8 @@ class HostSide(Side):
         return status
 
     def close(self):
-        """Nothing to end: the guard on the robot ends what is being driven."""
+        """Give up control; the guard on the robot ends what is being driven."""
+        self._control.leave()
 
 
 class Listener(rospy.SubscribeListener):
