@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A robot with a master of its own on another computer: deployed, linked over ssh, and by a router.
 
-As test_remote_network.py: network namespaces, sshd, stand-in packages. bot2 is the router's computer.
+As test_remote_network.py: network namespaces, sshd, stand-ins. bot2 is the router's computer.
 """
 import os
 import signal

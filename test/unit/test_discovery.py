@@ -237,7 +237,7 @@ GRAPHS = {
         # The nodes of two robots' masters and of this one, on which fkie has put them, too; its own
         # are called after their computers where there are several.
         ('/master_discovery writes /master_discovery/changes fkie_multimaster_msgs/MasterState',
-         '/master_discovery writes /master_discovery/linkstats fkie_multimaster_msgs/LinkStatesStamped',
+         '/master_discovery writes /master_discovery/linkstats x/LinkStatesStamped',
          '/master_sync reads /master_discovery/changes fkie_multimaster_msgs/MasterState',
          '/master_discovery_pi1 writes /master_discovery/changes fkie_multimaster_msgs/MasterState',
          '/pi2/master_discovery writes /pi2/master_discovery/changes x/MasterState',

@@ -105,9 +105,10 @@ on_robot() {
 
 # pack_link: packs what mhri_link needs on the robot, alike for the same content.
 pack_link() {
-  local machine folder="$SCRATCH/packed"
+  local machine folder="$SCRATCH/packed" messages="$WS/devel/lib/python3/dist-packages/mhri"
   [ -d "$REPO/src/mhri" ] ||
     die "this is an installed copy, without the sources that --link sends: use that of the checkout"
+  [ -d "$messages" ] || die "mhri is not built here yet: start it once, with mhri_run.sh"
   machine=$(on_robot "$KIND") || die "$ROBOT_IP does not say what kind of computer it is"
   case "$machine" in
     amd64 | x86_64) machine=x86_64 ;;
@@ -123,6 +124,7 @@ pack_link() {
   cp -r "$REPO/resource/robots" "$folder/resource"
   cp "$REPO/scripts/mhri_link" "$folder/scripts"
   (cd "$REPO/src/mhri" && cp -r __init__.py core ros nodes "$folder/src/mhri")
+  cp -r "$messages/msg" "$messages/srv" "$folder/src/mhri"
   find "$folder" -name __pycache__ -prune -exec rm -rf {} +
   tar -c -C "$folder" --sort=name --mtime=@0 --owner=0 --group=0 --mode=go-w . |
     gzip -n >"$SCRATCH/$ARCHIVE"

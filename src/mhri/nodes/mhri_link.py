@@ -34,6 +34,7 @@ from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.link.carrier import Carrier, CarrierError, LibraryMissing
 from mhri.ros.link.host_side import HostSide
 from mhri.ros.link.key_folder import AUTO, find_folder, KeyFolder, watch_keys
+from mhri.ros.link.note import Note
 from mhri.ros.link.reception import Reception
 from mhri.ros.resources import robot_types
 
@@ -135,10 +136,14 @@ def main():
         os.execv(sys.argv[0], sys.argv + ['__ns:=/' + options.name])
     rospy.init_node('mhri_link', disable_rostime=True)
     log.install()
+    note = Note(options.router or options.connect or options.listen, bool(options.router))
     try:
         keys, carrier = call(options)
     except (CarrierError, KeysError, LibraryMissing) as error:
         rospy.logfatal('%s', error)
+        if options.side == 'host':
+            note.failed('library' if isinstance(error, LibraryMissing) else
+                        'keys' if isinstance(error, KeysError) else 'endpoint', error)
         sys.exit(1)
     if keys:
         rospy.loginfo('%s: linked by keys alone; here is the key of %s', options.name, keys.keys.own)
@@ -152,6 +157,7 @@ def main():
         side = HostSide(options.name, carrier.between(options.name, host), watch.set_parameter,
                         host, bool(keys))
         publish_diagnostics({'link to ' + options.name: side.fill})
+        note.follow(side, watch, bool(keys))
     else:
         types, errors = robot_types()
         for error in errors:
