@@ -132,6 +132,7 @@ def test_a_robot_with_a_master_of_its_own_has_link_and_guard(more, namespaces):
     args = next(node.args for node in config.nodes if node.type == 'mhri_link')
     assert '--side robot' in args
     assert "--listen '{}'".format('' if 'router' in ''.join(more) else '0.0.0.0:7447') in args
+    assert "--keys 'auto'" in args
 
 
 def test_test_nodes_have_names_of_their_own():

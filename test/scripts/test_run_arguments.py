@@ -145,7 +145,7 @@ def test_links_become_endpoints(checkout):
     assert status == 0, output
     assert checkout.called('roslaunch') == [
         'roslaunch mhri mhri.launch sim:=0 links:=bot1=192.168.0.7:7447 '
-        'bot2=udp/192.168.0.8:7448 bot3 router:=tls/192.0.2.1:7447']
+        'bot2=udp/192.168.0.8:7448 bot3 keys:=auto router:=tls/192.0.2.1:7447']
 
 
 def test_a_labs_own_source_can_be_the_enabling_one(checkout, tmp_path):

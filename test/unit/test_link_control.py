@@ -6,8 +6,8 @@ import struct
 import pytest
 
 from mhri.core.link.control import (
-    ASK_S, ASKED, Control, FREE, HELD, moves, pack_standing, SILENT_S, Standing, STEP_S,
-    unpack_standing)
+    ASK_FOR, ASK_S, ASKED, Control, FREE, HELD, moves, pack_standing, shown, SILENT_S, Standing,
+    STEP_S, TAKE_IT, unpack_standing)
 from mhri.core.link.frames import FrameError
 from mhri.core.link.keys import may_drive
 
@@ -149,7 +149,8 @@ def test_what_the_robot_says_comes_back(row):
 
 
 @pytest.mark.parametrize('body', [
-    b'', b'{}', b'[]', b'["","",1,"",0,""]', b'["","",true,"",true,""]', b'["../x","",true,"",0,""]',
+    b'', b'{}', b'[]',
+    b'["","",1,"",0,""]', b'["","",true,"",true,""]', b'["../x","",true,"",0,""]',
     b'["","",true,"",0,"",1]', b'["robot:bot1","",true,"",0,""]', b'\xff' * 10])
 def test_what_is_no_word_on_control(body):
     with pytest.raises(FrameError):
@@ -170,3 +171,14 @@ def test_what_moves(values, moving):
 
 def test_what_is_no_twist_counts_as_moving():
     assert moves(b'')
+
+
+@pytest.mark.parametrize('own, may, holder, asking, note, button', [
+    (LAB, True, '', '', '', ''), (LAB, True, LAB, '', '', ''),
+    (LAB, True, LAB, DESK, 'desk asks for control', ''),
+    (LAB, True, DESK, '', 'desk has control', ASK_FOR),
+    (LAB, True, DESK, LAB, 'desk is told that you ask', TAKE_IT),
+    (LAB, True, DESK, 'host:third', 'desk has control', ASK_FOR),
+    (GALLERY, False, LAB, '', 'this computer may only watch', '')])
+def test_what_a_screen_shows(own, may, holder, asking, note, button):
+    assert shown(own, may, holder, asking) == (note, button)

@@ -60,7 +60,8 @@ def test_a_host_speaks_below_its_own_name_and_a_watching_one_hardly():
         owner: [owner] for owner in ('host:lab', 'host:desk.2', 'watch:gallery')}
     assert allowed(rules, 'host:lab', 'ingress', 'put') == ['mhri/bot1/host:lab/down/**']
     assert allowed(rules, 'host:lab', 'egress', 'put') == ['mhri/bot1/host:lab/up/**']
-    assert allowed(rules, 'watch:gallery', 'ingress', 'put') == ['mhri/bot1/watch:gallery/down/_beat']
+    assert allowed(rules, 'watch:gallery', 'ingress', 'put') == [
+        'mhri/bot1/watch:gallery/down/_beat']
 
 
 def test_nobody_commands_a_robot_that_is_only_watched():
@@ -77,7 +78,8 @@ def test_a_host_hears_of_a_robot_from_itself_alone():
 @pytest.mark.parametrize('side, robot, own, says', [
     ('host', 'bot1', 'robot:bot1', 'mhri_keys.sh host NAME'),
     ('robot', 'bot1', 'robot:bot2', 'that of robot:bot2, and this is the robot bot1'),
-    ('robot', 'bot1', 'host:lab', 'mhri_keys.sh robot bot1'), ('host', 'bot1', '', 'this is a host'),
+    ('robot', 'bot1', 'host:lab', 'mhri_keys.sh robot bot1'),
+    ('host', 'bot1', '', 'this is a host'),
     ('host', 'bot1', 'host:old', 'is withdrawn')])
 def test_a_key_that_is_not_for_this_end(side, robot, own, says):
     with pytest.raises(KeysError, match=says):

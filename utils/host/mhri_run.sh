@@ -34,7 +34,9 @@ Robots
                        --link "bot1=192.168.0.7 bot2=192.168.0.8": their addresses, where mhri_link
                        runs as the operator's guide says ("Robots on a bad radio"). ADDR may also be
                        an endpoint such as udp/192.168.0.7:7447. Installs the library for it, zenoh,
-                       below build/.ws.
+                       below build/.ws. Where mhri_keys.sh has put a key in place on this computer,
+                       the link is by keys (TLS) alone.
+  --keys FOLDER        with --link: the keys are in FOLDER; off: link without keys
   --router ENDPOINT    a router, such as 192.0.2.1:7447, behind which those robots of --link are
                        that it gives no address for: --link "bot1 bot2=192.168.0.8"
 
@@ -74,6 +76,7 @@ SIM=
 SIM_TYPES=
 LINKS=()
 ROUTER=
+KEYS=
 IP=
 MASTER=
 DEMO=false
@@ -92,6 +95,7 @@ parse_arguments() {
         SIM=$(value "$@"); shift
         if [[ ${2:-} =~ ^[a-z] && $2 != *:=* ]]; then SIM_TYPES=$2; shift; fi ;;
       --sim-types) SIM_TYPES=$(value "$@"); shift ;;
+      --keys) KEYS=$(value "$@"); shift ;;
       --link) links=$(value "$@"); read -r -a LINKS <<<"$links"; shift ;;
       --router) ROUTER=$(value "$@"); shift ;;
       --ip) IP=$(value "$@"); shift ;;
@@ -116,6 +120,7 @@ check_arguments() {
   [ -z "$SIM_TYPES" ] || [ -n "$SIM" ] || "$DEMO" ||
     usage_error "--sim-types lists the types for the robots of --sim N: give --sim as well"
   check_links
+  [ -z "$KEYS" ] || [ "${#LINKS[@]}" != 0 ] || usage_error "--keys goes with --link"
   [ -z "$IP" ] || check_ip --ip "$IP" 192.168.0.103
   [[ -z $MASTER || $MASTER =~ ^http://[A-Za-z0-9]([A-Za-z0-9.-]*)?:[0-9]{1,5}/?$ ]] ||
     usage_error "--master: '$MASTER' is not an address such as http://192.168.0.103:11311"
@@ -146,6 +151,7 @@ check_links() {
   for index in "${!LINKS[@]}"; do
     link=${LINKS[index]}
     if [ -n "$ROUTER" ] && [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*$ ]]; then continue; fi
+    # Without a protocol mhri_link takes tls/ where keys are in place, else tcp/.
     [[ $link == *=*:* ]] || link=$link:7447
     [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*=((tcp|udp|tls|quic)/)?[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] ||
       usage_error "--link: '${LINKS[index]}' is not NAME=ADDRESS such as bot1=192.168.0.7"
@@ -310,7 +316,7 @@ stop() {
 launch() {
   local status=0 args=("sim:=${SIM:-0}" "${LAUNCH_ARGS[@]}")
   [ -z "$SIM_TYPES" ] || args+=("sim_types:=$SIM_TYPES")
-  [ "${#LINKS[@]}" = 0 ] || args+=("links:=${LINKS[*]}")
+  [ "${#LINKS[@]}" = 0 ] || args+=("links:=${LINKS[*]}" "keys:=${KEYS:-auto}")
   [ -z "$ROUTER" ] || args+=("router:=$ROUTER")
   if "$DEMO"; then
     args+=("demo:=true" "screenshot:=$PICTURE" "demo_result:=$SCRATCH/demo_result")

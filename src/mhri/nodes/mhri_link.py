@@ -11,8 +11,8 @@ Where neither reaches the other, both call a router that both reach, with ``--ro
 192.0.2.1:7447`` in place of ``--listen`` and ``--connect``: a ``zenohd``, or ``mhri_link --side
 router --listen 0.0.0.0:7447``, which needs no ROS master.
 
-With keys (``utils/host/mhri_keys.sh``) the endpoints are ``tls/`` or ``quic/``, and who has none, or
-one that was withdrawn, is not let in. Keys that are replaced take effect within seconds.
+With keys (``utils/host/mhri_keys.sh``) the endpoints are ``tls/`` or ``quic/``, and who has none,
+or one that was withdrawn, is not let in. Keys that are replaced take effect within seconds.
 
 It is called ``/<name>/mhri_link`` on both masters.
 """
@@ -31,10 +31,11 @@ from mhri.ros.diagnostics import publish_diagnostics
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
-from mhri.ros.link.carrier import Carrier, CarrierError, LibraryMissing
+from mhri.ros.link.carrier import Carrier, CarrierError, LibraryMissing, load_library
 from mhri.ros.link.host_side import HostSide
 from mhri.ros.link.key_folder import AUTO, find_folder, KeyFolder, watch_keys
 from mhri.ros.link.note import Note
+from mhri.ros.link.knocks import tell_knocks
 from mhri.ros.link.reception import Reception
 from mhri.ros.resources import robot_types
 
@@ -67,8 +68,9 @@ def parse(words):
                         'default its name; / for a robot without one')
     parser.add_argument('--shared-frames', default=' '.join(SHARED_FRAMES),
                         help='on the robot: frames that do not get its name (default: %(default)s)')
-    parser.add_argument('--keys', default=AUTO, metavar='FOLDER', help='where the keys are, or off; '
-                        'by default where mhri_keys.sh puts them, and without any: off')
+    parser.add_argument('--keys', default=AUTO, metavar='FOLDER',
+                        help='where the keys are, or off; by default where mhri_keys.sh puts '
+                        'them, and without any: off')
     parser.add_argument('--host', default=host_of(socket.gethostname()), metavar='NAME',
                         help='on a host without keys: its name on the link (default: %(default)s)')
     options = parser.parse_args(words)
@@ -100,8 +102,13 @@ def call(options):
     :raises LibraryMissing: there is no zenoh
     """
     folder = find_folder(options.keys)
+    if folder and (options.router or options.side == 'router'):
+        raise KeysError('behind a router nobody can tell yet whose key it is: give --keys off, and '
+                        'let only your own reach the router (a VPN)')
     keys = KeyFolder(folder, options.side, options.name) if folder else None
     secrets = keys.read() if keys else None
+    if keys:
+        tell_knocks(load_library(), options.name)
     ends = [[endpoint(word, bool(keys)) for word in words.split()]
             for words in (options.listen, options.connect or options.router)]
     place = 'router' if options.side == 'router' else 'routed' if options.router else 'peer'
@@ -146,7 +153,8 @@ def main():
                         'keys' if isinstance(error, KeysError) else 'endpoint', error)
         sys.exit(1)
     if keys:
-        rospy.loginfo('%s: linked by keys alone; here is the key of %s', options.name, keys.keys.own)
+        rospy.loginfo('%s: linked by keys alone; here is the key of %s', options.name,
+                      keys.keys.own)
     else:
         rospy.logwarn('%s: linked without keys: whoever reaches the endpoint can drive the robot '
                       '(mhri_keys.sh makes keys)', options.name)

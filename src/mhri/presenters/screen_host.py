@@ -112,6 +112,7 @@ class ScreenHost(QObject):
         panel.release_requested.connect(operator.release)
         panel.power_cut_requested.connect(lambda: operator.set_motor_power(False))
         panel.control_requested.connect(operator.take_control)
+        panel.robot_list.ask_requested.connect(operator.controls.ask)
         self._draw_timer.timeout.connect(self._draw_in_turn)
         self._stick_timer.timeout.connect(self._repeat_stick)
         self._lease_timer.timeout.connect(operator.repeat_selection)

@@ -92,8 +92,8 @@ def check_own(keys: Keys, side: str, robot: str) -> None:
         raise KeysError('the key in place is that of {}, and this is a host: put one in place that '
                         '"mhri_keys.sh host NAME" made'.format(keys.own))
     if side == 'robot' and (role not in (ROBOT, WATCHED) or name != robot):
-        raise KeysError('the key in place is that of {}, and this is the robot {}: put one in place '
-                        'that "mhri_keys.sh robot {}" made'.format(keys.own, robot, robot))
+        raise KeysError('the key in place is that of {}, and this is the robot {}: put one in '
+                        'place that "mhri_keys.sh robot {}" made'.format(keys.own, robot, robot))
 
 
 def partners(keys: Keys, side: str, robot: str) -> List[str]:
@@ -125,10 +125,11 @@ def access(keys: Keys, side: str, robot: str) -> Dict[str, object]:
         silent = side == 'robot' and not (may_drive(owner) and split(keys.own)[0] == ROBOT)
         said = root + coming + ('/_beat' if silent else '/**')
         allow(owner, 'ingress', ['put'], [said])
-        allow(owner, 'ingress', ['declare_subscriber'], [root + going + '/**'])
         allow(owner, 'egress', ['put'], [root + going + '/**'])
-        allow(owner, 'egress', ['declare_subscriber'],
-              [root + coming + '/**', 'mhri/{}/*/down/_beat'.format(robot)])
+        # By the beats a robot finds out who is there; every host may know that it wants them.
+        beats = 'mhri/{}/*/down/_beat'.format(robot)
+        allow(owner, 'ingress', ['declare_subscriber'], [root + going + '/**', beats])
+        allow(owner, 'egress', ['declare_subscriber'], [root + coming + '/**', beats])
     return {'enabled': True, 'default_permission': 'deny', 'rules': rules, 'subjects': subjects,
             'policies': policies}
 
