@@ -42,6 +42,8 @@ Robots
                        below build/.ws. Where mhri_keys.sh has put a key in place on this computer,
                        the link is by keys (TLS) alone.
   --keys FOLDER        with --link: the keys are in FOLDER; off: link without keys
+  --router ENDPOINT    a router, such as 192.0.2.1:7447, behind which those robots of --link are
+                       that it gives no address for: --link "bot1 bot2=192.168.0.8"
 
   --replay PATH        show a session again: the folder of one that was recorded, a folder of bags,
                        or a bag of any program whose topics are those of a robot type. Uses a master
@@ -85,6 +87,7 @@ HELP
 SIM=
 SIM_TYPES=
 LINKS=()
+ROUTER=
 KEYS=
 IP=
 MASTER=
@@ -109,6 +112,7 @@ parse_arguments() {
       --sim-types) SIM_TYPES=$(value "$@"); shift ;;
       --keys) KEYS=$(value "$@"); shift ;;
       --link) links=$(value "$@"); read -r -a LINKS <<<"$links"; shift ;;
+      --router) ROUTER=$(value "$@"); shift ;;
       --ip) IP=$(value "$@"); shift ;;
       --master) MASTER=$(value "$@"); shift ;;
       --screenshot) PICTURE=$(value "$@"); shift ;;
@@ -201,10 +205,14 @@ choose_drill() {
 # check_links: makes an endpoint of each bare address in LINKS.
 check_links() {
   local index link
+  [ -z "$ROUTER" ] || check_endpoint --router "$ROUTER"
+  [ -z "$ROUTER" ] || [ "${#LINKS[@]}" -gt 0 ] ||
+    usage_error "--router: name the robots behind it, such as --link \"bot1 bot2\""
   for index in "${!LINKS[@]}"; do
     link=${LINKS[index]}
+    if [ -n "$ROUTER" ] && [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*$ ]]; then continue; fi
     # Without a protocol mhri_link takes tls/ where keys are in place, else tcp/.
-    [[ $link == *=*/* ]] || link=$link:7447
+    [[ $link == *=*:* ]] || link=$link:7447
     [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*=((tcp|udp|tls|quic)/)?[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] ||
       usage_error "--link: '${LINKS[index]}' is not NAME=ADDRESS such as bot1=192.168.0.7"
     LINKS[index]=$link
@@ -370,6 +378,7 @@ launch() {
   local status=0 file=mhri.launch args=("sim:=${SIM:-0}" "${LAUNCH_ARGS[@]}")
   [ -z "$SIM_TYPES" ] || args+=("sim_types:=$SIM_TYPES")
   [ "${#LINKS[@]}" = 0 ] || args+=("links:=${LINKS[*]}" "keys:=${KEYS:-auto}")
+  [ -z "$ROUTER" ] || args+=("router:=$ROUTER")
   if "$DEMO"; then
     args+=("demo:=true" "screenshot:=$PICTURE" "demo_result:=$SCRATCH/demo_result")
   fi

@@ -126,6 +126,17 @@ class HostSide(Side):
         held = held_s(stamp_of(data), time.time()) if stream.topic == GUARD_COMMAND else 0.0
         self.send(stream.topic, stream.urgency, data, held_s=held)
 
+    def heard(self):
+        """Tell whether the robot is heard now."""
+        with self.lock:
+            return self.peer.heard(self.clock())
+
+    def versions(self):
+        """Return the versions that the robot tells of its side, see :mod:`mhri.ros.link.note`."""
+        said = self._about.parameters.get('link')
+        return {key: str(said.get(key, ''))[:40] for key in ('mhri', 'zenoh')} \
+            if isinstance(said, dict) else {}
+
     def fill(self, status):
         """Fill a ``DiagnosticStatusWrapper`` with the figures of the link."""
         with self.lock:

@@ -13,6 +13,7 @@ from mhri.core.link.renaming import first_text, renamer, rewritten, Transforms
 from mhri.core.robots.robot_types import resolve_robot_type
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.subscription import Subscription
+from mhri.ros.link.note import versions
 from mhri.ros.link.side import CONTROL, Side
 from mhri.ros.messages import bytes_of, message_class
 
@@ -95,7 +96,7 @@ class RobotSide(Side):
         self._namespace = namespace
         self._types = types
         self._rename = renamer(name, shared)
-        self._about = About({}, ())
+        self._about = About({'link': versions()}, ())
         self._told_at = self._looked_at = 0.0
         self._wanted = ()
         self._streams = {}
