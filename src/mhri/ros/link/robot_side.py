@@ -11,6 +11,7 @@ from mhri.core.link.renaming import first_text, renamer, rewritten, Transforms
 from mhri.core.robots.robot_types import resolve_robot_type
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.subscription import Subscription
+from mhri.ros.link.recall import Recall
 from mhri.ros.link.side import Side
 from mhri.ros.messages import bytes_of, message_class
 
@@ -91,6 +92,7 @@ class RobotSide(Side):
         self._namespace = namespace
         self._types = types
         self._rename = renamer(name, shared)
+        self._recall = Recall()
         self._about = About({}, ())
         self._told_at = self._looked_at = 0.0
         self._wanted = ()
@@ -136,6 +138,7 @@ class RobotSide(Side):
         if now - self._looked_at >= LOOK_S:
             self._looked_at = now
             try:
+                self._recall.look()
                 self._look()
             except MasterError as error:
                 rospy.logdebug('%s', error)
