@@ -15,7 +15,7 @@ TIMEOUT_S = 1.0
 class Recall:
     """Remembers who is registered, and registers them again with a master that has forgotten them.
 
-    Their connections outlive the master; but who comes later, this link started once more among them,
+    Their connections outlive the master; but who comes later, such as this link started once more,
     would find neither the guard nor the sensors.
     """
 
