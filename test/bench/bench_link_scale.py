@@ -53,6 +53,12 @@ def bodies():
     return found
 
 
+def due(number, wanted):
+    """Return the topics that are sent at a tick, of those that are wanted by their places."""
+    return [topic for place, (topic, _, every) in enumerate(STREAMS)
+            if number % every == 0 and place in wanted]
+
+
 def stand_ins(ports):
     """Return a side of the link for each robot."""
     from mhri.core.link.carried import COMMAND, STATE
@@ -88,9 +94,8 @@ def stand_ins(ports):
             """Send what is due at a tick and wanted."""
             if not self.peer.heard(self.clock()):
                 return
-            for place, (topic, _, every) in enumerate(STREAMS):
-                if number % every == 0 and place in self.wanted:
-                    self.send(topic, COMMAND if 'echo' in topic else STATE, found[topic])
+            for topic in due(number, self.wanted):
+                self.send(topic, COMMAND if 'echo' in topic else STATE, found[topic])
 
     return [StandIn('bot{}'.format(number + 1), port).start()
             for number, port in enumerate(ports)]
@@ -98,14 +103,14 @@ def stand_ins(ports):
 
 def robots(ports):
     """Be all robots."""
-    sides, number, due = stand_ins(ports), 0, time.monotonic()
+    sides, number, next_s = stand_ins(ports), 0, time.monotonic()
     print('ready', flush=True)
     while True:
         number += 1
         for side in sides:
             side.speak(number)
-        due += TICK_S
-        time.sleep(max(0.0, due - time.monotonic()))
+        next_s += TICK_S
+        time.sleep(max(0.0, next_s - time.monotonic()))
 
 
 def listen(count, topics):
