@@ -14,6 +14,7 @@ from mhri.core.robots.robot_types import resolve_robot_type
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.subscription import Subscription
 from mhri.ros.link.note import versions
+from mhri.ros.link.recall import Recall
 from mhri.ros.link.side import CONTROL, Side
 from mhri.ros.messages import bytes_of, message_class
 
@@ -96,6 +97,7 @@ class RobotSide(Side):
         self._namespace = namespace
         self._types = types
         self._rename = renamer(name, shared)
+        self._recall = Recall()
         self._about = About({'link': versions()}, ())
         self._told_at = self._looked_at = 0.0
         self._wanted = ()
@@ -152,6 +154,7 @@ class RobotSide(Side):
         if now - self._looked_at >= LOOK_S:
             self._looked_at = now
             try:
+                self._recall.look()
                 self._look()
             except MasterError as error:
                 rospy.logdebug('%s', error)
