@@ -7,7 +7,7 @@ import rospy
 
 from mhri.core.link.carried import (
     COMMAND, DOWN, full_topic, GUARD_COMMAND, GUARD_ECHO, PICTURE, STATE, TF, TF_STATIC, TF_TYPE)
-from mhri.core.link.frames import About, unpack_about
+from mhri.core.link.frames import About, Thinned, unpack_about
 from mhri.core.link.peer import held_s
 from mhri.core.link.renaming import stamp_of
 from mhri.ros.graph.master_api import MasterError
@@ -36,6 +36,8 @@ class HostSide(Side):
         self._set_parameter = set_parameter
         self._about = About({}, ())
         self._news = None
+        # What the robot's side sends less of.
+        self.seen = Thinned()
         self._publishers = {}
         self._unusable = set()
         self._down = []
@@ -48,7 +50,8 @@ class HostSide(Side):
         return (self._about.name if self._about.topics else ''), tuple(wanted)
 
     def on_peer(self, beat, now):
-        """Nothing: the beat itself says that the robot is there."""
+        """Take in what the robot's side sends less of."""
+        self.seen = beat.thinned
 
     def on_frame(self, topic, frame, now):
         """Publish a message, or note what the robot says of itself."""
@@ -123,13 +126,10 @@ class HostSide(Side):
             status.summary(status.OK if heard else status.WARN, 'linked' if heard else (
                 'the robot is not heard' if peer.silence_s(now) < 1e9 else
                 'the robot was never heard: is mhri_link running on it, and is --connect right?'))
-            status.add('round trip [ms]', '{:.1f}'.format(1000.0 * peer.round_trip_s()))
-            status.add('beats lost [%]', '{:.0f}'.format(100.0 * peer.loss()))
-            status.add('refused', self.refused)
-        for urgency, ages in sorted(self.ages().items()):
-            if ages:
-                status.add('age of {} [ms]'.format(urgency), '{:.1f} median, {:.1f} most'.format(
-                    1000.0 * ages[len(ages) // 2], 1000.0 * ages[-1]))
+            if self.seen.bytes_per_s:
+                status.add('the radio bears [kB/s]', '{:.1f}'.format(1e-3 * self.seen.bytes_per_s))
+                status.add('pictures a second', '{:.1f}'.format(self.seen.picture_hz))
+        self.add_figures(status)
         return status
 
     def close(self):
