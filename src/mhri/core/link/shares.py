@@ -63,13 +63,15 @@ class Share:
     :param hz: messages in a second
     :param size: the most bytes of a picture; infinite to leave it as it is
     :param times: how often each piece of a picture is sent
-    :param bytes_per_s: the pace of the pieces of all pictures, one after the other
+    :param bytes_per_s: what its pictures may take
+    :param pace: bytes a second at which their pieces go, those of one stream after another's
     """
 
     hz: float
     size: float = math.inf
     times: int = 1
     bytes_per_s: float = math.inf
+    pace: float = math.inf
 
 
 def shares(flows: List[Flow], bytes_per_s: float, loss: float, now: float) -> Dict[str, Share]:
@@ -113,4 +115,4 @@ def _of_picture(flow: Flow, bytes_per_s: float, count: int, loss: float) -> Shar
     if usable < FEW_HZ * size:
         size = min(size, max(usable / FEW_HZ, SMALL_BYTES))
     return Share(min(usable / size, flow.stream.rate_hz or math.inf),
-                 math.inf if size == flow.size else size, times, bytes_per_s)
+                 math.inf if size == flow.size else size, times, bytes_per_s / count, bytes_per_s)

@@ -10,11 +10,11 @@ from mhri.core.link.renaming import after_texts
 
 _LENGTH = struct.Struct('<I')
 # (how many times fewer pixels each way, jpeg quality), from large to small.
-STEPS = ((1, 60), (1, 35), (2, 60), (2, 35), (4, 60), (4, 35), (8, 40), (8, 20))
+STEPS = ((1, 60), (1, 40), (1, 25), (2, 70), (2, 50), (2, 30), (4, 70), (4, 45), (8, 50), (8, 20))
 _READ = {1: cv2.IMREAD_COLOR, 2: cv2.IMREAD_REDUCED_COLOR_2, 4: cv2.IMREAD_REDUCED_COLOR_4,
          8: cv2.IMREAD_REDUCED_COLOR_8}
 # Less than this part of what may be used: a larger one is tried next time.
-_ROOM = 0.45
+_ROOM = 0.6
 KIND = 'sensor_msgs/CompressedImage'
 
 

@@ -7,7 +7,7 @@ import time
 import rospy
 
 from mhri.core.link.pieces import split
-from mhri.core.link.shares import Share
+from mhri.core.link.shares import Flow, Share
 from mhri.core.link.smaller import KIND, Smaller
 
 # Without news it is looked again after so long [s].
@@ -33,6 +33,7 @@ class Pictures:
         self._shares = {}
         self._due = {}
         self._smaller = {}
+        self._flows = {}
         self._number = 0
         threading.Thread(target=self._run, name='pictures', daemon=True).start()
 
@@ -60,7 +61,6 @@ class Pictures:
                 return None
             topic = min(due, key=lambda topic: self._due.get(topic, 0.0))
             share = self._shares.get(topic, Share(1.0))
-            self._due[topic] = now + 1.0 / max(share.hz, 0.01)
             return self._waiting.pop(topic), share
 
     def _run(self):
@@ -85,8 +85,21 @@ class Pictures:
         self._number += 1
         pieces = split(self._number, taken_at, self._rename(data, names, self._number))
         begun, sent = self._clock(), 0
+        self._count(stream, begun)
         for piece in pieces * share.times:
             if not self._send(stream, piece):
                 return
             sent += len(piece)
-            time.sleep(max(0.0, begun + sent / share.bytes_per_s - self._clock()))
+            time.sleep(max(0.0, begun + sent / share.pace - self._clock()))
+        with self._lock:
+            least_s = 1.0 / stream.rate_hz if stream.rate_hz else 0.0
+            self._due[stream.topic] = begun + max(sent / share.bytes_per_s, least_s)
+
+    def _count(self, stream, now):
+        with self._lock:
+            self._flows.setdefault(stream.topic, Flow(stream)).came(now)
+
+    def most_hz(self):
+        """Return how often pictures go of the stream of which most do [Hz]."""
+        with self._lock:
+            return max((flow.hz(self._clock()) for flow in self._flows.values()), default=0.0)

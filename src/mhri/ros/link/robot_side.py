@@ -150,16 +150,15 @@ class RobotSide(Side):
         flows, bearing = [carried.flow for carried in opened], self._bearing
         was_bound = bearing.bound
         bearing.on_heard(heard, sum(flow.demand(now) for flow in flows), now)
-        import os; open('/tmp/flow13-trace', 'a').write('{} {:.1f} {} rate {:.0f} demand {:.0f}\n'.format(self.name, now, heard, bearing.bytes_per_s, sum(flow.demand(now) for flow in flows)))
         if not (was_bound or bearing.bound):
             return
         found = shares(flows, bearing.bytes_per_s, bearing.loss, now) if bearing.bound else {}
         for carried in opened:
             carried.thin(found.get(carried.stream.topic))
         self._pictures.share(found)
-        rates = [found[flow.stream.topic].hz for flow in flows
-                 if found and flow.stream.urgency == PICTURE]
-        self.thinned = Thinned(bearing.bytes_per_s, max(rates, default=0.0)) if found else Thinned()
+        looked_at = any(flow.stream.urgency == PICTURE for flow in flows)
+        self.thinned = Thinned(bearing.bytes_per_s, self._pictures.most_hz() if looked_at else 0.0) \
+            if found else Thinned()
         if not bearing.bound:
             self._pictures.forget()
             rospy.loginfo('%s: the radio bears everything', self.name)
