@@ -299,7 +299,10 @@ class World:
                  PATIENCE_S, 'the robots by ' + way, poll_s=0.1)
 
     def measure(self, way, row, outage_s, drive_s):
-        """Return (figures of one case, what the radio did)."""
+        """Return (figures of one case, what the radio did).
+
+        The radio stays as it is for the next case: :meth:`settle` cleans the cable.
+        """
         table = [dict(row, at_s=0)]
         if outage_s:
             table += [{'at_s': drive_s, 'down': True}, {'at_s': drive_s + outage_s, 'down': False}]
@@ -319,7 +322,7 @@ class World:
         # After an outage TCP waits for up to as long again.
         time.sleep(1.5 + (2.0 * outage_s if outage_s < 10.0 else 15.0 + outage_s))
         ended = time.monotonic()
-        report = self.radio.follow([{'at_s': 0}])
+        report = self.radio.follow([dict(row, at_s=0)])
         at = self.at_the_robots(way)
         figures = self._of_commands([told for told, _ in at.values()], gone - looked)
         pictures = [shown.pictures for shown in looked_at]

@@ -17,10 +17,14 @@ from mhri.core.link.bearing import (  # noqa: E402
     AROUND_BYTES, Bearing, CUT, LEAST_BYTES_PER_S, Meter, SETTLE_S)
 from mhri.core.link.carried import (  # noqa: E402
     COMMAND, GUARD_ECHO, Pace, PICTURE, STATE, Stream)
+from mhri.core.link.figures import (  # noqa: E402
+    figures_words, picture_words, RadioFigures, read_figures, thinned_words)
 from mhri.core.link.frames import Frame, FrameError, Heard  # noqa: E402
 from mhri.core.link.pieces import Gathered, MOST_PIECES, PIECE_BYTES, split  # noqa: E402
 from mhri.core.link.shares import Flow, shares, SMALL_BYTES  # noqa: E402
 from mhri.core.link.smaller import Smaller  # noqa: E402
+from mhri.core.robots.link_quality import link_warning  # noqa: E402
+from mhri.core.screen.views import LinkFigures  # noqa: E402
 from support.radio import Channel, read_table, Table  # noqa: E402
 
 CALM, FULL, LOSSY = Heard(5e4, 0.0, 0.0), Heard(5e4, 0.15, 0.0), Heard(5e4, 0.0, 0.2)
@@ -55,7 +59,7 @@ def test_the_meter_counts_each_stream_for_itself_and_another_run_anew():
 def bound(heard=FULL):
     """Return a bearing that has found a limit, and when."""
     bearing = Bearing()
-    for now in (1.0, 1.2):
+    for now in (0.8, 1.0, 1.2):
         assert not bearing.bound
         bearing.on_heard(heard, DEMAND, now)
     assert bearing.bound
@@ -312,3 +316,39 @@ def test_it_grows_again_when_there_is_room():
     for _ in range(12):
         large = smaller.fit(data, 30000)
     assert len(large) > 3 * small
+
+
+# --- what is told of it
+
+@pytest.mark.parametrize('figures, words, says', [
+    (RadioFigures(), '', []),
+    (RadioFigures(0.4123, 0.2), 'round_trip:0.4123 loss:0.2', []),
+    (RadioFigures(bears=112e3), 'bears:112000.0', ['the radio bears 0.9 Mbit/s only']),
+    (RadioFigures(0.4, 0.2, 112e3, 0.52), 'round_trip:0.4 loss:0.2 bears:112000.0 picture_hz:0.52',
+     ['picture 1 in 2 s: the radio bears 0.9 Mbit/s']),
+    (RadioFigures(bears=4000.0, picture_hz=0.02), 'bears:4000.0 picture_hz:0.02',
+     ['no picture: the radio bears 0.1 Mbit/s']),
+    (RadioFigures(bears=9e5, picture_hz=12.3), 'bears:900000.0 picture_hz:12.3',
+     ['picture 12 a second: the radio bears 7.2 Mbit/s'])])
+def test_figures_are_told_in_words_and_read_again(figures, words, says):
+    assert figures_words(figures) == words
+    assert repr(read_figures(words)) == repr(figures)
+    assert thinned_words(figures) == says
+
+
+@pytest.mark.parametrize('words', [
+    'nonsense', 'round_trip', 'round_trip:', 'loss:-1', 'bears:nan', 'bears:inf', 'other:3',
+    'x' * 9999])
+def test_figures_that_cannot_be_count_for_nothing(words):
+    assert repr(read_figures(words)) == repr(RadioFigures())
+
+
+@pytest.mark.parametrize('rate_hz, words', [
+    (0.0, 'no picture'), (0.2, 'picture 1 in 5 s'), (0.9, 'picture 1 in 2 s'),
+    (1.0, 'picture 1 a second'), (4.6, 'picture 5 a second')])
+def test_how_often_a_picture_comes(rate_hz, words):
+    assert picture_words(rate_hz) == words
+
+
+def test_a_thinned_picture_is_a_warning_of_the_row():
+    assert link_warning(LinkFigures(thinned='picture 1 in 2 s')) == 'picture 1 in 2 s'

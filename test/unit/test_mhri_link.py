@@ -27,7 +27,7 @@ scan: [/scan]
 ''', 'r.yaml')
 
 # A beat around the four parts that come first.
-BEAT = b'[%s,[0,0]]'
+BEAT = b'[%s,[0,0,0]]'
 
 
 # --- what is carried
@@ -122,7 +122,7 @@ def test_only_what_is_newer_counts():
 
 @pytest.mark.parametrize('beat', [
     Beat(), Beat((1.5, 0.25), 'abc', (0, 4)), Beat(None, '', (1,)),
-    Beat(heard=Heard(94000.0, 0.0312, 0.2), thinned=Thinned(80000.0, 0.5))])
+    Beat(heard=Heard(94000.0, 0.0312, 0.2), thinned=Thinned(80000.0, 0.5, True))])
 def test_a_beat_comes_back_as_it_was(beat):
     assert unpack_beat(pack_beat(beat)) == beat
 

@@ -86,6 +86,7 @@ def main():
                               else options.name)
         side = RobotSide(options.name, carrier, '/' + namespace if namespace else '', types,
                          split_frames(options.shared_frames))
+        publish_diagnostics({'link to the host': side.fill})
     rospy.on_shutdown(side.close)
     side.start()
     rospy.spin()

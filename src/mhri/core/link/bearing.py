@@ -9,7 +9,6 @@ longer than the quickest of the last while has waited for the difference. Packet
 loses say nothing about its rate, unless they are many.
 """
 from collections import deque
-from dataclasses import dataclass
 import math
 from typing import Deque, Dict, List, Tuple
 
@@ -34,6 +33,8 @@ SETTLE_S = 0.8
 # What does not wait for less after two cuts does not wait because of what is sent: the way has
 # become longer, or others fill it [s].
 _FALLS_S = 0.03
+# So many reports in a row say that the radio does not bear all.
+BAD = 3
 LEAST_BYTES_PER_S = 4000.0
 _LEAST_GROWTH = 1500.0
 
@@ -123,9 +124,9 @@ class Bearing:
         queue_s = heard.queue_s - self._longer_s
         full = queue_s > QUEUE_MOST_S or heard.loss > LOSS_MOST
         if not self.bound:
-            # Once may be the computer.
+            # For a moment it may be the computer.
             self._bad = self._bad + 1 if full or heard.loss > LOSSY else 0
-            if self._bad >= 2:
+            if self._bad >= BAD:
                 self._cut(heard, now)
                 self._first = True
         elif full:

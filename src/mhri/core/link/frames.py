@@ -3,8 +3,8 @@
 """What goes over the air: a head before each message, the beats, and what a robot says of itself.
 
 The head is ``mh``, the version, how the body is packed, the session of the sender (another one at
-each start), the number of the message in its stream, and the sender's clock [s]. Whatever comes may be anybody's bytes:
-what cannot be read raises :class:`FrameError`.
+each start), the number of the message in its stream, and the sender's clock [s]. Whatever comes may
+be anybody's bytes: what cannot be read raises :class:`FrameError`.
 """
 from collections import deque
 from dataclasses import dataclass
@@ -128,11 +128,13 @@ class Thinned:
     """What a robot's side sends less of, since the radio does not bear all; zeros for nothing.
 
     :param bytes_per_s: what the radio bears
-    :param picture_hz: how often a picture goes, 0 while none is asked for
+    :param picture_hz: how often a picture goes
+    :param looked_at: whether any is asked for
     """
 
     bytes_per_s: float = 0.0
     picture_hz: float = 0.0
+    looked_at: bool = False
 
 
 @dataclass(frozen=True)
@@ -160,7 +162,8 @@ def pack_beat(beat: Beat) -> bytes:
     return json.dumps(
         [beat.echo, beat.about, beat.wanted,
          heard and [round(heard.bytes_per_s), round(heard.queue_s, 4), round(heard.loss, 4)],
-         [round(thinned.bytes_per_s), round(thinned.picture_hz, 2)]],
+         [round(thinned.bytes_per_s), round(thinned.picture_hz, 2),
+          int(thinned.looked_at)]],
         separators=(',', ':')).encode('ascii')
 
 
@@ -178,7 +181,7 @@ def unpack_beat(body: bytes) -> Beat:
         raise FrameError('a beat with wrong topics')
     return Beat(echo and (echo[0], echo[1]), about[:40], tuple(wanted),
                 None if heard is None else Heard(*_numbers(heard, 3)),
-                Thinned(*_numbers(thinned, 2)))
+                _thinned(*_numbers(thinned, 3)))
 
 
 @dataclass(frozen=True)
@@ -192,6 +195,10 @@ class About:
     def name(self) -> str:
         """Tell it apart from others."""
         return '{:08x}'.format(zlib.crc32(pack_about(self)))
+
+
+def _thinned(bytes_per_s: float, picture_hz: float, looked_at: float) -> Thinned:
+    return Thinned(bytes_per_s, picture_hz, bool(looked_at))
 
 
 def pack_about(about: About) -> bytes:

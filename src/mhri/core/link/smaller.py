@@ -42,7 +42,8 @@ class Smaller:
             pixels = cv2.imdecode(coded, _READ[factor])
             if pixels is None:
                 return data
-            found = cv2.imencode('.jpg', pixels, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
+            found: bytes = cv2.imencode(
+                '.jpg', pixels, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
             if begin + 4 + len(found) <= most or self._step == len(STEPS) - 1:
                 if begin + len(found) < _ROOM * most and self._step:
                     self._step -= 1

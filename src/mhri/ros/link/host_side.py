@@ -1,12 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The host's side of the link: on the host's master the robot looks like any other."""
+import math
 import time
 
 import rospy
+from std_msgs.msg import String
 
 from mhri.core.link.carried import (
     COMMAND, DOWN, full_topic, GUARD_COMMAND, GUARD_ECHO, PICTURE, STATE, TF, TF_STATIC, TF_TYPE)
+from mhri.core.link.figures import FIGURES, figures_words, RadioFigures
 from mhri.core.link.frames import About, Thinned, unpack_about
 from mhri.core.link.peer import held_s
 from mhri.core.link.renaming import stamp_of
@@ -16,6 +19,8 @@ from mhri.ros.link.side import ABOUT, Side
 from mhri.ros.messages import bytes_of, message_class, MessageMissing
 
 QUEUE = 5
+# The figures of the link are told so often [s].
+TELL_S = 1.0
 PICTURE_TYPES = ('sensor_msgs/Image', 'sensor_msgs/CompressedImage', 'sensor_msgs/PointCloud2')
 LATCHED = (TF_STATIC, 'mhri_guard/state')
 
@@ -36,8 +41,10 @@ class HostSide(Side):
         self._set_parameter = set_parameter
         self._about = About({}, ())
         self._news = None
-        # What the robot's side sends less of.
-        self.seen = Thinned()
+        self._less = Thinned()
+        self._told_at = 0.0
+        self._figures = rospy.Publisher('/{}/{}'.format(name, FIGURES), String, queue_size=1,
+                                        tcp_nodelay=True)
         self._publishers = {}
         self._unusable = set()
         self._down = []
@@ -51,7 +58,7 @@ class HostSide(Side):
 
     def on_peer(self, beat, now):
         """Take in what the robot's side sends less of."""
-        self.seen = beat.thinned
+        self._less = beat.thinned
 
     def on_frame(self, topic, frame, now):
         """Publish a message, or note what the robot says of itself."""
@@ -69,7 +76,8 @@ class HostSide(Side):
             publisher.publish(message)
 
     def work(self, now):
-        """Open the topics that are new."""
+        """Tell the figures; open the topics that are new."""
+        self._tell(now)
         news = self._news
         if news is None or news == self._about:
             return
@@ -118,19 +126,26 @@ class HostSide(Side):
         held = held_s(stamp_of(data), time.time()) if stream.topic == GUARD_COMMAND else 0.0
         self.send(stream.topic, stream.urgency, data, held_s=held)
 
-    def fill(self, status):
-        """Fill a ``DiagnosticStatusWrapper`` with the figures of the link."""
+    def less(self):
+        """Return what the robot's side sends less of; under the lock."""
+        return self._less
+
+    def unheard(self, silence_s):
+        """Return in words that the robot is not heard, for so long [s]."""
+        return 'the robot is not heard' if silence_s < 1e9 else (
+            'the robot was never heard: is mhri_link running on it, and is --connect right?')
+
+    def _tell(self, now):
+        """Publish the figures of the link, for the robot's row."""
         with self.lock:
-            now, peer = self.clock(), self.peer
-            heard = peer.heard(now)
-            status.summary(status.OK if heard else status.WARN, 'linked' if heard else (
-                'the robot is not heard' if peer.silence_s(now) < 1e9 else
-                'the robot was never heard: is mhri_link running on it, and is --connect right?'))
-            if self.seen.bytes_per_s:
-                status.add('the radio bears [kB/s]', '{:.1f}'.format(1e-3 * self.seen.bytes_per_s))
-                status.add('pictures a second', '{:.1f}'.format(self.seen.picture_hz))
-        self.add_figures(status)
-        return status
+            heard, less = self.peer.heard(now), self._less
+            loss = self.meter.read(now).loss
+            trip_s = self.peer.round_trip_s()
+        if heard and now - self._told_at >= TELL_S:
+            self._told_at = now
+            self._figures.publish(figures_words(RadioFigures(
+                trip_s, loss, less.bytes_per_s or math.inf,
+                less.picture_hz if less.bytes_per_s and less.looked_at else math.nan)))
 
     def close(self):
         """Nothing to end: the guard on the robot ends what is being driven."""

@@ -157,7 +157,7 @@ class RobotSide(Side):
             carried.thin(found.get(carried.stream.topic))
         self._pictures.share(found)
         looked_at = any(flow.stream.urgency == PICTURE for flow in flows)
-        self.thinned = Thinned(bearing.bytes_per_s, self._pictures.most_hz() if looked_at else 0.0) \
+        self.thinned = Thinned(bearing.bytes_per_s, self._pictures.most_hz(), looked_at) \
             if found else Thinned()
         if not bearing.bound:
             self._pictures.forget()
@@ -259,6 +259,10 @@ class RobotSide(Side):
                 self._streams[stream.topic] = stream
         with self.lock:
             self._about = About(parameters, tuple(sorted(topics.items())))
+
+    def unheard(self, silence_s):
+        """Return in words that the host is not heard, for so long [s]."""
+        return 'the host is not heard' if silence_s < 1e9 else 'the host was never heard'
 
     def close(self):
         """Say nothing more; the guard ends what is being driven."""

@@ -62,7 +62,7 @@ class Side:
         self._numbers = collections.Counter()
         self._newest = collections.defaultdict(Newest)
         self._gathered = collections.defaultdict(Gathered)
-        self._meter = Meter()
+        self.meter = Meter()
         self._ages = {}
         # {class: (when, bytes) of what was sent}
         self._sent = collections.defaultdict(lambda: collections.deque(maxlen=_AGES))
@@ -105,7 +105,7 @@ class Side:
             with self.lock:
                 if not self._newest_of(topic).takes(frame):
                     return
-                self._meter.note(topic, frame, len(data), now)
+                self.meter.note(topic, frame, len(data), now)
                 if frame.kind == PIECE:
                     whole = self._gathered[topic].add(frame.body)
                     if whole is None:
@@ -142,15 +142,20 @@ class Side:
                 (now, age_s, len(frame.body)))
         return age_s
 
-    def add_figures(self, status):
-        """Add what goes and comes of each class to a ``DiagnosticStatusWrapper``."""
+    def fill(self, status):
+        """Fill a ``DiagnosticStatusWrapper`` with the figures of the link."""
         with self.lock:
-            now = self.clock()
-            heard = self._meter.read(now)
+            now, less = self.clock(), self.less()
+            silence_s = self.peer.silence_s(now)
+            status.summary(*((status.OK, 'linked') if self.peer.heard(now) else
+                             (status.WARN, self.unheard(silence_s))))
+            heard = self.meter.read(now)
             status.add('round trip [ms]', '{:.1f}'.format(1000.0 * self.peer.round_trip_s()))
             status.add('beats lost [%]', '{:.0f}'.format(100.0 * self.peer.loss()))
             status.add('lost on the way here [%]', '{:.0f}'.format(100.0 * heard.loss))
             status.add('waits on the way here [ms]', '{:.0f}'.format(1000.0 * heard.queue_s))
+            status.add('the radio bears [kB/s]', '{:.1f}'.format(1e-3 * less.bytes_per_s)
+                       if less.bytes_per_s else 'everything')
             status.add('refused', self.refused)
             for urgency, sent in sorted(self._sent.items()):
                 status.add('{} sent [kB/s]'.format(urgency), '{:.1f}'.format(per_s(sent, now)))
@@ -161,6 +166,7 @@ class Side:
             if ages:
                 status.add('age of {} [ms]'.format(urgency), '{:.1f} median, {:.1f} most'.format(
                     1000.0 * ages[len(ages) // 2], 1000.0 * ages[-1]))
+        return status
 
     def ages(self):
         """Return {class: sorted ages [s] of the last 10 s} of what came in."""
@@ -188,7 +194,7 @@ class Side:
                     '%s: the other side of the link is %s', self.name,
                     'there' if heard else 'not heard any more')
             self.send(BEAT, COMMAND, pack_beat(
-                Beat(self.peer.echo(now), *self.said(), self._meter.read(now), self.thinned)))
+                Beat(self.peer.echo(now), *self.said(), self.meter.read(now), self.thinned)))
 
     def send_about(self, body):
         """Send what the robot says of itself."""
@@ -200,6 +206,14 @@ class Side:
 
     def on_frame(self, topic, frame, now):
         """Take in a message of a stream; under the lock."""
+        raise NotImplementedError
+
+    def less(self):
+        """Return what the robot's side sends less of; under the lock."""
+        return self.thinned
+
+    def unheard(self, silence_s):
+        """Return in words that the other side is not heard, for so long [s]."""
         raise NotImplementedError
 
     def said(self):
