@@ -160,6 +160,14 @@ class Operator:
 
     def _run(self):
         import rospy
+        try:
+            self._drive()
+        except rospy.ROSException:
+            # The topics are closed at the end.
+            if not rospy.is_shutdown():
+                raise
+
+    def _drive(self):
         number, due = 0, time.monotonic()
         while True:
             if number % 10 == 0:
@@ -170,10 +178,7 @@ class Operator:
                 if self.holding and self.ready():
                     stick = (TURN, LEAST + STEP * (number % VALUES))
                     self.sent[round(stick[1], 4)] = time.monotonic()
-                try:
-                    self._joy.publish(self._joy_class(axes=stick))
-                except rospy.ROSException:  # it is being ended
-                    return
+                self._joy.publish(self._joy_class(axes=stick))
             due = max(due + STICK_S, time.monotonic())
             time.sleep(max(0.0, due - time.monotonic()))
 

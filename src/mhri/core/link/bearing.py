@@ -21,22 +21,23 @@ WINDOW_S, LOSS_WINDOW_S = 0.5, 2.0
 # The quickest message of so many such times is the base of what waits.
 _BASE_S, _BASES = 10.0, 2
 # Waiting for longer is too much, for less leaves room for more [s].
-QUEUE_MOST_S, QUEUE_CALM_S = 0.08, 0.04
+QUEUE_MOST_S, QUEUE_CALM_S = 0.07, 0.03
 # Of the messages; the first makes the link careful, with the second it goes down.
 LOSSY, LOSS_MOST = 0.08, 0.5
-# So much of what came is sent from then on; then by such a part more each second, which grows by so
-# much each second. What came before the first cut was whole pictures, or rather was not: up to the
-# second it is made up for quickly.
-CUT, GROWTH, GROWTH_GROWS, FIRST_GROWTH = 0.85, 0.02, 0.01, 1.0
+# So much of what came is sent from then on; then by such a part more each second: up to near what was
+# too much, around that, and beyond it, where the part grows each second. What came before the first
+# cut was whole pictures, or rather was not: up to the second it is made up for quickly.
+CUT, GROWTH, AROUND_GROWTH, BEYOND_GROWTH, FIRST_GROWTH = 0.85, 0.05, 0.015, 0.01, 1.0
+NEAR, BEYOND = 0.85, 1.15
 # What was sent before a cut is still on its way [s].
-SETTLE_S = 0.8
+SETTLE_S = 1.0
 # What does not wait for less after two cuts does not wait because of what is sent: the way has
 # become longer, or others fill it [s].
 _FALLS_S = 0.03
 # So many reports in a row say that the radio does not bear all.
 BAD = 3
-LEAST_BYTES_PER_S = 4000.0
-_LEAST_GROWTH = 1500.0
+LEAST_BYTES_PER_S = 8000.0
+_LEAST_GROWTH = 1000.0
 
 
 class Meter:
@@ -101,6 +102,7 @@ class Bearing:
         self.bytes_per_s = math.inf
         self.loss = 0.0
         self._cut_at = -math.inf
+        self._top = 0.0
         self._heard_at = -math.inf
         self._bad = 0
         self._first = False
@@ -149,13 +151,22 @@ class Bearing:
             self.bytes_per_s, self._first = self._before, True
 
     def _cut(self, heard: Heard, now: float) -> None:
+        if now - self._cut_at > 2.0 * SETTLE_S:
+            # At first it is unknown what was sent.
+            self._top = self.bytes_per_s if self.bound else heard.bytes_per_s
         self.bytes_per_s = max(LEAST_BYTES_PER_S,
                                CUT * min(heard.bytes_per_s, self.bytes_per_s))
         self._cut_at, self._bad = now, 0
 
     def _grow(self, step_s: float, demand: float, now: float) -> None:
         calm_s = now - self._cut_at - SETTLE_S
-        share = FIRST_GROWTH if self._first else min(1.0, GROWTH + GROWTH_GROWS * calm_s)
+        if self._first:
+            share = FIRST_GROWTH
+        elif self.bytes_per_s < NEAR * self._top:
+            share = GROWTH
+        else:
+            beyond = self.bytes_per_s > BEYOND * self._top
+            share = min(1.0, BEYOND_GROWTH * calm_s) if beyond else AROUND_GROWTH
         grown = self.bytes_per_s + step_s * max(share * self.bytes_per_s, _LEAST_GROWTH)
         # Nobody knows what a radio bears beyond what it was given.
         self.bytes_per_s = max(self.bytes_per_s, min(grown, 2.0 * demand))

@@ -10,8 +10,9 @@ from mhri.core.link.carried import COMMAND, PICTURE, STATE, Stream
 
 # The echoes of the guard need not come more often to be alive for the gates.
 ECHO_HZ = 12.0
-# States leave so much of the rest to pictures that somebody looks at.
-TO_STATES = 0.6
+# To pictures that somebody looks at states leave this part of the rest, and enough for one now and
+# then, unless that is more than the second part [bytes/s].
+TO_PICTURES, SOME_BYTES_PER_S, MOST_TO_PICTURES = 0.4, 4500.0, 0.65
 # States are never less frequent than that, times their weight [Hz].
 LEAST_HZ = 2.0
 # First fewer pictures, down to this, then smaller ones, down to this, then fewer again [Hz, bytes].
@@ -87,7 +88,8 @@ def shares(flows: List[Flow], bytes_per_s: float, loss: float, now: float) -> Di
     left = bytes_per_s - sum(found[flow.stream.topic].hz * flow.size for flow in by_class[COMMAND])
     left = max(left, 0.3 * bytes_per_s)
     looked_at = [flow for flow in by_class[PICTURE] if flow.hz(now) > 0.01]
-    level = _level(by_class[STATE], (TO_STATES if looked_at else 1.0) * left, now)
+    kept = max(TO_PICTURES * left, min(SOME_BYTES_PER_S, MOST_TO_PICTURES * left))
+    level = _level(by_class[STATE], left - (kept if looked_at else 0.0), now)
     for flow in by_class[STATE]:
         hz = level * flow.stream.weight
         found[flow.stream.topic] = Share(hz)
