@@ -36,6 +36,11 @@ Robots
                        an endpoint such as udp/192.168.0.7:7447. Installs the library for it, zenoh,
                        below build/.ws.
 
+  --replay PATH        show a session again: the folder of one that was recorded, a folder of bags,
+                       or a bag of any program whose topics are those of a robot type. Uses a master
+                       of its own, with nothing on it that drives, so it does not disturb a running
+                       system.
+
 Network
   --ip ADDR            this computer's address, as the robots reach it. Default: the first IPv4
                        address of 'hostname -I'. With --sim, or a master on this machine:
@@ -64,6 +69,8 @@ Examples
   mhri_run.sh                       drive the robots of the network
   mhri_run.sh --ip 192.168.0.103    the same, if the computer has several addresses
   mhri_run.sh --sim 3               three simulated robots; needs neither robots nor network
+  mhri_run.sh --replay ~/.ros/mhri/sessions/2026-03-01-14-03-22
+                                    look at that mission again
   mhri_run.sh --demo                proof that everything works here
 HELP
 }
@@ -74,6 +81,7 @@ LINKS=()
 IP=
 MASTER=
 DEMO=false
+REPLAY=
 PICTURE=
 SPACE=devel
 LAUNCH_ARGS=()
@@ -94,6 +102,7 @@ parse_arguments() {
       --master) MASTER=$(value "$@"); shift ;;
       --screenshot) PICTURE=$(value "$@"); shift ;;
       --demo) DEMO=true ;;
+      --replay) REPLAY=$(value "$@"); shift ;;
       --install-space) SPACE=install ;;
       -*) usage_error "there is no option $1" ;;
       *:=*) LAUNCH_ARGS+=("$1") ;;
@@ -112,6 +121,7 @@ check_arguments() {
   [ -z "$SIM_TYPES" ] || [ -n "$SIM" ] || "$DEMO" ||
     usage_error "--sim-types lists the types for the robots of --sim N: give --sim as well"
   check_links
+  check_replay
   [ -z "$IP" ] || check_ip --ip "$IP" 192.168.0.103
   [[ -z $MASTER || $MASTER =~ ^http://[A-Za-z0-9]([A-Za-z0-9.-]*)?:[0-9]{1,5}/?$ ]] ||
     usage_error "--master: '$MASTER' is not an address such as http://192.168.0.103:11311"
@@ -131,6 +141,18 @@ check_arguments() {
     [[ $arg =~ ^[a-z][a-z0-9_]*:= ]] || usage_error "'$arg' is not ARG:=VALUE"
     [[ $arg != *[[:cntrl:]]* ]] || usage_error "${arg%%:=*}: a control character is in '$arg'"
   done
+}
+
+# check_replay: a replay has a master of its own, and nothing beside it.
+check_replay() {
+  [ -n "$REPLAY" ] || return 0
+  [ -z "$IP$MASTER$SIM$PICTURE" ] && [ "${#LINKS[@]}" = 0 ] && ! "$DEMO" ||
+    usage_error "--replay runs on this machine alone, with its own master and without robots:" \
+      "leave out --ip, --master, --sim, --link, --demo and --screenshot"
+  [ -e "$REPLAY" ] || usage_error "--replay: there is no $REPLAY"
+  [[ $REPLAY != *[\'\"\$]* ]] ||
+    usage_error "--replay: a quote or a dollar sign is in $REPLAY: choose another name"
+  REPLAY=$(realpath -- "$REPLAY")
 }
 
 # check_links: makes an endpoint of each bare address in LINKS.
@@ -154,9 +176,10 @@ look() {
 # roslaunch accepts any argument, so without this a misspelled enabling:=pedal would start without
 # the pedal.
 check_launch_arguments() {
-  local wrong args=("${LAUNCH_ARGS[@]}")
+  local wrong args=("${LAUNCH_ARGS[@]}") file=mhri.launch
+  [ -z "$REPLAY" ] || file=replay.launch
   [ -z "$SIM_TYPES" ] || args+=("sim_types:=$SIM_TYPES")
-  wrong=$(look arguments "$REPO/launch/mhri.launch" "${args[@]}")
+  wrong=$(look arguments "$REPO/launch/$file" "${args[@]}")
   [ -z "$wrong" ] || usage_error "$wrong"
 }
 
@@ -202,7 +225,7 @@ choose_address() {
     check_own_address
     return
   fi
-  if is_loopback "$master_host" || { [ -n "$SIM" ] && [ -z "$MASTER" ]; }; then
+  if is_loopback "$master_host" || { [ -n "$SIM$REPLAY" ] && [ -z "$MASTER" ]; }; then
     IP=127.0.0.1
     return
   fi
@@ -256,7 +279,7 @@ check_master() {
 }
 
 choose_network() {
-  if "$DEMO"; then MASTER="http://127.0.0.1:$(free_port)"; fi
+  if "$DEMO" || [ -n "$REPLAY" ]; then MASTER="http://127.0.0.1:$(free_port)"; fi
   MASTER=${MASTER:-http://$IP:11311}
   export ROS_MASTER_URI=$MASTER ROS_IP=$IP ROS_HOSTNAME=$IP
   check_master
@@ -300,17 +323,18 @@ stop() {
 }
 
 launch() {
-  local status=0 args=("sim:=${SIM:-0}" "${LAUNCH_ARGS[@]}")
+  local status=0 file=mhri.launch args=("sim:=${SIM:-0}" "${LAUNCH_ARGS[@]}")
   [ -z "$SIM_TYPES" ] || args+=("sim_types:=$SIM_TYPES")
   [ "${#LINKS[@]}" = 0 ] || args+=("links:=${LINKS[*]}")
   if "$DEMO"; then
     args+=("demo:=true" "screenshot:=$PICTURE" "demo_result:=$SCRATCH/demo_result")
   fi
+  [ -z "$REPLAY" ] || { file=replay.launch; args=("path:=$REPLAY" "${LAUNCH_ARGS[@]}"); }
   say "ROS_MASTER_URI=$ROS_MASTER_URI ROS_IP=$ROS_IP ROS_HOSTNAME=$ROS_HOSTNAME"
   # In its own session: Ctrl-C in the terminal reaches only this script, which passes it on once.
   # Should this script be killed, the kernel passes it on.
   MHRI_RUN_ID=$RUN_ID MHRI_PANEL_STATUS="$SCRATCH/panel_status" \
-    setsid setpriv --pdeathsig TERM roslaunch mhri mhri.launch "${args[@]}" &
+    setsid setpriv --pdeathsig TERM roslaunch mhri "$file" "${args[@]}" &
   LAUNCH_PID=$!
   while kill -0 "$LAUNCH_PID" 2>/dev/null; do
     status=0

@@ -24,9 +24,9 @@ _BASE_S, _BASES = 10.0, 2
 QUEUE_MOST_S, QUEUE_CALM_S = 0.07, 0.03
 # Of the messages; the first makes the link careful, with the second it goes down.
 LOSSY, LOSS_MOST = 0.08, 0.5
-# So much of what came is sent from then on; then by such a part more each second: up to near what was
-# too much, around that, and beyond it, where the part grows each second. What came before the first
-# cut was whole pictures, or rather was not: up to the second it is made up for quickly.
+# So much of what came is sent from then on; then by such a part more each second: up to near what
+# was too much, around that, and beyond it, where the part grows each second. What came before the
+# first cut was whole pictures, or rather was not: up to the second it is made up for quickly.
 CUT, GROWTH, AROUND_GROWTH, BEYOND_GROWTH, FIRST_GROWTH = 0.85, 0.05, 0.015, 0.01, 1.0
 NEAR, BEYOND = 0.85, 1.15
 # What was sent before a cut is still on its way [s].

@@ -21,13 +21,16 @@ class Fleet:
     :param types: {name: RobotType}
     :param gates: :class:`mhri.ros.driving.gates_client.GatesClient`
     :param worker: :class:`mhri.ros.worker.Worker` for the feeds of the tiles
+    :param clock: function that returns seconds that never go back
+    :param wall: function that returns the time of day [s since 1970]
     """
 
-    def __init__(self, types, gates, worker, clock=time.monotonic):
+    def __init__(self, types, gates, worker, clock=time.monotonic, wall=time.time):
         self._types = types
         self._gates = gates
         self._worker = worker
         self._clock = clock
+        self._wall = wall
         self._lock = threading.Lock()
         self._links = {}
         self._wanted = set()
@@ -74,7 +77,8 @@ class Fleet:
             self._links.pop(name, None)
         if old is not None:
             old.close()
-        link = RobotLink(name, robot_type, self._gates, BotFeeds(name, robot_type, self._worker))
+        link = RobotLink(name, robot_type, self._gates, BotFeeds(name, robot_type, self._worker),
+                         self._clock, self._wall)
         with self._lock:
             self._links[name] = link
             stopped = self._stopped

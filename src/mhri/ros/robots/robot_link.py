@@ -58,20 +58,22 @@ class Feed:
 
     :param read: function from the message to a value
     :param on_message: called with (feed, message, received at [s]) on the ROS thread
+    :param clock: function that returns seconds that never go back
     """
 
-    def __init__(self, topic, message_class, read, on_message):
+    def __init__(self, topic, message_class, read, on_message, clock=time.monotonic):
         self.topic = topic
         self._class = message_class
         self._read = read
         self._on_message = on_message
+        self._clock = clock
         self._refusals = Refusals(topic, time.monotonic)
         # Not a queue of one: a message dropped here must not look like a loss of the link.
         self._subscriber = rospy.Subscriber(topic, message_class, self._hear, queue_size=20,
                                             tcp_nodelay=True)
 
     def _hear(self, message):
-        self._on_message(self, message, time.monotonic())
+        self._on_message(self, message, self._clock())
 
     def value(self, message):
         """Return the value in a message, None if its bytes are not valid."""
@@ -100,14 +102,17 @@ class RobotLink:
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
     :param gates: :class:`mhri.ros.driving.gates_client.GatesClient`
     :param feeds: :class:`mhri.ros.robots.bot_feeds.BotFeeds` of its tile
+    :param clock: function that returns seconds that never go back
+    :param wall: function that returns the time of day [s since 1970]
     """
 
-    def __init__(self, name, robot_type, gates, feeds, clock=time.monotonic):
+    def __init__(self, name, robot_type, gates, feeds, clock=time.monotonic, wall=time.time):
         self.name = name
         self.robot_type = robot_type
         self._gates = gates
         self.feeds = feeds
         self._clock = clock
+        self._wall = wall
         self._lock = threading.Lock()
         self.added_at = clock()
         self._heard_at = None
@@ -124,7 +129,8 @@ class RobotLink:
         self._radio = None
         self._feeds = self._open_feeds()
         self._battery_feeds = [
-            Feed(topic_of(name, topic), BatteryState, battery_fraction, self._on_battery)
+            Feed(topic_of(name, topic), BatteryState, battery_fraction, self._on_battery,
+                 clock)
             for topic in robot_type.battery]
         self._hardware_stop = HardwareStop(name, robot_type)
 
@@ -142,11 +148,11 @@ class RobotLink:
             rospy.logwarn('%s: cannot read its odometry, %s is not installed here', self.name,
                           self.robot_type.odometry_type)
             return []
-        return [Feed(topic_of(self.name, topic), message_class, read, self._on_message)
-                for topic in self.robot_type.odometry]
+        return [Feed(topic_of(self.name, topic), message_class, read, self._on_message,
+                     self._clock) for topic in self.robot_type.odometry]
 
     def _on_message(self, feed, message, now):
-        came_at, header = time.time(), feed.header(message)
+        came_at, header = self._wall(), feed.header(message)
         with self._lock:
             late_s = 0.0
             if header is not None:
@@ -165,9 +171,9 @@ class RobotLink:
         if not self._guard_feeds and gate is not None and gate.guarded:
             self._guard_feeds = [
                 Feed('/{}/{}'.format(self.name, DROPPED), TwistStamped, lambda message: message,
-                     self._on_dropped),
+                     self._on_dropped, self._clock),
                 Feed('/{}/{}'.format(self.name, FIGURES), String,
-                     lambda message: read_figures(message.data), self._on_radio)]
+                     lambda message: read_figures(message.data), self._on_radio, self._clock)]
 
     def _on_dropped(self, feed, message, now):
         self._dropped_at = now
@@ -212,7 +218,7 @@ class RobotLink:
             state = link_state(age, connections, self.robot_type.silent_after_s,
                                self._takes_commands(now))
             if age is not None and (age < 1.0 or not self._heard_wall):
-                self._heard_wall = time.strftime('%H:%M:%S')
+                self._heard_wall = time.strftime('%H:%M:%S', time.localtime(self._wall()))
             proof = self._proof.view(now) if self._proof else None
             figures = self._with_radio(self._quality.read(now), now)
         dropped = now - self._dropped_at < DROPPED_SHOWN_S
