@@ -16,6 +16,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 
 from mhri.core.link.carried import COMMAND  # noqa: E402
 from mhri.core.link.keys import KeysError  # noqa: E402
+from mhri.nodes.mhri_link import parse  # noqa: E402
 from mhri.ros.link.carrier import Carrier  # noqa: E402
 from mhri.ros.link.key_folder import KeyFolder  # noqa: E402
 from support.ros_system import free_port, wait_for  # noqa: E402
@@ -121,3 +122,21 @@ def test_router_passes_on_no_more_than_a_key_allows(authority):
 def test_without_a_key_for_a_router_it_says_what_to_do(tmp_path):
     with pytest.raises(KeysError, match='mhri_keys.sh router NAME'):
         Authority(tmp_path, with_router=False).secrets('lab', 'host')
+
+
+@pytest.mark.parametrize('words, said', [
+    ('--side router', 'a router has --listen alone'),
+    ('--side router --listen 0.0.0.0:1 --name bot1', 'a router has --listen alone'),
+    ('--side host --router 192.0.2.1:1', 'give the robot with --name'),
+    ('--side host --name bot1 --router 192.0.2.1:1 --connect 192.0.2.1:1', 'stands in place of'),
+    ('--side host --name bot1', 'give --listen, --connect or --router')])
+def test_options_that_do_not_go_together(words, said, capsys):
+    with pytest.raises(SystemExit) as ended:
+        parse(words.split())
+    assert ended.value.code == 2 and said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('words', [
+    '--side router --listen 0.0.0.0:7447', '--side robot --name bot1 --router 192.0.2.1:7447'])
+def test_options_of_a_router(words):
+    assert parse(words.split()).side in words

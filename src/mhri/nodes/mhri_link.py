@@ -57,7 +57,7 @@ def parse(words):
         prog='mhri_link', description='Link a robot on a ROS master of its own to the host.')
     parser.add_argument('--side', choices=('robot', 'host', 'router'), required=True,
                         help='whose master this node is on; router: on none, it stands between')
-    parser.add_argument('--name', type=robot_name, default='', help='the robot')
+    parser.add_argument('--name', type=robot_name, help='the robot')
     parser.add_argument('--listen', default='', metavar='ENDPOINTS',
                         help='where the other side may call, e.g. tcp/0.0.0.0:7447')
     parser.add_argument('--connect', default='', metavar='ENDPOINTS',
