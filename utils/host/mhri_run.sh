@@ -198,7 +198,8 @@ choose_drill() {
   [ -n "$DRILL" ] || return 0
   lines=$(rosrun mhri mhri_drill --arguments "$DRILL") || die "the drill $DRILL cannot be used: see above"
   { read -r SIM; read -r SIM_TYPES; read -r PLAN; } <<<"$lines"
-  LAUNCH_ARGS+=("sim_plan:=$PLAN" "drill:=$DRILL")
+  LAUNCH_ARGS=("robots:=$(seq -s ' ' -f 'bot%g' "$SIM")" "${LAUNCH_ARGS[@]}"
+    "sim_plan:=$PLAN" "drill:=$DRILL")
   if "$SCRIPTED"; then LAUNCH_ARGS+=("drill_args:=--scripted" gui:=none inputs:=none); fi
 }
 
