@@ -351,4 +351,5 @@ def test_how_often_a_picture_comes(rate_hz, words):
 
 
 def test_a_thinned_picture_is_a_warning_of_the_row():
-    assert link_warning(LinkFigures(thinned='picture 1 in 2 s')) == 'picture 1 in 2 s'
+    found = link_warning(LinkFigures(0.4, None, 0.2, 'picture 1 in 2 s'))
+    assert found.startswith('picture 1 in 2 s; slow link: 400 ms') and '20 %' in found
