@@ -147,6 +147,15 @@ def simulate(row, count, offered, seconds):
     return sorted(delays), sum(rates) / len(rates)
 
 
+def test_a_radio_that_has_become_good_is_used_soon():
+    lossy = Heard(5e4, 0.15, 0.2)
+    for heard, bears in ((CALM, True), (LOSSY, False)):
+        bearing = bound(lossy)
+        for number in range(50):
+            bearing.on_heard(heard, DEMAND, 2.0 + 0.2 * number)
+        assert (not bearing.bound) is bears
+
+
 def radio_delay_s(row):
     return row.get('delay_ms', 0) / 1000.0
 
