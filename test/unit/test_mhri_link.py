@@ -61,7 +61,7 @@ def test_full_topic(namespace, topic, full):
 
 
 def test_keys():
-    assert key_of('bot1', 'up', '/tf') == 'mhri/bot1/up/tf'
+    assert key_of('bot1', 'host:lab', 'up', '/tf') == 'mhri/bot1/host:lab/up/tf'
     assert split_frames('map, world') == ('map', 'world')
 
 

@@ -19,6 +19,7 @@ from mhri.core.screen.why import WhyStill
 from mhri.presenters.doctor_host import DoctorHost
 from mhri.presenters.draw_guard import DrawGuard
 from mhri.presenters.event_host import EventHost
+from mhri.presenters.fault_host import FaultHost
 from mhri.presenters.map_host import MapHost
 from mhri.gui.screen.screen import ScreenWidget
 from mhri.presenters.pad_host import PadHost
@@ -65,6 +66,7 @@ class ScreenHost(QObject):
         self.pad = PadHost(operator, self.screen, parent=self)
         self.tasks = TaskHost(operator, self.screen, self._select, self._note_task)
         self.map = MapHost(operator, self.screen, self.tasks)
+        self.faults = FaultHost(self.screen)
         self._connect()
 
     @property
@@ -114,6 +116,7 @@ class ScreenHost(QObject):
         panel.release_requested.connect(operator.release)
         panel.power_cut_requested.connect(lambda: operator.set_motor_power(False))
         panel.control_requested.connect(operator.take_control)
+        panel.robot_list.ask_requested.connect(operator.controls.ask)
         self._draw_timer.timeout.connect(self._draw_in_turn)
         self._stick_timer.timeout.connect(self._repeat_stick)
         self._lease_timer.timeout.connect(operator.repeat_selection)
@@ -168,6 +171,7 @@ class ScreenHost(QObject):
         self._tell_budget()
         self.pad.show_view(view)
         self.map.show_view(view)
+        self.faults.show_view(view)
         for kind, value in self.operator.take_events():
             if kind == 'found':
                 self._show_found(value)
@@ -335,3 +339,4 @@ class ScreenHost(QObject):
         self.pad.close()
         self.tasks.close(forget)
         self.map.close(forget)
+        self.faults.close()

@@ -92,9 +92,13 @@ def full_topic(namespace: str, topic: str) -> str:
     return topic if topic.startswith('/') else '{}/{}'.format(namespace, topic)
 
 
-def key_of(robot: str, way: str, topic: str) -> str:
-    """Return the key expression of a stream; ``way`` is ``up`` or ``down``."""
-    return 'mhri/{}/{}/{}'.format(robot, way, topic.lstrip('/'))
+def key_of(robot: str, host: str, way: str, topic: str) -> str:
+    """Return the key expression of a stream between a robot and one host.
+
+    :param host: its name, such as ``host:lab`` (see :mod:`mhri.core.link.keys`)
+    :param way: ``up`` or ``down``
+    """
+    return 'mhri/{}/{}/{}/{}'.format(robot, host, way, topic.lstrip('/'))
 
 
 def valid_topic(topic: object) -> bool:

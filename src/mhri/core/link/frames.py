@@ -172,7 +172,7 @@ def unpack_beat(body: bytes) -> Beat:
 
     :raises FrameError: they are none
     """
-    found = _rows(body)
+    found = read_rows(body)
     if len(found) != 5 or not isinstance(found[1], str) or not isinstance(found[2], list):
         raise FrameError('no beat')
     echo, about, wanted, heard, thinned = found
@@ -212,7 +212,7 @@ def unpack_about(body: bytes) -> About:
 
     :raises FrameError: they are none
     """
-    found = _rows(body)
+    found = read_rows(body)
     if len(found) != 2 or not isinstance(found[0], dict) or not isinstance(found[1], list):
         raise FrameError('no description of a robot')
     topics: List[Tuple[str, str]] = []
@@ -225,8 +225,11 @@ def unpack_about(body: bytes) -> About:
     return About(parameters, tuple(topics))
 
 
-def _rows(body: bytes) -> List[Any]:
-    """Return the list that bytes say."""
+def read_rows(body: bytes) -> List[Any]:
+    """Return the list that bytes say, as JSON.
+
+    :raises FrameError: they say none
+    """
     if len(body) > MOST_BYTES:
         raise FrameError('too long')
     try:

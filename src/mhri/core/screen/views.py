@@ -85,6 +85,9 @@ class RobotView:
     has done something else for a moment, else None; ``why`` says in a sentence why it stands though
     the stick is held, '' for nothing. ``task`` is what it does by itself, None for nothing,
     ``carry_on`` the name of the task that it could continue, '' for none.
+
+    Where other hosts are linked to it: ``ask`` is what its button asks for ("Ask for control"), ''
+    for nothing, ``said`` the last change of its control, or the last refusal.
     """
 
     name: str
@@ -125,6 +128,8 @@ class RobotView:
     why: str = ''
     task: Optional[TaskView] = None
     carry_on: str = ''
+    ask: str = ''
+    said: str = ''
 
     @property
     def on_task(self) -> bool:

@@ -9,13 +9,16 @@ from std_msgs.msg import String
 
 from mhri.core.link.carried import (
     COMMAND, DOWN, full_topic, GUARD_COMMAND, GUARD_ECHO, PICTURE, STATE, TF, TF_STATIC, TF_TYPE)
+from mhri.core.link.control import unpack_standing
 from mhri.core.link.figures import FIGURES, figures_words, RadioFigures
 from mhri.core.link.frames import About, Thinned, unpack_about
+from mhri.core.link.keys import called
 from mhri.core.link.peer import held_s
 from mhri.core.link.renaming import stamp_of
 from mhri.ros.graph.master_api import MasterError
 from mhri.ros.link.robot_side import PARAMETERS
-from mhri.ros.link.side import ABOUT, Side
+from mhri.ros.link.host_control import HostControl
+from mhri.ros.link.side import ABOUT, CONTROL, Side
 from mhri.ros.messages import bytes_of, message_class, MessageMissing
 
 QUEUE = 5
@@ -34,10 +37,14 @@ class HostSide(Side):
     the robot has a guard. Sets ``/<robot>/robot_type``, ``robot_model`` and ``mhri``.
 
     :param set_parameter: called with (name, value), blocking
+    :param host: what this computer is called on the link
+    :param secret: with keys
     """
 
-    def __init__(self, name, carrier, set_parameter, **options):
+    def __init__(self, name, carrier, set_parameter, host, secret, **options):
         super().__init__(name, carrier, 'down', **options)
+        self._control = HostControl(
+            name, host, secret, lambda body: self.send(CONTROL, COMMAND, body))
         self._set_parameter = set_parameter
         self._about = About({}, ())
         self._news = None
@@ -66,6 +73,9 @@ class HostSide(Side):
             self._news = unpack_about(frame.body)
             self.to_do.set()
             return
+        if topic == CONTROL:
+            self._control.on_standing(unpack_standing(frame.body))
+            return
         publisher = self._publishers.get(topic)
         if publisher is not None:
             kind = publisher.type
@@ -77,6 +87,7 @@ class HostSide(Side):
 
     def work(self, now):
         """Tell the figures; open the topics that are new."""
+        self._control.tick(self.peer.heard(now))
         self._tell(now)
         news = self._news
         if news is None or news == self._about:
@@ -126,6 +137,25 @@ class HostSide(Side):
         held = held_s(stamp_of(data), time.time()) if stream.topic == GUARD_COMMAND else 0.0
         self.send(stream.topic, stream.urgency, data, held_s=held)
 
+    def heard(self):
+        """Tell whether the robot is heard now."""
+        with self.lock:
+            return self.peer.heard(self.clock())
+
+    def versions(self):
+        """Return the versions that the robot tells of its side, see :mod:`mhri.ros.link.note`."""
+        said = self._about.parameters.get('link')
+        return {key: str(said.get(key, ''))[:40] for key in ('mhri', 'zenoh')} \
+            if isinstance(said, dict) else {}
+
+    def fill(self, status):
+        """Fill a ``DiagnosticStatusWrapper`` with the figures of the link."""
+        super().fill(status)
+        status.add('keys', 'TLS both ways' if self._control.state.keys else
+                   'none: whoever reaches the robot can drive it')
+        status.add('control', called(self._control.state.holder) or 'nobody')
+        return status
+
     def less(self):
         """Return what the robot's side sends less of; under the lock."""
         return self._less
@@ -148,7 +178,8 @@ class HostSide(Side):
                 less.picture_hz if less.bytes_per_s and less.looked_at else math.nan)))
 
     def close(self):
-        """Nothing to end: the guard on the robot ends what is being driven."""
+        """Give up control; the guard on the robot ends what is being driven."""
+        self._control.leave()
 
 
 class Listener(rospy.SubscribeListener):

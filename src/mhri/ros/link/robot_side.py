@@ -3,10 +3,12 @@
 """The robot's side of the link, on the robot's own master."""
 import rospy
 
+from mhri.core.driving.guard_link import parse_id
 from mhri.core.link.bearing import Bearing
 from mhri.core.link.carried import (
     DOWN, FRAME_NAMES, full_topic, GUARD_COMMAND, Pace, PICTURE, TF, TF_STATIC, up_streams,
     worth_carrying)
+from mhri.core.link.control import moves
 from mhri.core.link.frames import About, DEFLATED, pack_about, PIECE, PLAIN, Thinned
 from mhri.core.link.peer import may_pass
 from mhri.core.link.renaming import first_text, renamer, rewritten, Transforms
@@ -14,8 +16,10 @@ from mhri.core.link.shares import Flow, shares
 from mhri.core.robots.robot_types import resolve_robot_type
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.subscription import Subscription
+from mhri.ros.link.note import versions
 from mhri.ros.link.pictures import Pictures
-from mhri.ros.link.side import Side
+from mhri.ros.link.recall import Recall
+from mhri.ros.link.side import CONTROL, Side
 from mhri.ros.messages import bytes_of, message_class
 
 PARAMETERS = ('robot_type', 'robot_model', 'mhri')
@@ -93,7 +97,7 @@ class Carried:
 
 
 class RobotSide(Side):
-    """Sends up what is listened to on the host, and gives the guard what comes down.
+    """The link with one host: sends up what it listens to, and gives the guard what it commands.
 
     Subscribes the topics of the robot's type, ``mhri_guard/echo``, ``mhri_guard/state``,
     ``mhri_guard/dropped``, ``/tf`` and ``/tf_static`` while a node on the host listens to them.
@@ -103,15 +107,18 @@ class RobotSide(Side):
     :param namespace: of the robot on its own master, such as ``/bot1``, or '' for none
     :param types: {name: RobotType}
     :param shared: frames that keep their names
+    :param desk: :class:`mhri.ros.link.reception.Desk`, which knows whether that host has control
     """
 
-    def __init__(self, name, carrier, namespace, types, shared, **options):
+    def __init__(self, name, carrier, namespace, types, shared, desk, **options):
         super().__init__(name, carrier, 'up', **options)
+        self._desk = desk
         self.dropped = 0
         self._namespace = namespace
         self._types = types
         self._rename = renamer(name, shared)
-        self._about = About({}, ())
+        self._recall = Recall()
+        self._about = About({'link': versions()}, ())
         self._told_at = self._looked_at = 0.0
         self._wanted = ()
         self._bearing = Bearing()
@@ -130,6 +137,7 @@ class RobotSide(Side):
 
     def on_peer(self, beat, now):
         """Take in which topics somebody on the host listens to."""
+        self._desk.on_heard(now)
         wanted = ()
         if beat.about == self._about.name:
             wanted = tuple(self._about.topics[place][0] for place in beat.wanted
@@ -167,23 +175,34 @@ class RobotSide(Side):
                           1e-3 * bearing.bytes_per_s)
 
     def on_frame(self, topic, frame, now):
-        """Give the guard a command, unless it is late."""
+        """Give the guard a command, unless it is late, or another host has control."""
+        if topic == CONTROL:
+            self._desk.on_asked(frame.body, now)
+            return
         publisher = self._publishers.get(topic)
         if publisher is None:
             return
         age_s = self.note_age('command', frame, now)
-        if topic == GUARD_COMMAND and not may_pass(first_text(frame.body), age_s):
+        if not self._passes(topic, frame.body, age_s, now):
             self.dropped += 1
             return
         message = publisher.data_class()
         message._buff = frame.body
         publisher.publish(message)
 
+    def _passes(self, topic, body, age_s, now):
+        if topic != GUARD_COMMAND:
+            return self._desk.holds()
+        frame_id = first_text(body)
+        return may_pass(frame_id, age_s) and self._desk.passes(
+            parse_id(frame_id)[3], moves(body), now)
+
     def work(self, now):
         """Look at the master now and then; open and close what is listened to."""
         if now - self._looked_at >= LOOK_S:
             self._looked_at = now
             try:
+                self._recall.look()
                 self._look()
             except MasterError as error:
                 rospy.logdebug('%s', error)
@@ -266,4 +285,4 @@ class RobotSide(Side):
 
     def close(self):
         """Say nothing more; the guard ends what is being driven."""
-        rospy.loginfo('%s: %d late commands kept from the guard', self.name, self.dropped)
+        rospy.loginfo('%s: %d commands kept from the guard', self.name, self.dropped)

@@ -17,7 +17,7 @@ from mhri.core.link.peer import BEAT_S, Peer
 from mhri.core.link.pieces import Gathered
 
 # Streams of the link itself; no topic begins with an underscore.
-BEAT, ABOUT = '_beat', '_about'
+BEAT, ABOUT, CONTROL = '_beat', '_about', '_control'
 # So many ages of each class are kept for the diagnostics.
 _AGES = 2000
 # Over so long they are told [s].
@@ -41,7 +41,7 @@ class Side:
     """One side of a robot's link.
 
     :param name: the robot
-    :param carrier: :class:`mhri.ros.link.carrier.Carrier`
+    :param carrier: :class:`mhri.ros.link.carrier.Between`
     :param way: the way that this side sends, ``up`` or ``down``
     """
 
