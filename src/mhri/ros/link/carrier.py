@@ -75,15 +75,16 @@ class Carrier:
     :param connect: endpoints to call
     :param secrets: settings of zenoh for keys, see :meth:`mhri.ros.link.key_folder.KeyFolder.read`;
         None for a link without
+    :param place: ``peer``; ``routed`` if what is called is a zenoh router; or ``router`` itself
     :raises LibraryMissing: see :func:`load_library`
     :raises CarrierError: an endpoint cannot be listened on
     """
 
-    def __init__(self, listen=(), connect=(), secrets=None):
+    def __init__(self, listen=(), connect=(), secrets=None, place='peer'):
         check_endpoints('listen', listen, secrets is not None)
         check_endpoints('connect', connect, secrets is not None)
         self._zenoh = load_library()
-        self._listen, self._connect = list(listen), list(connect)
+        self._listen, self._connect, self._place = list(listen), list(connect), place
         self._lock = threading.Lock()
         self._session = None
         # What to declare anew: {key: its publisher and its class}, [(keys, function, subscriber)].
@@ -93,11 +94,16 @@ class Carrier:
 
     def _open(self, secrets):
         settings = {
-            'mode': 'peer', 'listen/endpoints': self._listen, 'connect/endpoints': self._connect,
+            'mode': 'router' if self._place == 'router' else 'peer',
+            'listen/endpoints': self._listen, 'connect/endpoints': self._connect,
             'connect/timeout_ms': -1, 'connect/exit_on_failure': False,
             'connect/retry': {'period_init_ms': _KNOCK_MS, 'period_max_ms': _KNOCK_MOST_MS,
                               'period_increase_factor': 1.5},
-            'scouting/multicast/enabled': False, 'scouting/gossip/enabled': False,
+            # A router passes nothing on between peers of which it hears no gossip. Whom the others
+            # gossip about is never called.
+            'scouting/multicast/enabled': False,
+            'scouting/gossip/enabled': self._place != 'peer',
+            'scouting/gossip/autoconnect': {'router': [], 'peer': []},
             'transport/unicast/open_timeout': _OPEN_MS, 'transport/link/tx/lease': _LEASE_MS,
             'transport/link/protocols': list(ALONE if secrets is None else TLS)}
         settings.update(secrets or {})
