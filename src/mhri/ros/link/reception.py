@@ -150,7 +150,7 @@ class Reception:
                 side.send(CONTROL, COMMAND, pack_standing(standing))
 
     def fill(self, status):
-        """Fill a ``DiagnosticStatusWrapper``: of the host in control, else of the first that came."""
+        """Fill a ``DiagnosticStatusWrapper``: of the host in control, else of the first."""
         with self._lock:
             holder = self._control.holder
         sides = dict(self._sides)
