@@ -10,6 +10,7 @@ import sys
 import rospkg
 
 from mhri.core.link.carried import COMMAND, key_of, PICTURE
+from mhri.core.link.records import RECORD
 
 # utils/host/common.sh installs it.
 VERSION = '1.5.1'
@@ -94,7 +95,8 @@ class Carrier:
     def sender(self, way, topic, urgency):
         """Return a function that sends bytes as a stream's next message."""
         priorities = {COMMAND: self._zenoh.Priority.REAL_TIME,
-                      PICTURE: self._zenoh.Priority.DATA_LOW}
+                      PICTURE: self._zenoh.Priority.DATA_LOW,
+                      RECORD: self._zenoh.Priority.BACKGROUND}
         publisher = self._session.declare_publisher(
             key_of(self._robot, way, topic), express=urgency == COMMAND,
             congestion_control=self._zenoh.CongestionControl.DROP,

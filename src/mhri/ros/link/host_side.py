@@ -11,6 +11,7 @@ from mhri.core.link.frames import About, unpack_about
 from mhri.core.link.peer import held_s
 from mhri.core.link.renaming import stamp_of
 from mhri.ros.graph.master_api import MasterError
+from mhri.ros.link.host_record import HostRecord
 from mhri.ros.link.robot_side import PARAMETERS
 from mhri.ros.link.side import ABOUT, Side
 from mhri.ros.messages import bytes_of, message_class, MessageMissing
@@ -39,6 +40,12 @@ class HostSide(Side):
         self._publishers = {}
         self._unusable = set()
         self._down = []
+        self._record = HostRecord(self, lambda: dict(self._about.topics))
+
+    def start(self):
+        """Begin, and fetch what was missed."""
+        self._record.start()
+        return super().start()
 
     def said(self):
         """Name what is known of the robot, and which of its topics somebody here listens to."""
@@ -55,6 +62,8 @@ class HostSide(Side):
         if topic == ABOUT:
             self._news = unpack_about(frame.body)
             self.to_do.set()
+            return
+        if self._record.on_frame(topic, frame.body):
             return
         publisher = self._publishers.get(topic)
         if publisher is not None:
@@ -126,6 +135,7 @@ class HostSide(Side):
             status.add('round trip [ms]', '{:.1f}'.format(1000.0 * peer.round_trip_s()))
             status.add('beats lost [%]', '{:.0f}'.format(100.0 * peer.loss()))
             status.add('refused', self.refused)
+            status.add('recording', self._record.text or 'nothing was missed')
         for urgency, ages in sorted(self.ages().items()):
             if ages:
                 status.add('age of {} [ms]'.format(urgency), '{:.1f} median, {:.1f} most'.format(
