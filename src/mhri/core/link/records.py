@@ -16,6 +16,8 @@ import zlib
 from mhri.core.link.frames import FrameError
 
 RECORD = 'record'
+# Where the host's side says how far it is, and how that begins.
+FETCHING, FETCHING_WORD = 'mhri_link/fetching', 'fetching'
 # Streams of the link: what the host asks; what there is; a part of it.
 ASK, OFFER, PART = '_ask', '_offer', '_part'
 PIECE_S = 10.0
@@ -245,7 +247,8 @@ class Fetch:
         all_ms = sum(one.lasts_ms for one in {**self._offered, **self._done}.values())
         done_ms = sum(one.lasts_ms for one in self._done.values())
         done_ms += int(piece.lasts_ms * self._got.get(piece.number, 0) / max(1, piece.size))
-        return 'fetching {:.0f} of {:.0f} s from {}'.format(1e-3 * done_ms, 1e-3 * all_ms, robot)
+        return '{} {:.0f} of {:.0f} s from {}'.format(
+            FETCHING_WORD, 1e-3 * done_ms, 1e-3 * all_ms, robot)
 
 
 def crc_of(data: bytes, before: int = 0) -> int:

@@ -13,10 +13,11 @@ from std_srvs.srv import SetBool, SetBoolResponse
 
 from mhri.core.link.carried import FRAME_NAMES, GUARD_COMMAND, TF, TF_STATIC
 from mhri.core.link.records import (
-    ASK, crc_of, Fetch, OFFER, pack_ask, PART, piece_of, RECORD, unpack_offer,
+    ASK, crc_of, Fetch, FETCHING, OFFER, pack_ask, PART, piece_of, RECORD, unpack_offer,
     unpack_part)
 from mhri.core.link.renaming import renamer, rewritten, Transforms
 from mhri.core.recording.recording import ros_home
+from mhri.msg import SessionState
 from mhri.ros import parameters
 from mhri.ros.link.keeper import folder_of
 
@@ -70,7 +71,9 @@ class HostRecord:
 
     Publishes ``/<robot>/mhri_link/fetching`` (``std_msgs/String``, latched), serves
     ``/<robot>/mhri_link/keep`` (``std_srvs/SetBool``): whether the robot shall record for later
-    what this host misses. The bag is ``$ROS_HOME/<robot>_missed_<date-time>.bag``.
+    what this host misses. It does so anyway while a session is recorded
+    (``/mhri_session/state``, ``mhri/SessionState``). The bag is ``<robot>_missed_<date-time>.bag``
+    in the folder of the session, or in ``$ROS_HOME``.
 
     :param side: of the link
     :param topics: function that returns what is carried of the robot
@@ -89,9 +92,16 @@ class HostRecord:
         self._keep = parameters.flag('~keep', False)
         self._said = None
         self.text = ''
-        space = '/{}/mhri_link/'.format(side.name)
-        self._publisher = rospy.Publisher(space + 'fetching', String, queue_size=1, latch=True)
-        self._service = rospy.Service(space + 'keep', SetBool, self._on_keep)
+        self._session = None
+        self._publisher = rospy.Publisher('/{}/{}'.format(side.name, FETCHING), String,
+                                          queue_size=1, latch=True)
+        self._service = rospy.Service('/{}/mhri_link/keep'.format(side.name), SetBool,
+                                      self._on_keep)
+        self._subscriber = rospy.Subscriber('/mhri_session/state', SessionState, self._on_session,
+                                            queue_size=1)
+
+    def _on_session(self, message):
+        self._session = message
 
     def _on_keep(self, request):
         self._keep = request.data
@@ -129,7 +139,7 @@ class HostRecord:
             self._fetch = Fetch(done=[piece for piece in map(piece_of, os.listdir(self._folder))
                                       if piece is not None])
         fetch = self._fetch
-        fetch.keep = self._keep
+        fetch.keep = self._keep or self._session is not None and self._session.recording
         while self._came:
             topic, body = self._came.popleft()
             if topic == OFFER:
@@ -168,8 +178,10 @@ class HostRecord:
     def _finish(self, pieces):
         """Make one bag of what came."""
         begun = datetime.fromtimestamp(1e-3 * pieces[0].begun_ms)
-        target = os.path.join(ros_home(os.environ), '{}_missed_{:%Y-%m-%d-%H-%M-%S}.bag'.format(
-            self._side.name, begun))
+        folder = self._session.folder if self._session is not None else ''
+        target = os.path.join(
+            folder if os.path.isdir(folder) else ros_home(os.environ),
+            '{}_missed_{:%Y-%m-%d-%H-%M-%S}.bag'.format(self._side.name, begun))
         paths = [self._path(piece) for piece in pieces]
         # Never over another file.
         os.close(os.open(target, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))

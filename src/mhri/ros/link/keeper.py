@@ -42,7 +42,7 @@ class Keeper:
         self._robot = robot
         self._folder = folder
         self._clock = clock
-        self._lock = threading.Lock()
+        self._lock, self._turn = threading.Lock(), threading.Lock()
         # {who: (whether it wants what it misses, whether it is there)}
         self._hosts = {}
         self._pieces = None
@@ -88,7 +88,10 @@ class Keeper:
 
         :param topics: what to record, absolute names
         """
-        now = self._clock()
+        with self._turn:
+            self._tick(topics, self._clock())
+
+    def _tick(self, topics, now):
         with self._lock:
             hosts = list(self._hosts.values())
         wanted = any(keep for keep, _ in hosts)

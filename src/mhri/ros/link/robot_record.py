@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """On the robot: answers one host that fetches what it missed."""
 import threading
+import time
 
 import rospy
 
@@ -10,6 +11,10 @@ from mhri.core.link.records import (
 from mhri.ros.link.keeper import keeper_of
 
 TICK_S = 0.5
+# Where the radio does not bear everything this share of what it bears is for what was missed.
+SHARE = 0.15
+# So long one answer may take then [s].
+ANSWER_S = 2.0
 
 
 class RobotRecord:
@@ -65,9 +70,14 @@ class RobotRecord:
         pieces = self._keeper.pieces()
         if ask.number < 0 or ask.have or all(piece.number != ask.number for piece in pieces):
             self._side.send(OFFER, RECORD, pack_offer(pieces))
-        for part in range(ask.count):
+        bytes_per_s = SHARE * self._side.thinned.bytes_per_s
+        count = ask.count if not bytes_per_s else \
+            min(ask.count, max(1, int(ANSWER_S * bytes_per_s / PART_BYTES)))
+        for part in range(count):
             offset = ask.offset + part * PART_BYTES
             data = self._keeper.read(ask.number, offset, PART_BYTES)
             if not data:
                 return
             self._side.send(PART, RECORD, pack_part(ask.number, offset, data))
+            if bytes_per_s:
+                time.sleep(min(ANSWER_S, len(data) / bytes_per_s))
