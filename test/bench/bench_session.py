@@ -3,11 +3,11 @@
 """CPU for each recorded message of a session beside ``rosbag record`` (C++), at the same time.
 
 Four simulated robots with all their sensors (cameras compressed, as ``~cameras_out_of_sight`` has
-them) are recorded by ``mhri_session`` and by ``rosbag record`` with the very topics that the session
-has in its bags. What is measured is the time of the processor, of user and system, for each message
-in the bags. Then the session alone: what it costs while it only keeps its ring, how long a mark
-takes from the call to the answer, its stills on the disk, and how long a stick event to the commands
-of all robots, without the session's recorder and with it recording, in turn.
+them) are recorded by ``mhri_session`` and by ``rosbag record`` with the very topics that the
+session has in its bags. What is measured is the time of the processor, of user and system, for
+each message in the bags. Then the session alone: what it costs while it only keeps its ring, how
+long a mark takes from the call to the answer, its stills on the disk, and how long a stick event
+to the commands of all robots, with the recorder halted and with it recording, in turn.
 Goals: ratio at most 1.5; a mark within 100 ms; the stick as without.
 """
 import argparse
@@ -216,8 +216,8 @@ def main():
         each[name] = cpu / seconds / rate * 1e6
         print('{:<28} {:>11.1f} {:>12.0f} {:>13.1f}'.format(
             name, each[name], rate, 100 * cpu / seconds))
-    print('in the bags: session {} messages, {:.1f} MB (with its ring); rosbag {}, {:.1f} MB'.format(
-        session[0], session[1] / 1e6, rosbag[0], rosbag[1] / 1e6))
+    print('in the bags: session {} messages, {:.1f} MB (with its ring); rosbag {}, {:.1f} MB'
+          .format(session[0], session[1] / 1e6, rosbag[0], rosbag[1] / 1e6))
     print('ratio session / rosbag record, by message: {:.2f}'.format(
         each['session'] / each['rosbag']))
     for name, values in latencies.items():
