@@ -22,7 +22,7 @@ MESSAGES = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'supp
 SERVICES = {'end': 'mhri/EndTask',
             'set_suspended': 'mhri/SetSuspended', 'take_control': 'std_srvs/Trigger',
             'set_place': 'mhri/SetPlace', 'fit_place': 'mhri/FitPlace',
-            'set_fence': 'mhri/SetFence', 'set_mark': 'mhri/SetMark',
+            'set_fault': 'mhri/SetFault', 'set_fence': 'mhri/SetFence', 'set_mark': 'mhri/SetMark',
             'mark': 'mhri/MarkSession', 'note': 'mhri/AddNote', 'still': 'std_srvs/Trigger'}
 EVERYWHERE = ('/rosout', '/clock')
 ROW = re.compile(r'^\| (publishes|subscribes|serves) \| `([^`]+)` \| (?:`([^`]+)`|[^|]+) \|', re.M)
@@ -139,7 +139,8 @@ class ApiTest(unittest.TestCase):
         for robot, kind, node in (('bot1', 'turtlebot2', '/bot1/base'),
                                   ('bot2', 'turtlebot3', '/bot2/base')):
             template = robot_types()[0][kind]
-            own = {'/tf', '/tf_static'} | {'/{}/{}'.format(robot, topic) for topic in (
+            own = {'/tf', '/tf_static', node + '/set_fault'}
+            own |= {'/{}/{}'.format(robot, topic) for topic in (
                 *template.command, *template.imu, *template.odometry, *template.scan,
                 *template.cloud, *template.battery, template.motor_power.name,
                 *camera_topics(template))}

@@ -55,6 +55,8 @@ class Screen:
 
 # Name: the steps, each (values, of the first robot or of the panel); what is told in the end.
 ROBOT_CASES = {
+    'another host has control': ([{'said': 'desk may not drive: lab has control'}],
+                                 'linked.said', 'desk may not drive: lab has control'),
     'silent': ([MUTE], 'link.silent', 'silent: nothing for 1.2 s'),
     'gone': ([AWAY], 'link.gone', 'gone: switched off'),
     'lost': ([{'selected': True}, dict(MUTE, selected=True)], 'link.lost', 'lost while driven'),

@@ -50,6 +50,7 @@ KINDS: Dict[str, Tuple[str, str]] = {
     'mode.changed': (CALM, ''), 'limits.changed': (CALM, ''),
     'source.trouble': (ATTENTION, ATTENTION_TONE), 'source.fine': (CALM, ''),
     'control.taken': (CALM, ''), 'control.lost': (ATTENTION, ATTENTION_TONE),
+    'linked.said': (ATTENTION, ATTENTION_TONE),
     'request.refused': (ATTENTION, ATTENTION_TONE),
     'task.begun': (CALM, ''), 'task.said': (CALM, ''), 'task.done': (CALM, CALM_TONE),
     'task.stopped': (CALM, ''), 'task.taken_over': (CALM, ''),
