@@ -76,8 +76,9 @@ def replay():
 
 
 def test_every_tile_says_that_this_is_a_replay(replay):
-    for tile in replay.host.windows.values():
-        assert tile.header.rec_label.isVisible() and tile.header.rec_label.text() == 'REPLAY'
+    labels = [tile.header.rec_label for tile in replay.host.windows.values()]
+    replay.until(lambda: all(label.isVisible() and label.text() == 'REPLAY' for label in labels),
+                 'the word on each tile')
 
 
 def test_a_click_goes_to_a_moment_and_the_screen_shows_what_was_so(replay):
@@ -124,7 +125,7 @@ def test_keys_go_to_the_next_mark_and_change_the_speed(replay):
     replay.until(lambda: replay.state().settled and abs(
         replay.state().position_s - 15.0) < 0.01, 'the mark')
     QTest.keyClick(replay.host.screen, Qt.Key_Up)
-    replay.until(lambda: replay.state().speed == 2.0, 'twice the speed')
+    replay.until(lambda: replay.bar.speed_label.text() == '2\u00d7', 'twice the speed')
     QTest.keyClick(replay.host.screen, Qt.Key_Down)
     replay.until(lambda: replay.state().speed == 1.0, 'the speed it had')
     QTest.mouseClick(replay.bar.play_button, Qt.LeftButton)
