@@ -127,10 +127,13 @@ class Surroundings:
 
         :param robots: (ahead, to the left, radius) [m] of each, seen from here
         """
-        for x_m, y_m, radius_m in robots:
-            near = np.hypot(*(self.around(odometry) - (x_m, y_m)).T) < radius_m + _BESIDE_M
-            near[:self._fresh] = False
-            self._met = self._met[~near]
+        where = np.array(list(robots)).reshape(-1, 3)
+        kept = self._met[self._fresh:]
+        if not len(where) or not len(kept):
+            return
+        gaps = kept[:, None, :] - _out_of(odometry, where[:, :2])
+        near = (np.hypot(gaps[..., 0], gaps[..., 1]) < where[:, 2] + _BESIDE_M).any(axis=1)
+        self._met = np.vstack((self._met[:self._fresh], kept[~near]))
 
     def around(self, odometry: Pose) -> np.ndarray:
         """Return what is around the robot, were it here: an array (n, 2) in its frame [m]."""

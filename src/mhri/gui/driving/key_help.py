@@ -18,7 +18,8 @@ COMMAND_WORDS = {
     'numbers': 'show or hide the numbers over the pictures',
     'stills': 'save a still of every picture',
     'carry_on': 'continue the task that the robot you look at was taken from',
-    'record': 'record the selected robots, or stop all recordings',
+    'record': 'record the whole session, or end the recording',
+    'mark': 'mark this moment, with a note if you like',
 }
 # (keys, what they do), in the order on show.
 KEY_ROWS = (

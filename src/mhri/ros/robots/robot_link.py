@@ -10,7 +10,9 @@ from dataclasses import replace
 from geometry_msgs.msg import TwistStamped
 import rospy
 from sensor_msgs.msg import BatteryState
+from std_msgs.msg import String
 
+from mhri.core.link.figures import FIGURES, FIGURES_S, read_figures, thinned_words
 from mhri.core.robots.link import link_note, link_state
 from mhri.core.robots.link_quality import LinkQuality, link_warning
 from mhri.core.robots.names import topic_of
@@ -122,8 +124,9 @@ class RobotLink:
         self._ages = {}
         self._proof = None
         self._battery = None
-        self._guard_feed = None
+        self._guard_feeds = []
         self._dropped_at = -math.inf
+        self._radio = None
         self._feeds = self._open_feeds()
         self._battery_feeds = [
             Feed(topic_of(name, topic), BatteryState, battery_fraction, self._on_battery,
@@ -165,12 +168,18 @@ class RobotLink:
     def listen_to_guard(self):
         """Listen to what the robot's guard drops, once it has one (blocking: asks the master)."""
         gate = self._gates.robot(self.name)
-        if self._guard_feed is None and gate is not None and gate.guarded:
-            self._guard_feed = Feed('/{}/{}'.format(self.name, DROPPED), TwistStamped,
-                                    lambda message: message, self._on_dropped, self._clock)
+        if not self._guard_feeds and gate is not None and gate.guarded:
+            self._guard_feeds = [
+                Feed('/{}/{}'.format(self.name, DROPPED), TwistStamped, lambda message: message,
+                     self._on_dropped, self._clock),
+                Feed('/{}/{}'.format(self.name, FIGURES), String,
+                     lambda message: read_figures(message.data), self._on_radio, self._clock)]
 
     def _on_dropped(self, feed, message, now):
         self._dropped_at = now
+
+    def _on_radio(self, feed, message, now):
+        self._radio = (now, feed.value(message))
 
     def _on_battery(self, feed, message, now):
         self._battery = feed.value(message)
@@ -211,7 +220,7 @@ class RobotLink:
             if age is not None and (age < 1.0 or not self._heard_wall):
                 self._heard_wall = time.strftime('%H:%M:%S', time.localtime(self._wall()))
             proof = self._proof.view(now) if self._proof else None
-            figures = self._quality.read(now)
+            figures = self._with_radio(self._quality.read(now), now)
         dropped = now - self._dropped_at < DROPPED_SHOWN_S
         warning = link_warning(figures, dropped) if state == LIVE else ''
         view = RobotView(
@@ -228,6 +237,15 @@ class RobotLink:
             offers_power=self.robot_type.motor_power is not None)
         return seen_by_gates(view, self._gates.robot(self.name), self._gates.answers())
 
+    def _with_radio(self, figures, now):
+        """Return figures with those of a link to the robot's own master, where there is one."""
+        told_at, radio = self._radio or (-math.inf, None)
+        if radio is None or now - told_at > FIGURES_S:
+            return figures
+        known = {key: value for key, value in (
+            ('round_trip_s', radio.round_trip), ('loss', radio.loss)) if math.isfinite(value)}
+        return replace(figures, thinned='; '.join(thinned_words(radio)), **known)
+
     def _takes_commands(self, now):
         """Tell whether the robot has listened to commands long enough to be heard as well."""
         gate = self._gates.robot(self.name)
@@ -241,8 +259,7 @@ class RobotLink:
         """Stop listening (blocking: it asks the master)."""
         self._hardware_stop.close()
         self.feeds.close()
-        guard_feeds = [self._guard_feed] if self._guard_feed else []
-        for feed in self._feeds + self._battery_feeds + guard_feeds:
+        for feed in self._feeds + self._battery_feeds + self._guard_feeds:
             feed.unregister()
 
 

@@ -61,15 +61,15 @@ class ScreenBackend:
         self.recordings = Recordings()
         self._events = queue.Queue()
         self._gates = GatesClient(self._on_gates, clocks[0])
-        self._claim = None
         self._feeder = Worker('feeds')
-        self._fleet = Fleet(self._types, self._gates, self._feeder, *clocks)
+        self._fleet = Fleet(self._types, self._gates, self._feeder, *clocks,
+                            told=lambda text: self._events.put(('told', text)))
+        self.controls = self._fleet.controls
         self._jobs = PanelJobs(self._types, self._events)
-        self._together = self._brake = False
+        self._together = self._brake = self._pressed = self._stopped_by_gates = False
         self._asked = AskedAndDone()
         self._mux = self._watch = self._requests = self._diagnostics = self._devices = None
-        self._first_limits = self._first_mode = None
-        self._pressed = self._stopped_by_gates = False
+        self._claim = self._first_limits = self._first_mode = None
         self._stop_note = ''
         self._ros = ROS_STARTING
         self._closing = threading.Event()
