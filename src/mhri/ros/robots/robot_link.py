@@ -11,6 +11,7 @@ from geometry_msgs.msg import TwistStamped
 import rospy
 from sensor_msgs.msg import BatteryState
 
+from mhri.core.map.tf_tree import frame_name
 from mhri.core.robots.link import link_note, link_state
 from mhri.core.robots.link_quality import LinkQuality, link_warning
 from mhri.core.robots.names import topic_of
@@ -139,7 +140,12 @@ class RobotLink:
             rospy.logwarn('%s: cannot read its odometry, %s is not installed here', self.name,
                           self.robot_type.odometry_type)
             return []
-        return [Feed(topic_of(self.name, topic), message_class, read, self._on_message)
+
+        def read_motion(message):
+            """Read what moves, and take note of what the robot calls its own frame."""
+            self.feeds.base = frame_name(getattr(message, 'child_frame_id', ''))
+            return read(message)
+        return [Feed(topic_of(self.name, topic), message_class, read_motion, self._on_message)
                 for topic in self.robot_type.odometry]
 
     def _on_message(self, feed, message, now):
