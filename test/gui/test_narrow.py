@@ -5,9 +5,9 @@ import os
 import sys
 
 import pytest
-from python_qt_binding.QtCore import Qt
+from python_qt_binding.QtCore import QPoint, QRect, Qt
 from python_qt_binding.QtGui import QPalette
-from python_qt_binding.QtWidgets import QPushButton, QVBoxLayout, QWidget
+from python_qt_binding.QtWidgets import QAbstractButton, QPushButton, QVBoxLayout, QWidget
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
@@ -77,3 +77,30 @@ def test_every_page_of_the_drawer_has_its_tab_in_sight(scene, size):
         room = tabs.tabRect(index)
         assert tabs.rect().contains(room), tabs.tabText(index)
         assert theme.text_width(tabs.font(), tabs.tabText(index)) <= room.width()
+
+
+@pytest.mark.parametrize('size, count', [((1024, 600), 3), ((1366, 768), 3), (LARGE, 1)])
+def test_open_views_are_whole_where_a_tile_is_small(scene, size, count):
+    """Where they leave the picture no room they scroll; no words lie over them."""
+    made = scene(size, count, group=count > 1)
+    for tile in made.tiles.values():
+        tile.offer({'rgb', 'depth', 'cloud', 'scan', 'imu', 'record'})
+    screen = made.show()
+    assert screen.stage.large == tuple(made.tiles)
+    for tile in made.tiles.values():
+        tile.views_button.setChecked(True)
+    made.show()
+    for tile in made.tiles.values():
+        page, view = tile.tools_page, tile.tools.viewport()
+        assert page.width() <= view.width()
+        assert not tile.hud.isVisible() or not tile.hud.geometry().intersects(tile.tools.geometry())
+        for button in (part for part in page.findChildren(QAbstractButton) if part.isVisible()):
+            assert page.rect().contains(QRect(button.mapTo(page, QPoint(0, 0)), button.size()))
+            assert button.width() >= button.minimumSizeHint().width(), button.objectName()
+            button.setFocus()
+            tile.tools.ensureWidgetVisible(button, 0, 0)
+            assert button.visibleRegion().boundingRect() == button.rect(), button.objectName()
+        tile.views_button.setChecked(False)
+    made.show()
+    assert all(tile.views_splitter.isVisible() and tile.hud.isVisible()
+               for tile in made.tiles.values())

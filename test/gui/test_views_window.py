@@ -20,6 +20,7 @@ def window(operator, ui_dir):
     made.resize(900, 640)
     operator.show(made)
     operator.click(made.views_button)
+    operator.settle()
     return made
 
 

@@ -11,7 +11,7 @@ from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.robot_types import Limits
 from mhri.core.tasks.base import (
-    Body as TaskBody, circles, ENDS, Other, Senses, Start, Step, Task)
+    Body as TaskBody, circles, ENDS, NOWHERE, Other, Senses, Start, Step, Task)
 from mhri.core.tasks.rows import BY_KEY
 from mhri.core.tasks.run import Facts, RobotRun
 from mhri.sim.body import Body, BodyType, Bumper
@@ -95,7 +95,8 @@ class Robot:
                   for other in self._world.robots if other is not self}
         self.seen.forget(self.odometry(), circles(self.pose(), others.values()))
         return Senses(now_s, self.pose(), self.odometry(), self.pose(),
-                      self.seen.around(self.odometry()), others, self._world.fence)
+                      self.seen.around(self.odometry()), others, self._world.fence,
+                      self._world.floor.edge(self.pose(), 1.5) if self._world.floor else NOWHERE)
 
     def command(self, velocity):
         """Give the body what was said some ticks ago."""
@@ -106,7 +107,8 @@ class Robot:
 class World:
     """Walls, discs and robots; time goes on by :meth:`step`."""
 
-    def __init__(self, walls=NO_WALLS, discs=(), fence=()):
+    def __init__(self, walls=NO_WALLS, discs=(), fence=(), floor=None):
+        self.floor = floor
         self.walls = walls
         self.fence = np.array(fence, dtype=float).reshape(-1, 2)
         self.discs = np.array(discs, dtype=float).reshape(-1, 3)

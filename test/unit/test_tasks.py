@@ -137,6 +137,15 @@ def test_return_goes_back_along_its_trail():
     assert furthest < 0.25
 
 
+def test_a_team_returns_to_a_mark_side_by_side():
+    row, marks = BY_KEY['return'], {'mark home': Pose(3.0, 1.0, 0.5 * math.pi)}
+    assert row.slots(row.read('{mark: home}'), 3, marks.get) == (
+        (3.0, 1.0), pytest.approx((2.3, 1.0)), pytest.approx((3.7, 1.0)))
+    assert row.slots(row.read('{mark: away}'), 3, marks.get) == ()
+    # Along its own trail each ends where it began.
+    assert row.slots(row.read(''), 3, marks.get) == ()
+
+
 def test_a_trail_that_leaps_begins_anew():
     trail = Trail()
     for x in (0.0, 0.05, 0.2, 5.0, 5.2):

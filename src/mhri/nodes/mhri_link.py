@@ -174,6 +174,7 @@ def main():
                               else options.name)
         side = Reception(options.name, carrier, own, '/' + namespace if namespace else '', types,
                          split_frames(options.shared_frames))
+        publish_diagnostics({'link to the host': side.fill})
     rospy.on_shutdown(side.close)
     side.start()
     if keys:

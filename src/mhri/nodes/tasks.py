@@ -4,7 +4,8 @@
 
 ``tasks --stand-by`` does so in a process that another one, already loaded, replaces if it is
 killed (:mod:`mhri.ros.stand_by`). Parameter: ``~map`` (path of a YAML file of map_server; it is
-published as ``/map``; default: none).
+published as ``/map``; default: none), ``~keep_to_map`` (true: no robot on a task leaves the free
+floor of the map, where it is placed on it and stands there; default: true).
 """
 import signal
 import sys
@@ -39,6 +40,15 @@ def map_of_parameter():
         return None
 
 
+def keeps_to_map():
+    """Return ``~keep_to_map``; true where it is neither true nor false, which is said."""
+    try:
+        return parameters.flag('~keep_to_map', True)
+    except ConfigError as error:
+        rospy.logerr('robots keep to the map: %s', short(error))
+        return True
+
+
 def main():
     """Run until shut down; every robot on a task gets a zero then.
 
@@ -55,7 +65,7 @@ def main():
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     for error in errors:
         rospy.logwarn('a task is left out: %s', error)
-    tasks = Tasks(types, kinds, map_of_parameter())
+    tasks = Tasks(types, kinds, map_of_parameter(), keeps_to_map=keeps_to_map())
     rospy.on_shutdown(tasks.close)
     MasterWatch().start()
     tasks.start()

@@ -60,7 +60,8 @@ class TilesHost(QObject):
         self._torn = {}
         self._to_tear = set()
         self._due = []
-        self._robots = ()
+        self._robots = self._coming = ()
+        self._unplaced = False
         self._missing = ''
         self._drawn_at = {}
         self._stopped = False
@@ -73,14 +74,17 @@ class TilesHost(QObject):
         self._monitors.timeout.connect(self._on_monitor_gone)
         QGuiApplication.instance().screenRemoved.connect(self._on_screen_removed)
 
-    def show_view(self, view):
-        """Follow a :class:`PanelView`: have a missing tile made, and all of them drawn, soon."""
+    def show_view(self, view, coming=()):
+        """Follow a :class:`PanelView`: have a missing tile made, and all of them drawn, soon.
+
+        :param coming: names of robots that are in the next views: their tiles have places already
+        """
         robots = view.robots[:MOST_TILES]
         names = [robot.name for robot in robots]
         for name in [name for name in self.windows if name not in names]:
             self.drop(name)
-        self._robots = robots
-        self._show_tiles()
+        self._robots, self._coming = robots, tuple(coming)
+        self._unplaced = True
         self._stage.show_awaited(names)
         now = time.monotonic()
         self._due = sorted((robot for robot in robots if robot.name in self.hosts),
@@ -98,7 +102,8 @@ class TilesHost(QObject):
         self._stage.show_tiles(
             {robot.name: self.windows[robot.name] for robot in self._robots
              if robot.name in self.windows},
-            [robot.name for robot in self._robots if robot.type_label])
+            [*(robot.name for robot in self._robots if robot.type_label),
+             *self._coming][:MOST_TILES])
 
     @property
     def budget_note(self):
@@ -111,13 +116,17 @@ class TilesHost(QObject):
         return waited_s * (LARGE_FIRST if self.windows[name].header.large else 1.0)
 
     def draw_next(self):
-        """Make or draw the most pressing tile that is due, and return whether another is.
+        """Place all tiles, or make or draw the most pressing; return whether there is more to do.
 
-        One with each turn of the event loop, so that a click never waits for all.
+        One of it with each turn of the event loop, so that a click never waits for all.
         """
+        if self._unplaced:
+            self._unplaced = False
+            self._show_tiles()
+            return True
         if self._missing not in ('', *self.windows):
             self.make(self._missing)
-            self._show_tiles()
+            self._unplaced = True
             return True
         if not self._due:
             self._timer.stop()

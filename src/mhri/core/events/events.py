@@ -45,6 +45,8 @@ KINDS: Dict[str, Tuple[str, str]] = {
     'recording.begun': (CALM, ''), 'recording.ended': (CALM, ''),
     'recording.warning': (ATTENTION, ATTENTION_TONE),
     'recording.failed': (ATTENTION, ATTENTION_TONE),
+    'session.begun': (CALM, ''), 'session.ended': (CALM, ''), 'session.mark': (CALM, ''),
+    'session.trouble': (ATTENTION, ATTENTION_TONE),
     'mode.changed': (CALM, ''), 'limits.changed': (CALM, ''),
     'source.trouble': (ATTENTION, ATTENTION_TONE), 'source.fine': (CALM, ''),
     'control.taken': (CALM, ''), 'control.lost': (ATTENTION, ATTENTION_TONE),

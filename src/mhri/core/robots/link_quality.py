@@ -89,6 +89,7 @@ def link_warning(figures: LinkFigures, dropped: bool = False) -> str:
     :param dropped: whether the robot's guard is dropping commands now
     """
     words = ['its guard drops late commands'] if dropped else []
+    words += [figures.thinned] if figures.thinned else []
     if figures.round_trip_s is not None and figures.round_trip_s > WARN_ROUND_TRIP_S:
         words.append('slow link: {:.0f} ms round trip'.format(1e3 * figures.round_trip_s))
     if figures.loss is not None and figures.loss > WARN_LOSS:

@@ -105,6 +105,12 @@ def _grid(box: Box, shapes: Sequence[float], columns: int, gap: int,
         width, height) for index in range(len(shapes)))
 
 
+@lru_cache(maxsize=64)
+def _columns(count: int) -> Tuple[int, ...]:
+    """Return the numbers of columns worth trying: more with as many rows would only be narrower."""
+    return tuple(sorted({ceil(count / rows) for rows in range(1, count + 1)}))
+
+
 def _cell(box: Box, kinds: Kinds, columns: int, gap: int) -> Tuple[int, int, float]:
     """Return width and height of a box of such a grid, and the area of all its pictures [px²]."""
     rows = ceil(sum(kinds.values()) / columns)
@@ -126,7 +132,7 @@ def _best_columns(box: Box, shapes: Sequence[float], gap: int) -> Tuple[float, i
     """Return the area of the pictures in the grid that shows most of them, and its columns."""
     kinds = Counter(shapes)
     area, fewer = max((_cell(box, kinds, columns, gap)[2], -columns)
-                      for columns in range(1, len(shapes) + 1))
+                      for columns in _columns(len(shapes)))
     if len(shapes) == 3 and min(box.width, box.height) > 2 * gap:
         other = sum(one.picture(shape) for one, shape in zip(_beside(box, shapes, gap), shapes))
         # Alike, they are compared at a glance: it has to be worth it.
@@ -199,7 +205,7 @@ def _arrange(whole: Box, large: Tuple[float, ...], small: Tuple[float, ...],
         if min(room.width, room.height, strip.width, strip.height) < 1:
             continue
         large_px, large_columns = _best_columns(room, large, gap)
-        for columns in range(1, len(small) + 1):
+        for columns in _columns(len(small)):
             width, height, small_px = _cell(strip, smalls, columns, gap)
             if min(width, height) < 1:
                 continue

@@ -48,11 +48,13 @@ class LinkFigures:
 
     ``round_trip_s`` is the round-trip time [s], ``offset_s`` how far the robot's clock is ahead of
     the local one [s], ``loss`` the fraction of its odometry that did not arrive, in [0, 1].
+    ``thinned`` says in words what a radio that does not bear all lets through; '' while it does.
     """
 
     round_trip_s: Optional[float] = None
     offset_s: Optional[float] = None
     loss: Optional[float] = None
+    thinned: str = ''
 
 
 @dataclass(frozen=True)

@@ -25,8 +25,12 @@ ENDS = (DONE, TIMEOUT, BLOCKED, LOST, TAKEN_OVER, STOPPED, FAILED)
 
 NOWHERE = np.zeros((0, 2))
 MOST_CORNERS = 1000
+_TURNS = np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False)
+_CIRCLE = np.column_stack((np.cos(_TURNS), np.sin(_TURNS)))
 # The parameter that every task has: see Values.team.
 TEAM = 'team'
+# Before the name of a mark: no robot's name has a space.
+MARK = 'mark '
 
 
 @dataclass(frozen=True)
@@ -59,7 +63,8 @@ class Senses:
     ``points`` is an array (n, 2) of what its laser has met, in its own frame [m]: x ahead, y to the
     left. ``others`` are the other robots that are placed, by their names; none where it is not.
     ``fence`` is an array (n, 2) of the corners of what no task leaves, in the frame of ``pose``
-    [m], empty where there is none.
+    [m], empty where there is none. ``floor`` is where the free floor of the map ends around the
+    robot, an array (n, 2) in its own frame [m]; a task is shown it among ``points`` as well.
     """
 
     now_s: float
@@ -69,6 +74,7 @@ class Senses:
     points: np.ndarray = field(default_factory=lambda: NOWHERE)
     others: Mapping[str, Other] = field(default_factory=dict)
     fence: np.ndarray = field(default_factory=lambda: NOWHERE)
+    floor: np.ndarray = field(default_factory=lambda: NOWHERE)
 
 
 @dataclass(frozen=True)
@@ -213,7 +219,8 @@ class TaskKind:
     :param needs_place: robots have to be placed in the frame of the map; see :meth:`placed`
     :param slots: function (values, count, where) -> the place (x, y) [m] in the frame of the map of
         each of so many robots, none where nobody can tell; ``where`` returns the :class:`Pose` of a
-        robot by its name, or None. Who takes which is chosen so that their ways do not cross
+        robot by its name, of a mark by :data:`MARK` and its name, or None. Who takes which is
+        chosen so that their ways do not cross
     """
 
     key: str
@@ -296,12 +303,9 @@ def discs(pose: Pose, others: Iterable[Other], more_m: float) -> np.ndarray:
 
     :param more_m: they are taken for so much larger: they move
     """
-    rows = [NOWHERE]
-    turns = np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False) - pose.heading_rad
-    for x_m, y_m, radius_m in circles(pose, others):
-        rows.append((radius_m + more_m) * np.column_stack((np.cos(turns), np.sin(turns)))
-                    + (x_m, y_m))
-    return np.vstack(rows)
+    seen = np.array(circles(pose, others)).reshape(-1, 3)
+    edges: np.ndarray = seen[:, None, :2] + (seen[:, 2:] + more_m)[..., None] * _CIRCLE
+    return edges.reshape(-1, 2)
 
 
 def within(pose: Pose, other: Pose) -> Tuple[float, float]:

@@ -7,7 +7,8 @@ from typing import List, Optional, Tuple
 from mhri.core.config import shown
 from mhri.core.robots.mocap import Pose
 from mhri.core.tasks.base import (
-    Corners, DONE, Field, Senses, Start, Step, Task, TaskKind, TEXT, Values, WAITING, way, wrapped)
+    Corners, DONE, Field, MARK, Senses, Start, Step, Task, TaskKind, TEXT, Values, WAITING, way,
+    Where, wrapped)
 from mhri.core.tasks.goto import Goto, SPEED, spread, TIMEOUT_S
 from mhri.core.tasks.pilot import Pilot
 
@@ -107,9 +108,15 @@ def make(values: Values, start: Start) -> Task:
                 wrapped(kept[-1].heading_rad), by_odometry=True)
 
 
+def slots(values: Values, count: int, where: Where) -> Corners:
+    """Return where the robots of a team end [m]: side by side at the mark; none without one."""
+    mark = where(MARK + values.text('mark')) if values.text('mark') else None
+    return tuple(spread(mark, number) for number in range(count)) if mark else ()
+
+
 ROW = TaskKind(
     'return', 'Return', 'to a mark, or back along its own trail to where it was first seen',
     (Field('mark', '', 'name of a mark; else along its trail, by odometry', '', kind=TEXT,
            needs_place=True),
      Field('distance', 'm', 'go back by no more than this, 0 for all of it', 0.0, 0.0, 10000.0),
-     SPEED, TIMEOUT_S), make)
+     SPEED, TIMEOUT_S), make, slots=slots)

@@ -174,7 +174,8 @@ class RobotRun:
         """Return what the task wants, as far as the way is free."""
         assert self._task is not None and facts.senses is not None
         robots = discs(facts.senses.pose, facts.senses.others.values(), _MOVES_M)
-        senses = replace(facts.senses, points=np.vstack((facts.senses.points, robots)))
+        met = np.vstack((facts.senses.points, robots))
+        senses = replace(facts.senses, points=np.vstack((met, facts.senses.floor)))
         step = self._task.step(senses)
         self.left_m = step.left_m
         self.said += step.said
@@ -184,11 +185,14 @@ class RobotRun:
         if not all(map(math.isfinite, (step.velocity.linear_mps, step.velocity.angular_rad_s))):
             self.end(FAILED, 'its task asked for a velocity that is no number', facts.now_s)
             return ZERO
-        free = braked(step.velocity, senses.points, self._body.radius_m, facts.scan_age_s,
-                      facts.looks) \
-            if facts.has_laser else braked(step.velocity, robots, self._body.radius_m, 0.0)
-        velocity = kept_inside(free, senses.pose, senses.fence, self._body)
-        held = facts.settling or self._held(step, free, facts) or _at_fence(free, velocity)
+        radius_m = self._body.radius_m
+        free = braked(step.velocity, met, radius_m, facts.scan_age_s, facts.looks) \
+            if facts.has_laser else braked(step.velocity, robots, radius_m, 0.0)
+        on_floor = braked(free, senses.floor, radius_m, 0.0)
+        velocity = kept_inside(on_floor, senses.pose, senses.fence, self._body)
+        held = facts.settling or self._held(step, free, facts) \
+            or _stands_at('the end of the free floor on the map', free, on_floor) \
+            or _stands_at('the fence', on_floor, velocity)
         self._mark(held, facts.now_s)
         self.state, self.text = (WAITING, held) if held else (
             RUNNING, step.text + self._unseen(step.velocity, free, facts))
@@ -241,10 +245,10 @@ class RobotRun:
 _LETS_PASS = 'it lets pass '
 
 
-def _at_fence(free: Velocity, velocity: Velocity) -> str:
-    """Return that the fence holds it, in words; '' where it does not."""
+def _stands_at(what: str, free: Velocity, velocity: Velocity) -> str:
+    """Return what holds it of a velocity that was free, in words; '' where nothing does."""
     held = abs(velocity.linear_mps) <= _STANDS_MPS < abs(free.linear_mps)
-    return 'it is at the fence' if held else ''
+    return 'it is at ' + what if held else ''
 
 
 def _unplaced(facts: Facts) -> bool:

@@ -115,6 +115,12 @@ class EventModel(QAbstractTableModel):
             del self._events[:surplus]
             self.endRemoveRows()
 
+    def clear(self):
+        """Forget all events."""
+        self.beginResetModel()
+        self._events = []
+        self.endResetModel()
+
     def _drop(self, number):
         """Take away the row of an event: one of the newest, so it is looked for from the end."""
         for row in range(len(self._events) - 1, -1, -1):
@@ -302,9 +308,14 @@ class EventList(QWidget):
             names += (chosen,)
         if names == self._robots:
             return
-        self._robots = names
-        self.robot_combo.clear()
-        for label, value in ((ALL_ROBOTS, ''), *((name, name) for name in names)):
+        before, self._robots = self._robots, names
+        rows = [(name, name) for name in names]
+        if before and names[:len(before)] == before:
+            rows = rows[len(before):]
+        else:
+            self.robot_combo.clear()
+            rows.insert(0, (ALL_ROBOTS, ''))
+        for label, value in rows:
             self._add_row(self.robot_combo, label, value)
         self.robot_combo.setCurrentIndex(max(0, self.robot_combo.findData(chosen)))
         self._size_columns()

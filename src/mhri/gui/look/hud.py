@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Numbers over the picture: speed, turn, heading; and in one sentence why the robot stands."""
-from python_qt_binding.QtCore import QPointF, QRectF, Qt
-from python_qt_binding.QtGui import QColor, QFontMetrics, QPainter, QPainterPath, QPen, QPixmap
+from python_qt_binding.QtCore import QPointF, QRectF, QSize, Qt
+from python_qt_binding.QtGui import (
+    QColor, QFontMetrics, QImage, QPainter, QPainterPath, QPen, QPixmap)
 from python_qt_binding.QtWidgets import QWidget
 
 from mhri.core.screen import views
@@ -12,7 +13,12 @@ from mhri.gui.screen import theme, words
 _EDGE = 0.22
 # Sizes of the numbers and of the sentence, the one that fits: a large tile may be narrow.
 _NUMBER_SIZES, _SENTENCE_SIZES = (1.35, 1.0), (1.25, 1.0)
+# Height that a sentence needs, in heights of a line.
+_SENTENCE_UNITS = 1.5
 _DIM = QColor(190, 190, 190)
+# Room around a line for its edge; and the lines that are kept: {what they are: picture}.
+_BESIDE_PX = 8
+_WRITTEN, _MOST_WRITTEN = {}, 100
 
 
 def hud_lines(view):
@@ -40,6 +46,40 @@ def _wrapped(line, metrics, width):
         else:
             found[-1] = longer
     return found
+
+
+def _written(text, font, ink, ratio):
+    """Return a line with a dark edge as a :class:`QImage`, the newest kept: an edge is dear.
+
+    :param ratio: pixels of the image for one of the screen's
+    """
+    key = text, font.key(), ink.rgba(), ratio
+    image = _WRITTEN.pop(key, None)
+    if image is None:
+        image = _write(text, font, ink, ratio)
+        while len(_WRITTEN) >= _MOST_WRITTEN:
+            del _WRITTEN[next(iter(_WRITTEN))]
+    _WRITTEN[key] = image
+    return image
+
+
+def _write(text, font, ink, ratio):
+    metrics = QFontMetrics(font)
+    size = QSize(metrics.horizontalAdvance(text), metrics.height()) + QSize(
+        2 * _BESIDE_PX, 2 * _BESIDE_PX)
+    image = QImage(size * ratio, QImage.Format_ARGB32_Premultiplied)
+    image.setDevicePixelRatio(ratio)
+    image.fill(Qt.transparent)
+    path = QPainterPath()
+    path.addText(QPointF(_BESIDE_PX, _BESIDE_PX + metrics.ascent()), font, text)
+    painter = QPainter(image)
+    painter.setRenderHint(QPainter.Antialiasing)
+    painter.setPen(QPen(QColor(0, 0, 0, 230), _EDGE * metrics.height(), Qt.SolidLine,
+                        Qt.RoundCap, Qt.RoundJoin))
+    painter.drawPath(path)
+    painter.fillPath(path, ink)
+    painter.end()
+    return image
 
 
 class Hud(QWidget):
@@ -153,9 +193,15 @@ class Hud(QWidget):
         unit = self.fontMetrics().height()
         y = self.height() - 0.6 * unit
         font, lines = self._fitting(self.width() - self._clear_px - 1.4 * unit)
+        if self._sentence:
+            # It is worth more than the last numbers.
+            room = y - _SENTENCE_UNITS * unit
+            lines = lines[:max(0, int(room / QFontMetrics(font).height()))]
         ink = _DIM if self._old else QColor(Qt.white)
         for line in reversed(lines):
-            y -= self._paint_line(painter, line, font, ink, 0.7 * unit, y)
+            written = _written(line, font, ink, ratio)
+            y -= written.height() / ratio - 2 * _BESIDE_PX
+            painter.drawImage(QPointF(0.7 * unit - _BESIDE_PX, y - _BESIDE_PX), written)
         if self._sentence:
             self._paint_sentence(painter, y - 0.2 * unit)
         painter.end()
@@ -176,22 +222,6 @@ class Hud(QWidget):
         if self._large:
             return font, [part for line in lines for part in _wrapped(line, metrics, width)]
         return font, lines[:1]
-
-    @staticmethod
-    def _paint_line(painter, text, font, ink, x, y):
-        """Paint a line with a dark edge, its foot at y; return its height."""
-        painter.setFont(font)
-        metrics = painter.fontMetrics()
-        path = QPainterPath()
-        path.addText(QPointF(x, y - metrics.descent()), font, text)
-        painter.setPen(QPen(QColor(0, 0, 0, 230), _EDGE * metrics.height(), Qt.SolidLine,
-                            Qt.RoundCap, Qt.RoundJoin))
-        painter.setBrush(Qt.NoBrush)
-        painter.drawPath(path)
-        painter.setPen(Qt.NoPen)
-        painter.setBrush(ink)
-        painter.drawPath(path)
-        return metrics.height()
 
     def _paint_sentence(self, painter, foot):
         """Paint the sentence on a dark ground, with its sign, over the lines."""

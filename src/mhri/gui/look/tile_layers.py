@@ -4,12 +4,15 @@
 from python_qt_binding.QtCore import QPoint, QRect
 
 from mhri.core.screen.view_rows import PICTURES, SCAN
+from mhri.gui.look.wide_scroll_bar import WideScrollBar
 
 EDGE_PX = 4
 # Heights of a line that the numbers may take, in a large tile and in a small one.
 _HUD_UNITS = (7.0, 4.0)
 # The small view takes this part of the picture, but never less than so many heights of a line.
 _INSET_SHARE, _INSET_UNITS = 0.36, 9.0
+# Where the switches leave less than this for the views [heights of a line], they have all of it.
+_LEAST_VIEW_UNITS = 7.0
 
 
 def wants_inset(shown):
@@ -29,6 +32,7 @@ class TileLayers:
     def __init__(self, tile):
         self._tile = tile
         self._inset = None
+        tile.tools.setVerticalScrollBar(WideScrollBar(tile.tools))
 
     def take_inset(self, widget, wanted):
         """Have a view in the corner, or give it back to its place among the others.
@@ -69,13 +73,33 @@ class TileLayers:
         height = tile.header.sizeHint().height()
         tile.header.setGeometry(inside.x(), inside.y(), inside.width(), height)
         tile.header_space.setFixedHeight(0 if self._covers_picture() else height)
-        tile.hud.setVisible(tile.has_room() and (picture or bool(tile.hud.sentence) or not large))
+        covered = self._fit_tools(inside.height() - height, unit)
+        tile.views_splitter.setVisible(bool(tile.shown()) and not covered)
+        tile.motion_page.setVisible(not tile.shown() and tile.has_room() and not covered)
+        tile.hud.setVisible(tile.has_room() and not covered and (
+            picture or bool(tile.hud.sentence) or not large))
         room = self.picture_area()
-        high = min(room.bottom() - inside.top() - height + 1,
-                   round(_HUD_UNITS[0 if large else 1] * unit))
+        top = inside.top() + height + (tile.tools.height() if tile.tools.isVisibleTo(tile) else 0)
+        high = min(room.bottom() - top + 1, round(_HUD_UNITS[0 if large else 1] * unit))
         tile.hud.setGeometry(room.x(), room.bottom() + 1 - high, room.width(), max(1, high))
         if self._inset is not None and wants_inset(tile.shown()):
-            self._place_inset(room, max(room.top(), inside.top() + height), unit)
+            self._inset.setVisible(not covered)
+            self._place_inset(room, max(room.top(), top), unit)
+
+    def _fit_tools(self, body, unit):
+        """Give the switches the height they need, of that [px] below the header.
+
+        :returns: whether they have all of it, and scroll
+        """
+        tile = self._tile
+        if not tile.tools.isVisibleTo(tile):
+            return False
+        body -= sum(part.sizeHint().height() for part in (tile.stop_button, tile.motion_place)
+                    if part.isVisibleTo(tile))
+        needed = tile.tools_page.heightForWidth(tile.width() - 2 * EDGE_PX)
+        covered = body - needed < _LEAST_VIEW_UNITS * unit
+        tile.tools.setFixedHeight(max(1, body if covered else needed))
+        return covered
 
     def _place_inset(self, room, top, unit):
         """Place the small view at the upper right: numbers and stick are at the lower end."""

@@ -10,6 +10,7 @@ from python_qt_binding.QtWidgets import (
 
 from mhri.core.recording.recording import (
     CHOICES, ENDED, FAILED, read_fallback, RECORDING, size_text)
+from mhri.gui.look.flow import FlowLayout, let_height_follow
 from mhri.gui.screen import theme
 from mhri.gui.screen.labels import Sign, TextLine
 from mhri.gui.screen.pending import Pace, Pending
@@ -134,11 +135,9 @@ class RecordingRow(QWidget):
 
     def _lay_out(self):
         """Place the parts on two lines."""
-        first, second = QHBoxLayout(), QHBoxLayout()
-        first.setSpacing(8)
-        for widget, stretch in ((self.record_check, 0), (self.path_edit, 1),
-                                (self.browse_button, 0), (self.extras_button, 0)):
-            first.addWidget(widget, stretch)
+        first, second = FlowLayout(), QHBoxLayout()
+        for widget in (self.record_check, self.path_edit, self.browse_button, self.extras_button):
+            first.addWidget(widget)
         second.setSpacing(6)
         second.addWidget(self.recording_sign)
         second.addWidget(self.recording_label, 1)
@@ -147,6 +146,7 @@ class RecordingRow(QWidget):
         column.setSpacing(2)
         column.addLayout(first)
         column.addLayout(second)
+        let_height_follow(self)
 
     def _connect(self):
         """Wire the controls."""

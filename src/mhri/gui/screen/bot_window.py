@@ -234,8 +234,6 @@ class BotWindow(QWidget):
             widget.setVisible(id(widget) in visible)
         if SCAN in shown and self._layers.take_inset(self.view(SCAN), wants_inset(shown)):
             self._place_in_row(next(row for row in VIEW_ROWS if row.key == SCAN))
-        self.views_splitter.setVisible(bool(shown))
-        self.motion_page.setVisible(not shown and self.has_room())
         for value in self._figures:
             value.setVisible(self.header.large)
         self.switches.setVisible(bool(self._offered - {RECORD}))

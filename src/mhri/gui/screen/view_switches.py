@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The row that chooses what a tile shows: one picture, and what stands beside it."""
 from python_qt_binding.QtCore import Qt, Signal
-from python_qt_binding.QtWidgets import (
-    QBoxLayout, QButtonGroup, QHBoxLayout, QLabel, QSizePolicy, QWidget)
+from python_qt_binding.QtWidgets import QButtonGroup, QLabel, QWidget
 
 from mhri.core.screen.view_rows import KEYS, PICTURES, RGB, VIEW_ROWS
 from mhri.gui.driving.drive_keys import keep_arrows
+from mhri.gui.look.flow import FlowLayout, let_height_follow
 from mhri.gui.screen.switches import SwitchBox, SwitchRadio
 
 OFF = 'off'
@@ -33,7 +33,15 @@ class ViewSwitches(QWidget):
 
     def _build(self):
         """Make and place the switches."""
-        self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
+        unit = self.fontMetrics().height()
+        # Two parts, each of them on further lines where there is no room for all of it.
+        pictures, beside = QWidget(self), QWidget(self)
+        parts = FlowLayout(self, 2 * unit, 0)
+        for part in (pictures, beside):
+            FlowLayout(part, unit // 2, 0)
+            let_height_follow(part)
+            parts.addWidget(part)
+        let_height_follow(self)
         # Made in reading order: Tab goes that way.
         self.cameras = {OFF: SwitchRadio(OFF, self)}
         self.cameras.update((row.key, SwitchRadio(row.label, self))
@@ -41,25 +49,17 @@ class ViewSwitches(QWidget):
         self.checks = {row.key: SwitchBox(row.label, self) for row in VIEW_ROWS if not row.picture}
         self.camera_caption = QLabel('Picture', self)
         self._group = QButtonGroup(self)
-        self._rows = QBoxLayout(QBoxLayout.LeftToRight, self)
-        self._rows.setContentsMargins(0, 0, 0, 0)
-        pictures, beside = self._parts = QHBoxLayout(), QHBoxLayout()
-        for stretch, part in enumerate(self._parts):
-            part.setSpacing(self.fontMetrics().height() // 2)
-            self._rows.addLayout(part, stretch)
-        pictures.addWidget(self.camera_caption)
+        pictures.layout().addWidget(self.camera_caption)
         for key, button in self.cameras.items():
             button.setObjectName('camera_' + key)
             button.setAccessibleName('picture ' + button.text())
             # With the keyboard on it the arrows choose; a click does not bring the keyboard there.
             keep_arrows(button)
             self._group.addButton(button)
-            pictures.addWidget(button)
+            pictures.layout().addWidget(button)
         for key, box in self.checks.items():
             box.setObjectName('view_' + key)
-            beside.addWidget(box)
-        for part in self._parts:
-            part.addStretch(1)
+            beside.layout().addWidget(box)
 
     def _connect(self):
         """Wire the switches."""
@@ -81,22 +81,8 @@ class ViewSwitches(QWidget):
         for key, button in self.cameras.items():
             button.setVisible(bool(cameras) if key == OFF else key in cameras)
         self._show()
-        self._fit()
         if self.wanted() != before:
             self.changed.emit()
-
-    def _fit(self):
-        """Place the two parts one below the other where there is no room side by side."""
-        unit = self.fontMetrics().height()
-        needed = 2 * unit + sum(part.sizeHint().width() for part in self._parts)
-        beside = needed <= self.width()
-        self._rows.setSpacing(2 * unit if beside else 0)
-        self._rows.setDirection(QBoxLayout.LeftToRight if beside else QBoxLayout.TopToBottom)
-
-    def resizeEvent(self, event):  # noqa: N802
-        """Fit the width there is."""
-        super().resizeEvent(event)
-        self._fit()
 
     def wanted(self):
         """Return the set of views that are chosen and on offer; of pictures one at most."""

@@ -4,16 +4,23 @@
 import rospy
 
 from mhri.core.driving.guard_link import parse_id
+from mhri.core.link.bearing import Bearing
 from mhri.core.link.carried import (
-    DOWN, FRAME_NAMES, full_topic, GUARD_COMMAND, Pace, TF, TF_STATIC, up_streams, worth_carrying)
+    DOWN, FRAME_NAMES, full_topic, GUARD_COMMAND, Pace, PICTURE, TF, TF_STATIC, up_streams,
+    worth_carrying)
 from mhri.core.link.control import moves
-from mhri.core.link.frames import About, pack_about
+from mhri.core.link.frames import About, DEFLATED, pack_about, PIECE, PLAIN, Thinned
 from mhri.core.link.peer import may_pass
+from mhri.core.link.records import ASK
 from mhri.core.link.renaming import first_text, renamer, rewritten, Transforms
+from mhri.core.link.shares import Flow, shares
 from mhri.core.robots.robot_types import resolve_robot_type
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.subscription import Subscription
 from mhri.ros.link.note import versions
+from mhri.ros.link.pictures import Pictures
+from mhri.ros.link.recall import Recall
+from mhri.ros.link.robot_record import RobotRecord
 from mhri.ros.link.side import CONTROL, Side
 from mhri.ros.messages import bytes_of, message_class
 
@@ -22,13 +29,16 @@ LOOK_S = 1.0
 # What nobody on the host listens to any more stays subscribed for a while [s].
 LINGER_S = 5.0
 LATCHED_S = 1.0
+# Smaller messages are not worth packing [bytes].
+PACKED_BYTES = 200
 
 
 class Carried:
     """One stream while somebody on the host listens to it.
 
     :param stream: :class:`mhri.core.link.carried.Stream`
-    :param send: called with (stream, bytes, number of names in it)
+    :param send: called with (stream, type, bytes, number of names in it); returns of how many bytes
+        the message was, 0 if it was not sent
     """
 
     def __init__(self, namespace, stream, rename, send, clock):
@@ -37,6 +47,8 @@ class Carried:
         self._send = send
         self._clock = clock
         self._pace = Pace(stream.rate_hz)
+        self.flow = Flow(stream)
+        self._whole = False
         self._newest = None
         self._sent_at = clock()
         self._transforms = None
@@ -55,7 +67,8 @@ class Carried:
         elif self.stream.latched:
             self._newest = bytes(data)
         now = self._clock()
-        if self._pace.lets(now):
+        self.flow.came(now)
+        if self._whole or self._pace.lets(now):
             self._go(kind, bytes(data), now)
 
     def _go(self, kind, data, now):
@@ -63,7 +76,17 @@ class Carried:
             data = self._transforms.take()
         if data is not None:
             self._sent_at = now
-            self._send(self.stream, data, FRAME_NAMES.get(kind, 0))
+            size = self._send(self.stream, kind, data, FRAME_NAMES.get(kind, 0))
+            if size:
+                self.flow.sized(size)
+
+    def thin(self, share):
+        """Go over to a share; None to send all. Pictures are thinned by :class:`Pictures`."""
+        self._whole = share is not None and self.stream.urgency == PICTURE
+        rate_hz = self.stream.rate_hz
+        if share is not None:
+            rate_hz = min(share.hz, rate_hz) if rate_hz else share.hz
+        self._pace.change(rate_hz)
 
     def again(self, now):
         """Send what is latched once more: the radio may have lost it, or somebody came later."""
@@ -96,15 +119,32 @@ class RobotSide(Side):
         self._namespace = namespace
         self._types = types
         self._rename = renamer(name, shared)
+        self._recall = Recall()
+        self._record = RobotRecord(self, self._recorded)
         self._about = About({'link': versions()}, ())
         self._told_at = self._looked_at = 0.0
         self._wanted = ()
+        self._bearing = Bearing()
+        self._pictures = Pictures(self.clock, self._up_piece, lambda data, names, number: rewritten(
+            data, number, names, self._rename))
         self._streams = {}
         self._open = {}
         self._publishers = {
             stream.topic: rospy.Publisher(
                 full_topic(namespace, stream.topic), bytes_of(message_class(kind)), queue_size=10,
                 tcp_nodelay=True) for stream, kind in DOWN}
+
+    def start(self):
+        """Begin, and record what the host asks for."""
+        self._record.start()
+        return super().start()
+
+    def _recorded(self):
+        """Return what is recorded: all but pictures."""
+        topics = [stream.topic for stream in list(self._streams.values())
+                  if stream.urgency != PICTURE]
+        return sorted(full_topic(self._namespace, topic) for topic in topics + [GUARD_COMMAND]) \
+            if topics else []
 
     def said(self):
         """Name what this robot says of itself."""
@@ -123,9 +163,37 @@ class RobotSide(Side):
         if wanted != self._wanted:
             self._wanted = wanted
             self.to_do.set()
+        if beat.heard is not None:
+            self._thin(beat.heard, now)
+
+    def _thin(self, heard, now):
+        """Send as much as the radio bears, by what the host's side says that came."""
+        opened = [carried for topic, carried in list(self._open.items())
+                  if topic in self._wanted]
+        flows, bearing = [carried.flow for carried in opened], self._bearing
+        was_bound = bearing.bound
+        bearing.on_heard(heard, sum(flow.demand(now) for flow in flows), now)
+        if not (was_bound or bearing.bound):
+            return
+        found = shares(flows, bearing.bytes_per_s, bearing.loss, now) if bearing.bound else {}
+        for carried in opened:
+            carried.thin(found.get(carried.stream.topic))
+        self._pictures.share(found)
+        looked_at = any(flow.stream.urgency == PICTURE for flow in flows)
+        self.thinned = Thinned(bearing.bytes_per_s, self._pictures.most_hz(), looked_at) \
+            if found else Thinned()
+        if not bearing.bound:
+            self._pictures.forget()
+            rospy.loginfo('%s: the radio bears everything', self.name)
+        elif not was_bound:
+            rospy.loginfo('%s: the radio bears %.0f kB/s: less is sent', self.name,
+                          1e-3 * bearing.bytes_per_s)
 
     def on_frame(self, topic, frame, now):
         """Give the guard a command, unless it is late, or another host has control."""
+        if topic == ASK:
+            self._record.on_ask(frame.body)
+            return
         if topic == CONTROL:
             self._desk.on_asked(frame.body, now)
             return
@@ -152,6 +220,7 @@ class RobotSide(Side):
         if now - self._looked_at >= LOOK_S:
             self._looked_at = now
             try:
+                self._recall.look()
                 self._look()
             except MasterError as error:
                 rospy.logdebug('%s', error)
@@ -170,15 +239,33 @@ class RobotSide(Side):
             elif topic in wanted:
                 carried.again(now)
 
-    def _up(self, stream, data, names):
+    def _goes(self, stream):
+        """Tell whether anybody would hear a stream."""
+        return stream.topic in self._wanted and self.peer.heard(self.clock())
+
+    def _up(self, stream, kind, data, names):
         with self.lock:
-            if stream.topic not in self._wanted or not self.peer.heard(self.clock()):
-                return
+            if not self._goes(stream):
+                return 0
+            bound = self._bearing.bound
+            if bound and stream.urgency == PICTURE:
+                self._pictures.offer(stream, kind, data, names)
+                return len(data)
+            packed = bound and len(data) >= PACKED_BYTES
             try:
-                self.send(stream.topic, stream.urgency, data,
-                          lambda number: rewritten(data, number, names, self._rename))
+                return self.send(stream.topic, stream.urgency, data,
+                                 lambda number: rewritten(data, number, names, self._rename),
+                                 kind=DEFLATED if packed else PLAIN)
             except ValueError as error:
                 rospy.logwarn_throttle(10.0, '{}: {}'.format(stream.topic, error))
+                return 0
+
+    def _up_piece(self, stream, piece):
+        with self.lock:
+            goes = self._goes(stream) and self._bearing.bound
+            if goes:
+                self.send(stream.topic, stream.urgency, piece, kind=PIECE)
+            return goes
 
     def _look(self):
         """Learn the robot's type and topics; what was there once stays, whatever a master forgets.
@@ -209,6 +296,10 @@ class RobotSide(Side):
                 self._streams[stream.topic] = stream
         with self.lock:
             self._about = About(parameters, tuple(sorted(topics.items())))
+
+    def unheard(self, silence_s):
+        """Return in words that the host is not heard, for so long [s]."""
+        return 'the host is not heard' if silence_s < 1e9 else 'the host was never heard'
 
     def close(self):
         """Say nothing more; the guard ends what is being driven."""

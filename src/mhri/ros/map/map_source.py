@@ -14,6 +14,7 @@ import numpy
 import rospy
 from rospy.numpy_msg import numpy_msg
 
+from mhri.core.map.floor import Floor
 from mhri.core.map.grid import grid_of, GridError, read_map
 from mhri.core.robots.mocap import Pose
 from mhri.ros.convert import yaw_of
@@ -73,6 +74,9 @@ class MapSource:
         self._grid = grid
         self._bytes = None
         self._publisher = None
+        self._floor_of = None
+        #: the :class:`Floor` of the newest map that was looked at, None before
+        self.floor = None
 
     def start(self):
         """Publish it, or listen to it (blocking: it asks the master)."""
@@ -107,3 +111,16 @@ class MapSource:
         return grid_of(info.resolution, Pose(corner.position.x, corner.position.y,
                                              yaw_of(corner.orientation)),
                        info.width, info.height, message.data)
+
+    def look(self):
+        """Work out where the floor of a new map is free (a large one takes a while)."""
+        newest = self._grid or self._bytes
+        if newest is self._floor_of:
+            return
+        self._floor_of = newest
+        try:
+            grid = self.grid()
+        except GridError as error:
+            rospy.logwarn('the tasks do without the map: %s', error)
+            grid = None
+        self.floor = grid and Floor(grid)

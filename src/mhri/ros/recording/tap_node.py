@@ -58,18 +58,19 @@ class TapNode:
 
     rospy has one connection for all subscribers of a topic in a program, with the class and the
     queue of one message that the displays ask for: a recording beside them needs its own. The node
-    renews its subscriptions every 2 s, which also restores them after a restart of the master.
+    renews its subscriptions now and then, which also restores them after a restart of the master.
 
     :param name: the node's name, e.g. ``/mhri_recorder_bot1``
     :param topics: absolute names
+    :param renewal_s: how often to renew them [s]
     :param on_publishers: called with (topic, XML-RPC addresses) at every report, on a thread of
         this node; the same ones come repeatedly
     """
 
-    def __init__(self, name, topics, on_publishers):
+    def __init__(self, name, topics, on_publishers, renewal_s=RENEWAL_S):
         self.name = name
         self.topics = tuple(topics)
-        self.worker = Worker('tap_' + name.strip('/'), self._renew, RENEWAL_S)
+        self.worker = Worker('tap_' + name.strip('/'), self._renew, renewal_s)
         self._on_publishers = on_publishers
         self._server = None
         self._api = None
@@ -96,13 +97,26 @@ class TapNode:
         self.worker.start()
         self.worker.do(self._renew)
 
+    def want(self, topics):
+        """Subscribe exactly these topics from now on; return at once."""
+        self.worker.do(self._change, tuple(topics))
+
+    def _change(self, topics):
+        gone, self.topics = set(self.topics) - set(topics), topics
+        if self._open and gone:
+            try:
+                self._api.call_many([('unregisterSubscriber', topic, self._uri) for topic in gone])
+            except MasterError as error:
+                _LOG.debug('%s', error)
+        self._renew()
+
     def update(self, topic, publishers):
         """Report who publishes a topic now (on the worker's thread)."""
-        if self._open:
+        if self._open and topic in self.topics:
             self._on_publishers(topic, publishers)
 
     def _renew(self):
-        if not self._open:
+        if not self._open or not self.topics:
             return
         try:
             found = self._api.call_many([('registerSubscriber', topic, '*', self._uri)

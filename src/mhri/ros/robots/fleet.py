@@ -22,14 +22,17 @@ class Fleet:
     :param types: {name: RobotType}
     :param gates: :class:`mhri.ros.driving.gates_client.GatesClient`
     :param worker: :class:`mhri.ros.worker.Worker` for the feeds of the tiles
+    :param clock: function that returns seconds that never go back
+    :param wall: function that returns the time of day [s since 1970]
     :param told: called with what the operator is to read
     """
 
-    def __init__(self, types, gates, worker, told=None, clock=time.monotonic):
+    def __init__(self, types, gates, worker, clock=time.monotonic, wall=time.time, told=None):
         self._types = types
         self._gates = gates
         self._worker = worker
         self._clock = clock
+        self._wall = wall
         self._lock = threading.Lock()
         self._links = {}
         self._wanted = set()
@@ -79,7 +82,8 @@ class Fleet:
             self._links.pop(name, None)
         if old is not None:
             old.close()
-        link = RobotLink(name, robot_type, self._gates, BotFeeds(name, robot_type, self._worker))
+        link = RobotLink(name, robot_type, self._gates, BotFeeds(name, robot_type, self._worker),
+                         self._clock, self._wall)
         with self._lock:
             self._links[name] = link
             self.controls.watch(name)

@@ -8,11 +8,13 @@ import numpy as np
 import rospy
 
 from mhri.core.robots.robot_types import resolve_robot_type
-from mhri.core.tasks.base import circles, Other, Senses
+from mhri.core.tasks.base import circles, NOWHERE, Other, Senses
 from mhri.ros.graph.look import robot_facts
 from mhri.ros.graph.master_api import MasterApi
 from mhri.ros.tasks.robot_senses import RobotSenses
 
+# Of the map no more is looked at than what a robot may have to stand before [m].
+FLOOR_M = 1.5
 NUMBERS_PARAMETER = '/mhri/robot_numbers'
 
 
@@ -31,6 +33,8 @@ class SeenRobots:
         self._lock = threading.Lock()
         self._robots = {}
         self._numbers = {}
+        # (robot, its pose in the frame of the map, its rank) of all that are placed, after a look.
+        self._placed = None
 
     def know(self, names):
         """See exactly these robots (blocking: it asks the master).
@@ -71,6 +75,7 @@ class SeenRobots:
 
     def look(self):
         """Read what has come of every robot."""
+        self._placed = None
         for robot in self.all():
             robot.look()
 
@@ -89,13 +94,14 @@ class SeenRobots:
         with self._lock:
             return self._robots.get(name)
 
-    def senses(self, robot, now_s, busy, place_of, fence=()):
+    def senses(self, robot, now_s, busy, place_of, fence=(), floor=None):
         """Return the :class:`Senses` of a robot, None before it is heard.
 
         :param robot: a :class:`RobotSenses`
         :param busy: names of the robots that are on a task
         :param place_of: function from a name to its :class:`mhri.core.map.places.Place`
         :param fence: corners (x, y) [m] in the frame of the map
+        :param floor: the :class:`mhri.core.map.floor.Floor` of the map, None without one
         """
         odometry, place = robot.pose, place_of(robot.name)
         if odometry is None:
@@ -105,19 +111,18 @@ class SeenRobots:
         others = self._others(robot, busy, place_of) if placed else {}
         return Senses(now_s, pose, odometry, robot.captured(),
                       robot.points(circles(pose, others.values())), others,
-                      np.array(fence if placed else ()).reshape(-1, 2))
+                      np.array(fence if placed else ()).reshape(-1, 2),
+                      floor.edge(pose, FLOOR_M) if floor and placed else NOWHERE)
 
     def _others(self, robot, busy, place_of):
         """Return the other robots that are placed."""
-        rank, others = self._rank(robot.name), {}
-        for other in self.all():
-            place = place_of(other.name)
-            pose = place.pose(other.pose)
-            if other is not robot and pose is not None and place.is_fresh:
-                others[other.name] = Other(pose, other.name in busy
-                                           and self._rank(other.name) < rank,
-                                           other.body.radius_m)
-        return others
+        if self._placed is None:
+            self._placed = [(other, pose, self._rank(other.name)) for other, pose in (
+                (other, _pose_of(other, place_of(other.name))) for other in self.all())
+                            if pose is not None]
+        rank = self._rank(robot.name)
+        return {other.name: Other(pose, other.name in busy and number < rank, other.body.radius_m)
+                for other, pose, number in self._placed if other is not robot}
 
     def _rank(self, name):
         """Return what says who goes first: the robot's number, else that in its name."""
@@ -125,3 +130,8 @@ class SeenRobots:
         digits = re.search(r'(\d{1,9})\Z', name)
         named = int(digits.group(1)) if digits else 10 ** 9
         return (number if isinstance(number, int) else named, name)
+
+
+def _pose_of(robot, place):
+    """Return the :class:`Pose` of a robot in the frame of the map, None where it is not known."""
+    return place.pose(robot.pose) if place.is_fresh else None

@@ -4,7 +4,7 @@
 from mhri.core.config import ConfigError
 from mhri.core.map.assignment import shared_out
 from mhri.core.robots.names import name_problem
-from mhri.core.tasks.base import FAILED, LOST, Start, TEAM
+from mhri.core.tasks.base import FAILED, LOST, MARK, Start, TEAM
 from mhri.core.tasks.delegated import DelegatedRun
 from mhri.core.tasks.goto import ROW as GOTO
 from mhri.core.tasks.goto import target_of
@@ -105,7 +105,9 @@ class Starter:
         return sorted(names, key=lambda name: taken[names.index(name)])
 
     def _where(self, name):
-        """Return the :class:`Pose` of a robot in the frame of the map, None where nobody knows."""
+        """Return the :class:`Pose` of a robot or a mark in the frame of the map, or None."""
+        if name.startswith(MARK):
+            return self._places.mark(name[len(MARK):])
         robot, place = self._seen.get(name), self._places.place(name)
         return place.pose(robot.pose) if robot is not None and place.is_fresh else None
 

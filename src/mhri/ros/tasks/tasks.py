@@ -87,10 +87,12 @@ class Tasks:
     :param types: {name: RobotType}
     :param kinds: {key: TaskKind} of the tasks that can be started
     :param grid: of a map that is to be published; None: whatever map there is
+    :param keeps_to_map: no robot on a task leaves the free floor of that map
     :param clock: seconds, monotonic
     """
 
-    def __init__(self, types, kinds=BY_KEY, grid=None, clock=time.monotonic):
+    def __init__(self, types, kinds=BY_KEY, grid=None, clock=time.monotonic,
+                 keeps_to_map=True):
         self._kinds = kinds
         self._clock = clock
         self._lock = threading.RLock()
@@ -99,6 +101,7 @@ class Tasks:
         frames = TfFeed(clock)
         self._seen = SeenRobots(types, clock, frames)
         self._map = MapSource(grid)
+        self._keeps_to_map = keeps_to_map
         self.places = PlaceKeeper(self._seen, self._map, clock, frames)
         self._starter = Starter(kinds, self._seen, self.places, clock)
         self._goals = {}
@@ -109,7 +112,7 @@ class Tasks:
         self._gates_stop = self._mux_stop = False
         self._operator = ''
         self._told = None
-        self._worker = Worker('tasks_calls', self.places.keep)
+        self._worker = Worker('tasks_calls', self._between_calls)
         self._gates_force = InForce(TAKE_SERVICE)
         self._mux_force = InForce(STOP_SERVICE)
         self._server = None
@@ -157,6 +160,11 @@ class Tasks:
         with self._lock:
             return {name: (run.state, run.text) for name, run in self._runs.items()
                     if run.phase != ENDED}
+
+    def _between_calls(self):
+        """Write what was drawn, and look at a new map (on the worker)."""
+        self.places.keep()
+        self._map.look()
 
     def _on_gates(self, message):
         with self._lock:
@@ -230,6 +238,7 @@ class Tasks:
 
     def _begin(self, goal):
         """Open what the robots of a goal need, and begin their runs (on the worker)."""
+        self._map.look()
         drives, problem = self._starter.prepare(goal.key, goal.values, goal.team,
                                                 list(self._gates))
         goal.team = tuple(self._starter.in_order(goal))
@@ -313,7 +322,8 @@ class Tasks:
         if robot is not None:
             known.update(robot.ages(), has_laser=robot.has_eye, looks=robot.looks(),
                          battery=robot.charge, senses=self._seen.senses(
-                             robot, now, busy, self.places.place, self.places.fence()))
+                             robot, now, busy, self.places.place, self.places.fence(),
+                             self._map.floor if self._keeps_to_map else None))
         if run.placed or self.places.fence():
             place = self.places.place(name)
             age_s = 0.0 if math.isnan(place.age_s) else place.age_s
