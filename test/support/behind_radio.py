@@ -162,10 +162,8 @@ class Operator:
         import rospy
         try:
             self._drive()
-        except rospy.ROSException:
-            # The topics are closed at the end.
-            if not rospy.is_shutdown():
-                raise
+        except rospy.ROSException:  # the topics are closed at the end
+            pass
 
     def _drive(self):
         number, due = 0, time.monotonic()

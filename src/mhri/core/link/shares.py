@@ -16,7 +16,7 @@ TO_PICTURES, SOME_BYTES_PER_S, MOST_TO_PICTURES = 0.4, 4500.0, 0.65
 # States are never less frequent than that, times their weight [Hz].
 LEAST_HZ = 2.0
 # First fewer pictures, down to this, then smaller ones, down to this, then fewer again [Hz, bytes].
-FEW_HZ, SMALL_BYTES = 5.0, 4000.0
+FEW_HZ, SMALL_BYTES = 5.0, 3000.0
 # From this loss on each piece of a picture is sent twice.
 TWICE_LOSS = 0.05
 # Time constant of the means [s].
