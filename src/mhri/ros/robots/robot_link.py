@@ -14,6 +14,7 @@ from std_msgs.msg import String
 
 from mhri.core.link.figures import FIGURES, FIGURES_S, read_figures, thinned_words
 from mhri.core.link.records import FETCHING, FETCHING_WORD
+from mhri.core.map.tf_tree import frame_name
 from mhri.core.robots.link import link_note, link_state
 from mhri.core.robots.link_quality import LinkQuality, link_warning
 from mhri.core.robots.names import topic_of
@@ -150,7 +151,12 @@ class RobotLink:
             rospy.logwarn('%s: cannot read its odometry, %s is not installed here', self.name,
                           self.robot_type.odometry_type)
             return []
-        return [Feed(topic_of(self.name, topic), message_class, read, self._on_message,
+
+        def read_motion(message):
+            """Read what moves, and take note of what the robot calls its own frame."""
+            self.feeds.base = frame_name(getattr(message, 'child_frame_id', ''))
+            return read(message)
+        return [Feed(topic_of(self.name, topic), message_class, read_motion, self._on_message,
                      self._clock) for topic in self.robot_type.odometry]
 
     def _on_message(self, feed, message, now):
