@@ -64,7 +64,8 @@ def test_the_host_side_subscribes_commands_alone(lab):
     def heard():
         return {topic for topic, nodes in api.call('getSystemState')[1]
                 if '/bot1/mhri_link' in nodes}
-    wait_for(lambda: heard() == {'/bot1/mhri_guard/command', '/bot1/mhri_guard/heard'}, LONG_S,
+    wait_for(lambda: heard() == {'/bot1/mhri_guard/command', '/bot1/mhri_guard/heard',
+                                 '/mhri_session/state'}, LONG_S,
              lambda: 'its topics: {}'.format(heard()))
 
 

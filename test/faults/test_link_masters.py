@@ -133,12 +133,12 @@ def test_what_was_missed_is_fetched_when_the_link_is_back(lab):
         time.monotonic() - mended_at, lab.fetching[-1]))
     assert any(text.startswith('fetching') for text in lab.fetching)
     with rosbag.Bag(path) as bag:
-        rows = [(message.header.frame_id, when.to_sec())
+        rows = [(message.header, when.to_sec())
                 for _, message, when in bag.read_messages(['/bot2/odom'])]
-    stamps = [when for _, when in rows if begun < when < ended]
-    print('of the outage: {} messages in {:.1f} s'.format(len(stamps), ended - begun))
-    assert len(stamps) > 10 and stamps == sorted(set(stamps))
-    assert {frame for frame, _ in rows} == {'bot2/odom'}
+    count = sum(begun < when < ended for _, when in rows)
+    print('of the outage: {} messages in {:.1f} s'.format(count, ended - begun))
+    assert count > 3 and len({header.seq for header, _ in rows}) == len(rows)
+    assert {header.frame_id for header, _ in rows} == {'bot2/odom'}
     lab.let_go()
 
 

@@ -5,6 +5,7 @@ import collections
 from datetime import datetime
 import os
 import threading
+import time
 
 import rosbag
 import rospy
@@ -24,6 +25,8 @@ from mhri.ros.link.keeper import folder_of
 WAIT_S = 0.1
 # Pieces overlap a little: of so many messages it is remembered that they are in the bag.
 REMEMBERED = 5000
+# After so many messages others have their turn for so long [s].
+AT_ONCE, REST_S = 50, 0.005
 
 
 def join(robot, paths, target, topics):
@@ -33,7 +36,7 @@ def join(robot, paths, target, topics):
     :raises OSError, rosbag.ROSBagException: a piece cannot be read, or the bag not be written
     """
     rename = renamer(robot)
-    recent = collections.deque(maxlen=REMEMBERED)
+    recent, written = collections.OrderedDict(), 0
     with rosbag.Bag(target, 'w') as bag:
         for path in paths:
             with rosbag.Bag(path) as piece:
@@ -42,7 +45,13 @@ def join(robot, paths, target, topics):
                     key = name, data
                     if key in recent:
                         continue
-                    recent.append(key)
+                    recent[key] = None
+                    if len(recent) > REMEMBERED:
+                        recent.popitem(last=False)
+                    written += 1
+                    if written % AT_ONCE == 0:
+                        # Commands go through this program, too.
+                        time.sleep(REST_S)
                     name = on_host(robot, name, topics)
                     data = renamed(name, kind, data, rename)
                     bag.write(name, (kind, data, md5, message_class), when, raw=True)
