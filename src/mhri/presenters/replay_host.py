@@ -88,6 +88,7 @@ class ReplayHost(ScreenHost):
         screen = self.screen
         screen.stop_bar.show_idle(NOTHING_DRIVES)
         screen.key_help.show_rows(REPLAY_ROWS)
+        self.session.button.hide()
         for part in (screen.drive_side, self.tasks.page, screen.add_button, screen.name_edit,
                      screen.remove_button, screen.all_button, screen.none_button):
             part.setEnabled(False)

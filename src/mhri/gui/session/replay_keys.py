@@ -32,7 +32,7 @@ REPLAY_ROWS = (
     ('Home, End', 'to the start, or to the end'),
     ('Tab, Shift+Tab', 'look at the next picture, or the one before'),
 ) + tuple((QKeySequence(key).toString(), COMMAND_WORDS[command])
-          for key, command in COMMANDS.items() if command not in ('carry_on', 'record'))
+          for key, command in COMMANDS.items() if command not in ('carry_on', 'record', 'mark'))
 
 
 class ReplayKeys(QObject):
