@@ -161,6 +161,8 @@ def test_a_stop_holds_on_the_robot_until_it_is_released(lab):
 def test_the_link_says_how_good_it_is(lab):
     import rospy
     from diagnostic_msgs.msg import DiagnosticArray
+    from mhri.core.link.figures import read_figures
+    from std_msgs.msg import String
     found = {}
 
     def on_diagnostics(message):
@@ -172,6 +174,8 @@ def test_the_link_says_how_good_it_is(lab):
     wait_for(lambda: found.get('message') == 'linked' and 'age of state [ms]' in found, LONG_S,
              lambda: 'the figures of the link: {}'.format(found))
     listener.unregister()
+    figures = rospy.wait_for_message('/bot1/mhri_link/figures', String, LONG_S)
+    assert 0.0 <= read_figures(figures.data).round_trip < 1.0
     print('MEASURED link on this computer:', found)
     assert 0.0 <= float(found['round trip [ms]']) < 1000.0
 

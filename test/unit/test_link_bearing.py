@@ -147,6 +147,15 @@ def simulate(row, count, offered, seconds):
     return sorted(delays), sum(rates) / len(rates)
 
 
+def test_a_radio_that_has_become_good_is_used_soon():
+    lossy = Heard(5e4, 0.15, 0.2)
+    for heard, bears in ((CALM, True), (LOSSY, False)):
+        bearing = bound(lossy)
+        for number in range(50):
+            bearing.on_heard(heard, DEMAND, 2.0 + 0.2 * number)
+        assert (not bearing.bound) is bears
+
+
 def radio_delay_s(row):
     return row.get('delay_ms', 0) / 1000.0
 
@@ -351,4 +360,5 @@ def test_how_often_a_picture_comes(rate_hz, words):
 
 
 def test_a_thinned_picture_is_a_warning_of_the_row():
-    assert link_warning(LinkFigures(thinned='picture 1 in 2 s')) == 'picture 1 in 2 s'
+    found = link_warning(LinkFigures(0.4, None, 0.2, 'picture 1 in 2 s'))
+    assert found.startswith('picture 1 in 2 s; slow link: 400 ms') and '20 %' in found

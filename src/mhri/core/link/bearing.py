@@ -22,8 +22,9 @@ WINDOW_S, LOSS_WINDOW_S = 0.5, 2.0
 _BASE_S, _BASES = 10.0, 2
 # Waiting for longer is too much, for less leaves room for more [s].
 QUEUE_MOST_S, QUEUE_CALM_S = 0.07, 0.03
-# Of the messages; the first makes the link careful, with the second it goes down.
-LOSSY, LOSS_MOST = 0.08, 0.5
+# Of the messages; the first makes the link careful, with the second it goes down, with the third
+# nothing is lost any more.
+LOSSY, LOSS_MOST, LOSSLESS = 0.08, 0.5, 0.01
 # So much of what came is sent from then on; then by such a part more each second: up to near what
 # was too much, around that, and beyond it, where the part grows each second. What came before the
 # first cut was whole pictures, or rather was not: up to the second it is made up for quickly.
@@ -102,7 +103,7 @@ class Bearing:
         self.bytes_per_s = math.inf
         self.loss = 0.0
         self._cut_at = -math.inf
-        self._top = 0.0
+        self._top = self._cut_loss = 0.0
         self._heard_at = -math.inf
         self._bad = 0
         self._first = False
@@ -156,9 +157,12 @@ class Bearing:
             self._top = self.bytes_per_s if self.bound else heard.bytes_per_s
         self.bytes_per_s = max(LEAST_BYTES_PER_S,
                                CUT * min(heard.bytes_per_s, self.bytes_per_s))
-        self._cut_at, self._bad = now, 0
+        self._cut_at, self._bad, self._cut_loss = now, 0, heard.loss
 
     def _grow(self, step_s: float, demand: float, now: float) -> None:
+        if self._cut_loss > LOSSY and self.loss < LOSSLESS:
+            # Another radio: nobody knows what it bears.
+            self._cut_loss, self._first = 0.0, True
         calm_s = now - self._cut_at - SETTLE_S
         if self._first:
             share = FIRST_GROWTH

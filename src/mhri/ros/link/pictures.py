@@ -48,6 +48,11 @@ class Pictures:
             self._waiting[stream.topic] = (stream, kind, data, names, self._clock())
         self._news.set()
 
+    def waits(self):
+        """Tell whether a picture waits for its turn."""
+        with self._lock:
+            return bool(self._waiting)
+
     def forget(self):
         """Send none of those that wait."""
         with self._lock:

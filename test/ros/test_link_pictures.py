@@ -1,0 +1,113 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pictures that a radio does not bear all: which go, in pieces, and when no more."""
+import os
+import sys
+import threading
+import time
+
+import rospy
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from mhri.core.link.carried import PICTURE, Stream  # noqa: E402
+from mhri.core.link.pieces import Gathered, PIECE_BYTES  # noqa: E402
+from mhri.core.link.shares import Share  # noqa: E402
+from mhri.ros.link.pictures import Pictures  # noqa: E402
+from support.ros_system import wait_for  # noqa: E402
+
+LONG_S = 30.0
+CAMERA, SECOND = Stream('camera', PICTURE), Stream('second', PICTURE)
+RAW = 'sensor_msgs/Image'
+
+
+class Way:
+    """What goes out: keeps the pieces, and holds each until told to go on."""
+
+    def __init__(self, goes=True):
+        self.pieces = []
+        self.goes = goes
+        self.open = threading.Event()
+        self.open.set()
+
+    def send(self, stream, piece):
+        """Take a piece."""
+        self.open.wait(LONG_S)
+        self.pieces.append((stream.topic, piece))
+        return self.goes
+
+    def came(self, topic='camera'):
+        """Return the pictures of which all pieces came."""
+        gathered = Gathered()
+        wholes = [gathered.add(piece) for name, piece in list(self.pieces) if name == topic]
+        return [whole.body for whole in wholes if whole is not None]
+
+
+def pictures(way):
+    """Return what sends them, without renaming."""
+    return Pictures(time.monotonic, way.send, lambda data, names, number: data)
+
+
+def test_a_picture_goes_in_pieces_each_as_often_as_it_must():
+    way = Way()
+    sends = pictures(way)
+    sends.share({'camera': Share(5.0, times=2)})
+    body = bytes(range(250)) * 20
+    sends.offer(CAMERA, RAW, body, 1)
+    count = 2 * -(-len(body) // PIECE_BYTES)
+    wait_for(lambda: len(way.pieces) == count, LONG_S, 'all pieces, twice')
+    assert way.came() == [body] and sends.most_hz() > 0.0
+
+
+def test_of_those_that_wait_the_newest_goes():
+    way = Way()
+    sends = pictures(way)
+    way.open.clear()
+    sends.offer(CAMERA, RAW, b'first', 1)
+    wait_for(lambda: not sends.waits(), LONG_S, 'the first to be taken')
+    for body in (b'second', b'third', b'last'):
+        sends.offer(CAMERA, RAW, body, 1)
+    way.open.set()
+    wait_for(lambda: len(way.came()) == 2, LONG_S, 'two pictures')
+    assert way.came() == [b'first', b'last']
+
+
+def test_those_that_nobody_asks_for_any_more_are_not_sent():
+    way = Way(goes=False)
+    sends = pictures(way)
+    sends.offer(CAMERA, RAW, bytes(10 * PIECE_BYTES), 1)
+    sends.offer(SECOND, RAW, b'other', 1)
+    wait_for(lambda: way.came('second') == [b'other'], LONG_S, 'the other one')
+    assert sum(topic == 'camera' for topic, _ in way.pieces) == 1
+
+
+def test_what_waited_is_forgotten():
+    way = Way()
+    sends = pictures(way)
+    way.open.clear()
+    sends.offer(CAMERA, RAW, b'first', 1)
+    wait_for(lambda: not sends.waits(), LONG_S, 'the first to be taken')
+    sends.offer(CAMERA, RAW, b'second', 1)
+    sends.forget()
+    way.open.set()
+    sends.offer(SECOND, RAW, b'other', 1)
+    wait_for(lambda: way.came('second') == [b'other'], LONG_S, 'the other one')
+    assert way.came() == [b'first']
+
+
+def test_a_picture_that_cannot_be_sent_does_not_end_it(monkeypatch):
+    said = []
+    monkeypatch.setattr(rospy, 'logwarn_throttle', lambda _, words: said.append(words))
+    way = Way()
+
+    def rename(data, names, number):
+        """Refuse one."""
+        if data == b'bad':
+            raise ValueError('a message that ends too early')
+        return data
+    sends = Pictures(time.monotonic, way.send, rename)
+    sends.offer(CAMERA, RAW, b'bad', 1)
+    wait_for(lambda: not sends.waits(), LONG_S, 'it to be taken')
+    sends.offer(CAMERA, RAW, b'good', 1)
+    wait_for(lambda: way.came() == [b'good'], LONG_S, 'the next one')
+    assert len(said) == 1 and 'ends too early' in said[0]
