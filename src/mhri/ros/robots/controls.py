@@ -44,8 +44,9 @@ class Controls:
         if state is None or not state.linked or view.link != LIVE:
             return view
         note, ask = shown(state.host, state.may_drive, state.holder, state.asking)
-        return replace(view, note=note or view.note, slow=view.slow or bool(state.asking and not ask and note),
-                       ask=ask, said=state.said)
+        asked = bool(state.asking and not ask and note)
+        return replace(view, note=note or view.note, slow=view.slow or asked, ask=ask,
+                       said=state.said)
 
     def ask(self, name):
         """Ask for control of a robot; asked again soon, it is taken. Returns at once."""
