@@ -69,12 +69,13 @@ class Standalone:
     :param argv: the node's command line
     :param settings_path: a JSON file, None for the user's own
     :param remember: False leaves the settings alone, whatever happens
+    :param host: the :class:`ScreenHost` to show, None for one that drives
     """
 
-    def __init__(self, argv, settings_path=None, remember=True):
+    def __init__(self, argv, settings_path=None, remember=True, host=None):
         self._remember = remember
         self._settings = SettingsFile(settings_path)
-        self.host = ScreenHost(ScreenBackend(argv))
+        self.host = host or ScreenHost(ScreenBackend(argv))
         self.window = MainWindow(self.host)
         self.window.closing.connect(self.close)
         # The whole program is ours: its tool tips and questions look the same.

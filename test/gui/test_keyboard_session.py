@@ -244,7 +244,9 @@ def test_7_record(session):
     recordings = session.operator.recordings
     session.key('ctrl+1')
     session.until(lambda: session.selected == ('bot1',), 'bot1 alone')
-    session.key('r')
+    session.to_the_panel()
+    session.tab_to('record_button')
+    session.key('Return')
     session.until(lambda: recordings.status('bot1').messages > 20, 'a recording')
     session.program.window.close()
     bar = session.screen.leave_bar
@@ -252,8 +254,9 @@ def test_7_record(session):
     session.until(bar.stay_button.hasFocus, 'the answer to have the keyboard')
     session.key('Return')
     session.until(lambda: not bar.isVisible(), 'the screen to stay')
-    session.to_the_pictures()
-    session.key('r')
+    session.to_the_panel()
+    session.tab_to('record_button')
+    session.key('Return')
     session.until(lambda: recordings.status('bot1').state == 'ended', 'its end')
     assert os.path.exists(recordings.status('bot1').path)
 

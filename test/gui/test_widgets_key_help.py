@@ -70,13 +70,13 @@ def test_the_keys_work_while_it_shows(panel, operator, heard, shown):
 def test_the_other_keys_of_the_screen(panel, operator, heard, four_robots):
     panel.show_view(four_robots)
     panel.stage.setFocus()
-    stills, recorded = heard(panel.stills_requested), heard(panel.record_requested)
+    commands = heard(panel.drive_keys.command_pressed)
     shown = (panel.stage.numbers_shown, panel.drawer_button.isChecked(), panel.isFullScreen())
-    for key in (Qt.Key_H, Qt.Key_F2, Qt.Key_F11, Qt.Key_P, Qt.Key_R):
+    for key in (Qt.Key_H, Qt.Key_F2, Qt.Key_F11, Qt.Key_P, Qt.Key_R, Qt.Key_N):
         operator.hit(panel.stage, key)
     assert (panel.stage.numbers_shown, panel.drawer_button.isChecked(), panel.isFullScreen()) \
         == tuple(not state for state in shown)
-    assert stills == [()] and recorded == [['bot1']]
+    assert commands == ['numbers', 'drawer', 'full_screen', 'stills', 'record', 'mark']
     operator.hit(panel.stage, Qt.Key_F11)
     assert not panel.isFullScreen()
 

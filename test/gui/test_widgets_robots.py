@@ -7,6 +7,7 @@ import pytest
 from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtTest import QTest
 
+from mhri.core.link.control import ASK_FOR, TAKE_IT
 from mhri.core.screen import views
 from mhri.core.screen.views import ProofView, RobotView
 from mhri.gui.screen import theme
@@ -344,3 +345,23 @@ def test_tab_goes_through_all_of_a_hundred(hundred, operator):
         reached.append(robots.window().focusWidget().accessibleName())
     assert reached == ['drive bot{}'.format(number + 1) for number in range(60)]
     assert in_sight(robots, 'bot60')
+
+
+def test_control_of_a_robot_is_asked_for_in_its_row(operator):
+    robots = RobotList()
+    robots.show_robots([LIVE])
+    operator.show(robots)
+    row = robots.row('bot1')
+    assert not row.ask_button.isVisible()
+    asked = []
+    robots.ask_requested.connect(asked.append)
+    robots.show_robots([replace(LIVE, note='lab has control', ask=ASK_FOR)])
+    assert row.trouble.text() == 'lab has control' and row.ask_button.text() == ASK_FOR
+    assert 'told' in row.ask_button.toolTip()
+    operator.click(row.ask_button)
+    robots.show_robots([replace(LIVE, note='lab is told that you ask', ask=TAKE_IT)])
+    assert row.ask_button.accessibleName() == 'Take control of bot1'
+    operator.click(row.ask_button)
+    assert asked == ['bot1', 'bot1']
+    robots.show_robots([LIVE])
+    assert not row.ask_button.isVisible()

@@ -18,6 +18,14 @@ from support.ros_system import free_port, wait_for  # noqa: E402
     'tcp/192.168.0.7:7447', 'udp/robot.local:7447', 'tcp/0.0.0.0:1', 'tcp/[::]:7447'])
 def test_endpoints(endpoint):
     carrier.check_endpoints('connect', [endpoint])
+    with pytest.raises(carrier.CarrierError, match='asks nobody for a key: .* tls/'):
+        carrier.check_endpoints('connect', [endpoint], secret=True)
+
+
+def test_endpoints_with_keys():
+    carrier.check_endpoints('listen', ['tls/0.0.0.0:7447', 'quic/0.0.0.0:7447'], secret=True)
+    with pytest.raises(carrier.CarrierError, match='--listen: tls/0.0.0.0:7447 needs keys'):
+        carrier.check_endpoints('listen', ['tls/0.0.0.0:7447'])
 
 
 @pytest.mark.parametrize('endpoint', [
@@ -25,7 +33,7 @@ def test_endpoints(endpoint):
     'tcp/a b:1', 'tcp/a:1\n', 'unixsock-stream//tmp/x'])
 def test_what_is_no_endpoint_is_refused_with_the_remedy(endpoint):
     with pytest.raises(carrier.CarrierError, match='--connect: .* such as tcp/'):
-        carrier.Carrier('bot1', connect=[endpoint])
+        carrier.Carrier(connect=[endpoint])
 
 
 def test_without_the_library_it_says_what_to_do(monkeypatch):
@@ -38,10 +46,10 @@ def test_without_the_library_it_says_what_to_do(monkeypatch):
 
 def test_a_port_that_is_taken_is_named():
     endpoint = 'tcp/127.0.0.1:{}'.format(free_port())
-    first = carrier.Carrier('bot1', listen=[endpoint])
+    first = carrier.Carrier(listen=[endpoint])
     try:
         with pytest.raises(carrier.CarrierError, match='cannot listen on ' + endpoint):
-            carrier.Carrier('bot1', listen=[endpoint])
+            carrier.Carrier(listen=[endpoint])
     finally:
         first.close()
 
@@ -51,16 +59,18 @@ def test_bytes_arrive_whoever_came_first(protocol):
     """The one that calls waits for the other, finds it again, and hears its own robot alone."""
     endpoint = '{}/127.0.0.1:{}'.format(protocol, free_port())
     heard = []
-    host = carrier.Carrier('bot1', connect=[endpoint])
-    host.listen('up', lambda topic, data: heard.append((topic, data)))
+    host = carrier.Carrier(connect=[endpoint])
+    host.between('bot1', 'host:lab').listen('up', lambda *row: heard.append(row))
     try:
         for body in (b'first run', b'second run'):
-            robot = carrier.Carrier('bot1', listen=[endpoint])
-            send = robot.sender('up', 'camera/image', COMMAND)
-            send_elsewhere = robot.sender('down', 'camera/image', COMMAND)
+            robot = carrier.Carrier(listen=[endpoint])
+            send = robot.between('bot1', 'host:lab').sender('up', 'camera/image', COMMAND)
+            others = [robot.between('bot1', 'host:lab').sender('down', 'camera/image', COMMAND),
+                      robot.between('bot1', 'host:two').sender('up', 'camera/image', COMMAND)]
 
             def arrives():
-                send_elsewhere(b'wrong way')
+                for other in others:
+                    other(b'not for it')
                 send(body)
                 return ('camera/image', body) in heard
             wait_for(arrives, 60.0, 'bytes over ' + protocol, 0.05)

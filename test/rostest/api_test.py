@@ -22,7 +22,8 @@ MESSAGES = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'supp
 SERVICES = {'end': 'mhri/EndTask',
             'set_suspended': 'mhri/SetSuspended', 'take_control': 'std_srvs/Trigger',
             'set_place': 'mhri/SetPlace', 'fit_place': 'mhri/FitPlace',
-            'set_fence': 'mhri/SetFence', 'set_mark': 'mhri/SetMark'}
+            'set_fault': 'mhri/SetFault', 'set_fence': 'mhri/SetFence', 'set_mark': 'mhri/SetMark',
+            'mark': 'mhri/MarkSession', 'note': 'mhri/AddNote', 'still': 'std_srvs/Trigger'}
 EVERYWHERE = ('/rosout', '/clock')
 ROW = re.compile(r'^\| (publishes|subscribes|serves) \| `([^`]+)` \| (?:`([^`]+)`|[^|]+) \|', re.M)
 
@@ -79,6 +80,7 @@ class ApiTest(unittest.TestCase):
         cls.system.node('mux', '__name:=mux')
         cls.system.node('gates')
         cls.system.node('tasks')
+        cls.system.node('mhri_session')
         for name in INPUTS:
             cls.system.node(name, '__name:=' + name)
         for number, kind in enumerate(('turtlebot2', 'turtlebot3_burger')):
@@ -102,6 +104,9 @@ class ApiTest(unittest.TestCase):
 
     def test_tasks(self):
         self.page_is_true('mhri_tasks')
+
+    def test_session(self):
+        self.page_is_true('mhri_session')
 
     def page_is_true(self, node):
         """Hold a node's page, its placeholders filled in, against the node."""
@@ -134,7 +139,8 @@ class ApiTest(unittest.TestCase):
         for robot, kind, node in (('bot1', 'turtlebot2', '/bot1/base'),
                                   ('bot2', 'turtlebot3', '/bot2/base')):
             template = robot_types()[0][kind]
-            own = {'/tf', '/tf_static'} | {'/{}/{}'.format(robot, topic) for topic in (
+            own = {'/tf', '/tf_static', node + '/set_fault'}
+            own |= {'/{}/{}'.format(robot, topic) for topic in (
                 *template.command, *template.imu, *template.odometry, *template.scan,
                 *template.cloud, *template.battery, template.motor_power.name,
                 *camera_topics(template))}

@@ -112,22 +112,27 @@ def test_simulated_robots_of_given_types_and_names():
 
 
 def test_a_link_for_each_robot_with_a_master_of_its_own():
-    config = load(MHRI, 'links:=bot1=tcp/10.0.0.1:7447 bot2=udp/10.0.0.2:7447')
+    config = load(MHRI, 'links:=bot1=tcp/10.0.0.1:7447 bot2', 'router:=10.0.0.2:7447')
     links = [node for node in config.nodes if node.type == 'mhri_link']
     assert sorted(node.namespace for node in links) == ['/bot1/', '/bot2/']
     assert all('--side host' in node.args for node in links)
+    by_name = {node.namespace: node.args for node in links}
+    assert "--connect 'tcp/10.0.0.1:7447' --router ''" in by_name['/bot1/']
+    assert "--connect '' --router '10.0.0.2:7447'" in by_name['/bot2/']
     assert not [node for node in config.nodes if node.type == 'mhri_guard']
     assert not [node for node in load(MHRI).nodes if node.type == 'mhri_link']
 
 
 @pytest.mark.parametrize('more, namespaces', [
     ([], ['/bot1/', '/bot1/']), (['namespace:=/'], ['/', '/bot1/']),
-    (['guard:=false'], ['/bot1/'])])
+    (['guard:=false'], ['/bot1/']), (['router:=10.0.0.2:7447'], ['/bot1/', '/bot1/'])])
 def test_a_robot_with_a_master_of_its_own_has_link_and_guard(more, namespaces):
     config = load(LAUNCH / 'link.launch', 'side:=robot', 'name:=bot1', *more)
     assert sorted(node.namespace for node in config.nodes) == namespaces
     args = next(node.args for node in config.nodes if node.type == 'mhri_link')
-    assert '--side robot' in args and "--listen 'tcp/0.0.0.0:7447'" in args
+    assert '--side robot' in args
+    assert "--listen '{}'".format('' if 'router' in ''.join(more) else '0.0.0.0:7447') in args
+    assert "--keys 'auto'" in args
 
 
 def test_test_nodes_have_names_of_their_own():

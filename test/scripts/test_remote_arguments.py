@@ -197,11 +197,28 @@ def test_wrong_command_lines_say_what_is_wrong(run, script, arguments, said):
     (['--back-after', '3601'], "--back-after: '3601' is no whole number"),
     (['--brake', '--no-guard'], 'leave out --no-guard'),
     (['--no-guard', '--back-after', '10'], 'leave out --no-guard'),
+    (['--listen', '0.0.0.0:7447'], '--listen and --router go with --link'),
+    (['--router', 'somewhere'], "--router: 'somewhere' is not an endpoint such as"),
+    (['--listen', 'http/0.0.0.0:7447'], "--listen: 'http/0.0.0.0:7447' is not an endpoint"),
 ])
 def test_what_the_robot_would_refuse_is_refused_before_the_login(run, arguments, said):
     is_refused(run, 'connect', RIGHT['connect'] + arguments, said)
     assert (run('connect', *RIGHT['connect'], *arguments)
             == run('remote', *RIGHT['remote'], *arguments)), 'in the same words'
+
+
+@pytest.mark.parametrize('arguments, said', [
+    (['--link', '--no-guard'], 'a linked robot is driven through its guard alone'),
+    (['--link', '--ip', '192.168.0.7'], '--ip does not go with --link'),
+    (['--link', '--listen', '0.0.0.0:1', '--router', '192.0.2.1:1'], 'in place of --listen'),
+])
+def test_what_does_not_go_with_a_link(run, arguments, said):
+    is_refused(run, 'connect', RIGHT['connect'] + arguments, said)
+    is_refused(run, 'remote', ['bot1'] + arguments, said)
+
+
+def test_a_linked_robot_needs_no_address_of_the_host(run):
+    is_refused(run, 'remote', RIGHT['remote'] + ['--link'], "give the robot's name alone")
 
 
 @pytest.mark.parametrize('script', sorted(SCRIPTS))

@@ -28,6 +28,8 @@ import pytest
     (['--link', '1bot=192.168.0.7'], "'1bot=192.168.0.7'"),
     (['--link', "bot1=tcp/x';touch hacked:1"], 'is not NAME=ADDRESS'),
     (['--link', 'bot1=http/192.168.0.7:80'], 'is not NAME=ADDRESS'),
+    (['--link', 'bot1', '--router', 'somewhere'], "--router: 'somewhere' is not an endpoint"),
+    (['--router', '192.0.2.1:7447'], '--router: name the robots behind it'),
     (['--ip'], '--ip needs a value'),
     (['--ip', '300.1.1.1'], "'300.1.1.1' is not an IPv4 address"),
     (['--ip', '1.2.3'], "'1.2.3'"),
@@ -61,6 +63,14 @@ import pytest
     (['--demo', '--master', 'http://127.0.0.1:11311'], 'leave out --ip and --master'),
     (['--demo', '--sim', '3'], '--demo plays with four robots'),
     (['--screenshot', 'x.png'], '--screenshot goes with --demo'),
+    (['--drill'], '--drill needs a value'),
+    (['--drill', 'mace'], "there is no drill 'mace'; there are figure_of_eight lost_link maze"),
+    (['--drill', '../drills/maze'], "there is no drill '../drills/maze'"),
+    (['--drill', 'nowhere.yaml'], 'there is no file nowhere.yaml'),
+    (['--drill', 'a b'], 'a space or quote'),
+    (['--drill', 'maze', '--sim', '3'], 'leave out --sim and --demo'),
+    (['--drill', 'maze', '--demo'], 'leave out --sim and --demo'),
+    (['--scripted'], '--scripted goes with --drill NAME'),
     (['--demo', '--screenshot', '/nowhere/at/all.png'], 'there is no folder /nowhere/at'),
     (['--demo', '--screenshot', '/tmp'], '/tmp is a folder'),
     (['start'], "'start' is neither an option nor ARG:=VALUE"),
@@ -138,11 +148,12 @@ def test_links_become_endpoints(checkout):
     installed.write_text('eclipse-zenoh==' + re.search(
         r'eclipse-zenoh==([0-9.]+)', checkout.script.with_name('common.sh').read_text()).group(1))
     status, output = checkout.run('--master', 'http://127.0.0.1:1', '--link',
-                                  'bot1=192.168.0.7 bot2=udp/192.168.0.8:7448')
+                                  'bot1=192.168.0.7 bot2=udp/192.168.0.8:7448 bot3', '--router',
+                                  'tls/192.0.2.1:7447')
     assert status == 0, output
     assert checkout.called('roslaunch') == [
-        'roslaunch mhri mhri.launch sim:=0 '
-        'links:=bot1=tcp/192.168.0.7:7447 bot2=udp/192.168.0.8:7448']
+        'roslaunch mhri mhri.launch sim:=0 links:=bot1=192.168.0.7:7447 '
+        'bot2=udp/192.168.0.8:7448 bot3 keys:=auto router:=tls/192.0.2.1:7447']
 
 
 def test_a_labs_own_source_can_be_the_enabling_one(checkout, tmp_path):

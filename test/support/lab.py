@@ -120,7 +120,7 @@ class Lab:
         with self.known_hosts.open('a') as file:
             file.write('{} {} {}\n'.format(robot.ip, public[0], public[1]))
 
-    def deploy(self, name, password=False):
+    def deploy(self, name, *arguments, password=False):
         """Return (exit status, output) of the deployment to a robot."""
         env = dict(self.env)
         if password:
@@ -128,7 +128,7 @@ class Lab:
                        SSH_ASKPASS_REQUIRE='force')
         done = subprocess.run(
             [str(HOST_SCRIPTS / 'turtlebot_deploy.sh'),
-             '{}@{}'.format(machines.USER, self.robots[name].ip)],
+             '{}@{}'.format(machines.USER, self.robots[name].ip), *arguments],
             env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
             universal_newlines=True, start_new_session=True, timeout=120)
         return done.returncode, done.stdout

@@ -49,19 +49,27 @@ class Operator:
 
 
 class Linked:
-    """The two systems; ``protocol`` is ``tcp`` or ``udp``."""
+    """The two systems.
 
-    def __init__(self, protocol='tcp'):
+    :param protocol: such as ``tcp`` or ``tls``
+    :param call: called with the robot's endpoint, returns that which the host calls
+    :param robot_keys: a folder with keys, or ``off``; so ``host_keys``
+    """
+
+    def __init__(self, protocol='tcp', robot_keys='off', host_keys='off', call=lambda end: end):
         self._states = collections.deque(maxlen=1)
+        self._host_keys = str(host_keys)
         self.host = System()
         self.robot = System(adopt=False)
         self.endpoint = '{}/127.0.0.1:{}'.format(protocol, free_port())
+        self._called = call(self.endpoint)
         for system in (self.host, self.robot):
             system.start_master()
         self.robot.launch('turtlebot.launch', 'name:=bot1', 'type:=turtlebot3_waffle', 'x:=2.0',
                           'y:=1.5')
         self.link_of_robot = self.robot.launch(
-            'link.launch', 'side:=robot', 'name:=bot1', 'listen:=' + self.endpoint)
+            'link.launch', 'side:=robot', 'name:=bot1', 'listen:=' + self.endpoint,
+            'keys:={}'.format(robot_keys))
         self.observer = self.robot.start(sys.executable, '-c', OBSERVER)
         self.host.node('mux', '__name:=mux')
         self.host.node('gates')
@@ -70,7 +78,8 @@ class Linked:
     def start_host_side(self):
         """Start the host's side; it is one process, so that it can be killed."""
         self.link_of_host = self.host.node('mhri_link', '--side', 'host', '--name', 'bot1',
-                                           '--connect', self.endpoint, '__ns:=/bot1')
+                                           '--connect', self._called, '--keys', self._host_keys,
+                                           '--host', 'host:lab', '__ns:=/bot1')
         return self.link_of_host
 
     def node_of_robot(self):

@@ -233,6 +233,23 @@ GRAPHS = {
     'a_node_with_a_parameter_of_that_name': (
         ('/bot1/base reads /bot1/cmd_vel',), {'bot1': {'base': {'robot_type': 'x'}}},
         [('bot1', None, Seen(False, None, 'cmd_vel'))]),
+    'mirrored_by_multimaster_fkie': (
+        # The nodes of two robots' masters and of this one, on which fkie has put them, too; its own
+        # are called after their computers where there are several.
+        ('/master_discovery writes /master_discovery/changes fkie_multimaster_msgs/MasterState',
+         '/master_discovery writes /master_discovery/linkstats x/LinkStatesStamped',
+         '/master_sync reads /master_discovery/changes fkie_multimaster_msgs/MasterState',
+         '/master_discovery_pi1 writes /master_discovery/changes fkie_multimaster_msgs/MasterState',
+         '/pi2/master_discovery writes /pi2/master_discovery/changes x/MasterState',
+         '/pi2/master_sync reads /pi2/master_discovery/changes x/MasterState',
+         '/node_manager reads /rosout_agg rosgraph_msgs/Log',
+         '/pi2/node_manager_daemon writes /pi2/diagnostics_agg diagnostic_msgs/DiagnosticArray',
+         '/pi2/default_cfg/x writes /pi2/x std_msgs/String',
+         '/bot1/base reads /bot1/cmd_vel', '/bot1/base writes /bot1/odom nav_msgs/Odometry',
+         '/bot2/mhri_guard writes /bot2/cmd_vel', '/bot2/base reads /bot2/cmd_vel'), {},
+        # Parameters are not mirrored: no robot says its type.
+        [('bot1', None, Seen(False, None, 'cmd_vel')),
+         ('bot2', None, Seen(False, None, 'cmd_vel'))]),
     'type_is_not_text': (TB3, {'robot_type': 3}, [
         ('robot', None, Seen(True, 'turtlebot3', 'cmd_vel'))]),
 }

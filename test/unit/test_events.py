@@ -55,6 +55,8 @@ class Screen:
 
 # Name: the steps, each (values, of the first robot or of the panel); what is told in the end.
 ROBOT_CASES = {
+    'another host has control': ([{'said': 'desk may not drive: lab has control'}],
+                                 'linked.said', 'desk may not drive: lab has control'),
     'silent': ([MUTE], 'link.silent', 'silent: nothing for 1.2 s'),
     'gone': ([AWAY], 'link.gone', 'gone: switched off'),
     'lost': ([{'selected': True}, dict(MUTE, selected=True)], 'link.lost', 'lost while driven'),
@@ -158,7 +160,7 @@ def test_what_changes_is_told_once(case):
 
 def test_every_kind_is_shown_by_a_case_or_is_a_note():
     shown = {kind for _, kind, _ in (*ROBOT_CASES.values(), *PANEL_CASES.values())}
-    other = {kind for kind in KINDS if kind.startswith(('recording.', 'task'))}
+    other = {kind for kind in KINDS if kind.startswith(('recording.', 'session.', 'task'))}
     assert set(KINDS) - shown == other | {'screen.note', 'screen.trouble', 'camera.budget'}
     assert {severity for severity, _ in KINDS.values()} == set(SEVERITIES)
     assert len({sound for _, sound in KINDS.values()} - {''}) <= 3

@@ -69,7 +69,7 @@ def gui_may(module):
 
 
 def sim_may(module):
-    """Plain modules of the simulator; its node, sim/node.py, may be on the graph as well."""
+    """Plain modules of the simulator; its nodes, sim/*node.py, may be on the graph as well."""
     return (in_rooms(module, 'core', 'sim') or module.split('.')[0] in {'numpy', 'cv2', 'yaml'}
             or module.split('.')[0] in STDLIB)
 
@@ -80,6 +80,7 @@ def sim_node_may(module):
 
 # Files whose rule is not that of the folder they are in.
 LODGERS = {'sim/node.py': sim_node_may, 'sim/camera_node.py': sim_node_may,
+           'sim/fault_node.py': sim_node_may,
            'presenters/demo.py': gui_may}
 ROOMS = {'core': core_may, 'inputs': inputs_may, 'ros': ros_may, 'gui': gui_may, 'sim': sim_may}
 

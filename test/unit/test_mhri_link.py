@@ -10,8 +10,8 @@ from mhri.core.link.carried import (
     full_topic, key_of, Pace, PICTURE, split_frames, STATE, up_streams, valid_topic, valid_type,
     worth_carrying)
 from mhri.core.link.frames import (
-    About, Beat, Frame, FrameError, Newest, pack, pack_about, pack_beat, unpack, unpack_about,
-    unpack_beat)
+    About, Beat, DEFLATED, Frame, FrameError, Heard, Newest, pack, pack_about, pack_beat, PIECE,
+    Thinned, unpack, unpack_about, unpack_beat)
 from mhri.core.link.peer import BEAT_S, GONE_S, held_s, may_pass, Peer, SURE_S
 from mhri.core.link.renaming import (
     first_text, renamer, rewritten, stamp_of, transforms, Transforms)
@@ -25,6 +25,9 @@ odometry: [odom]
 rgb: [camera/image_raw]
 scan: [/scan]
 ''', 'r.yaml')
+
+# A beat around the four parts that come first.
+BEAT = b'[%s,[0,0,0]]'
 
 
 # --- what is carried
@@ -58,7 +61,7 @@ def test_full_topic(namespace, topic, full):
 
 
 def test_keys():
-    assert key_of('bot1', 'up', '/tf') == 'mhri/bot1/up/tf'
+    assert key_of('bot1', 'host:lab', 'up', '/tf') == 'mhri/bot1/host:lab/up/tf'
     assert split_frames('map, world') == ('map', 'world')
 
 
@@ -88,12 +91,22 @@ def test_pace(rate_hz, source_hz, passed):
 
 def test_a_frame_comes_back_as_it_was():
     assert unpack(pack(7, 3, 12.5, b'body')) == Frame(7, 3, 12.5, b'body')
+    assert unpack(pack(7, 3, 12.5, b'piece', PIECE)) == Frame(7, 3, 12.5, b'piece', PIECE)
+
+
+def test_a_state_is_packed_smaller_and_comes_back_as_it_was():
+    body = bytes(600) + b'odometry'
+    data = pack(7, 3, 12.5, body, DEFLATED)
+    assert len(data) < 100 and unpack(data) == Frame(7, 3, 12.5, body)
 
 
 @pytest.mark.parametrize('data, says', [
     (b'', 'no message'), (b'GET / HTTP/1.1\r\n\r\n.......', 'no message'),
-    (b'mh\x02' + bytes(16), 'version 2'), (pack(1, 1, math.nan, b''), 'no number'),
-    (pack(1, 1, 1.0, b'')[:-1], 'no message')])
+    (b'mh\x01' + bytes(17), 'version 1'), (pack(1, 1, math.nan, b''), 'no number'),
+    (pack(1, 1, 1.0, b'')[:-1], 'no message'), (pack(1, 1, 1.0, b'', 9), 'unknown way'),
+    (pack(1, 1, 1.0, b'x' * 999, DEFLATED)[:-1], 'cut off'),
+    (pack(1, 1, 1.0, bytes(1 << 23), DEFLATED), 'too large'),
+    (pack(1, 1, 1.0, b'body')[:3] + b'\x01' + pack(1, 1, 1.0, b'body')[4:], 'be unpacked')])
 def test_a_frame_that_is_none(data, says):
     with pytest.raises(FrameError, match=says):
         unpack(data)
@@ -108,16 +121,20 @@ def test_only_what_is_newer_counts():
 
 
 @pytest.mark.parametrize('beat', [
-    Beat(), Beat((1.5, 0.25), 'abc', (0, 4)), Beat(None, '', (1,))])
+    Beat(), Beat((1.5, 0.25), 'abc', (0, 4)), Beat(None, '', (1,)),
+    Beat(heard=Heard(94000.0, 0.0312, 0.2), thinned=Thinned(80000.0, 0.5, True))])
 def test_a_beat_comes_back_as_it_was(beat):
     assert unpack_beat(pack_beat(beat)) == beat
 
 
 @pytest.mark.parametrize('body', [
-    b'', b'{}', b'[]', b'[1,"",[]]', b'[null,3,[]]', b'[null,"",[1.5]]', b'[null,"",[true]]',
-    b'[[1],"",[]]', b'[[1,NaN],"",[]]', b'[["1",2],"",[]]', b'[null,"",' + b'[' * 5000,
-    b'[null,"",[' + b','.join([b'1'] * 200) + b']]', b'\xff', b'[null,"",[]]' + b' ' * 70000,
-    b'[[1e999,0],"",[]]'])
+    b'', b'{}', b'[]', b'[null,"",[]]', BEAT % b'1,"",[],null', BEAT % b'null,3,[],null',
+    BEAT % b'null,"",[1.5],null', BEAT % b'null,"",[true],null', BEAT % b'[1],"",[],null',
+    BEAT % b'[1,NaN],"",[],null', BEAT % b'["1",2],"",[],null', b'[null,"",' + b'[' * 5000,
+    BEAT % (b'null,"",[' + b','.join([b'1'] * 200) + b'],null'), b'\xff',
+    BEAT % b'null,"",[],null' + b' ' * 70000, BEAT % b'[1e999,0],"",[],null',
+    BEAT % b'null,"",[],[1,2]', BEAT % b'null,"",[],[1,NaN,0]', b'[null,"",[],null,[1]]',
+    b'[null,"",[],null,null]'])
 def test_a_beat_that_is_none(body):
     with pytest.raises(FrameError):
         unpack_beat(body)

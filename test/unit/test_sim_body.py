@@ -309,3 +309,27 @@ def test_wrong_bodies_are_refused_by_file_and_key(change, said):
     with pytest.raises(ConfigError) as caught:
         parse_bodies(text.replace(*change, 1), 'my/bodies.yaml')
     assert str(caught.value).startswith('my/bodies.yaml: ') and said in str(caught.value)
+
+
+def test_a_stuck_motor_turns_the_robot_about_its_wheel():
+    rig = Rig()
+    rig.body.left_share = 0.0
+    body = rig.drive(0.2, 0.0, 1.0)
+    assert body.v == pytest.approx(0.1) and body.w == pytest.approx(0.2 / 0.23)
+    assert body.odom_w == pytest.approx(body.w, rel=0.01)
+
+
+def test_a_slow_wheel_pulls_to_its_side():
+    rig = Rig()
+    rig.body.left_share = 0.5
+    body = rig.drive(0.2, 0.0, 1.0)
+    assert body.v == pytest.approx(0.15) and body.w == pytest.approx(0.1 / 0.23)
+
+
+def test_a_slipping_robot_turns_and_its_wheels_do_not_know():
+    rig = Rig()
+    rig.body.slip = math.radians(90.0)
+    body = rig.drive(0.5, 0.0, 2.0)
+    assert body.yaw == pytest.approx(math.radians(90.0) * body.odom_x, rel=0.01)
+    assert body.odom_yaw == pytest.approx(0.0, abs=0.02)
+    assert body.turn_rate == pytest.approx(0.5 * math.radians(90.0))

@@ -118,7 +118,7 @@ class Motion:
     """A body's motion, as the unit looks at it."""
 
     def __init__(self, v=0.0, w=0.0, forward_accel=0.0):
-        self.v, self.w, self.forward_accel = v, w, forward_accel
+        self.v, self.w, self.turn_rate, self.forward_accel = v, w, w, forward_accel
 
 
 @pytest.mark.parametrize('motion, gyro_z, accel', [

@@ -15,6 +15,7 @@ RUN_ID="mhri-$$-$RANDOM$RANDOM"
 SCRATCH=
 XVFB_PID=
 PACKAGES=()
+LIBRARY=
 
 # The system's python3 must come first: ROS is not installed for any other.
 [ "$(command -v python3)" = /usr/bin/python3 ] || export PATH="/usr/bin:$PATH"
@@ -141,18 +142,26 @@ install_missing() {
   fi
 }
 
-# install_link: the library of mhri_link, in a place of mhri's own. This version has wheels for
-# Python 3.8 and later, for PCs and for ARM. Only the link needs it.
+# install_link: the library of mhri_link, in a place of mhri's own, for this computer; or with MACHINE
+# set, such as aarch64, for one of another kind. This version has wheels for Python 3.8 and later, for PCs and for
+# ARM. Only the link needs it. Sets LIBRARY to its folder.
 install_link() {
-  local library=eclipse-zenoh==1.5.1
-  [ "$(cat "$WS/link/installed" 2>/dev/null)" != "$library" ] || return 0
+  local library=eclipse-zenoh==1.5.1 machine=${MACHINE:-} options=()
+  LIBRARY="$WS/link${machine:+-$machine}"
+  [ "$(cat "$LIBRARY/installed" 2>/dev/null)" != "$library" ] || return 0
+  if [ -n "$machine" ]; then
+    # One platform, as the pip of Ubuntu 20.04 knows no more: that of this version's wheel.
+    options=(--only-binary=:all: --python-version 3.8 --implementation cp --abi abi3
+      --platform "$([ "$machine" = aarch64 ] && echo manylinux_2_28 || echo manylinux2014)_$machine")
+  fi
   python3 -I -m pip --version >/dev/null 2>&1 || install_packages python3-pip
   mkdir -p "$WS"
-  say "installing with pip, in $WS/link: $library"
+  say "installing with pip, in $LIBRARY: $library"
   python3 -I -m pip install --quiet --disable-pip-version-check --no-deps --upgrade \
-    --target "$WS/link" "$library" ||
-    die "pip could not install $library, which mhri_link needs: see its message above"
-  printf '%s' "$library" >"$WS/link/installed"
+    "${options[@]}" --target "$LIBRARY" "$library" ||
+    die "pip could not install $library${machine:+ for $machine}, which mhri_link needs: see its" \
+      "message above"
+  printf '%s' "$library" >"$LIBRARY/installed"
 }
 
 # source_setup FILE: sources it without set -u, as catkin's setup files read variables that may not

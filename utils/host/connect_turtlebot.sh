@@ -31,12 +31,21 @@ the robot's password unless ssh has a key for it.
   --type TYPE, --model MODEL, --launch FILE, --setup FILE, --ip ADDR, --port PORT, --no-camera,
   --no-smoother, --no-guard, --brake, --back-after SECONDS
 
+  --link               the robot gets a ROS master of its own, linked to the one here by mhri_link
+                       ("Robots on a bad radio" in the guide). Needs 'turtlebot_deploy.sh --link'
+                       once. --port is that of both masters. A robot out of reach for more than two
+                       minutes ends with its ssh connection: start such a one on the robot itself,
+                       with turtle_remote.sh, and give mhri_run.sh --link here
+  --listen ENDPOINT    with --link: where the robot is called (default 0.0.0.0:7447)
+  --router ENDPOINT    with --link: robot and host call this router instead, e.g. 192.0.2.1:7447
+
 Exit status: 2 wrong option, 255 ssh could not connect or lost the robot, else that of
 turtle_remote.sh: 1 could not start or the robot's launch ended, 129, 130 or 143 ended from here.
 
 Examples
   connect_turtlebot.sh turtlebot 192.168.0.7 bot1
   connect_turtlebot.sh pi 192.168.0.8 bot2 --type turtlebot3_burger
+  connect_turtlebot.sh ubuntu 192.168.0.9 bot3 --link
 HELP
 }
 
@@ -55,7 +64,11 @@ PORT=11311
 GUARD=true
 BRAKE=false
 BACK_AFTER=
+LINK=false
+LISTEN=
+ROUTER=
 PASSED_ON=()
+LINK_PID=
 
 # Runs on the robot, as sh. $0 is USER@IP, $1 the folder in the home.
 # shellcheck disable=SC2016 # the dollars are the robot's
@@ -75,13 +88,14 @@ parse_arguments() {
       --host-ip) HOST_IP=$(value "$@"); shift ;;
       --ssh-port) SSH_PORT=$(value "$@"); shift ;;
       --to) FOLDER=$(value "$@"); shift ;;
-      --type | --model | --launch | --setup | --ip | --port)
+      --type | --model | --launch | --setup | --ip | --port | --listen | --router)
         text=$(value "$@")
         option=${1#--}
         printf -v "${option^^}" %s "$text"
         PASSED_ON+=("$1" "$text")
         shift ;;
       --back-after) BACK_AFTER=$(value "$@"); PASSED_ON+=("$1" "$BACK_AFTER"); shift ;;
+      --link) LINK=true PASSED_ON+=("$1") ;;
       --no-guard) GUARD=false PASSED_ON+=("$1") ;;
       --brake) BRAKE=true PASSED_ON+=("$1") ;;
       --no-camera | --no-smoother) PASSED_ON+=("$1") ;;
@@ -108,8 +122,9 @@ check_arguments() {
   # than one word may get there.
   check_robot
   check_guard
+  check_link_options
   for text in "${PASSED_ON[@]}"; do
-    [[ $text =~ ^[A-Za-z0-9_./~+-]+$ ]] || usage_error "'$text' cannot be passed on to the robot"
+    [[ $text =~ ^[A-Za-z0-9_./~+:-]+$ ]] || usage_error "'$text' cannot be passed on to the robot"
   done
 }
 
@@ -125,18 +140,71 @@ choose_address() {
     "${v4[@]}" 2>&1) || die "${HOST_IP#mhri: }"
 }
 
+# link_here: starts this computer's side of the link, on the master here.
+link_here() {
+  local setup="$WS/devel/setup.bash" master protocol='' address="${LISTEN:-:7447}"
+  [ -f "$setup" ] || setup="$REPO/../../setup.bash"
+  [ -f "$setup" ] || die "mhri is not built here yet: start it first, with mhri_run.sh"
+  source_setup "$setup"
+  [ ! -f "$REPO/CMakeLists.txt" ] || install_link
+  master=$HOST_IP
+  # With simulated robots alone mhri_run.sh keeps its master to this computer.
+  (: <"/dev/tcp/$master/$PORT") 2>/dev/null || master=127.0.0.1
+  /usr/bin/python3 "$REPO/utils/remote/turtle_check.py" host "$master" "$PORT" "$master" "$NAME" ||
+    exit 1
+  # The robot may listen on another address, too, but this one it has.
+  if [[ $address == */* ]]; then protocol=${address%%/*}/; fi
+  address="connect:=$protocol$ROBOT_IP:${address##*:}"
+  [ -z "$ROUTER" ] || address="router:=$ROUTER"
+  make_scratch
+  ROS_MASTER_URI="http://$master:$PORT" ROS_IP=$master ROS_HOSTNAME=$master MHRI_RUN_ID=$RUN_ID \
+    setsid setpriv --pdeathsig TERM roslaunch mhri link.launch side:=host "name:=$NAME" "$address" \
+    </dev/null >"$SCRATCH/link.log" 2>&1 &
+  LINK_PID=$!
+}
+
+# unlink_here: ends it again; says why where it had ended by itself.
+unlink_here() {
+  trap '' INT TERM HUP
+  if ! kill -TERM "$LINK_PID" 2>/dev/null; then
+    warn "the link to $NAME had ended here: $(tail -n 3 "$SCRATCH/link.log" | tr '\n' ' ')"
+  fi
+  wait "$LINK_PID" || true
+  clean_up
+}
+
+# log_in_linked COMMAND...: runs ssh while this computer's side of the link is there.
+log_in_linked() {
+  local status=0 ssh
+  link_here
+  trap unlink_here EXIT
+  "$@" <&0 &
+  ssh=$!
+  # shellcheck disable=SC2064 # this very process
+  trap "kill -HUP $ssh 2>/dev/null || true" INT TERM HUP
+  while kill -0 "$ssh" 2>/dev/null; do
+    status=0
+    wait "$ssh" || status=$?
+  done
+  return "$status"
+}
+
 main() {
-  local command
+  local command log_in whom
   parse_arguments "$@"
   check_arguments
   choose_address
+  whom="$HOST_IP $NAME"
+  ! "$LINK" || whom=$NAME
   # Plain words and one text in single quotes: every login shell reads those alike.
-  command="exec sh -c '$START' $ROBOT_USER@$ROBOT_IP $FOLDER $HOST_IP $NAME ${PASSED_ON[*]}"
-  say "starting $NAME on $ROBOT_IP; this computer is $HOST_IP. Ctrl-C ends it"
+  command="exec sh -c '$START' $ROBOT_USER@$ROBOT_IP $FOLDER $whom ${PASSED_ON[*]}"
   # -tt: the robot notices when this terminal closes. Two minutes without an answer: a shorter
   # outage ends nothing.
-  exec ssh -tt -o ConnectTimeout=10 -o ServerAliveInterval=15 -o ServerAliveCountMax=8 \
-    ${SSH_PORT:+-p "$SSH_PORT"} -l "$ROBOT_USER" -- "$ROBOT_IP" "$command"
+  log_in=(ssh -tt -o ConnectTimeout=10 -o ServerAliveInterval=15 -o ServerAliveCountMax=8
+    ${SSH_PORT:+-p "$SSH_PORT"} -l "$ROBOT_USER" -- "$ROBOT_IP" "$command")
+  say "starting $NAME on $ROBOT_IP; this computer is $HOST_IP. Ctrl-C ends it"
+  "$LINK" || exec "${log_in[@]}"
+  log_in_linked "${log_in[@]}"
 }
 
 main "$@"

@@ -15,8 +15,8 @@ help_text() {
 Usage: mhri_keys.sh COMMAND [OPTION]...
 
 Makes an authority, a key for each operator's computer and one for each robot, and puts them in
-place. With them both ends of a link know each other (TLS both ways). They are made for mhri_link;
-no part of mhri asks for them yet.
+place. With them both ends of mhri_link know each other (TLS both ways), and nobody else is let in.
+Lists that are put in place again are in use within seconds.
 
   new                  make the authority
   host NAME            make a key for a computer that may drive
@@ -206,7 +206,8 @@ meaning() {
 
 next_put() {
   say "next: put it in place with 'mhri_keys.sh put $NAME' on this computer, or with" \
-    "'mhri_keys.sh put $NAME USER@IP' on another"
+    "'mhri_keys.sh put $NAME USER@IP' on another; and put those of the others in place again, which" \
+    "then know it"
 }
 
 # known: dies unless NAME has a key.

@@ -30,11 +30,25 @@ Robots
                        here); beside it come five more, e.g. mhri-demo_panel.png, _bot_window,
                        _depth, _stopped and _map. What is there is overwritten.
 
+  --drill NAME         practise: starts the robots and building of a drill; prints and keeps the result.
+                       NAME: figure_of_eight, maze, search, two_corridors, lost_link, stop_in_time,
+                       or a file of your own (.yaml)
+  --scripted           with --drill: a scripted operator drives, without a screen; then all ends
+
   --link "NAME=ADDR..."  robots that have a ROS master of their own, e.g.
                        --link "bot1=192.168.0.7 bot2=192.168.0.8": their addresses, where mhri_link
                        runs as the operator's guide says ("Robots on a bad radio"). ADDR may also be
                        an endpoint such as udp/192.168.0.7:7447. Installs the library for it, zenoh,
-                       below build/.ws.
+                       below build/.ws. Where mhri_keys.sh has put a key in place on this computer,
+                       the link is by keys (TLS) alone.
+  --keys FOLDER        with --link: the keys are in FOLDER; off: link without keys
+  --router ENDPOINT    a router, such as 192.0.2.1:7447, behind which those robots of --link are
+                       that it gives no address for: --link "bot1 bot2=192.168.0.8"
+
+  --replay PATH        show a session again: the folder of one that was recorded, a folder of bags,
+                       or a bag of any program whose topics are those of a robot type. Uses a master
+                       of its own, with nothing on it that drives, so it does not disturb a running
+                       system.
 
 Network
   --ip ADDR            this computer's address, as the robots reach it. Default: the first IPv4
@@ -64,6 +78,8 @@ Examples
   mhri_run.sh                       drive the robots of the network
   mhri_run.sh --ip 192.168.0.103    the same, if the computer has several addresses
   mhri_run.sh --sim 3               three simulated robots; needs neither robots nor network
+  mhri_run.sh --replay ~/.ros/mhri/sessions/2026-03-01-14-03-22
+                                    look at that mission again
   mhri_run.sh --demo                proof that everything works here
 HELP
 }
@@ -71,9 +87,14 @@ HELP
 SIM=
 SIM_TYPES=
 LINKS=()
+ROUTER=
+KEYS=
 IP=
 MASTER=
 DEMO=false
+REPLAY=
+DRILL=
+SCRIPTED=false
 PICTURE=
 SPACE=devel
 LAUNCH_ARGS=()
@@ -89,11 +110,16 @@ parse_arguments() {
         SIM=$(value "$@"); shift
         if [[ ${2:-} =~ ^[a-z] && $2 != *:=* ]]; then SIM_TYPES=$2; shift; fi ;;
       --sim-types) SIM_TYPES=$(value "$@"); shift ;;
+      --keys) KEYS=$(value "$@"); shift ;;
       --link) links=$(value "$@"); read -r -a LINKS <<<"$links"; shift ;;
+      --router) ROUTER=$(value "$@"); shift ;;
       --ip) IP=$(value "$@"); shift ;;
       --master) MASTER=$(value "$@"); shift ;;
       --screenshot) PICTURE=$(value "$@"); shift ;;
       --demo) DEMO=true ;;
+      --replay) REPLAY=$(value "$@"); shift ;;
+      --drill) DRILL=$(value "$@"); shift ;;
+      --scripted) SCRIPTED=true ;;
       --install-space) SPACE=install ;;
       -*) usage_error "there is no option $1" ;;
       *:=*) LAUNCH_ARGS+=("$1") ;;
@@ -112,6 +138,9 @@ check_arguments() {
   [ -z "$SIM_TYPES" ] || [ -n "$SIM" ] || "$DEMO" ||
     usage_error "--sim-types lists the types for the robots of --sim N: give --sim as well"
   check_links
+  [ -z "$KEYS" ] || [ "${#LINKS[@]}" != 0 ] || usage_error "--keys goes with --link"
+  check_replay
+  check_drill
   [ -z "$IP" ] || check_ip --ip "$IP" 192.168.0.103
   [[ -z $MASTER || $MASTER =~ ^http://[A-Za-z0-9]([A-Za-z0-9.-]*)?:[0-9]{1,5}/?$ ]] ||
     usage_error "--master: '$MASTER' is not an address such as http://192.168.0.103:11311"
@@ -133,13 +162,58 @@ check_arguments() {
   done
 }
 
+# check_replay: a replay has a master of its own, and nothing beside it.
+check_replay() {
+  [ -n "$REPLAY" ] || return 0
+  [ -z "$IP$MASTER$SIM$PICTURE$DRILL" ] && [ "${#LINKS[@]}" = 0 ] && ! "$DEMO" ||
+    usage_error "--replay runs on this machine alone, with its own master and without robots:" \
+      "leave out --ip, --master, --sim, --link, --demo, --drill and --screenshot"
+  [ -e "$REPLAY" ] || usage_error "--replay: there is no $REPLAY"
+  [[ $REPLAY != *[\'\"\$]* ]] ||
+    usage_error "--replay: a quote or a dollar sign is in $REPLAY: choose another name"
+  REPLAY=$(realpath -- "$REPLAY")
+}
+
+# check_drill: a drill brings its own robots.
+check_drill() {
+  local known
+  [ -n "$DRILL" ] || ! "$SCRIPTED" || usage_error "--scripted goes with --drill NAME"
+  [ -n "$DRILL" ] || return 0
+  [ "$DEMO$SIM$SIM_TYPES" = false ] ||
+    usage_error "--drill brings its own robots: leave out --sim and --demo"
+  [[ $DRILL != *[[:space:]\'\"]* ]] || usage_error "--drill: a space or quote is in '$DRILL'"
+  if [[ $DRILL == *.yaml ]]; then
+    [ -f "$DRILL" ] || usage_error "--drill: there is no file $DRILL"
+    DRILL=$(realpath -- "$DRILL")
+    return 0
+  fi
+  known=$(cd "$REPO/resource/drills" && printf '%s ' *.yaml)
+  [[ " $known" == *" $DRILL.yaml "* ]] ||
+    usage_error "--drill: there is no drill '$DRILL'; there are ${known//.yaml/}"
+}
+
+# choose_drill: sets robots and building to those of the drill.
+choose_drill() {
+  local lines
+  [ -n "$DRILL" ] || return 0
+  lines=$(rosrun mhri mhri_drill --arguments "$DRILL") || die "the drill $DRILL cannot be used: see above"
+  { read -r SIM; read -r SIM_TYPES; read -r PLAN; } <<<"$lines"
+  LAUNCH_ARGS+=("sim_plan:=$PLAN" "drill:=$DRILL")
+  if "$SCRIPTED"; then LAUNCH_ARGS+=("drill_args:=--scripted" gui:=none inputs:=none); fi
+}
+
 # check_links: makes an endpoint of each bare address in LINKS.
 check_links() {
   local index link
+  [ -z "$ROUTER" ] || check_endpoint --router "$ROUTER"
+  [ -z "$ROUTER" ] || [ "${#LINKS[@]}" -gt 0 ] ||
+    usage_error "--router: name the robots behind it, such as --link \"bot1 bot2\""
   for index in "${!LINKS[@]}"; do
     link=${LINKS[index]}
-    [[ $link == *=*/* ]] || link=${link/=/=tcp/}:7447
-    [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*=(tcp|udp)/[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] ||
+    if [ -n "$ROUTER" ] && [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*$ ]]; then continue; fi
+    # Without a protocol mhri_link takes tls/ where keys are in place, else tcp/.
+    [[ $link == *=*:* ]] || link=$link:7447
+    [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*=((tcp|udp|tls|quic)/)?[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] ||
       usage_error "--link: '${LINKS[index]}' is not NAME=ADDRESS such as bot1=192.168.0.7"
     LINKS[index]=$link
   done
@@ -154,9 +228,10 @@ look() {
 # roslaunch accepts any argument, so without this a misspelled enabling:=pedal would start without
 # the pedal.
 check_launch_arguments() {
-  local wrong args=("${LAUNCH_ARGS[@]}")
+  local wrong args=("${LAUNCH_ARGS[@]}") file=mhri.launch
+  [ -z "$REPLAY" ] || file=replay.launch
   [ -z "$SIM_TYPES" ] || args+=("sim_types:=$SIM_TYPES")
-  wrong=$(look arguments "$REPO/launch/mhri.launch" "${args[@]}")
+  wrong=$(look arguments "$REPO/launch/$file" "${args[@]}")
   [ -z "$wrong" ] || usage_error "$wrong"
 }
 
@@ -202,7 +277,7 @@ choose_address() {
     check_own_address
     return
   fi
-  if is_loopback "$master_host" || { [ -n "$SIM" ] && [ -z "$MASTER" ]; }; then
+  if is_loopback "$master_host" || { [ -n "$SIM$REPLAY$DRILL" ] && [ -z "$MASTER" ]; }; then
     IP=127.0.0.1
     return
   fi
@@ -256,7 +331,7 @@ check_master() {
 }
 
 choose_network() {
-  if "$DEMO"; then MASTER="http://127.0.0.1:$(free_port)"; fi
+  if "$DEMO" || [ -n "$REPLAY" ]; then MASTER="http://127.0.0.1:$(free_port)"; fi
   MASTER=${MASTER:-http://$IP:11311}
   export ROS_MASTER_URI=$MASTER ROS_IP=$IP ROS_HOSTNAME=$IP
   check_master
@@ -300,17 +375,19 @@ stop() {
 }
 
 launch() {
-  local status=0 args=("sim:=${SIM:-0}" "${LAUNCH_ARGS[@]}")
+  local status=0 file=mhri.launch args=("sim:=${SIM:-0}" "${LAUNCH_ARGS[@]}")
   [ -z "$SIM_TYPES" ] || args+=("sim_types:=$SIM_TYPES")
-  [ "${#LINKS[@]}" = 0 ] || args+=("links:=${LINKS[*]}")
+  [ "${#LINKS[@]}" = 0 ] || args+=("links:=${LINKS[*]}" "keys:=${KEYS:-auto}")
+  [ -z "$ROUTER" ] || args+=("router:=$ROUTER")
   if "$DEMO"; then
     args+=("demo:=true" "screenshot:=$PICTURE" "demo_result:=$SCRATCH/demo_result")
   fi
+  [ -z "$REPLAY" ] || { file=replay.launch; args=("path:=$REPLAY" "${LAUNCH_ARGS[@]}"); }
   say "ROS_MASTER_URI=$ROS_MASTER_URI ROS_IP=$ROS_IP ROS_HOSTNAME=$ROS_HOSTNAME"
   # In its own session: Ctrl-C in the terminal reaches only this script, which passes it on once.
   # Should this script be killed, the kernel passes it on.
   MHRI_RUN_ID=$RUN_ID MHRI_PANEL_STATUS="$SCRATCH/panel_status" \
-    setsid setpriv --pdeathsig TERM roslaunch mhri mhri.launch "${args[@]}" &
+    setsid setpriv --pdeathsig TERM roslaunch mhri "$file" "${args[@]}" &
   LAUNCH_PID=$!
   while kill -0 "$LAUNCH_PID" 2>/dev/null; do
     status=0
@@ -324,6 +401,7 @@ launch() {
 check_panel() {
   local status=0
   [ ! -s "$SCRATCH/panel_status" ] || status=$(cat "$SCRATCH/panel_status")
+  [ "$status" = 0 ] || ! "$SCRIPTED" || die "the drill was not completed: see above"
   [ "$status" = 0 ] || die "the panel failed (its exit status was $status): see above"
 }
 
@@ -347,6 +425,7 @@ main() {
   trap 'stop 130' INT
   trap 'stop 143' TERM HUP
   prepare_code
+  choose_drill
   # Again, for a machine that had no Python or no YAML before.
   check_launch_arguments
   choose_network

@@ -19,6 +19,9 @@ them. It replaces a file in use as a whole and never writes into it.
   USER@IP              the user name on the robot and its address, e.g. turtlebot@192.168.0.7
   --to FOLDER          where to put them, in USER's home (default mhri)
   --ssh-port PORT      the port of the robot's ssh server (default: from ssh's settings, else 22)
+  --link               also send what 'turtle_remote.sh --link' needs: mhri_link, its part of mhri,
+                       and the library zenoh for the robot's kind of computer, about 10 MB. The
+                       robot needs no internet; this computer does, once for each kind
   -h, --help           this text
 
 Exit status: 0 the robot has the files of this computer, 1 it does not, 2 wrong option,
@@ -26,6 +29,7 @@ Exit status: 0 the robot has the files of this computer, 1 it does not, 2 wrong 
 
 Example
   turtlebot_deploy.sh turtlebot@192.168.0.7
+  turtlebot_deploy.sh ubuntu@192.168.0.8 --link
 HELP
 }
 
@@ -34,11 +38,17 @@ SOURCE="$REPO/utils/remote"
 # this computer, where launch/mhri.launch has that name.
 LINK=mhri.launch
 LINK_TO=mhri_turtlebot2.launch
+# What --link adds, packed in the scratch folder.
+WITH_MHRI_LINK=false
+ARCHIVE=mhri_link.tar.gz
 ROBOT_USER=
 ROBOT_IP=
 SSH_PORT=
 FOLDER=mhri
 
+# Runs on the robot; prints its kind of computer: that of its programs, not of its kernel.
+# shellcheck disable=SC2016 # the dollars are the robot's
+KIND='dpkg --print-architecture 2>/dev/null || uname -m'
 # Runs on the robot, as sh: any robot has that. $1 is the folder in the home, $2 the link, $3 its
 # target. Links compare by target, other files by content.
 # shellcheck disable=SC2016 # the dollars are the robot's
@@ -75,6 +85,7 @@ parse_arguments() {
       -h | --help) help_text; exit 0 ;;
       --ssh-port) SSH_PORT=$(value "$@"); shift ;;
       --to) FOLDER=$(value "$@"); shift ;;
+      --link) WITH_MHRI_LINK=true ;;
       -*) usage_error "there is no option $1" ;;
       *) words+=("$1") ;;
     esac
@@ -92,10 +103,37 @@ on_robot() {
   over_connection "exec sh -c '$1' sh $FOLDER $LINK $LINK_TO"
 }
 
+# pack_link: packs what mhri_link needs on the robot, alike for the same content.
+pack_link() {
+  local machine folder="$SCRATCH/packed" messages="$WS/devel/lib/python3/dist-packages/mhri"
+  [ -d "$REPO/src/mhri" ] ||
+    die "this is an installed copy, without the sources that --link sends: use that of the checkout"
+  [ -d "$messages" ] || die "mhri is not built here yet: start it once, with mhri_run.sh"
+  machine=$(on_robot "$KIND") || die "$ROBOT_IP does not say what kind of computer it is"
+  case "$machine" in
+    amd64 | x86_64) machine=x86_64 ;;
+    arm64 | aarch64) machine=aarch64 ;;
+    armhf | armv7l) machine=armv7l ;;
+    *) die "there is no zenoh for $ROBOT_IP, a $(unarmed "${machine:0:40}"): leave --link out" ;;
+  esac
+  [ "$machine" != "$(uname -m)" ] || machine=
+  MACHINE=$machine install_link
+  mkdir -p "$folder/src/mhri" "$folder/resource" "$folder/scripts"
+  cp -r "$LIBRARY" "$folder/library"
+  cp "$REPO/package.xml" "$folder"
+  cp -r "$REPO/resource/robots" "$folder/resource"
+  cp "$REPO/scripts/mhri_link" "$folder/scripts"
+  (cd "$REPO/src/mhri" && cp -r __init__.py core ros nodes "$folder/src/mhri")
+  cp -r "$messages/msg" "$messages/srv" "$folder/src/mhri"
+  find "$folder" -name __pycache__ -prune -exec rm -rf {} +
+  tar -c -C "$folder" --sort=name --mtime=@0 --owner=0 --group=0 --mode=go-w . |
+    gzip -n >"$SCRATCH/$ARCHIVE"
+}
+
 # listing: prints checksum, x or -, and name of each file here, one per line.
 listing() {
   local file sum kind
-  for file in "$SOURCE"/*; do
+  for file in "$SOURCE"/* "$SCRATCH/$ARCHIVE"; do
     [ -f "$file" ] || continue
     sum=$(sha256sum <"$file")
     kind=-
@@ -118,6 +156,7 @@ differing() {
 
 deploy() {
   local there file files=() sent=()
+  if "$WITH_MHRI_LINK"; then pack_link; fi
   there=$(on_robot "$LIST") ||
     die "cannot read ~/$FOLDER on $ROBOT_IP: see the message above"
   mapfile -t files < <(differing "$there")
@@ -126,9 +165,15 @@ deploy() {
     return
   fi
   say "sending to $ROBOT_IP:$FOLDER: ${files[*]}"
-  for file in "${files[@]}"; do [ "$file" = "$LINK" ] || sent+=("$file"); done
+  for file in "${files[@]}"; do
+    case "$file" in
+      "$LINK") ;;
+      "$ARCHIVE") sent+=(-C "$SCRATCH" "$ARCHIVE") ;;
+      *) sent+=(-C "$SOURCE" "$file") ;;
+    esac
+  done
   # With -T the list of files may be empty, if only the link is missing.
-  tar -c -C "$SOURCE" --owner=0 --group=0 --mode=go-w -T /dev/null -- "${sent[@]}" |
+  tar -c --owner=0 --group=0 --mode=go-w -T /dev/null "${sent[@]}" |
     on_robot "$RECEIVE" ||
     die "could not write to ~/$FOLDER on $ROBOT_IP: see the message above (is its disk full?)"
   there=$(on_robot "$LIST") || die "cannot read ~/$FOLDER on $ROBOT_IP again"

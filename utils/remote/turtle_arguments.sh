@@ -72,6 +72,28 @@ check_guard() {
   fi
 }
 
+# check_endpoint OPTION ENDPOINT: ADDRESS:PORT, with or without a protocol.
+check_endpoint() {
+  local port=${2##*:}
+  if ! [[ $2 =~ ^((tcp|udp|tls|quic)/)?[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] || [ "$((10#$port))" -gt 65535 ]; then
+    usage_error "$1: '$2' is not an endpoint such as 192.168.0.7:7447 or udp/192.168.0.7:7447"
+  fi
+}
+
+# check_link_options: LISTEN and ROUTER, beside LINK, GUARD and IP.
+check_link_options() {
+  [ -z "$LISTEN" ] || check_endpoint --listen "$LISTEN"
+  [ -z "$ROUTER" ] || check_endpoint --router "$ROUTER"
+  if ! "$LINK"; then
+    [ -z "$LISTEN$ROUTER" ] || usage_error "--listen and --router go with --link"
+    return
+  fi
+  [ -z "$LISTEN" ] || [ -z "$ROUTER" ] || usage_error "--router stands in place of --listen"
+  "$GUARD" || usage_error "a linked robot is driven through its guard alone: leave out --no-guard"
+  [ -z "$IP" ] || usage_error "--ip does not go with --link, whose nodes stay on the robot: say where" \
+    "the host calls with --listen"
+}
+
 # check_robot: checks what is given of TYPE, MODEL, LAUNCH, IP and PORT before anything starts or is
 # sent. TYPE becomes the name of a template, and PORT a plain number.
 check_robot() {

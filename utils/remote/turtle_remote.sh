@@ -10,10 +10,13 @@ HERE=$(cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd)
 . "$HERE/turtle_arguments.sh"
 # shellcheck source-path=SCRIPTDIR source=turtle_bringup.sh
 . "$HERE/turtle_bringup.sh"
+# shellcheck source-path=SCRIPTDIR source=turtle_link.sh
+. "$HERE/turtle_link.sh"
 
 help_text() {
   cat <<'HELP'
 Usage: turtle_remote.sh HOST_IP NAME [OPTION]...
+       turtle_remote.sh --link NAME [OPTION]...
 
 Starts this robot under the name NAME and joins it to mhri on the host. Runs on the robot, in a
 terminal or through connect_turtlebot.sh. First it sets the ROS variables and checks that the
@@ -46,7 +49,19 @@ Robot
 Network
   --ip ADDR            this robot's address. Default: the one from 'hostname -I' on the host's
                        network
-  --port PORT          the master's port on the host (default 11311)
+  --port PORT          the master's port on the host (default 11311); with --link, that of the
+                       robot's own
+
+A bad radio
+  --link               give this robot a ROS master of its own, which only the robot itself
+                       reaches, and link it to the host with mhri_link: see "Robots on a bad radio"
+                       in the guide. No HOST_IP: the host calls, now or later. Needs ROS Noetic,
+                       and 'turtlebot_deploy.sh --link' once
+  --listen ENDPOINT    with --link: where the host calls (default 0.0.0.0:7447). On a radio that
+                       loses packets try udp/0.0.0.0:7447, or with keys quic/0.0.0.0:7447
+  --router ENDPOINT    with --link: instead call a router that the host calls, too, such as
+                       192.0.2.1:7447
+                       With a key in place (mhri_keys.sh put), the link is by keys alone
 
 Other
   --setup FILE         the setup.bash of the robot's workspace. Default: what this shell has already
@@ -62,6 +77,7 @@ Examples
   turtle_remote.sh 192.168.0.103 bot1
   turtle_remote.sh 192.168.0.103 bot2 --type turtlebot3_burger --ip 192.168.0.8
   turtle_remote.sh 192.168.0.103 husky1 --type generic --launch husky_base/base.launch
+  turtle_remote.sh --link bot1
 HELP
 }
 
@@ -75,6 +91,9 @@ SMOOTHER=true
 GUARD=true
 BRAKE=false
 BACK_AFTER=
+LINK=false
+LISTEN=
+ROUTER=
 IP=
 PORT=11311
 SETUP=
@@ -104,6 +123,9 @@ parse_arguments() {
       --no-guard) GUARD=false ;;
       --brake) BRAKE=true ;;
       --back-after) BACK_AFTER=$(value "$@"); shift ;;
+      --link) LINK=true ;;
+      --listen) LISTEN=$(value "$@"); shift ;;
+      --router) ROUTER=$(value "$@"); shift ;;
       --ip) IP=$(value "$@"); shift ;;
       --port) PORT=$(value "$@"); shift ;;
       --setup) SETUP=$(value "$@"); shift ;;
@@ -112,6 +134,11 @@ parse_arguments() {
     esac
     shift
   done
+  if "$LINK"; then
+    [ "${#words[@]}" = 1 ] ||
+      usage_error "with --link give the robot's name alone: turtle_remote.sh --link NAME"
+    words=(127.0.0.1 "${words[@]}")
+  fi
   [ "${#words[@]}" = 2 ] ||
     usage_error "give the host's address and the robot's name: turtle_remote.sh HOST_IP NAME"
   HOST_IP=${words[0]}
@@ -123,6 +150,8 @@ check_arguments() {
   check_name "$NAME"
   check_robot
   check_guard
+  check_link_options
+  LISTEN=${LISTEN:-0.0.0.0:7447}
   [ -z "$SETUP" ] || [ -f "$SETUP" ] || usage_error "--setup: there is no file '$SETUP'"
 }
 
@@ -133,7 +162,10 @@ choose_network() {
   for address in "${all[@]}"; do
     if valid_ip "$address"; then v4+=("$address"); fi
   done
-  if [ -z "$IP" ]; then
+  if "$LINK"; then
+    # Its nodes then listen on the robot alone: what comes from outside comes through the link.
+    IP=127.0.0.1
+  elif [ -z "$IP" ]; then
     IP=$("$PYTHON" "$HERE/turtle_address.py" --ip "$HOST_IP" "${v4[@]}") || exit 1
   elif [[ " ${v4[*]} 127.0.0.1 " != *" $IP "* ]]; then
     die "--ip: $IP is not an address of this robot (${v4[*]:-it has none})"
@@ -161,6 +193,7 @@ start_all() {
       "_brake:=$BRAKE" "_back_after_s:=${BACK_AFTER:-0}" "${GUARD_LIMITS[@]}" </dev/null &
     GUARD_PID=$!
   fi
+  if "$LINK"; then start_link; fi
   "$PYTHON" "$HERE/turtle_check.py" watch "$HOST_IP" "$PORT" "$NAME" "$TOKEN" </dev/null &
   WATCH_PID=$!
 }
@@ -175,7 +208,8 @@ nap() {
 
 # end_all: asks everything started to end, waits, and kills what did not.
 end_all() {
-  local pid deadline=$((SECONDS + 25)) pids=("$GUARD_PID" "$BASE_PID" "$CAMERA_PID" "$WATCH_PID")
+  local pid deadline=$((SECONDS + 25))
+  local pids=("$LINK_PID" "$GUARD_PID" "$BASE_PID" "$CAMERA_PID" "$WATCH_PID")
   for pid in "${pids[@]}"; do
     if running "$pid"; then kill -TERM "$pid" 2>/dev/null || true; fi
   done
@@ -183,7 +217,7 @@ end_all() {
     while running "$pid" && [ "$SECONDS" -lt "$deadline" ]; do sleep 0.1; done
   done
   end_leftovers
-  BASE_PID='' CAMERA_PID='' GUARD_PID='' WATCH_PID=''
+  BASE_PID='' CAMERA_PID='' GUARD_PID='' WATCH_PID='' LINK_PID=''
 }
 
 # end_leftovers: kills what this run started and left running, known by its mark.
@@ -210,12 +244,14 @@ clean_up() {
   trap '' INT TERM HUP
   end_all
   "$PYTHON" "$HERE/turtle_check.py" release "$HOST_IP" "$PORT" "$NAME" "$TOKEN" || true
+  end_master
 }
 
 # check_parts: restarts after a new start of the host; dies if base or guard ended; reports the
 # camera once.
 check_parts() {
   local status=0
+  check_link
   if ! running "$BASE_PID"; then
     wait "$BASE_PID" || status=$?
     die "the robot's launch has ended (exit status $status): see its messages above"
@@ -243,14 +279,18 @@ main() {
   prepare_ros
   choose_type
   prepare_launch
+  prepare_link
   choose_network
+  trap end_master EXIT
+  if "$LINK"; then start_master; fi
   "$PYTHON" "$HERE/turtle_check.py" host "$HOST_IP" "$PORT" "$IP" "$NAME" || exit 1
-  say "$HOST_IP and this robot reach each other, and the name $NAME is free"
+  "$LINK" || say "$HOST_IP and this robot reach each other, and the name $NAME is free"
   trap clean_up EXIT
   trap 'stop 130' INT
   trap 'stop 143' TERM
   trap 'stop 129' HUP
   start_all
+  if "$LINK"; then say "$NAME has a master of its own; its link: ${ROUTER:-$LISTEN}"; fi
   while [ -z "$STOPPED_WITH" ]; do
     check_parts
     nap

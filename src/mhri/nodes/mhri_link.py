@@ -7,23 +7,36 @@ and one for each robot on the host's, ``mhri_link --side host --name bot1 --conn
 tcp/192.168.0.7:7447``. Either may listen or connect; ``udp/`` in place of ``tcp/`` drops what is
 lost in place of repeating it. Neither needs the other to be there, at the start or later.
 
+Where neither reaches the other, both call a router that both reach, with ``--router
+192.0.2.1:7447`` in place of ``--listen`` and ``--connect``: a ``zenohd``, or ``mhri_link --side
+router --listen 0.0.0.0:7447``, which needs no ROS master.
+
+With keys (``utils/host/mhri_keys.sh``) the endpoints are ``tls/`` or ``quic/``, and who has none,
+or one that was withdrawn, is not let in. Keys that are replaced take effect within seconds.
+
 It is called ``/<name>/mhri_link`` on both masters.
 """
 import argparse
 import os
+import signal
+import socket
 import sys
 
 import rospy
 
 from mhri.core.link.carried import SHARED_FRAMES, split_frames
+from mhri.core.link.keys import endpoint, host_of, is_host, KeysError
 from mhri.core.robots.names import name_problem, tidy_name
 from mhri.ros.diagnostics import publish_diagnostics
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
-from mhri.ros.link.carrier import Carrier, CarrierError, LibraryMissing
+from mhri.ros.link.carrier import Carrier, CarrierError, LibraryMissing, load_library
 from mhri.ros.link.host_side import HostSide
-from mhri.ros.link.robot_side import RobotSide
+from mhri.ros.link.key_folder import AUTO, find_folder, KeyFolder, watch_keys
+from mhri.ros.link.note import Note
+from mhri.ros.link.knocks import tell_knocks
+from mhri.ros.link.reception import Reception
 from mhri.ros.resources import robot_types
 
 
@@ -42,26 +55,87 @@ def parse(words):
     """Return the options of a command line; ends with status 2 and a line where they are wrong."""
     parser = argparse.ArgumentParser(
         prog='mhri_link', description='Link a robot on a ROS master of its own to the host.')
-    parser.add_argument('--side', choices=('robot', 'host'), required=True,
-                        help='whose master this node is on')
-    parser.add_argument('--name', type=robot_name, required=True, help='the robot')
+    parser.add_argument('--side', choices=('robot', 'host', 'router'), required=True,
+                        help='whose master this node is on; router: on none, it stands between')
+    parser.add_argument('--name', type=robot_name, default='', help='the robot')
     parser.add_argument('--listen', default='', metavar='ENDPOINTS',
                         help='where the other side may call, e.g. tcp/0.0.0.0:7447')
     parser.add_argument('--connect', default='', metavar='ENDPOINTS',
                         help='whom to call, e.g. tcp/192.168.0.7:7447')
+    parser.add_argument('--router', default='', metavar='ENDPOINT', help='a router that both sides '
+                        'call, in place of --listen and --connect')
     parser.add_argument('--namespace', help='on the robot: its namespace on its own master, by '
                         'default its name; / for a robot without one')
     parser.add_argument('--shared-frames', default=' '.join(SHARED_FRAMES),
                         help='on the robot: frames that do not get its name (default: %(default)s)')
+    parser.add_argument('--keys', default=AUTO, metavar='FOLDER',
+                        help='where the keys are, or off; by default where mhri_keys.sh puts '
+                        'them, and without any: off')
+    parser.add_argument('--host', default=host_of(socket.gethostname()), metavar='NAME',
+                        help='on a host without keys: its name on the link (default: %(default)s)')
     options = parser.parse_args(words)
-    if not (options.listen or options.connect):
-        parser.error('give --listen or --connect, e.g. --connect tcp/192.168.0.7:7447')
+    if not is_host(options.host):
+        parser.error('--host: {!r} is no name such as host:lab'.format(options.host[:60]))
+    check(parser, options)
     return options
+
+
+def check(parser, options):
+    """End with status 2 and a line where options do not go together."""
+    if options.side == 'router':
+        if not options.listen or options.connect or options.router or options.name:
+            parser.error('a router has --listen alone, e.g. --listen 0.0.0.0:7447')
+        return
+    if not options.name:
+        parser.error('give the robot with --name')
+    if options.router and (options.listen or options.connect):
+        parser.error('--router stands in place of --listen and --connect')
+    if not (options.listen or options.connect or options.router):
+        parser.error('give --listen, --connect or --router, e.g. --connect tcp/192.168.0.7:7447')
+
+
+def call(options):
+    """Return (:class:`KeyFolder` or None, :class:`Carrier`).
+
+    :raises CarrierError: an endpoint cannot be used
+    :raises KeysError: the keys cannot
+    :raises LibraryMissing: there is no zenoh
+    """
+    folder = find_folder(options.keys)
+    if folder and (options.router or options.side == 'router'):
+        raise KeysError('behind a router nobody can tell yet whose key it is: give --keys off, and '
+                        'let only your own reach the router (a VPN)')
+    keys = KeyFolder(folder, options.side, options.name) if folder else None
+    secrets = keys.read() if keys else None
+    if keys:
+        tell_knocks(load_library(), options.name)
+    ends = [[endpoint(word, bool(keys)) for word in words.split()]
+            for words in (options.listen, options.connect or options.router)]
+    place = 'router' if options.side == 'router' else 'routed' if options.router else 'peer'
+    return keys, Carrier(*ends, secrets=secrets, place=place)
+
+
+def route(options):
+    """Be the router until a signal comes; with keys that cannot be used end with 1 and why."""
+    try:
+        _, carrier = call(options)
+    except (CarrierError, KeysError, LibraryMissing) as error:
+        sys.exit('mhri_link: {}'.format(error))
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: sys.exit(0))
+    print('mhri_link: routing on', options.listen, flush=True)
+    try:
+        signal.pause()
+    finally:
+        carrier.close()
 
 
 def main():
     """Run until shut down; without the library, or with a wrong endpoint, exit with 1 and why."""
     options = parse(rospy.myargv()[1:])
+    if options.side == 'router':
+        route(options)
+        return
     limit_handshakes()
     if rospy.get_namespace() == '/':
         # Started by hand. On the host it has to be a node of the robot; rospy knows its namespace
@@ -69,24 +143,41 @@ def main():
         os.execv(sys.argv[0], sys.argv + ['__ns:=/' + options.name])
     rospy.init_node('mhri_link', disable_rostime=True)
     log.install()
+    note = Note(options.router or options.connect or options.listen, bool(options.router))
     try:
-        carrier = Carrier(options.name, options.listen.split(), options.connect.split())
-    except (CarrierError, LibraryMissing) as error:
+        keys, carrier = call(options)
+    except (CarrierError, KeysError, LibraryMissing) as error:
         rospy.logfatal('%s', error)
+        if options.side == 'host':
+            note.failed('library' if isinstance(error, LibraryMissing) else
+                        'keys' if isinstance(error, KeysError) else 'endpoint', error)
         sys.exit(1)
+    if keys:
+        rospy.loginfo('%s: linked by keys alone; here is the key of %s', options.name,
+                      keys.keys.own)
+    else:
+        rospy.logwarn('%s: linked without keys: whoever reaches the endpoint can drive the robot '
+                      '(mhri_keys.sh makes keys)', options.name)
     watch = MasterWatch().start()
+    own = keys.keys.own if keys else None
     if options.side == 'host':
-        side = HostSide(options.name, carrier, watch.set_parameter)
+        host = own or options.host
+        side = HostSide(options.name, carrier.between(options.name, host), watch.set_parameter,
+                        host, bool(keys))
         publish_diagnostics({'link to ' + options.name: side.fill})
+        note.follow(side, watch, bool(keys))
     else:
         types, errors = robot_types()
         for error in errors:
             rospy.logwarn('robot type left out: %s', error)
         namespace = tidy_name(options.namespace if options.namespace is not None
                               else options.name)
-        side = RobotSide(options.name, carrier, '/' + namespace if namespace else '', types,
+        side = Reception(options.name, carrier, own, '/' + namespace if namespace else '', types,
                          split_frames(options.shared_frames))
+        publish_diagnostics({'link to the host': side.fill})
     rospy.on_shutdown(side.close)
     side.start()
+    if keys:
+        watch_keys(keys, carrier)
     rospy.spin()
     carrier.close()

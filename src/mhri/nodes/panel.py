@@ -25,6 +25,8 @@ def parse(argv):
     parser.add_argument('--fresh', action='store_true',
                         help='begin without the saved settings but for the numbers of robots, and '
                              'keep them until robots, mode or limits are changed')
+    parser.add_argument('--replay', help='show the replay of this session or bag; it is played by '
+                                         'mhri_replay, on a master of its own')
     parser.add_argument('--demo', action='store_true',
                         help='play a scripted drive without hands, then end')
     parser.add_argument('--screenshot', help='with --demo: write a picture (PNG) of the screen to '
@@ -38,13 +40,15 @@ def main():
     """Run the panel until it is closed; the exit status is the demo's, else 0."""
     options = parse(rospy.myargv(sys.argv)[1:])
     in_rqt = options.gui == 'rqt' or options.gui == 'auto' and shutil.which('rqt')
-    if in_rqt and not options.demo:
+    if in_rqt and not (options.demo or options.replay):
         if not shutil.which('rqt'):
             sys.exit('the panel cannot start: rqt is not installed; leave out gui:=rqt')
         remappings = [arg for arg in sys.argv[1:] if ':=' in arg]
         extra = ['--args', '--robots', options.robots] if options.robots else []
         os.execvp('rqt', ['rqt', '--standalone', PLUGIN] + remappings + extra)
     app = QApplication(sys.argv[:1])
+    if options.replay:
+        sys.exit(replay(app, options.replay))
     program = Standalone(sys.argv, options.settings, remember=not options.demo)
     if not options.demo:
         program.restore(afresh=options.fresh)
@@ -55,6 +59,20 @@ def main():
     demo = start_demo(program, options) if options.demo else None
     program.run(app)
     sys.exit(demo.exit_status if demo else 0)
+
+
+def replay(app, path):
+    """Show a replay until its window is closed; return the exit status, or why not."""
+    from mhri.core.session.folder import NotASession
+    from mhri.presenters.replay_host import make_replay
+    try:
+        program = make_replay(sys.argv, path)
+    except NotASession as error:
+        return 'cannot show the replay: {}'.format(error)
+    program.window.showMaximized()
+    program.host.start()
+    program.run(app)
+    return 0
 
 
 def start_demo(program, options):

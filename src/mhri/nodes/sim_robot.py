@@ -30,6 +30,7 @@ from mhri.ros.map.map_source import publish_map
 from mhri.ros.resources import read_resource, read_text, resource_path, robot_types
 from mhri.sim.body import Body, Bumper, parse_bodies
 from mhri.sim.camera_node import DEPTH_FORMATS, SimCamera
+from mhri.sim.fault_node import Failing
 from mhri.sim.floor_map import grid_of_plan
 from mhri.sim.node import SimRobot
 from mhri.sim.plan import parse_plan
@@ -127,15 +128,18 @@ def build(name, of_robot):
     seed = seed_of()
     chance = random.Random(seed)
     laser = Laser(plan.walls, kind.scan_min_m, kind.scan_max_m, np.random.default_rng(seed))
-    world = World(world_path(building_key(plan)), name, kind, time.monotonic)
+    shared = world_path(building_key(plan))
+    world = World(shared, name, kind, time.monotonic)
     body = Body(kind, template.limits, pose, Bumper(kind.radius_m, plan.distance, world.discs),
                 chance)
+    failing = Failing(name, template, body, shared, plan.distance)
+    failing.serve()
     SimCamera(name, template, plan, lambda: (body.x, body.y, body.yaw), world.others,
-              depth_format()).start()
+              depth_format(), failing).start()
     if parameters.flag('~map', False):
         publish_map(grid_of_plan(plan))
     return SimRobot(name, template, body, ImuSensor(chance), laser, world, plan.discs(),
-                    parameters.flag('~mocap', False), parameters.flag('~placed', False))
+                    failing, parameters.flag('~mocap', False), parameters.flag('~placed', False))
 
 
 def main():

@@ -6,7 +6,7 @@ Joins widgets and the ROS side; everything here runs on the GUI thread.
 """
 from mhri.core.recording.recording import ENDED, OFF, read_fallback, RECORDING
 from mhri.core.screen.requests import (
-    check_request, RECORD, RequestRefused, selection_after, STOP_RECORDING)
+    check_request, MARK, RECORD, RequestRefused, selection_after, STOP_RECORDING)
 
 
 def short_ends(ends):
@@ -31,13 +31,15 @@ class RequestsHost:
     :param tell: function that shows the operator a sentence
     :param select: function that selects exactly the robots of a list
     :param recording_wish: function from a robot's name to (path, choices) as its tile has them
+    :param mark: function that marks this moment of the session
     """
 
-    def __init__(self, operator, tell, select, recording_wish):
+    def __init__(self, operator, tell, select, recording_wish, mark=lambda: None):
         self._operator = operator
         self._tell = tell
         self._select = select
         self._recording_wish = recording_wish
+        self._mark = mark
         self._asked = set()
         self._ends = []
 
@@ -48,6 +50,8 @@ class RequestsHost:
             check_request(action, names, selection.robots)
             if action == RECORD:
                 self.record(names or selection.selected)
+            elif action == MARK:
+                self._mark()
             elif action == STOP_RECORDING:
                 self.stop_recording(names or self._operator.recordings.running())
             else:

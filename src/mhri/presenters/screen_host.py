@@ -19,10 +19,12 @@ from mhri.core.screen.why import WhyStill
 from mhri.presenters.doctor_host import DoctorHost
 from mhri.presenters.draw_guard import DrawGuard
 from mhri.presenters.event_host import EventHost
+from mhri.presenters.fault_host import FaultHost
 from mhri.presenters.map_host import MapHost
 from mhri.gui.screen.screen import ScreenWidget
 from mhri.presenters.pad_host import PadHost
 from mhri.presenters.requests_host import RequestsHost
+from mhri.presenters.session_host import SessionHost
 from mhri.presenters.stop_watch import StopWatch
 from mhri.presenters.task_host import TaskHost
 from mhri.presenters.tiles_host import TilesHost
@@ -43,9 +45,10 @@ class ScreenHost(QObject):
     """The screen, its tiles and what feeds them; rqt and the standalone window hold one each.
 
     :param operator: :class:`mhri.ros.screen.backend.ScreenBackend`, started by :meth:`start`
+    :param events: makes its :class:`mhri.presenters.event_host.EventHost`
     """
 
-    def __init__(self, operator, parent=None):
+    def __init__(self, operator, parent=None, events=EventHost):
         super().__init__(parent)
         self.operator = operator
         self._to_add = []
@@ -56,12 +59,14 @@ class ScreenHost(QObject):
         self._closed = False
         self._build()
         self.requests = RequestsHost(operator, self.screen.show_look_result, self._select,
-                                     self.tiles.recording_wish)
-        self.events = EventHost(operator.recordings.status, self.screen)
+                                     self.tiles.recording_wish, lambda: self.session.mark())
+        self.events = events(operator.recordings.status, self.screen)
+        self.session = SessionHost(self.screen, self.events, self.tiles.save_stills)
         self.doctor = DoctorHost(operator, self.screen)
         self.pad = PadHost(operator, self.screen, parent=self)
         self.tasks = TaskHost(operator, self.screen, self._select, self._note_task)
         self.map = MapHost(operator, self.screen, self.tasks)
+        self.faults = FaultHost(self.screen)
         self._connect()
 
     @property
@@ -96,7 +101,6 @@ class ScreenHost(QObject):
         panel.stop_record_requested.connect(self.requests.stop_recording)
         panel.selection_requested.connect(self._select)
         panel.drive_requested.connect(self._drive)
-        panel.stills_requested.connect(self.tiles.save_stills)
         self.tiles.clicked.connect(panel.look_at)
         self.tiles.drive_requested.connect(self._drive)
         self.tiles.closed.connect(self._leave)
@@ -112,6 +116,7 @@ class ScreenHost(QObject):
         panel.release_requested.connect(operator.release)
         panel.power_cut_requested.connect(lambda: operator.set_motor_power(False))
         panel.control_requested.connect(operator.take_control)
+        panel.robot_list.ask_requested.connect(operator.controls.ask)
         self._draw_timer.timeout.connect(self._draw_in_turn)
         self._stick_timer.timeout.connect(self._repeat_stick)
         self._lease_timer.timeout.connect(operator.repeat_selection)
@@ -138,7 +143,8 @@ class ScreenHost(QObject):
         self._draw_timer.start()
         self._stick_timer.start()
         self._lease_timer.start()
-        self._stop_watch.start()
+        if self.operator.speaks:
+            self._stop_watch.start()
         self.events.start()
         self.draw()
 
@@ -161,9 +167,11 @@ class ScreenHost(QObject):
         self._feel_losses(view)
         self.tiles.show_view(view, [name for name, _ in self._to_add])
         self.events.show(view)
+        self.session.show_view(view)
         self._tell_budget()
         self.pad.show_view(view)
         self.map.show_view(view)
+        self.faults.show_view(view)
         for kind, value in self.operator.take_events():
             if kind == 'found':
                 self._show_found(value)
@@ -249,7 +257,8 @@ class ScreenHost(QObject):
     def asks_before_closing(self):
         """Return what to ask before the screen is closed, '' while nothing drives or records."""
         # One that is closed must not look: it would have the seat of the one that drives now.
-        return '' if self._closed else close_question(self.operator.view().robots)
+        return '' if self._closed else close_question(
+            self.operator.view().robots, self.session.recorded)
 
     def _select(self, names):
         self.operator.select(names)
@@ -323,9 +332,11 @@ class ScreenHost(QObject):
         self.operator.close(forget)
         QApplication.instance().removeEventFilter(self.screen.drive_keys)
         self.screen.drive_keys.close()
+        self.session.close()
         self.events.close()
         self.tiles.close()
         self._stop_watch.close()
         self.pad.close()
         self.tasks.close(forget)
         self.map.close(forget)
+        self.faults.close()

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Message classes by the name of their ROS type, from packages that may not be installed."""
+import functools
 import importlib
 import operator
 
@@ -27,6 +28,7 @@ def message_class(kind):
         raise MessageMissing('{} has no message {}'.format(package, name)) from None
 
 
+@functools.lru_cache(maxsize=None)
 def bytes_of(kind):
     """Return a class with which a topic of this message class is heard as bytes (``_buff``).
 

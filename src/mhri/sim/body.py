@@ -87,6 +87,8 @@ class Body:
 
     ``x, y, yaw`` are the truth [m, m, rad]; ``odom_*`` what the wheels say, from 0 at the start;
     ``v, w`` the speeds [m/s, rad/s]. At rest the wheel noise is exactly zero: encoders do not tick.
+    Faults: ``left_share`` is the part of a command that the left motor follows, 0 to 1; ``slip``
+    the turn to the left that the floor adds [rad/m], which the wheels do not measure.
 
     :param body_type: :class:`BodyType`
     :param limits: :class:`mhri.core.robots.robot_types.Limits`, the most that the motors do
@@ -110,7 +112,13 @@ class Body:
         self._bias = [1.0 + random.gauss(0.0, self.WHEEL_BIAS) for _ in range(2)]
         self._order = (0.0, 0.0, -math.inf)
         self.blocked = False
+        self.left_share, self.slip = 1.0, 0.0
         self._powered = True
+
+    @property
+    def turn_rate(self):
+        """The true turn rate [rad/s]: that of the wheels, and what the floor adds."""
+        return self.w + self.v * self.slip
 
     def set_power(self, powered):
         """Switch the power of the motors; switched on again, they stand until commanded."""
@@ -137,6 +145,7 @@ class Body:
     def step(self, dt, now):
         """Move on by ``dt`` seconds; the base brakes when commands or power are gone."""
         v, w, commanded_at = self._order
+        v, w = self._by_motors(v, w)
         before = self.v
         if now - commanded_at > self.type.watchdog_s or not self._powered:
             brake = self.type.brake_mps2 * dt
@@ -149,6 +158,14 @@ class Body:
         self.forward_accel = (self.v - before) / dt
         self._roll(dt)
 
+    def _by_motors(self, v, w):
+        """Return what becomes of a command if the left motor follows only a part of it."""
+        if self.left_share == 1.0:
+            return v, w
+        half = 0.5 * self.type.wheel_separation_m
+        left, right = (v - w * half) * self.left_share, v + w * half
+        return 0.5 * (left + right), 0.5 * (right - left) / half
+
     def _move(self, dt):
         """Move the truth along the arc of this step, unless something is in the way.
 
@@ -156,7 +173,8 @@ class Body:
         makes more room is allowed.
         """
         self.blocked = False
-        middle = self.yaw + 0.5 * self.w * dt
+        turn = self.turn_rate * dt
+        middle = self.yaw + 0.5 * turn
         if self.v:
             x = self.x + self.v * dt * math.cos(middle)
             y = self.y + self.v * dt * math.sin(middle)
@@ -166,7 +184,7 @@ class Body:
             else:
                 self.blocked = True
                 self.v = 0.0
-        self.yaw = math.remainder(self.yaw + self.w * dt, 2.0 * math.pi)
+        self.yaw = math.remainder(self.yaw + turn, 2.0 * math.pi)
 
     def _roll(self, dt):
         """Let the wheels measure the step."""

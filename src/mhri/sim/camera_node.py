@@ -24,6 +24,7 @@ from mhri.core.camera.depth_codec import encode_depth
 from mhri.core.camera.jpeg import encode_jpeg
 from mhri.sim.camera import Camera, CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, WIDTH
 from mhri.sim.cloud import cloud_of, LAYOUT
+from mhri.sim.fault_node import Healthy
 
 RGB_HZ = 30
 DEPTH_EVERY = 2
@@ -38,7 +39,8 @@ DEPTH_FORMATS = ('png', 'rvl')
 class _Stream:
     """The topics of one kind of picture: raw, compressed, and camera info."""
 
-    def __init__(self, topic, transport, encoding, frame_id, compress):
+    def __init__(self, topic, transport, encoding, frame_id, compress, failing):
+        self._failing = failing
         self._compress = compress
         self._raw = rospy.Publisher(topic, Image, queue_size=1)
         self._compressed = rospy.Publisher(topic + '/' + transport, CompressedImage, queue_size=1)
@@ -55,17 +57,18 @@ class _Stream:
     def publish_info(self, stamp):
         """Send the camera info."""
         if self._info.get_num_connections():
-            self._info.publish(self._stamped(self._info_msg, stamp))
+            self._failing.send(self._info, self._stamped(self._info_msg, stamp), 'camera')
 
     def publish(self, pixels, stamp):
         """Send a picture on every topic that has a subscriber."""
         if self._raw.get_num_connections():
             self._image.step = pixels.strides[0]
             self._image.data = pixels.tobytes()
-            self._raw.publish(self._stamped(self._image, stamp))
+            self._failing.send(self._raw, self._stamped(self._image, stamp), 'camera')
         if self._compressed.get_num_connections():
             fmt, data = self._compress(pixels)
-            self._compressed.publish(self._stamped(CompressedImage(format=fmt, data=data), stamp))
+            message = CompressedImage(format=fmt, data=data)
+            self._failing.send(self._compressed, self._stamped(message, stamp), 'camera')
 
     def _stamped(self, message, stamp):
         message.header.stamp = stamp
@@ -76,7 +79,8 @@ class _Stream:
 class _Cloud:
     """The topic of the cloud, organised as depth_image_proc makes it from a Kinect's pictures."""
 
-    def __init__(self, topic, frame_id):
+    def __init__(self, topic, frame_id, failing):
+        self._failing = failing
         self._publisher = rospy.Publisher(topic, PointCloud2, queue_size=1)
         self._message = PointCloud2(
             height=HEIGHT, width=WIDTH, is_bigendian=False, is_dense=False,
@@ -93,7 +97,7 @@ class _Cloud:
         """Send the cloud of a depth picture [mm] and the colours of its pixels."""
         self._message.header.stamp = stamp
         self._message.data = cloud_of(depth, rgb).tobytes()
-        self._publisher.publish(self._message)
+        self._failing.send(self._publisher, self._message, 'camera')
 
 
 def compress(rgb):
@@ -119,25 +123,29 @@ class SimCamera:
     :param pose_source: function () -> (x, y, yaw) of the robot [m, m, rad], called on the thread
     :param others_source: function () -> the other robots, as :meth:`mhri.sim.world.World.others`
     :param depth_format: 'png' or 'rvl', of ``compressedDepth``
+    :param failing: :class:`mhri.sim.fault_node.Failing`; None: nothing ever fails
     :raises ValueError: unknown depth format
     """
 
-    def __init__(self, name, template, plan, pose_source, others_source, depth_format='png'):
+    def __init__(self, name, template, plan, pose_source, others_source, depth_format='png',
+                 failing=None):
         if depth_format not in DEPTH_FORMATS:
             raise ValueError('depth_format: expected one of {}, got {!r}'.format(
                 ', '.join(DEPTH_FORMATS), depth_format))
         self._camera = Camera(plan)
+        self._failing = failing = failing or Healthy()
         self._pose_source = pose_source
         self._others_source = others_source
         self._done = threading.Event()
         self._thread = None
         prefix, frame_id = '/' + name + '/', name + '/camera_rgb_optical_frame'
         self._rgb = _Stream(prefix + template.rgb[0], 'compressed', 'rgb8', frame_id,
-                            compress) if template.rgb else None
+                            compress, failing) if template.rgb else None
         self._depth = _Stream(
             prefix + template.depth[0], 'compressedDepth', '16UC1', frame_id,
-            lambda depth: encode_depth(depth, depth_format)) if template.depth else None
-        self._cloud = _Cloud(prefix + template.cloud[0], frame_id) if template.cloud else None
+            lambda depth: encode_depth(depth, depth_format), failing) if template.depth else None
+        self._cloud = _Cloud(prefix + template.cloud[0], frame_id,
+                             failing) if template.cloud else None
 
     def start(self):
         """Begin; it ends with the node, or with :meth:`stop`."""
@@ -174,7 +182,7 @@ class SimCamera:
         due = [stream for stream, is_due in ((self._rgb, True), (self._depth, with_depth))
                if stream and is_due]
         wanted = [stream for stream in due if stream.wanted()]
-        stamp = rospy.Time.now()
+        stamp = self._failing.stamp()
         for stream in due:
             stream.publish_info(stamp)
         with_cloud = with_cloud and self._cloud is not None and self._cloud.wanted()

@@ -12,7 +12,6 @@ its motors. Frames are ``<robot>/odom``,
 """
 import math
 import threading
-import time
 
 from geometry_msgs.msg import PoseStamped, TransformStamped, Twist
 from nav_msgs.msg import Odometry
@@ -88,18 +87,20 @@ class SimRobot:
     :param world: :class:`mhri.sim.world.World`
     :param landmarks: array (n, 3) of x, y, radius [m]
     :param tracked: whether motion capture sees the robot
+    :param failing: :class:`mhri.sim.fault_node.Failing`
     :param placed: whether tf says where its odometry begins in the frame map
     """
 
-    def __init__(self, name, template, body, imu, laser, world, landmarks, tracked=False,
+    def __init__(self, name, template, body, imu, laser, world, landmarks, failing, tracked=False,
                  placed=False):
         self._name = name
         self._body = body
+        self._failing = failing
+        self._charge = 1.0
         self._imu = imu
         self._laser = laser
         self._world = world
         self._landmarks = landmarks
-        self._begun = time.monotonic()
         self._odometry_due, self._scan_due, self._battery_due = (
             Due(every) for every in (ODOMETRY_EVERY, SCAN_EVERY, BATTERY_EVERY))
         self._make_messages(placed)
@@ -158,7 +159,7 @@ class SimRobot:
             self._tf.transforms.append(self._origin)
 
     def _on_twist(self, message):
-        if not self._body.command(message.linear.x, message.angular.z, time.monotonic()):
+        if not self._failing.command(message.linear.x, message.angular.z):
             rospy.logwarn_throttle(1.0, 'refused a velocity that is not finite')
 
     def run(self):
@@ -173,14 +174,18 @@ class SimRobot:
             if not (ending.is_set() or rospy.is_shutdown()):
                 raise
         finally:
+            self._failing.close()
             self._world.leave()
 
     def _step(self, tick, now, took):
         """Move, and publish what is due; no leap after a long pause of the process."""
         body, dt = self._body, min(took, MAX_STEP_S)
+        self._failing.step()
         body.step(dt, now)
         self._world.publish(body.x, body.y, body.yaw)
-        stamp = rospy.Time.now()
+        self._charge = max(0.0, self._charge - dt * (
+            1.0 / BATTERY_LIFE_S + self._failing.battery_per_s()))
+        stamp = self._failing.stamp()
         self._publish_imu(dt, stamp)
         if self._odometry_due.at(tick):
             self._publish_odometry(stamp)
@@ -190,7 +195,7 @@ class SimRobot:
                 and self._scan_pub.get_num_connections():
             self._publish_scan(stamp)
         if self._battery_pub is not None and self._battery_due.at(tick):
-            self._publish_battery(stamp, now)
+            self._publish_battery(stamp)
 
     def _publish_imu(self, dt, stamp):
         gyro, accel = self._imu.measure(self._body, dt)
@@ -203,7 +208,7 @@ class SimRobot:
         rate, force = message.angular_velocity, message.linear_acceleration
         rate.x, rate.y, rate.z = gyro
         force.x, force.y, force.z = accel
-        self._imu_pub.publish(message)
+        self._failing.send(self._imu_pub, message)
 
     def _publish_odometry(self, stamp):
         body = self._body
@@ -215,7 +220,7 @@ class SimRobot:
             place.x, place.y, turn.z, turn.w = body.odom_x, body.odom_y, z, w
             message.twist.twist.linear.x = body.odom_v
             message.twist.twist.angular.z = body.odom_w
-            self._odom_pub.publish(message)
+            self._failing.send(self._odom_pub, message, 'odometry')
         if self._tf_pub.get_num_connections():
             for transform in self._tf.transforms:
                 transform.header.stamp = stamp
@@ -224,7 +229,7 @@ class SimRobot:
             move.x, move.y, turn.z, turn.w = body.odom_x, body.odom_y, z, w
             if self._origin is not None:
                 self._place_odometry()
-            self._tf_pub.publish(self._tf)
+            self._failing.send(self._tf_pub, self._tf, 'odometry')
 
     def _place_odometry(self):
         """Say where its odometry begins, drift and all."""
@@ -240,7 +245,7 @@ class SimRobot:
         discs = np.vstack((self._landmarks, self._world.discs()))
         self._scan.header.stamp = stamp
         self._scan.ranges = self._laser.scan(body.x, body.y, body.yaw, discs).tolist()
-        self._scan_pub.publish(self._scan)
+        self._failing.send(self._scan_pub, self._scan, 'scan')
 
     def _publish_true_pose(self, stamp):
         body, message = self._body, PoseStamped()
@@ -250,12 +255,12 @@ class SimRobot:
         message.pose.orientation.w = math.cos(0.5 * body.yaw)
         self._mocap_pub.publish(message)
 
-    def _publish_battery(self, stamp, now):
-        left = max(0.0, 1.0 - (now - self._begun) / BATTERY_LIFE_S)
+    def _publish_battery(self, stamp):
+        left = self._charge
         message = BatteryState(
             voltage=11.0 + 1.6 * left, percentage=left, capacity=1.8, design_capacity=1.8,
             charge=1.8 * left, current=float('nan'), present=True,
             power_supply_status=BatteryState.POWER_SUPPLY_STATUS_DISCHARGING,
             power_supply_technology=BatteryState.POWER_SUPPLY_TECHNOLOGY_LIPO)
         message.header.stamp = stamp
-        self._battery_pub.publish(message)
+        self._failing.send(self._battery_pub, message)

@@ -32,8 +32,8 @@ class ImuSensor:
         """Return (gyro, accelerometer) in the body frame [rad/s, m/s^2], each (x, y, z)."""
         gauss = self._gauss
         gyro = [truth + bias + gauss(0.0, self.GYRO_NOISE_RAD_S)
-                for truth, bias in zip((0.0, 0.0, body.w), self._gyro_bias)]
-        true_accel = (body.forward_accel, body.v * body.w, GRAVITY_MPS2)
+                for truth, bias in zip((0.0, 0.0, body.turn_rate), self._gyro_bias)]
+        true_accel = (body.forward_accel, body.v * body.turn_rate, GRAVITY_MPS2)
         accel = [truth + bias + gauss(0.0, self.ACCEL_NOISE_MPS2)
                  for truth, bias in zip(true_accel, self._accel_bias)]
         self.yaw = math.remainder(self.yaw + gyro[2] * dt, 2.0 * math.pi)

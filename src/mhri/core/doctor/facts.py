@@ -204,13 +204,45 @@ class Stream:
 
 
 @dataclass(frozen=True)
+class LinkNote:
+    """What this computer's side of the link to a robot on a master of its own says of itself.
+
+    ``endpoint`` is whom it calls, ``router`` whether that is a router, ``secret`` whether with
+    keys; ``heard`` is ``yes``, ``no`` (not any more) or ``never``. ``problem`` says why it could
+    not start, ``trouble`` what with: ``library``, ``keys`` or ``endpoint``. ``own`` and ``peer`` are
+    the versions of both sides: {``mhri`` or ``zenoh``: version}. ``reach`` says how the endpoint
+    answers, '' if nobody asked.
+    """
+
+    robot: str
+    endpoint: str = ''
+    router: bool = False
+    secret: bool = False
+    heard: str = 'never'
+    trouble: str = ''
+    problem: str = ''
+    own: Dict[str, Any] = field(default_factory=dict)
+    peer: Dict[str, Any] = field(default_factory=dict)
+    reach: str = ''
+
+
+@dataclass(frozen=True)
+class KeysSeen:
+    """The keys for links on this computer: where, why they are of no use; an authority beside."""
+
+    folder: str = ''
+    problem: str = ''
+    authority: bool = False
+
+
+@dataclass(frozen=True)
 class Facts:
     """Everything that the doctor saw.
 
     ``later`` is the graph, ``later_nodes`` the nodes asked once more at the end, if something
     looked odd: the doctor only reports what is odd both times. ``known`` maps message types to
     their md5 sum on this computer, None if it has none. ``wanted`` are the robots asked for, () for
-    all.
+    all. ``linked`` are the links to robots on masters of their own.
     """
 
     computer: Computer = Computer()
@@ -224,6 +256,8 @@ class Facts:
     wanted: Tuple[str, ...] = ()
     template_errors: Tuple[str, ...] = ()
     caller_id: str = '/mhri_doctor'
+    linked: Tuple[LinkNote, ...] = ()
+    keys: KeysSeen = KeysSeen()
 
     def with_later(self, graph: Graph, nodes: Dict[str, Node]) -> 'Facts':
         """Return these facts plus the second look."""

@@ -5,6 +5,7 @@ from typing import Any, Dict, Iterable, List, Mapping, Sequence, Set
 
 from mhri.core.doctor.facts import ANSWERS, Facts, FAULT, FINE, Finding, SEVERITIES, WARNING
 from mhri.core.doctor.host import find_on_host, find_on_master
+from mhri.core.doctor.linked import find_on_linked, unheard
 from mhri.core.doctor.links import find_on_links, missing_links
 from mhri.core.doctor.nodes import find_on_nodes, odd_nodes, robot_of
 from mhri.core.doctor.robots import find_on_robots, hidden_listeners, Robot, robots_of
@@ -24,8 +25,12 @@ def diagnose(facts: Facts, types: Mapping[str, RobotType], ignore: IgnoreList) -
     """
     found = find_on_host(facts) + find_on_master(facts)
     if facts.master.state == ANSWERS and not facts.master.uri_problem:
+        silent = unheard(facts)
         found += (find_on_system(facts) + find_on_nodes(facts, hung(facts)) + find_on_links(facts)
-                  + find_on_robots(facts, types, robots_of(facts.graph, types, ignore)))
+                  + find_on_linked(facts) + [
+                      item for item in find_on_robots(
+                          facts, types, robots_of(facts.graph, types, ignore))
+                      if item.about not in silent])
     return sorted(_of_wanted(facts, found), key=lambda item: SEVERITIES.index(item.severity))
 
 

@@ -21,7 +21,7 @@ _TYPES = (('imu', 'sensor_msgs/Imu'), ('rgb', 'sensor_msgs/Image'),
           ('depth', 'sensor_msgs/Image'), ('scan', 'sensor_msgs/LaserScan'),
           ('battery', 'sensor_msgs/BatteryState'))
 # Who may publish a robot's velocity: the gates, its own guard, a doctor that tries its watchdog.
-GATES, TRIAL, GUARD = '/mhri_gates', '/mhri_doctor', 'mhri_guard'
+GATES, TRIAL, GUARD, LINK = '/mhri_gates', '/mhri_doctor', 'mhri_guard', 'mhri_link'
 OFFSET_WARN_S, OFFSET_FAULT_S = 0.1, 0.5
 
 
@@ -160,7 +160,8 @@ def _velocity(facts: Facts, robot: Robot) -> List[Finding]:
     alive = {topic: [node for node in facts.graph.subscribers.get(topic, ())
                      if facts.nodes[node].state == ANSWERS] for topic in topics}
     chosen = next((topic for topic in topics if alive[topic]), None)
-    if chosen is None:
+    # A robot on a master of its own is driven through its guard, over the link.
+    if chosen is None and not _by_link(facts, name):
         return [Finding(
             FAULT, 'velocity_unheard', name, 'nobody listens to {}'.format(' or '.join(topics)),
             'the robot is selected, but does not move',
@@ -174,7 +175,12 @@ def _velocity(facts: Facts, robot: Robot) -> List[Finding]:
                    if node not in drivers and not node.startswith(TRIAL)]
         if foreign and facts.graph.subscribers.get(topic):
             found.append(_foreign(name, topic, foreign))
-    return found + _hidden(facts, name, chosen, alive[chosen])
+    return found + (_hidden(facts, name, chosen, alive[chosen]) if chosen else [])
+
+
+def _by_link(facts: Facts, name: str) -> bool:
+    return any(facts.answering(node) for node in facts.graph.subscribers.get(
+        topic_of(name, GUARD) + '/command', ()) if node == topic_of(name, LINK))
 
 
 def _foreign(name: str, topic: str, nodes: List[str]) -> Finding:

@@ -17,6 +17,8 @@ _CREEP = 1e-3
 STOP_ALL = 'stop_all'
 NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL = 'next_robot', 'previous_robot', 'select_all'
 ACTIONS = (STOP_ALL, NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL)
+# What no calibration asks for: a line in the profile's file gives it a button.
+MARK = 'mark'
 
 
 class JoyRefused(ValueError):
@@ -127,7 +129,7 @@ class Profile:
     cubic, for fine control near the centre. ``dead_man`` is the button that must be held for
     anything to move, ``ANY`` for any button, None for none. ``turbo`` is a button; while it is
     not held, everything is multiplied by ``without_turbo``. ``actions`` are
-    (button, one of ``ACTIONS``).
+    (button, one of ``ACTIONS`` or ``MARK``).
     """
 
     name: str
@@ -220,7 +222,7 @@ def parse_profile(text: str, origin: str) -> Profile:
     """
     section = parse_yaml(text, origin)
     dead_zone = section.number('dead_zone', 0.0, 0.9, 0.0)
-    buttons = [(section.index(action + '_button', None), action) for action in ACTIONS]
+    buttons = [(section.index(action + '_button', None), action) for action in ACTIONS + (MARK,)]
     profile = Profile(
         name=section.text('name'),
         forward=_axis(section.section('forward')),

@@ -88,7 +88,8 @@ class RobotChanges:
         :param answers: whether the gates are heard; without them guard and power are unknown
         """
         told = list(self._see_link(view, now))
-        found = [*self._see_driving(view), *self._see_battery(view), *self._see_switch(view)]
+        found = [*self._see_driving(view), *self._see_battery(view), *self._see_switch(view),
+                 *self._see_control(view)]
         if view.link == LIVE:
             found += self._see_quality(view, now)
         if answers:
@@ -136,6 +137,11 @@ class RobotChanges:
                 yield 'proof.stopped', view.proof.text
             elif view.proof.state == PROOF_NOT_CONFIRMED:
                 yield 'proof.doubtful', view.proof.text
+
+    def _see_control(self, view: RobotView) -> _Told:
+        """Report what the robot says of who has control, where several hosts are linked to it."""
+        if view.said and view.said != self._old.said:
+            yield 'linked.said', view.said
 
     def _see_battery(self, view: RobotView) -> _Told:
         """Report a battery that is low, flat, or charged again."""

@@ -23,6 +23,8 @@ SHARED_FRAMES = ('map', 'world', 'mhri_world')
 RATES_HZ: Dict[str, float] = {
     'odometry': 50.0, 'imu': 100.0, 'scan': 10.0, 'battery': 2.0, 'rgb': 30.0, 'depth': 15.0,
     'cloud': 2.0}
+# Where a radio does not bear all, states go in these proportions; what has none counts as one.
+WEIGHTS: Dict[str, float] = {'imu': 0.7, 'scan': 0.2}
 PICTURES = ('rgb', 'depth', 'cloud')
 # How many frame names a message begins with, behind number and stamp.
 FRAME_NAMES = {'nav_msgs/Odometry': 2, 'sensor_msgs/Imu': 1, 'sensor_msgs/LaserScan': 1,
@@ -42,12 +44,14 @@ class Stream:
     :param urgency: :data:`COMMAND`, :data:`STATE` or :data:`PICTURE`
     :param rate_hz: the most messages in a second, 0 for all
     :param latched: the newest message is for those who come later, too
+    :param weight: how often it goes beside others where a radio does not bear all
     """
 
     topic: str
     urgency: str
     rate_hz: float = 0.0
     latched: bool = False
+    weight: float = 1.0
 
 
 # From the host to the robot, with their ROS types.
@@ -58,12 +62,14 @@ DOWN = ((Stream(GUARD_COMMAND, COMMAND), 'geometry_msgs/TwistStamped'),
 def up_streams(robot_type: RobotType) -> List[Stream]:
     """Return what may go from a robot of a type to the host, if it is there."""
     streams = [Stream(GUARD_ECHO, COMMAND), Stream('mhri_guard/state', STATE, latched=True),
-               Stream('mhri_guard/dropped', STATE, 10.0), Stream(TF, STATE, 20.0),
+               Stream('mhri_guard/dropped', STATE, 10.0),
+               Stream(TF, STATE, 20.0, weight=0.7),
                Stream(TF_STATIC, STATE, latched=True)]
     for key, rate_hz in RATES_HZ.items():
         urgency = PICTURE if key in PICTURES else STATE
         for topic in getattr(robot_type, key):
-            streams.append(Stream(topic.lstrip('/'), urgency, rate_hz))
+            streams.append(Stream(topic.lstrip('/'), urgency, rate_hz,
+                                  weight=WEIGHTS.get(key, 1.0)))
             if key in ('rgb', 'depth'):
                 streams += [Stream(topic.lstrip('/') + tail, urgency, rate_hz) for tail in _PACKED]
     return list({stream.topic: stream for stream in streams}.values())
@@ -86,9 +92,13 @@ def full_topic(namespace: str, topic: str) -> str:
     return topic if topic.startswith('/') else '{}/{}'.format(namespace, topic)
 
 
-def key_of(robot: str, way: str, topic: str) -> str:
-    """Return the key expression of a stream; ``way`` is ``up`` or ``down``."""
-    return 'mhri/{}/{}/{}'.format(robot, way, topic.lstrip('/'))
+def key_of(robot: str, host: str, way: str, topic: str) -> str:
+    """Return the key expression of a stream between a robot and one host.
+
+    :param host: its name, such as ``host:lab`` (see :mod:`mhri.core.link.keys`)
+    :param way: ``up`` or ``down``
+    """
+    return 'mhri/{}/{}/{}/{}'.format(robot, host, way, topic.lstrip('/'))
 
 
 def valid_topic(topic: object) -> bool:
@@ -106,8 +116,12 @@ class Pace:
     """Lets through at most so many messages of a stream in a second; times are [s]."""
 
     def __init__(self, rate_hz: float) -> None:
-        self._period_s = 1.0 / rate_hz if rate_hz else 0.0
         self._due = 0.0
+        self.change(rate_hz)
+
+    def change(self, rate_hz: float) -> None:
+        """Go over to another rate [Hz], 0 for all."""
+        self._period_s = 1.0 / rate_hz if rate_hz else 0.0
 
     def lets(self, now: float) -> bool:
         """Tell whether a message of this moment goes on."""

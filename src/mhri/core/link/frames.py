@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What goes over the air: a head before each message, the beats, and what a robot says of itself.
 
-The head is ``mh``, the version, the session of the sender (another one at each start), the number
-of the message in its stream, and the sender's clock [s]. Whatever comes may be anybody's bytes:
-what cannot be read raises :class:`FrameError`.
+The head is ``mh``, the version, how the body is packed, the session of the sender (another one at
+each start), the number of the message in its stream, and the sender's clock [s]. Whatever comes may
+be anybody's bytes: what cannot be read raises :class:`FrameError`.
 """
 from collections import deque
 from dataclasses import dataclass
@@ -16,11 +16,15 @@ import zlib
 
 from mhri.core.link.carried import valid_topic, valid_type
 
-VERSION = 1
-_HEAD = struct.Struct('>2sBIId')
+VERSION = 2
+_HEAD = struct.Struct('>2sBBIId')
 _MAGIC = b'mh'
 MOST_TOPICS = 100
 MOST_BYTES = 65536
+# How a body is packed: as it is, by zlib, or as a piece of a picture (pieces.py).
+PLAIN, DEFLATED, PIECE = 0, 1, 2
+# No state is larger, however it was packed [bytes].
+_MOST_INFLATED = 1 << 22
 # Of replaced sessions so many are known, so that their late messages count for nothing.
 _RETIRED = 16
 
@@ -37,11 +41,17 @@ class Frame:
     number: int
     stamp_s: float
     body: bytes
+    kind: int = PLAIN
 
 
-def pack(session: int, number: int, stamp_s: float, body: bytes) -> bytes:
-    """Return the bytes of a :class:`Frame`; the number begins again after 2^32."""
-    return _HEAD.pack(_MAGIC, VERSION, session, number & 0xffffffff, stamp_s) + body
+def pack(session: int, number: int, stamp_s: float, body: bytes, kind: int = PLAIN) -> bytes:
+    """Return the bytes of a :class:`Frame`; the number begins again after 2^32.
+
+    :param kind: how the body is packed; with :data:`DEFLATED` it is packed here
+    """
+    if kind == DEFLATED:
+        body = zlib.compress(body, 1)
+    return _HEAD.pack(_MAGIC, VERSION, kind, session, number & 0xffffffff, stamp_s) + body
 
 
 def unpack(data: bytes) -> Frame:
@@ -51,13 +61,29 @@ def unpack(data: bytes) -> Frame:
     """
     if len(data) < _HEAD.size or data[:2] != _MAGIC:
         raise FrameError('no message of mhri_link')
-    _, version, session, number, stamp_s = _HEAD.unpack_from(data)
+    _, version, kind, session, number, stamp_s = _HEAD.unpack_from(data)
     if version != VERSION:
         raise FrameError('the other side speaks version {} of mhri_link, this one {}: install the '
                          'same mhri on both'.format(version, VERSION))
     if not math.isfinite(stamp_s):
         raise FrameError('a stamp that is no number')
-    return Frame(session, number, stamp_s, data[_HEAD.size:])
+    body = data[_HEAD.size:]
+    if kind == DEFLATED:
+        return Frame(session, number, stamp_s, _inflated(body))
+    if kind not in (PLAIN, PIECE):
+        raise FrameError('a body that is packed in an unknown way')
+    return Frame(session, number, stamp_s, body, kind)
+
+
+def _inflated(body: bytes) -> bytes:
+    inflater = zlib.decompressobj()
+    try:
+        found = inflater.decompress(body, _MOST_INFLATED)
+    except zlib.error:
+        raise FrameError('a body that cannot be unpacked') from None
+    if not inflater.eof:
+        raise FrameError('a body that is cut off, or too large')
+    return found
 
 
 class Newest:
@@ -84,6 +110,34 @@ class Newest:
 
 
 @dataclass(frozen=True)
+class Heard:
+    """What came lately from the other side.
+
+    :param bytes_per_s: all of it
+    :param queue_s: how much longer it took than the quickest of the last while, the median [s]
+    :param loss: the share of the messages that did not come, from 0 to 1
+    """
+
+    bytes_per_s: float
+    queue_s: float
+    loss: float
+
+
+@dataclass(frozen=True)
+class Thinned:
+    """What a robot's side sends less of, since the radio does not bear all; zeros for nothing.
+
+    :param bytes_per_s: what the radio bears
+    :param picture_hz: how often a picture goes
+    :param looked_at: whether any is asked for
+    """
+
+    bytes_per_s: float = 0.0
+    picture_hz: float = 0.0
+    looked_at: bool = False
+
+
+@dataclass(frozen=True)
 class Beat:
     """What each side says five times a second.
 
@@ -91,16 +145,26 @@ class Beat:
         [s]), None before the first
     :param about: which :class:`About` the sender has, or is of; '' for none
     :param wanted: of its topics those that somebody on the host listens to, by their place
+    :param heard: what came from the other side, None of nothing
+    :param thinned: what the sender sends less of
     """
 
     echo: Optional[Tuple[float, float]] = None
     about: str = ''
     wanted: Tuple[int, ...] = ()
+    heard: Optional[Heard] = None
+    thinned: Thinned = Thinned()
 
 
 def pack_beat(beat: Beat) -> bytes:
     """Return the bytes of a beat."""
-    return json.dumps([beat.echo, beat.about, beat.wanted], separators=(',', ':')).encode('ascii')
+    heard, thinned = beat.heard, beat.thinned
+    return json.dumps(
+        [beat.echo, beat.about, beat.wanted,
+         heard and [round(heard.bytes_per_s), round(heard.queue_s, 4), round(heard.loss, 4)],
+         [round(thinned.bytes_per_s), round(thinned.picture_hz, 2),
+          int(thinned.looked_at)]],
+        separators=(',', ':')).encode('ascii')
 
 
 def unpack_beat(body: bytes) -> Beat:
@@ -108,17 +172,16 @@ def unpack_beat(body: bytes) -> Beat:
 
     :raises FrameError: they are none
     """
-    found = _rows(body)
-    if len(found) != 3 or not isinstance(found[1], str) or not isinstance(found[2], list):
+    found = read_rows(body)
+    if len(found) != 5 or not isinstance(found[1], str) or not isinstance(found[2], list):
         raise FrameError('no beat')
-    echo, about, wanted = found
-    if echo is not None:
-        if not isinstance(echo, list) or len(echo) != 2 or not all(map(_number, echo)):
-            raise FrameError('a beat with a wrong echo')
-        echo = (float(echo[0]), float(echo[1]))
+    echo, about, wanted, heard, thinned = found
+    echo = None if echo is None else _numbers(echo, 2)
     if len(wanted) > MOST_TOPICS or not all(type(place) is int for place in wanted):
         raise FrameError('a beat with wrong topics')
-    return Beat(echo, about[:40], tuple(wanted))
+    return Beat(echo and (echo[0], echo[1]), about[:40], tuple(wanted),
+                None if heard is None else Heard(*_numbers(heard, 3)),
+                _thinned(*_numbers(thinned, 3)))
 
 
 @dataclass(frozen=True)
@@ -134,6 +197,10 @@ class About:
         return '{:08x}'.format(zlib.crc32(pack_about(self)))
 
 
+def _thinned(bytes_per_s: float, picture_hz: float, looked_at: float) -> Thinned:
+    return Thinned(bytes_per_s, picture_hz, bool(looked_at))
+
+
 def pack_about(about: About) -> bytes:
     """Return the bytes of an :class:`About`."""
     return json.dumps([about.parameters, about.topics], sort_keys=True,
@@ -145,7 +212,7 @@ def unpack_about(body: bytes) -> About:
 
     :raises FrameError: they are none
     """
-    found = _rows(body)
+    found = read_rows(body)
     if len(found) != 2 or not isinstance(found[0], dict) or not isinstance(found[1], list):
         raise FrameError('no description of a robot')
     topics: List[Tuple[str, str]] = []
@@ -158,8 +225,11 @@ def unpack_about(body: bytes) -> About:
     return About(parameters, tuple(topics))
 
 
-def _rows(body: bytes) -> List[Any]:
-    """Return the list that bytes say."""
+def read_rows(body: bytes) -> List[Any]:
+    """Return the list that bytes say, as JSON.
+
+    :raises FrameError: they say none
+    """
     if len(body) > MOST_BYTES:
         raise FrameError('too long')
     try:
@@ -169,6 +239,13 @@ def _rows(body: bytes) -> List[Any]:
     if not isinstance(found, list):
         raise FrameError('cannot be read')
     return found
+
+
+def _numbers(value: object, count: int) -> List[float]:
+    """Return a list of so many numbers."""
+    if not isinstance(value, list) or len(value) != count or not all(map(_number, value)):
+        raise FrameError('a beat with wrong numbers')
+    return [float(part) for part in value]
 
 
 def _number(value: object) -> bool:

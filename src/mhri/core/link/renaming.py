@@ -57,6 +57,17 @@ def first_text(data: bytes) -> str:
     return _text(data, _BEFORE_FRAME)[0].decode('utf-8')
 
 
+def after_texts(data: bytes, count: int) -> int:
+    """Return where that begins which follows its number, stamp and so many texts.
+
+    :raises ValueError: it ends before
+    """
+    at = _BEFORE_FRAME
+    for _ in range(count):
+        _, at = _text(data, at)
+    return at
+
+
 def stamp_of(data: bytes) -> float:
     """Return the stamp of a message with a header [s].
 

@@ -93,6 +93,8 @@ def link_warning(figures: LinkFigures, dropped: bool = False) -> str:
         words.append('slow link: {:.0f} ms round trip'.format(1e3 * figures.round_trip_s))
     if figures.loss is not None and figures.loss > WARN_LOSS:
         words.append('bad link: {:.0f} % of its messages lost'.format(100.0 * figures.loss))
+    if figures.thinned:
+        words.append(figures.thinned)
     if figures.offset_s is not None and abs(figures.offset_s) > WARN_OFFSET_S:
         words.append('its clock is {:.1f} s {}: set both by chrony'.format(
             abs(figures.offset_s), 'ahead' if figures.offset_s > 0.0 else 'behind'))

@@ -8,8 +8,8 @@ _LEGAL = re.compile(r'[A-Za-z][A-Za-z0-9_]*\Z')
 _GLOBAL = re.compile(r'(/[A-Za-z][A-Za-z0-9_]*)+\Z')
 MAX_LENGTH = 64
 # Namespaces of mhri itself.
-RESERVED = frozenset(('gates', 'gates_in', 'mhri', 'mhri_gates', 'mhri_tasks', 'mux', 'mux_in',
-                      'panel_in', 'robot_controller'))
+RESERVED = frozenset(('gates', 'gates_in', 'mhri', 'mhri_gates', 'mhri_session', 'mhri_tasks',
+                      'mux', 'mux_in', 'panel', 'panel_in', 'robot_controller'))
 
 
 def name_problem(name: str) -> Optional[str]:

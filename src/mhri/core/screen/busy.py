@@ -17,12 +17,16 @@ def remove_question(robot: RobotView) -> str:
     return '{} is {}: remove it?'.format(robot.name, ' and '.join(uses)) if uses else ''
 
 
-def close_question(robots: Iterable[RobotView]) -> str:
-    """Return what to ask before the screen is closed; '' while nothing drives or records."""
+def close_question(robots: Iterable[RobotView], session: bool = False) -> str:
+    """Return what to ask before the screen is closed; '' while nothing drives or records.
+
+    :param session: whether the whole session is recorded
+    """
     robots = tuple(robots)
     parts = _part([robot.name for robot in robots if robot.driven and not robot.on_task], 'driven')
     parts += _part([robot.name for robot in robots if robot.on_task], 'on a task')
     parts += _part([robot.name for robot in robots if robot.recording], 'being recorded')
+    parts += ['the session is being recorded'] if session else []
     return '{}: close anyway?'.format(', '.join(parts)) if parts else ''
 
 

@@ -6,9 +6,9 @@ from typing import Collection, Sequence, Tuple
 SELECT, DESELECT, ONLY = 'select', 'deselect', 'only'
 SELECT_ALL, SELECT_NONE = 'select_all', 'select_none'
 NEXT, PREVIOUS = 'next', 'previous'
-RECORD, STOP_RECORDING = 'record', 'stop_recording'
+RECORD, STOP_RECORDING, MARK = 'record', 'stop_recording', 'mark'
 SELECTING = (SELECT, DESELECT, ONLY, SELECT_ALL, SELECT_NONE, NEXT, PREVIOUS)
-ACTIONS = SELECTING + (RECORD, STOP_RECORDING)
+ACTIONS = SELECTING + (RECORD, STOP_RECORDING, MARK)
 
 
 class RequestRefused(ValueError):

@@ -48,11 +48,13 @@ class LinkFigures:
 
     ``round_trip_s`` is the round-trip time [s], ``offset_s`` how far the robot's clock is ahead of
     the local one [s], ``loss`` the fraction of its odometry that did not arrive, in [0, 1].
+    ``thinned`` says in words what a radio that does not bear all lets through; '' while it does.
     """
 
     round_trip_s: Optional[float] = None
     offset_s: Optional[float] = None
     loss: Optional[float] = None
+    thinned: str = ''
 
 
 @dataclass(frozen=True)
@@ -83,6 +85,9 @@ class RobotView:
     has done something else for a moment, else None; ``why`` says in a sentence why it stands though
     the stick is held, '' for nothing. ``task`` is what it does by itself, None for nothing,
     ``carry_on`` the name of the task that it could continue, '' for none.
+
+    Where other hosts are linked to it: ``ask`` is what its button asks for ("Ask for control"), ''
+    for nothing, ``said`` the last change of its control, or the last refusal.
     """
 
     name: str
@@ -123,6 +128,8 @@ class RobotView:
     why: str = ''
     task: Optional[TaskView] = None
     carry_on: str = ''
+    ask: str = ''
+    said: str = ''
 
     @property
     def on_task(self) -> bool:

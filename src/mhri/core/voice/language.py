@@ -11,7 +11,7 @@ DIRECTIONS = ('forward', 'backward', 'left', 'right')
 MANNERS = ('little', 'faster', 'slower')
 ROBOT_ACTIONS = ('select', 'deselect', 'only')
 GROUP_ACTIONS = ('select_all', 'select_none')
-REQUESTS = ('record', 'stop_recording')
+REQUESTS = ('record', 'stop_recording', 'mark')
 # The most that one motion command may last: a person who is not heard again stops the robots.
 LONGEST_S = 2.0
 _WORD_OR_PHRASE = re.compile(r"[a-z']+( [a-z']+)*\Z")

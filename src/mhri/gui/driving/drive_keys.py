@@ -33,7 +33,7 @@ _TABS = {int(Qt.Key_Tab): 1, int(Qt.Key_Backtab): -1}
 COMMANDS = {int(Qt.Key_F1): 'keys', int(Qt.Key_F2): 'drawer', int(Qt.Key_F6): 'focus',
             int(Qt.Key_F11): 'full_screen',
             int(Qt.Key_C): 'carry_on', int(Qt.Key_M): 'map', int(Qt.Key_H): 'numbers',
-            int(Qt.Key_P): 'stills', int(Qt.Key_R): 'record'}
+            int(Qt.Key_P): 'stills', int(Qt.Key_R): 'record', int(Qt.Key_N): 'mark'}
 # Keys of the map; the first of them without Shift.
 ZOOMS = {int(Qt.Key_Equal): 'closer', int(Qt.Key_Plus): 'closer', int(Qt.Key_Minus): 'wider'}
 

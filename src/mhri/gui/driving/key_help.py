@@ -18,7 +18,8 @@ COMMAND_WORDS = {
     'numbers': 'show or hide the numbers over the pictures',
     'stills': 'save a still of every picture',
     'carry_on': 'continue the task that the robot you look at was taken from',
-    'record': 'record the selected robots, or stop all recordings',
+    'record': 'record the whole session, or end the recording',
+    'mark': 'mark this moment, with a note if you like',
 }
 # (keys, what they do), in the order on show.
 KEY_ROWS = (
@@ -49,6 +50,7 @@ class KeyHelp(QWidget):
     def __init__(self, screen):
         super().__init__(screen)
         self._screen = screen
+        self._rows = KEY_ROWS
         self._build()
         self._connect()
 
@@ -58,13 +60,18 @@ class KeyHelp(QWidget):
         self.setFocusPolicy(Qt.NoFocus)
         self.setPalette(theme.over_picture(self.palette()))
         self.setAccessibleName(TITLE)
-        self.setAccessibleDescription('; '.join('{}: {}'.format(*row) for row in KEY_ROWS))
         self.hide()
+        self.show_rows(KEY_ROWS)
 
     def _connect(self):
         """Follow the room there is."""
         for part in (self._screen.splitter, self._screen.stage):
             part.installEventFilter(self)
+
+    def show_rows(self, rows):
+        """Show these keys: (keys, what they do)."""
+        self._rows = tuple(rows)
+        self.setAccessibleDescription('; '.join('{}: {}'.format(*row) for row in self._rows))
 
     def toggle(self):
         """Show it, or hide it."""
@@ -124,14 +131,14 @@ class KeyHelp(QWidget):
         """Return the places in so many columns."""
         bold = theme.larger(font, 1.0, bold=True)
         unit, metrics = QFontMetrics(font).height(), QFontMetrics(font)
-        keys_px = theme.text_width(bold, *(keys for keys, _ in KEY_ROWS))
+        keys_px = theme.text_width(bold, *(keys for keys, _ in self._rows))
         each = (self.width() - unit) // columns
         words_px = each - keys_px - 2 * unit
         places = [(QRect(unit, unit // 2, theme.text_width(bold, TITLE), unit), TITLE, True)]
-        in_each = -(-len(KEY_ROWS) // columns)
+        in_each = -(-len(self._rows) // columns)
         for column in range(columns):
             left, y = unit + column * each, 2 * unit
-            for keys, text in KEY_ROWS[column * in_each:(column + 1) * in_each]:
+            for keys, text in self._rows[column * in_each:(column + 1) * in_each]:
                 room = QRect(left + keys_px + unit, y, max(1, words_px), 100 * unit)
                 room.setHeight(metrics.boundingRect(room, int(Qt.TextWordWrap), text).height())
                 places += [(QRect(left, y, keys_px, unit), keys, True), (room, text, False)]

@@ -48,7 +48,7 @@ class StopBar(QWidget):
         self._cut_off = False
         self._offered = False
         self._column = False
-        self._note = ''
+        self._note = self._idle = ''
         self._words = NOBODY_HEARD
         self._asked = Pending(ANSWER_WITHIN_S)
         self._appeared = QElapsedTimer()
@@ -201,8 +201,16 @@ class StopBar(QWidget):
             self._cut_off = cut_off
             self._show()
 
+    def show_idle(self, words):
+        """Say from now on why there is nothing to stop; what was stopped then still shows."""
+        self._idle = words
+        self.stop_button.show_idle(words)
+        self._show()
+
     def request_stop(self):
         """Ask for stop-all, as the button does; may be repeated."""
+        if self._idle:
+            return
         self._countdown.stop()
         self._asked.ask(True)
         self._answer.start()
@@ -247,7 +255,7 @@ class StopBar(QWidget):
         releasing = self._stopped and not asked
         headline, *shorter = ('RELEASING ...',) if releasing else self._words.headlines
         self._headline.show_text(headline, shorter=shorter)
-        self._note_line.show_text(self._note or self._words.note)
+        self._note_line.show_text(self._idle or self._note or self._words.note)
         if self._cut_off:
             self._headline.show_text(CUT_OFF, shorter=('CUT OFF',))
             self._note_line.show_text(CUT_OFF_NOTE, shorter=CUT_OFF_SHORTER)
@@ -255,7 +263,9 @@ class StopBar(QWidget):
         self.confirm_button.setVisible(confirming)
         self._second.setCurrentIndex(1 if confirming else 0)
         self.release_button.setEnabled(not releasing and not self._cut_off)
-        self.power_button.setVisible(self._offered and not confirming and not self._cut_off)
+        self.power_button.setVisible(self._offered and not (
+            confirming or self._cut_off or self._idle))
+        self._second_place.setVisible(not self._idle)
         self.update()
 
     def _show_page(self, index):

@@ -4,7 +4,7 @@
 import weakref
 
 from python_qt_binding.QtCore import QEvent, QRectF, QSize, Qt, Signal
-from python_qt_binding.QtGui import QPainter, QPen
+from python_qt_binding.QtGui import QPainter, QPalette, QPen
 from python_qt_binding.QtWidgets import QAbstractButton, QApplication, QSizePolicy
 
 from mhri.gui.screen import theme
@@ -49,6 +49,7 @@ class StopButton(QAbstractButton):
         self._hint = ''
         self._lines = 2.0
         self._engaged = False
+        self._idle = ''
         _BUTTONS.add(self)
         self.pressed.connect(self._watch)
         self.setAttribute(Qt.WA_AcceptTouchEvents)
@@ -65,6 +66,11 @@ class StopButton(QAbstractButton):
         if engaged != self._engaged:
             self._engaged = engaged
             self.update()
+
+    def show_idle(self, words):
+        """Say from now on why there is nothing to stop, and take no press."""
+        self._idle = words
+        self.setEnabled(False)
 
     def place(self):
         """Return (left, top, width, height) of what is to be seen of it in its window [device px].
@@ -119,8 +125,10 @@ class StopButton(QAbstractButton):
             text = theme.colour(theme.TEXT, self.palette())
             theme.paint_stopped_frame(painter, self.rect(), self.palette())
         else:
-            ground = theme.STOP_GROUND.darker(
-                _DOWN if self.isDown() else _UNDER_POINTER if self.underMouse() else _AT_REST)
+            ground = self.palette().color(QPalette.Window) if self._idle else \
+                theme.STOP_GROUND.darker(
+                    _DOWN if self.isDown() else _UNDER_POINTER if self.underMouse() else _AT_REST)
+            text = theme.readable_on(ground) if self._idle else text
             painter.setPen(QPen(ground.darker(125), 2))
             painter.setBrush(ground)
             painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), 6, 6)
@@ -129,6 +137,10 @@ class StopButton(QAbstractButton):
             painter.setBrush(Qt.NoBrush)
             painter.drawRoundedRect(QRectF(self.rect()).adjusted(7, 7, -7, -7), 4, 4)
         painter.setPen(text)
+        if self._idle:
+            painter.setFont(theme.base_font(self.window().font()))
+            painter.drawText(self.rect(), int(Qt.AlignCenter | Qt.TextWordWrap), self._idle)
+            return
         painter.drawText(self.rect(), int(Qt.AlignCenter), self.text())
         beside = (self.width() - painter.fontMetrics().horizontalAdvance(self.text())) / 2
         painter.setFont(theme.larger(theme.base_font(self.window().font()), 1.0))

@@ -115,6 +115,12 @@ class EventModel(QAbstractTableModel):
             del self._events[:surplus]
             self.endRemoveRows()
 
+    def clear(self):
+        """Forget all events."""
+        self.beginResetModel()
+        self._events = []
+        self.endResetModel()
+
     def _drop(self, number):
         """Take away the row of an event: one of the newest, so it is looked for from the end."""
         for row in range(len(self._events) - 1, -1, -1):

@@ -90,6 +90,7 @@ class RobotList(QScrollArea):
     open_requested = Signal(str)
     #: this robot is to go on with the task that it was taken from
     carry_on_requested = Signal(str)
+    ask_requested = Signal(str)
 
     def __init__(self, parent=None):
         super().__init__(parent)
@@ -219,6 +220,7 @@ class RobotList(QScrollArea):
         row.clicked.connect(self._on_click)
         row.opened.connect(self.open_requested)
         row.carry_on_requested.connect(self.carry_on_requested)
+        row.ask_requested.connect(self.ask_requested)
         return row
 
     def _show_again(self):

@@ -75,6 +75,8 @@ class RobotRow(QWidget):
     opened = Signal(str)
     #: it shall go on with the task that it was taken from
     carry_on_requested = Signal(str)
+    #: another host has control of it, and this one asks
+    ask_requested = Signal(str)
 
     def __init__(self, name, parent=None):
         super().__init__(parent)
@@ -133,13 +135,19 @@ class RobotRow(QWidget):
         self.task_pill.set_words((ON_TASK,))
         self.task_pill.say(ON_TASK, theme.TASK)
         self.task_pill.hide()
-        self.carry_on_button = QPushButton(CARRY_ON, self)
-        self.carry_on_button.setObjectName('carry_on_' + self.name)
-        self.carry_on_button.setFocusPolicy(Qt.TabFocus)
-        self.carry_on_button.setMinimumHeight(theme.touch_size(self))
-        self.carry_on_button.hide()
+        self.carry_on_button = self._button('carry_on_', CARRY_ON)
+        self.ask_button = self._button('ask_', '')
         self.battery = self._fixed_line(numbers, '100 %', Qt.AlignRight, BatteryLine)
         self._lay_out()
+
+    def _button(self, prefix, text):
+        """Make a button for fingers that is not always there."""
+        button = QPushButton(text, self)
+        button.setObjectName(prefix + self.name)
+        button.setFocusPolicy(Qt.TabFocus)
+        button.setMinimumHeight(theme.touch_size(self))
+        button.hide()
+        return button
 
     def _fixed_line(self, font, sample, align=Qt.AlignLeft, kind=TextLine):
         """Make a line for a number: its width is that of the sample."""
@@ -172,6 +180,7 @@ class RobotRow(QWidget):
         grid.addLayout(first, 0, 2)
         grid.addLayout(second, 1, 2)
         grid.addWidget(self.carry_on_button, 0, 3, 2, 1)
+        grid.addWidget(self.ask_button, 0, 4, 2, 1)
         grid.setColumnStretch(2, 1)
         self._show_trouble(None, '')
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
@@ -181,10 +190,15 @@ class RobotRow(QWidget):
         """Wire the check box; only clicks count, not what the view sets."""
         self.box.clicked.connect(self._on_box)
         self.carry_on_button.clicked.connect(self._on_carry_on)
+        self.ask_button.clicked.connect(self._on_ask)
 
     def _on_carry_on(self):
         """Tell of a click on "Continue"."""
         self.carry_on_requested.emit(self.name)
+
+    def _on_ask(self):
+        """Tell of a click on "Ask for control"."""
+        self.ask_requested.emit(self.name)
 
     def _on_box(self, on):
         """Tell of a click on the box."""
@@ -210,6 +224,7 @@ class RobotRow(QWidget):
         self.recording.say(RECORDING if view.recording else '', filled=False)
         self.recording.setVisible(view.recording)
         self._offer_to_carry_on(view.carry_on)
+        self._offer_control(view.ask)
         # Who waits stands: the room is for the reason.
         self.linear.setVisible(not (view.carry_on or view.on_task and view.task
                                     and view.task.waits))
@@ -225,6 +240,14 @@ class RobotRow(QWidget):
             text = '{} {} of {}'.format(CARRY_ON, label.lower(), self.name)
             self.carry_on_button.setAccessibleName(text)
             self.carry_on_button.setToolTip(plain_tip(text))
+
+    def _offer_control(self, text):
+        """Offer to ask for control, or to take it; '' where there is nobody to ask."""
+        self.ask_button.setVisible(bool(text))
+        if text != self.ask_button.text():
+            self.ask_button.setText(text)
+            self.ask_button.setAccessibleName('{} of {}'.format(text, self.name))
+            self.ask_button.setToolTip(plain_tip(words.CONTROL_TIPS.get(text, '')))
 
     def _show_numbers(self, view):
         """Show what changes all the time."""

@@ -64,8 +64,6 @@ class ScreenWidget(QWidget):
     drive_requested = Signal(str)
     #: the robot that is looked at has changed
     looked_at = Signal(str)
-    #: the pictures on show are to be kept as files
-    stills_requested = Signal()
     #: name of a source
     mode_requested = Signal(str)
     #: forward (ahead +) and turn (left +), each in [-1, 1]; at once on every change
@@ -268,10 +266,6 @@ class ScreenWidget(QWidget):
             self.arrangement.show_numbers(not self.stage.numbers_shown)
         elif command == 'full_screen':
             self.arrangement.change_full_screen()
-        elif command == 'record':
-            self._record()
-        elif command == 'stills':
-            self.stills_requested.emit()
 
     def minimumSizeHint(self):  # noqa: N802
         """Return the least at which it can be used; parts that are too large then give way."""

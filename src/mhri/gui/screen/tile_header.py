@@ -12,6 +12,7 @@ from mhri.gui.screen import theme, words
 from mhri.gui.screen.labels import BatteryLine, Pill, Sign, TextLine
 
 VIEWS, VIEWS_IN_SHORT = 'Views', '…'
+REPLAY = 'REPLAY'
 TEAR_OFF, PUT_BACK = 'Tear off', 'Put back'
 TYPE, AGE, LINK, PILL, BATTERY = 'type', 'age', 'link', 'pill', 'battery'
 GAPS, SIGN = 'gaps', 'sign'
@@ -87,6 +88,7 @@ class TileHeader(QWidget):
         self.large = True
         self._view = None
         self._with_age = True
+        self._replay = False
         self._build(name, type_label)
 
     def _build(self, name, type_label):
@@ -244,8 +246,18 @@ class TileHeader(QWidget):
             self.carry_on_button.setText(text)
             self.fit()
 
+    def show_replay(self):
+        """Say from now on that this is not now, where a recording is told otherwise."""
+        if not self._replay:
+            self._replay = True
+            self.rec_label.show_text(REPLAY, theme.ATTENTION)
+            self.rec_label.show()
+            self.fit()
+
     def show_recording(self, status):
         """Show how long a recording has been running, None where none is."""
+        if self._replay:
+            return
         if self.rec_label.isHidden() != (status is None):
             self.rec_label.setVisible(status is not None)
             self.fit()

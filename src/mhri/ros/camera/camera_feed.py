@@ -20,6 +20,7 @@ from mhri.ros.camera.camera_decoder import Decoder
 from mhri.ros.camera.samples import no_answer, Samples
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.subscription import Subscription, reachable
+from mhri.ros.session.passed_on import PASSED_ON
 
 LOOK_S = 1.0           # between looks at the master while nothing comes
 LOOK_AGAIN_S = 5.0     # ... and while pictures come: a better transport may turn up
@@ -96,12 +97,12 @@ class CameraFeed:
 
     def line_of(self, session, offer):
         """Return the class of a subscription to an offer, and its arguments."""
-        return Subscription, offer.topic, session.hear
+        return Subscription, offer.topic, PASSED_ON.hearing(offer.topic, session.hear)
 
     def samples_of(self, session, offer, grant, native_hz):
         """Return the same of single pictures of an offer, one at a time."""
-        return (Samples, offer.topic, session.hear, session.explain, grant.rate_hz, native_hz,
-                self._clock)
+        return (Samples, offer.topic, PASSED_ON.hearing(offer.topic, session.hear),
+                session.explain, grant.rate_hz, native_hz, self._clock)
 
     def close(self, wait_s=0.0):
         """Decode nothing more and unregister the topic, the latter on the feed's own thread.

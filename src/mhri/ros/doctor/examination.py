@@ -19,9 +19,11 @@ from mhri.core.doctor.judgement import diagnose, odd_ones
 from mhri.core.doctor.facts import (
     Facts, Graph, REFUSED, SILENT, STRANGER, UNRESOLVED)
 from mhri.core.doctor.host import find_on_host
+from mhri.core.doctor.linked import links_of
 from mhri.core.doctor.robots import robots_of
 from mhri.core.doctor.system import GATES_STATE, muxes
 from mhri.ros.doctor.host import look_at_computer
+from mhri.ros.doctor.linked import LinkLook
 from mhri.ros.doctor.masters import look_elsewhere, parse_uri
 from mhri.ros.doctor.probe import Probe
 from mhri.ros.graph.look import shipped_ignore_list
@@ -85,7 +87,10 @@ def look(environ, types, ignore, begun, robots=(), caller_id='/mhri_doctor'):
     facts = replace(facts, master=master, graph=graph)
     watch_until = min(time.monotonic() + WATCH_S, begun + AGAIN_S)
     known = robots_of(graph, types, ignore)
+    links = LinkLook(links_of(graph))
     facts = _ask_nodes(facts, known, uris, _deadline(begun + ASKED_S, LEAST_S))
+    linked, keys = links.result(_deadline(begun + ASKED_S, LEAST_S))
+    facts = replace(facts, linked=linked, keys=keys)
     if not muxes(facts):
         facts = replace(facts, master=replace(master, elsewhere=look_elsewhere(
             master, computer, caller_id, only_with_mux=True)))

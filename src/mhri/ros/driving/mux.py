@@ -35,7 +35,8 @@ from std_srvs.srv import SetBool, SetBoolResponse
 from mhri.core.driving.arbiter import Arbiter, DRIVING, READY, REPEAT_HZ, ZEROS_S
 from mhri.core.driving.buttons import ButtonEdges
 from mhri.core.driving.limits import ZERO
-from mhri.core.driving.profile import JoyRefused, NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL, STOP_ALL
+from mhri.core.driving.profile import (
+    JoyRefused, MARK, NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL, STOP_ALL)
 from mhri.core.driving.pulse import Pulse
 from mhri.core.driving.sources import TWIST
 from mhri.msg import ControlMode, PanelRequest, RobotSelect
@@ -64,7 +65,7 @@ STOP_PARAMETER = '/mux/stop_all'
 SOURCES_PARAMETER = '/mux/sources'
 # What a button asks of the panel, as in its messages.
 _REQUESTS = {NEXT_ROBOT: PanelRequest.NEXT, PREVIOUS_ROBOT: PanelRequest.PREVIOUS,
-             SELECT_ALL: PanelRequest.SELECT_ALL}
+             SELECT_ALL: PanelRequest.SELECT_ALL, MARK: PanelRequest.MARK}
 
 
 class Mux:

@@ -38,10 +38,12 @@ class MuxClient:
     :param on_answer: called on the worker with a sentence when the mux has answered
     :param on_mode: called on a ROS thread when the mux has published its mode
     :param pressed: whether stop-all was pressed before there was a mux to tell
+    :param speaks: False for a screen that looks at what was recorded: it requests nothing, and
+        has nothing to do with any topic of velocities
     ``strangers`` are nodes that pose as the mux.
     """
 
-    def __init__(self, on_answer, on_mode, pressed=False):
+    def __init__(self, on_answer, on_mode, pressed=False, speaks=True):
         self._on_answer = on_answer
         self._on_mode = on_mode
         self._lock = threading.Lock()
@@ -49,6 +51,7 @@ class MuxClient:
         self._limits = None
         self._waits_for = None
         self._asked, self._asked_at = (0.0, 0.0), 0.0
+        self._speaks = speaks
         #: what keeps the active source from driving, as a sentence; '' for nothing
         self.advice = ''
         #: whether the dead-man buttons of pads must be held
@@ -61,8 +64,10 @@ class MuxClient:
         self._wheel = None
         # Held while publishing, so that nothing is unregistered while in use.
         self._wheel_lock = threading.Lock()
-        self._select_mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
-        self._speed = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=1, latch=True)
+        self._select_mode = self._speed = None
+        if speaks:
+            self._select_mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
+            self._speed = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=1, latch=True)
         self.strangers = Strangers()
         self._force = InForce(STOP_SERVICE, self.strangers.refuse)
         self._heard, *heard = [
@@ -75,8 +80,8 @@ class MuxClient:
                 ('/mux/advice', String, self._on_advice),
                 ('/mux/dead_man', Bool, self._on_dead_man),
                 ('/robot_controller/stop_all', Bool, self._hear_stop),
-                ('/robot_controller/twist', Twist, self._on_twist))]
-        self._topics = [self._heard, self._select_mode, self._speed] + heard
+                ('/robot_controller/twist', Twist, self._on_twist)) if speaks or kind != Twist]
+        self._topics = list(filter(None, (self._heard, self._select_mode, self._speed, *heard)))
         self._force.start()
         self._stopper = Worker('stop_all', self._keep_stopping, RETRY_S).start()
         if pressed:
@@ -121,7 +126,12 @@ class MuxClient:
 
     def asked(self):
         """Return what the mux commands now (m/s, rad/s); it repeats whatever is not zero."""
-        return self._asked if time.monotonic() - self._asked_at < ASKED_S else (0.0, 0.0)
+        return self._asked if not self._speaks or time.monotonic() - self._asked_at < ASKED_S \
+            else (0.0, 0.0)
+
+    def tell(self, asked, limits):
+        """Take in what the mux commanded then, and its limits (None: not known)."""
+        self._asked, self._limits = asked, limits
 
     def _on_advice(self, message):
         self.advice = tidy_text(message.data)
@@ -147,11 +157,13 @@ class MuxClient:
 
     def request_mode(self, name):
         """Ask for another source; :meth:`state` says whether it is in force."""
-        self._select_mode.publish(source=name)
+        if self._select_mode is not None:
+            self._select_mode.publish(source=name)
 
     def request_limits(self, linear_mps, angular_rad_s):
         """Ask for another speed limit."""
-        self._speed.publish(to_twist(linear_mps, angular_rad_s))
+        if self._speed is not None:
+            self._speed.publish(to_twist(linear_mps, angular_rad_s))
 
     def select(self, names):
         """Publish the checked robots; repeating this renews the operator's lease."""

@@ -22,6 +22,7 @@ import threading
 import time
 
 import rospy
+from rospy.impl.masterslave import ROSHandler
 from rospy.impl.paramserver import get_param_server_cache
 from rospy.impl.registration import (
     get_registration_listeners, get_service_manager, get_topic_manager)
@@ -310,6 +311,22 @@ def never_ask_for(name, value):
     get_param_server_cache().set(name, value)
 
 
+def skip_number(publisher):
+    """Count a message of a ``rospy.Publisher`` that is not sent, as if it were lost on the way."""
+    publisher.impl.seq += 1
+
+
+def answer_late(wait):
+    """Call a function before this process answers who asks for its id, as the link probe does."""
+    plain = ROSHandler.getPid
+
+    def get_pid(handler, caller_id):
+        wait()
+        return plain(handler, caller_id)
+
+    ROSHandler.getPid = get_pid
+
+
 def registrations():
     """Return this node's registrations: ([(topic, type)], [(service, URI)], [(topic, type)]).
 
@@ -333,6 +350,7 @@ def _self_test():
     :raises ImportError: rospy is not the version this was written for
     """
     wanted = [
+        (ROSHandler, ('getPid',)),
         (rospy.topics._PublisherImpl, ('add_connection', 'set_queue_size', 'publish')),
         (rospy.topics._SubscriberImpl, ('add_connection', 'remove_connection')),
         (TCPROSTransport, ('set_cleanup_callback', 'write_data', 'close', 'receive_loop')),

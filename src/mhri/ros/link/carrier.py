@@ -6,14 +6,16 @@ import json
 import os
 import re
 import sys
+import threading
 
 import rospkg
 
 from mhri.core.link.carried import COMMAND, key_of, PICTURE
+from mhri.core.link.keys import ALONE, TLS
 
 # utils/host/common.sh installs it.
 VERSION = '1.5.1'
-ENDPOINT = re.compile(r'(tcp|udp)/(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9.-]+):[0-9]{1,5}\Z')
+ENDPOINT = re.compile(r'(tcp|udp|tls|quic)/(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9.-]+):[0-9]{1,5}\Z')
 # A peer that says nothing for so long is gone; knocks at one that is not there yet [ms].
 _LEASE_MS, _KNOCK_MS, _KNOCK_MOST_MS, _OPEN_MS = 1500, 200, 1000, 1000
 
@@ -45,9 +47,10 @@ def load_library():
             'pip3 install eclipse-zenoh=={}'.format(error, VERSION)) from None
 
 
-def check_endpoints(name, endpoints):
+def check_endpoints(name, endpoints, secret=False):
     """Refuse what is no list of endpoints.
 
+    :param secret: keys are in use
     :raises CarrierError: names the option and the remedy
     """
     for endpoint in endpoints:
@@ -55,6 +58,12 @@ def check_endpoints(name, endpoints):
             raise CarrierError('--{}: {:.60} is no endpoint: give one such as '
                                'tcp/192.168.0.7:7447 or udp/192.168.0.7:7447'.format(
                                    name, repr(endpoint)))
+        protocol = endpoint.partition('/')[0]
+        if protocol not in (TLS if secret else ALONE):
+            raise CarrierError('--{}: {} {}'.format(name, endpoint, (
+                'asks nobody for a key: with keys give tls/ or quic/ in place of {}/, or '
+                '--keys off'.format(protocol) if secret else
+                'needs keys: put one in place with mhri_keys.sh, or give --keys FOLDER')))
 
 
 class Carrier:
@@ -64,53 +73,126 @@ class Carrier:
 
     :param listen: endpoints on which the other side may call, e.g. ``['tcp/0.0.0.0:7447']``
     :param connect: endpoints to call
+    :param secrets: settings of zenoh for keys, see :meth:`mhri.ros.link.key_folder.KeyFolder.read`;
+        None for a link without
+    :param place: ``peer``; ``routed`` if what is called is a zenoh router; or ``router`` itself
     :raises LibraryMissing: see :func:`load_library`
     :raises CarrierError: an endpoint cannot be listened on
     """
 
-    def __init__(self, robot, listen=(), connect=()):
-        check_endpoints('listen', listen)
-        check_endpoints('connect', connect)
+    def __init__(self, listen=(), connect=(), secrets=None, place='peer'):
+        check_endpoints('listen', listen, secrets is not None)
+        check_endpoints('connect', connect, secrets is not None)
         self._zenoh = load_library()
-        self._robot = robot
+        self._listen, self._connect, self._place = list(listen), list(connect), place
+        self._lock = threading.Lock()
+        self._session = None
+        # What to declare anew: {key: its publisher and its class}, [(keys, function, subscriber)].
+        self._publishers = {}
+        self._kept = []
+        self._open(secrets)
+
+    def _open(self, secrets):
         settings = {
-            'mode': 'peer', 'listen/endpoints': list(listen), 'connect/endpoints': list(connect),
+            'mode': 'router' if self._place == 'router' else 'peer',
+            'listen/endpoints': self._listen, 'connect/endpoints': self._connect,
             'connect/timeout_ms': -1, 'connect/exit_on_failure': False,
             'connect/retry': {'period_init_ms': _KNOCK_MS, 'period_max_ms': _KNOCK_MOST_MS,
                               'period_increase_factor': 1.5},
-            'scouting/multicast/enabled': False, 'scouting/gossip/enabled': False,
-            'transport/unicast/open_timeout': _OPEN_MS, 'transport/link/tx/lease': _LEASE_MS}
+            # A router passes nothing on between peers of which it hears no gossip. Whom the others
+            # gossip about is never called.
+            'scouting/multicast/enabled': False,
+            'scouting/gossip/enabled': self._place != 'peer',
+            'scouting/gossip/autoconnect': {'router': [], 'peer': []},
+            'transport/unicast/open_timeout': _OPEN_MS, 'transport/link/tx/lease': _LEASE_MS,
+            'transport/link/protocols': list(ALONE if secrets is None else TLS)}
+        settings.update(secrets or {})
         config = self._zenoh.Config()
         for key, value in settings.items():
             config.insert_json5(key, json.dumps(value))
         try:
-            self._session = self._zenoh.open(config)
+            session = self._zenoh.open(config)
         except self._zenoh.ZError as error:
             raise CarrierError('cannot listen on {}: {}'.format(
-                ' '.join(listen) or 'any port', str(error)[:300])) from None
-        # zenoh forgets what nobody holds.
-        self._kept = []
+                ' '.join(self._listen) or 'any port', str(error)[:300])) from None
+        with self._lock:
+            self._session = session
+            for key, (_, urgency) in list(self._publishers.items()):
+                self._publishers[key] = self._publisher(key, urgency), urgency
+            self._kept = [(keys, hear, session.declare_subscriber(keys, hear))
+                          for keys, hear, _ in self._kept]
 
-    def sender(self, way, topic, urgency):
-        """Return a function that sends bytes as a stream's next message."""
+    def renew(self, secrets):
+        """Hang up, and call again with other keys; what is sent meanwhile is dropped.
+
+        :raises CarrierError: the endpoint cannot be listened on yet; try again
+        """
+        with self._lock:
+            session, self._session = self._session, None
+            self._publishers = {key: (None, urgency)
+                                for key, (_, urgency) in self._publishers.items()}
+        if session is not None:
+            session.close()
+        self._open(secrets)
+
+    def _publisher(self, key, urgency):
         priorities = {COMMAND: self._zenoh.Priority.REAL_TIME,
                       PICTURE: self._zenoh.Priority.DATA_LOW}
-        publisher = self._session.declare_publisher(
-            key_of(self._robot, way, topic), express=urgency == COMMAND,
+        return self._session.declare_publisher(
+            key, express=urgency == COMMAND,
             congestion_control=self._zenoh.CongestionControl.DROP,
             priority=priorities.get(urgency, self._zenoh.Priority.DATA),
             reliability=self._zenoh.Reliability.BEST_EFFORT)
-        return publisher.put
 
-    def listen(self, way, on_bytes):
-        """Call a function with (topic, bytes) of all that comes on a way, on zenoh's thread."""
-        root = key_of(self._robot, way, '')
+    def sender(self, key, urgency):
+        """Return a function that sends bytes as the next message of a stream."""
+        with self._lock:
+            self._publishers[key] = (
+                self._publisher(key, urgency) if self._session else None), urgency
 
+        def send(data):
+            """Send bytes, or drop them."""
+            with self._lock:
+                publisher = self._publishers[key][0]
+                if publisher is not None:
+                    publisher.put(data)
+        return send
+
+    def listen(self, keys, on_bytes):
+        """Call a function with (key, bytes) of all that comes, on zenoh's thread."""
         def hear(sample):
             """Pass a message on."""
-            on_bytes(str(sample.key_expr)[len(root):], sample.payload.to_bytes())
-        self._kept.append(self._session.declare_subscriber(root + '**', hear))
+            on_bytes(str(sample.key_expr), sample.payload.to_bytes())
+        with self._lock:
+            # zenoh forgets what nobody holds.
+            self._kept.append((keys, hear, self._session and
+                               self._session.declare_subscriber(keys, hear)))
+
+    def between(self, robot, host):
+        """Return what carries the link of a robot with one host."""
+        return Between(self, robot, host)
 
     def close(self):
         """Hang up."""
-        self._session.close()
+        with self._lock:
+            session, self._session = self._session, None
+            self._publishers = {key: (None, urgency)
+                                for key, (_, urgency) in self._publishers.items()}
+        if session is not None:
+            session.close()
+
+
+class Between:
+    """The part of a :class:`Carrier` that belongs to one robot and one host."""
+
+    def __init__(self, carrier, robot, host):
+        self._carrier, self._robot, self._host = carrier, robot, host
+
+    def sender(self, way, topic, urgency):
+        """Return a function that sends bytes as a stream's next message."""
+        return self._carrier.sender(key_of(self._robot, self._host, way, topic), urgency)
+
+    def listen(self, way, on_bytes):
+        """Call a function with (topic, bytes) of all that comes on a way, on zenoh's thread."""
+        root = key_of(self._robot, self._host, way, '')
+        self._carrier.listen(root + '**', lambda key, data: on_bytes(key[len(root):], data))

@@ -1,21 +1,29 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The host's side of the link: on the host's master the robot looks like any other."""
+import math
 import time
 
 import rospy
+from std_msgs.msg import String
 
 from mhri.core.link.carried import (
     COMMAND, DOWN, full_topic, GUARD_COMMAND, GUARD_ECHO, PICTURE, STATE, TF, TF_STATIC, TF_TYPE)
-from mhri.core.link.frames import About, unpack_about
+from mhri.core.link.control import unpack_standing
+from mhri.core.link.figures import FIGURES, figures_words, RadioFigures
+from mhri.core.link.frames import About, Thinned, unpack_about
+from mhri.core.link.keys import called
 from mhri.core.link.peer import held_s
 from mhri.core.link.renaming import stamp_of
 from mhri.ros.graph.master_api import MasterError
 from mhri.ros.link.robot_side import PARAMETERS
-from mhri.ros.link.side import ABOUT, Side
+from mhri.ros.link.host_control import HostControl
+from mhri.ros.link.side import ABOUT, CONTROL, Side
 from mhri.ros.messages import bytes_of, message_class, MessageMissing
 
 QUEUE = 5
+# The figures of the link are told so often [s].
+TELL_S = 1.0
 PICTURE_TYPES = ('sensor_msgs/Image', 'sensor_msgs/CompressedImage', 'sensor_msgs/PointCloud2')
 LATCHED = (TF_STATIC, 'mhri_guard/state')
 
@@ -29,13 +37,21 @@ class HostSide(Side):
     the robot has a guard. Sets ``/<robot>/robot_type``, ``robot_model`` and ``mhri``.
 
     :param set_parameter: called with (name, value), blocking
+    :param host: what this computer is called on the link
+    :param secret: with keys
     """
 
-    def __init__(self, name, carrier, set_parameter, **options):
+    def __init__(self, name, carrier, set_parameter, host, secret, **options):
         super().__init__(name, carrier, 'down', **options)
+        self._control = HostControl(
+            name, host, secret, lambda body: self.send(CONTROL, COMMAND, body))
         self._set_parameter = set_parameter
         self._about = About({}, ())
         self._news = None
+        self._less = Thinned()
+        self._told_at = 0.0
+        self._figures = rospy.Publisher('/{}/{}'.format(name, FIGURES), String, queue_size=1,
+                                        tcp_nodelay=True)
         self._publishers = {}
         self._unusable = set()
         self._down = []
@@ -48,13 +64,17 @@ class HostSide(Side):
         return (self._about.name if self._about.topics else ''), tuple(wanted)
 
     def on_peer(self, beat, now):
-        """Nothing: the beat itself says that the robot is there."""
+        """Take in what the robot's side sends less of."""
+        self._less = beat.thinned
 
     def on_frame(self, topic, frame, now):
         """Publish a message, or note what the robot says of itself."""
         if topic == ABOUT:
             self._news = unpack_about(frame.body)
             self.to_do.set()
+            return
+        if topic == CONTROL:
+            self._control.on_standing(unpack_standing(frame.body))
             return
         publisher = self._publishers.get(topic)
         if publisher is not None:
@@ -66,7 +86,9 @@ class HostSide(Side):
             publisher.publish(message)
 
     def work(self, now):
-        """Open the topics that are new."""
+        """Tell the figures; open the topics that are new."""
+        self._control.tick(self.peer.heard(now))
+        self._tell(now)
         news = self._news
         if news is None or news == self._about:
             return
@@ -115,25 +137,49 @@ class HostSide(Side):
         held = held_s(stamp_of(data), time.time()) if stream.topic == GUARD_COMMAND else 0.0
         self.send(stream.topic, stream.urgency, data, held_s=held)
 
+    def heard(self):
+        """Tell whether the robot is heard now."""
+        with self.lock:
+            return self.peer.heard(self.clock())
+
+    def versions(self):
+        """Return the versions that the robot tells of its side, see :mod:`mhri.ros.link.note`."""
+        said = self._about.parameters.get('link')
+        return {key: str(said.get(key, ''))[:40] for key in ('mhri', 'zenoh')} \
+            if isinstance(said, dict) else {}
+
     def fill(self, status):
         """Fill a ``DiagnosticStatusWrapper`` with the figures of the link."""
-        with self.lock:
-            now, peer = self.clock(), self.peer
-            heard = peer.heard(now)
-            status.summary(status.OK if heard else status.WARN, 'linked' if heard else (
-                'the robot is not heard' if peer.silence_s(now) < 1e9 else
-                'the robot was never heard: is mhri_link running on it, and is --connect right?'))
-            status.add('round trip [ms]', '{:.1f}'.format(1000.0 * peer.round_trip_s()))
-            status.add('beats lost [%]', '{:.0f}'.format(100.0 * peer.loss()))
-            status.add('refused', self.refused)
-        for urgency, ages in sorted(self.ages().items()):
-            if ages:
-                status.add('age of {} [ms]'.format(urgency), '{:.1f} median, {:.1f} most'.format(
-                    1000.0 * ages[len(ages) // 2], 1000.0 * ages[-1]))
+        super().fill(status)
+        status.add('keys', 'TLS both ways' if self._control.state.keys else
+                   'none: whoever reaches the robot can drive it')
+        status.add('control', called(self._control.state.holder) or 'nobody')
         return status
 
+    def less(self):
+        """Return what the robot's side sends less of; under the lock."""
+        return self._less
+
+    def unheard(self, silence_s):
+        """Return in words that the robot is not heard, for so long [s]."""
+        return 'the robot is not heard' if silence_s < 1e9 else (
+            'the robot was never heard: is mhri_link running on it, and is --connect right?')
+
+    def _tell(self, now):
+        """Publish the figures of the link, for the robot's row."""
+        with self.lock:
+            heard, less = self.peer.heard(now), self._less
+            loss = self.meter.read(now).loss
+            trip_s = self.peer.round_trip_s()
+        if heard and now - self._told_at >= TELL_S:
+            self._told_at = now
+            self._figures.publish(figures_words(RadioFigures(
+                trip_s, loss, less.bytes_per_s or math.inf,
+                less.picture_hz if less.bytes_per_s and less.looked_at else math.nan)))
+
     def close(self):
-        """Nothing to end: the guard on the robot ends what is being driven."""
+        """Give up control; the guard on the robot ends what is being driven."""
+        self._control.leave()
 
 
 class Listener(rospy.SubscribeListener):

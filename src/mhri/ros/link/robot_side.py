@@ -3,15 +3,23 @@
 """The robot's side of the link, on the robot's own master."""
 import rospy
 
+from mhri.core.driving.guard_link import parse_id
+from mhri.core.link.bearing import Bearing
 from mhri.core.link.carried import (
-    DOWN, FRAME_NAMES, full_topic, GUARD_COMMAND, Pace, TF, TF_STATIC, up_streams, worth_carrying)
-from mhri.core.link.frames import About, pack_about
+    DOWN, FRAME_NAMES, full_topic, GUARD_COMMAND, Pace, PICTURE, TF, TF_STATIC, up_streams,
+    worth_carrying)
+from mhri.core.link.control import moves
+from mhri.core.link.frames import About, DEFLATED, pack_about, PIECE, PLAIN, Thinned
 from mhri.core.link.peer import may_pass
 from mhri.core.link.renaming import first_text, renamer, rewritten, Transforms
+from mhri.core.link.shares import Flow, shares
 from mhri.core.robots.robot_types import resolve_robot_type
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.subscription import Subscription
-from mhri.ros.link.side import Side
+from mhri.ros.link.note import versions
+from mhri.ros.link.pictures import Pictures
+from mhri.ros.link.recall import Recall
+from mhri.ros.link.side import CONTROL, Side
 from mhri.ros.messages import bytes_of, message_class
 
 PARAMETERS = ('robot_type', 'robot_model', 'mhri')
@@ -19,13 +27,16 @@ LOOK_S = 1.0
 # What nobody on the host listens to any more stays subscribed for a while [s].
 LINGER_S = 5.0
 LATCHED_S = 1.0
+# Smaller messages are not worth packing [bytes].
+PACKED_BYTES = 200
 
 
 class Carried:
     """One stream while somebody on the host listens to it.
 
     :param stream: :class:`mhri.core.link.carried.Stream`
-    :param send: called with (stream, bytes, number of names in it)
+    :param send: called with (stream, type, bytes, number of names in it); returns of how many bytes
+        the message was, 0 if it was not sent
     """
 
     def __init__(self, namespace, stream, rename, send, clock):
@@ -34,6 +45,8 @@ class Carried:
         self._send = send
         self._clock = clock
         self._pace = Pace(stream.rate_hz)
+        self.flow = Flow(stream)
+        self._whole = False
         self._newest = None
         self._sent_at = clock()
         self._transforms = None
@@ -52,7 +65,8 @@ class Carried:
         elif self.stream.latched:
             self._newest = bytes(data)
         now = self._clock()
-        if self._pace.lets(now):
+        self.flow.came(now)
+        if self._whole or self._pace.lets(now):
             self._go(kind, bytes(data), now)
 
     def _go(self, kind, data, now):
@@ -60,7 +74,17 @@ class Carried:
             data = self._transforms.take()
         if data is not None:
             self._sent_at = now
-            self._send(self.stream, data, FRAME_NAMES.get(kind, 0))
+            size = self._send(self.stream, kind, data, FRAME_NAMES.get(kind, 0))
+            if size:
+                self.flow.sized(size)
+
+    def thin(self, share):
+        """Go over to a share; None to send all. Pictures are thinned by :class:`Pictures`."""
+        self._whole = share is not None and self.stream.urgency == PICTURE
+        rate_hz = self.stream.rate_hz
+        if share is not None:
+            rate_hz = min(share.hz, rate_hz) if rate_hz else share.hz
+        self._pace.change(rate_hz)
 
     def again(self, now):
         """Send what is latched once more: the radio may have lost it, or somebody came later."""
@@ -73,7 +97,7 @@ class Carried:
 
 
 class RobotSide(Side):
-    """Sends up what is listened to on the host, and gives the guard what comes down.
+    """The link with one host: sends up what it listens to, and gives the guard what it commands.
 
     Subscribes the topics of the robot's type, ``mhri_guard/echo``, ``mhri_guard/state``,
     ``mhri_guard/dropped``, ``/tf`` and ``/tf_static`` while a node on the host listens to them.
@@ -83,17 +107,23 @@ class RobotSide(Side):
     :param namespace: of the robot on its own master, such as ``/bot1``, or '' for none
     :param types: {name: RobotType}
     :param shared: frames that keep their names
+    :param desk: :class:`mhri.ros.link.reception.Desk`, which knows whether that host has control
     """
 
-    def __init__(self, name, carrier, namespace, types, shared, **options):
+    def __init__(self, name, carrier, namespace, types, shared, desk, **options):
         super().__init__(name, carrier, 'up', **options)
+        self._desk = desk
         self.dropped = 0
         self._namespace = namespace
         self._types = types
         self._rename = renamer(name, shared)
-        self._about = About({}, ())
+        self._recall = Recall()
+        self._about = About({'link': versions()}, ())
         self._told_at = self._looked_at = 0.0
         self._wanted = ()
+        self._bearing = Bearing()
+        self._pictures = Pictures(self.clock, self._up_piece, lambda data, names, number: rewritten(
+            data, number, names, self._rename))
         self._streams = {}
         self._open = {}
         self._publishers = {
@@ -107,6 +137,7 @@ class RobotSide(Side):
 
     def on_peer(self, beat, now):
         """Take in which topics somebody on the host listens to."""
+        self._desk.on_heard(now)
         wanted = ()
         if beat.about == self._about.name:
             wanted = tuple(self._about.topics[place][0] for place in beat.wanted
@@ -117,25 +148,61 @@ class RobotSide(Side):
         if wanted != self._wanted:
             self._wanted = wanted
             self.to_do.set()
+        if beat.heard is not None:
+            self._thin(beat.heard, now)
+
+    def _thin(self, heard, now):
+        """Send as much as the radio bears, by what the host's side says that came."""
+        opened = [carried for topic, carried in list(self._open.items())
+                  if topic in self._wanted]
+        flows, bearing = [carried.flow for carried in opened], self._bearing
+        was_bound = bearing.bound
+        bearing.on_heard(heard, sum(flow.demand(now) for flow in flows), now)
+        if not (was_bound or bearing.bound):
+            return
+        found = shares(flows, bearing.bytes_per_s, bearing.loss, now) if bearing.bound else {}
+        for carried in opened:
+            carried.thin(found.get(carried.stream.topic))
+        self._pictures.share(found)
+        looked_at = any(flow.stream.urgency == PICTURE for flow in flows)
+        self.thinned = Thinned(bearing.bytes_per_s, self._pictures.most_hz(), looked_at) \
+            if found else Thinned()
+        if not bearing.bound:
+            self._pictures.forget()
+            rospy.loginfo('%s: the radio bears everything', self.name)
+        elif not was_bound:
+            rospy.loginfo('%s: the radio bears %.0f kB/s: less is sent', self.name,
+                          1e-3 * bearing.bytes_per_s)
 
     def on_frame(self, topic, frame, now):
-        """Give the guard a command, unless it is late."""
+        """Give the guard a command, unless it is late, or another host has control."""
+        if topic == CONTROL:
+            self._desk.on_asked(frame.body, now)
+            return
         publisher = self._publishers.get(topic)
         if publisher is None:
             return
         age_s = self.note_age('command', frame, now)
-        if topic == GUARD_COMMAND and not may_pass(first_text(frame.body), age_s):
+        if not self._passes(topic, frame.body, age_s, now):
             self.dropped += 1
             return
         message = publisher.data_class()
         message._buff = frame.body
         publisher.publish(message)
 
+    def _passes(self, topic, body, age_s, now):
+        if topic != GUARD_COMMAND:
+            return self._desk.holds()
+        frame_id = first_text(body)
+        return may_pass(frame_id, age_s) and self._desk.passes(
+            parse_id(frame_id)[3], moves(body), now)
+
     def work(self, now):
         """Look at the master now and then; open and close what is listened to."""
         if now - self._looked_at >= LOOK_S:
             self._looked_at = now
             try:
+                self._recall.look()
                 self._look()
             except MasterError as error:
                 rospy.logdebug('%s', error)
@@ -154,15 +221,33 @@ class RobotSide(Side):
             elif topic in wanted:
                 carried.again(now)
 
-    def _up(self, stream, data, names):
+    def _goes(self, stream):
+        """Tell whether anybody would hear a stream."""
+        return stream.topic in self._wanted and self.peer.heard(self.clock())
+
+    def _up(self, stream, kind, data, names):
         with self.lock:
-            if stream.topic not in self._wanted or not self.peer.heard(self.clock()):
-                return
+            if not self._goes(stream):
+                return 0
+            bound = self._bearing.bound
+            if bound and stream.urgency == PICTURE:
+                self._pictures.offer(stream, kind, data, names)
+                return len(data)
+            packed = bound and len(data) >= PACKED_BYTES
             try:
-                self.send(stream.topic, stream.urgency, data,
-                          lambda number: rewritten(data, number, names, self._rename))
+                return self.send(stream.topic, stream.urgency, data,
+                                 lambda number: rewritten(data, number, names, self._rename),
+                                 kind=DEFLATED if packed else PLAIN)
             except ValueError as error:
                 rospy.logwarn_throttle(10.0, '{}: {}'.format(stream.topic, error))
+                return 0
+
+    def _up_piece(self, stream, piece):
+        with self.lock:
+            goes = self._goes(stream) and self._bearing.bound
+            if goes:
+                self.send(stream.topic, stream.urgency, piece, kind=PIECE)
+            return goes
 
     def _look(self):
         """Learn the robot's type and topics; what was there once stays, whatever a master forgets.
@@ -194,6 +279,10 @@ class RobotSide(Side):
         with self.lock:
             self._about = About(parameters, tuple(sorted(topics.items())))
 
+    def unheard(self, silence_s):
+        """Return in words that the host is not heard, for so long [s]."""
+        return 'the host is not heard' if silence_s < 1e9 else 'the host was never heard'
+
     def close(self):
         """Say nothing more; the guard ends what is being driven."""
-        rospy.loginfo('%s: %d late commands kept from the guard', self.name, self.dropped)
+        rospy.loginfo('%s: %d commands kept from the guard', self.name, self.dropped)

@@ -34,6 +34,7 @@ class RawReader:
         self._tried = set()
         self._fresh = []
         self._links = {}
+        self._left = set()
         self._stopping = False
         self._poll = select.epoll()
         self._wake_read, self._wake_write = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
@@ -58,6 +59,14 @@ class RawReader:
         for key in fresh:
             threading.Thread(target=self._connect, args=key, name='raw_connect',
                              daemon=True).start()
+
+    def leave(self, topics):
+        """Hang up on all publishers of some topics; return at once."""
+        with self._lock:
+            for topic in topics:
+                self._wanted.pop(topic, None)
+            self._left.update(topics)
+        self.wake()
 
     def stop(self):
         """Read what has come by now, then end; return at once."""
@@ -125,7 +134,11 @@ class RawReader:
         os.read(self._wake_read, 4096)
         with self._lock:
             fresh, self._fresh = self._fresh, []
+            left, self._left = self._left, set()
             stopping = self._stopping
+        for number, link in list(self._links.items()) if left else ():
+            if link.key[0] in left:
+                self._drop(number, link, 'left')
         for link in fresh:
             self._links[link.fileno()] = link
             self._read_all(link)

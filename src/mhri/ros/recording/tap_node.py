@@ -96,13 +96,26 @@ class TapNode:
         self.worker.start()
         self.worker.do(self._renew)
 
+    def want(self, topics):
+        """Subscribe exactly these topics from now on; return at once."""
+        self.worker.do(self._change, tuple(topics))
+
+    def _change(self, topics):
+        gone, self.topics = set(self.topics) - set(topics), topics
+        if self._open and gone:
+            try:
+                self._api.call_many([('unregisterSubscriber', topic, self._uri) for topic in gone])
+            except MasterError as error:
+                _LOG.debug('%s', error)
+        self._renew()
+
     def update(self, topic, publishers):
         """Report who publishes a topic now (on the worker's thread)."""
-        if self._open:
+        if self._open and topic in self.topics:
             self._on_publishers(topic, publishers)
 
     def _renew(self):
-        if not self._open:
+        if not self._open or not self.topics:
             return
         try:
             found = self._api.call_many([('registerSubscriber', topic, '*', self._uri)

@@ -12,6 +12,7 @@ from mhri.core.screen.views import GONE, RobotView, WAITING
 from mhri.ros.robots.bot_feeds import BotFeeds
 from mhri.ros.graph.look import robot_facts
 from mhri.ros.graph.master_api import MasterError
+from mhri.ros.robots.controls import Controls
 from mhri.ros.robots.robot_link import RobotLink
 
 
@@ -21,19 +22,25 @@ class Fleet:
     :param types: {name: RobotType}
     :param gates: :class:`mhri.ros.driving.gates_client.GatesClient`
     :param worker: :class:`mhri.ros.worker.Worker` for the feeds of the tiles
+    :param clock: function that returns seconds that never go back
+    :param wall: function that returns the time of day [s since 1970]
+    :param told: called with what the operator is to read
     """
 
-    def __init__(self, types, gates, worker, clock=time.monotonic):
+    def __init__(self, types, gates, worker, clock=time.monotonic, wall=time.time, told=None):
         self._types = types
         self._gates = gates
         self._worker = worker
         self._clock = clock
+        self._wall = wall
         self._lock = threading.Lock()
         self._links = {}
         self._wanted = set()
         self._problems = {}
         self._seen = {}
         self._stopped = False
+        #: who has control of robots that are linked
+        self.controls = Controls(told or rospy.loginfo)
 
     def want(self, name):
         """Note that a robot is in the list; :meth:`connect` makes its link."""
@@ -46,6 +53,7 @@ class Fleet:
             self._wanted.discard(name)
             link = self._links.pop(name, None)
             self._seen.pop(name, None)
+        self.controls.forget(name)
         return link
 
     def connect(self, name, facts=None):
@@ -74,9 +82,11 @@ class Fleet:
             self._links.pop(name, None)
         if old is not None:
             old.close()
-        link = RobotLink(name, robot_type, self._gates, BotFeeds(name, robot_type, self._worker))
+        link = RobotLink(name, robot_type, self._gates, BotFeeds(name, robot_type, self._worker),
+                         self._clock, self._wall)
         with self._lock:
             self._links[name] = link
+            self.controls.watch(name)
             stopped = self._stopped
         if stopped:
             link.on_stop(True, self._clock())
@@ -158,13 +168,14 @@ class Fleet:
             problems = self._problems.get(name)
         if link is None:
             return RobotView(name=name, note='looking for it', **ours)
-        view = link.view()
+        view = self.controls.seen(link.view())
         return replace(view, note=view.note or (problems[0] if problems else ''), **ours)
 
     def close(self):
         """Unregister the topics of all robots (blocking)."""
         with self._lock:
             self._wanted.clear()
+            self.controls.close()
             links, self._links = list(self._links.values()), {}
         for link in links:
             link.close()

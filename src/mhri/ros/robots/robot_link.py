@@ -10,7 +10,9 @@ from dataclasses import replace
 from geometry_msgs.msg import TwistStamped
 import rospy
 from sensor_msgs.msg import BatteryState
+from std_msgs.msg import String
 
+from mhri.core.link.figures import FIGURES, FIGURES_S, read_figures, thinned_words
 from mhri.core.map.tf_tree import frame_name
 from mhri.core.robots.link import link_note, link_state
 from mhri.core.robots.link_quality import LinkQuality, link_warning
@@ -57,20 +59,22 @@ class Feed:
 
     :param read: function from the message to a value
     :param on_message: called with (feed, message, received at [s]) on the ROS thread
+    :param clock: function that returns seconds that never go back
     """
 
-    def __init__(self, topic, message_class, read, on_message):
+    def __init__(self, topic, message_class, read, on_message, clock=time.monotonic):
         self.topic = topic
         self._class = message_class
         self._read = read
         self._on_message = on_message
+        self._clock = clock
         self._refusals = Refusals(topic, time.monotonic)
         # Not a queue of one: a message dropped here must not look like a loss of the link.
         self._subscriber = rospy.Subscriber(topic, message_class, self._hear, queue_size=20,
                                             tcp_nodelay=True)
 
     def _hear(self, message):
-        self._on_message(self, message, time.monotonic())
+        self._on_message(self, message, self._clock())
 
     def value(self, message):
         """Return the value in a message, None if its bytes are not valid."""
@@ -99,14 +103,17 @@ class RobotLink:
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
     :param gates: :class:`mhri.ros.driving.gates_client.GatesClient`
     :param feeds: :class:`mhri.ros.robots.bot_feeds.BotFeeds` of its tile
+    :param clock: function that returns seconds that never go back
+    :param wall: function that returns the time of day [s since 1970]
     """
 
-    def __init__(self, name, robot_type, gates, feeds, clock=time.monotonic):
+    def __init__(self, name, robot_type, gates, feeds, clock=time.monotonic, wall=time.time):
         self.name = name
         self.robot_type = robot_type
         self._gates = gates
         self.feeds = feeds
         self._clock = clock
+        self._wall = wall
         self._lock = threading.Lock()
         self.added_at = clock()
         self._heard_at = None
@@ -118,11 +125,13 @@ class RobotLink:
         self._ages = {}
         self._proof = None
         self._battery = None
-        self._guard_feed = None
+        self._guard_feeds = []
         self._dropped_at = -math.inf
+        self._radio = None
         self._feeds = self._open_feeds()
         self._battery_feeds = [
-            Feed(topic_of(name, topic), BatteryState, battery_fraction, self._on_battery)
+            Feed(topic_of(name, topic), BatteryState, battery_fraction, self._on_battery,
+                 clock)
             for topic in robot_type.battery]
         self._hardware_stop = HardwareStop(name, robot_type)
 
@@ -145,11 +154,11 @@ class RobotLink:
             """Read what moves, and take note of what the robot calls its own frame."""
             self.feeds.base = frame_name(getattr(message, 'child_frame_id', ''))
             return read(message)
-        return [Feed(topic_of(self.name, topic), message_class, read_motion, self._on_message)
-                for topic in self.robot_type.odometry]
+        return [Feed(topic_of(self.name, topic), message_class, read_motion, self._on_message,
+                     self._clock) for topic in self.robot_type.odometry]
 
     def _on_message(self, feed, message, now):
-        came_at, header = time.time(), feed.header(message)
+        came_at, header = self._wall(), feed.header(message)
         with self._lock:
             late_s = 0.0
             if header is not None:
@@ -165,12 +174,18 @@ class RobotLink:
     def listen_to_guard(self):
         """Listen to what the robot's guard drops, once it has one (blocking: asks the master)."""
         gate = self._gates.robot(self.name)
-        if self._guard_feed is None and gate is not None and gate.guarded:
-            self._guard_feed = Feed('/{}/{}'.format(self.name, DROPPED), TwistStamped,
-                                    lambda message: message, self._on_dropped)
+        if not self._guard_feeds and gate is not None and gate.guarded:
+            self._guard_feeds = [
+                Feed('/{}/{}'.format(self.name, DROPPED), TwistStamped, lambda message: message,
+                     self._on_dropped, self._clock),
+                Feed('/{}/{}'.format(self.name, FIGURES), String,
+                     lambda message: read_figures(message.data), self._on_radio, self._clock)]
 
     def _on_dropped(self, feed, message, now):
         self._dropped_at = now
+
+    def _on_radio(self, feed, message, now):
+        self._radio = (now, feed.value(message))
 
     def _on_battery(self, feed, message, now):
         self._battery = feed.value(message)
@@ -209,9 +224,9 @@ class RobotLink:
             state = link_state(age, connections, self.robot_type.silent_after_s,
                                self._takes_commands(now))
             if age is not None and (age < 1.0 or not self._heard_wall):
-                self._heard_wall = time.strftime('%H:%M:%S')
+                self._heard_wall = time.strftime('%H:%M:%S', time.localtime(self._wall()))
             proof = self._proof.view(now) if self._proof else None
-            figures = self._quality.read(now)
+            figures = self._with_radio(self._quality.read(now), now)
         dropped = now - self._dropped_at < DROPPED_SHOWN_S
         warning = link_warning(figures, dropped) if state == LIVE else ''
         view = RobotView(
@@ -228,6 +243,15 @@ class RobotLink:
             offers_power=self.robot_type.motor_power is not None)
         return seen_by_gates(view, self._gates.robot(self.name), self._gates.answers())
 
+    def _with_radio(self, figures, now):
+        """Return figures with those of a link to the robot's own master, where there is one."""
+        told_at, radio = self._radio or (-math.inf, None)
+        if radio is None or now - told_at > FIGURES_S:
+            return figures
+        known = {key: value for key, value in (
+            ('round_trip_s', radio.round_trip), ('loss', radio.loss)) if math.isfinite(value)}
+        return replace(figures, thinned='; '.join(thinned_words(radio)), **known)
+
     def _takes_commands(self, now):
         """Tell whether the robot has listened to commands long enough to be heard as well."""
         gate = self._gates.robot(self.name)
@@ -241,8 +265,7 @@ class RobotLink:
         """Stop listening (blocking: it asks the master)."""
         self._hardware_stop.close()
         self.feeds.close()
-        guard_feeds = [self._guard_feed] if self._guard_feed else []
-        for feed in self._feeds + self._battery_feeds + guard_feeds:
+        for feed in self._feeds + self._battery_feeds + self._guard_feeds:
             feed.unregister()
 
 

@@ -47,25 +47,29 @@ class ScreenBackend:
 
     :param argv: the node's command line (remappings)
     :param seat: :class:`mhri.ros.screen.seat.Seat` shared by the screens of this process
+    :param clocks: functions that return seconds that never go back, and the time of day [s]
     """
 
-    def __init__(self, argv=(), seat=SEAT):
+    #: whether it may ask anybody for anything; a screen of a recording may not
+    speaks = True
+
+    def __init__(self, argv=(), seat=SEAT, clocks=(time.monotonic, time.time)):
         self._seat = seat
         self._argv = list(argv)
         self._types, self._type_errors = robot_types()
         self.selection = Selection()
         self.recordings = Recordings()
         self._events = queue.Queue()
-        self._gates = GatesClient(self._on_gates)
-        self._claim = None
+        self._gates = GatesClient(self._on_gates, clocks[0])
         self._feeder = Worker('feeds')
-        self._fleet = Fleet(self._types, self._gates, self._feeder)
+        self._fleet = Fleet(self._types, self._gates, self._feeder, *clocks,
+                            told=lambda text: self._events.put(('told', text)))
+        self.controls = self._fleet.controls
         self._jobs = PanelJobs(self._types, self._events)
-        self._together = self._brake = False
+        self._together = self._brake = self._pressed = self._stopped_by_gates = False
         self._asked = AskedAndDone()
         self._mux = self._watch = self._requests = self._diagnostics = self._devices = None
-        self._first_limits = self._first_mode = None
-        self._pressed = self._stopped_by_gates = False
+        self._claim = self._first_limits = self._first_mode = None
         self._stop_note = ''
         self._ros = ROS_STARTING
         self._closing = threading.Event()
@@ -101,7 +105,8 @@ class ScreenBackend:
         self._watch = MasterWatch().start()
         self._claim = Claim(rospy.get_name())
         self._gates.start()
-        mux = MuxClient(self._on_answer, lambda: self._worker.do(self._meet_mux), self._pressed)
+        mux = MuxClient(self._on_answer, lambda: self._worker.do(self._meet_mux), self._pressed,
+                        self.speaks)
         # Unregistering a topic at once leaves its subscribers knocking for a while.
         self._gates.wait_first()
         if self.drives():
@@ -152,8 +157,6 @@ class ScreenBackend:
 
     def _on_answer(self, text):
         self._stop_note = text
-
-    # What the operator does.
 
     def send_stick(self, forward, turn):
         """Send the virtual joystick; does nothing before ROS is there or while others drive."""
@@ -287,8 +290,6 @@ class ScreenBackend:
         self._pressed = False
         if self._mux:
             self._mux.release()
-
-    # What there is to see.
 
     def take_events(self):
         """Return the events since the last call, as a list of tuples."""

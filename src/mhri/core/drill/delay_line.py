@@ -1,0 +1,42 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A link that is slow or loses some of what it is given."""
+import collections
+from typing import Callable, Deque, Generic, List, Tuple, TypeVar
+
+Item = TypeVar('Item')
+
+
+class DelayLine(Generic[Item]):
+    """Keeps items back for a while, in their order, or loses them; not thread-safe.
+
+    :param chance: function that returns a number from 0 up to but not including 1
+    """
+
+    def __init__(self, chance: Callable[[], float]) -> None:
+        self._chance = chance
+        self._kept: Deque[Tuple[float, Item]] = collections.deque()
+
+    def put(self, item: Item, now: float, delay_s: float, loss: float) -> bool:
+        """Give it an item at a time [s]; return False if it is lost.
+
+        :param loss: the share that is lost, 0 to 1
+        """
+        if loss and self._chance() < loss:
+            return False
+        # As in TCP nothing overtakes: what is sent after a delay has ended waits for what was
+        # sent before.
+        due = max(now + delay_s, self._kept[-1][0] if self._kept else now)
+        self._kept.append((due, item))
+        return True
+
+    def take(self, now: float) -> List[Item]:
+        """Return the items that are due, oldest first."""
+        due = []
+        while self._kept and self._kept[0][0] <= now:
+            due.append(self._kept.popleft()[1])
+        return due
+
+    def __len__(self) -> int:
+        """Return how many items are under way."""
+        return len(self._kept)

@@ -1,0 +1,72 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What of the graph belongs to a session."""
+from typing import Any, Container, Dict, Iterable, Mapping, Tuple
+
+from mhri.core.recording.recording import GUARD_COMMAND
+from mhri.core.robots.names import topic_of
+from mhri.core.robots.robot_types import RobotType
+
+# Whatever is published below this is an input of somebody.
+INPUTS = '/mux_in/'
+EVENTS, PANEL_EVENTS = '/mhri_session/events', '/panel/events'
+PICTURES = '/panel/pictures'
+#: what the host says, whoever drives
+HOST_TOPICS = (
+    '/mux_in/mode_select', '/mux/mode', '/robot_controller/twist', '/robot_controller/task_twist',
+    '/robot_controller/stop_all', '/robot_controller/robot_select', '/gates/state',
+    '/gates_in/group_speed', '/mhri_tasks/list', '/mhri_tasks/places', '/tf', '/tf_static', '/map',
+    EVENTS)
+_MOCAP = '/vrpn_client_node/{}/pose'
+# Kinds of a robot's sensors, as keys of a RobotType and of session.yaml.
+_SENSORS = ('odometry', 'imu', 'scan', 'battery')
+_CAMERAS = (('rgb', '/compressed'), ('depth', '/compressedDepth'))
+
+
+def robot_topics(robot: str, kind: RobotType) -> Tuple[str, ...]:
+    """Return the topics to record of a robot besides its cameras, absolute, none twice.
+
+    As in :func:`mhri.core.recording.recording.topics_of`, every candidate is taken; who merely
+    listens to commands changes nothing.
+    """
+    names = [name for key in _SENSORS for name in getattr(kind, key)]
+    topics = [topic_of(robot, name) for name in (*names, *kind.command, GUARD_COMMAND)]
+    return tuple(dict.fromkeys((*topics, _MOCAP.format(robot))))
+
+
+def camera_topics(robot: str, kind: RobotType) -> Tuple[str, ...]:
+    """Return the compressed pictures of a robot's cameras, absolute."""
+    return tuple(topic_of(robot, name) + suffix
+                 for key, suffix in _CAMERAS for name in getattr(kind, key))
+
+
+def robot_entry(robot: str, number: int, kind: RobotType, parameters: Mapping[str, Any],
+                published: Container[str]) -> Dict[str, Any]:
+    """Return what ``session.yaml`` says of a robot.
+
+    :param parameters: those of its namespace
+    :param published: absolute names; of several candidates the first that is published counts, of
+        none the first
+    """
+    topics: Dict[str, str] = {}
+    suffixes = dict(_CAMERAS)
+    for key in (*_SENSORS, 'rgb', 'depth', 'command'):
+        names = [topic_of(robot, name) + suffixes.get(key, '') for name in getattr(kind, key)]
+        if names:
+            topics[key] = next((name for name in names if name in published), names[0])
+    return {'number': number, 'type': kind.name, 'model': kind.model,
+            'parameters': _plain(parameters), 'topics': topics}
+
+
+def _plain(value: Any) -> Any:
+    """Return a parameter as YAML and JSON can say it: dates and bytes as text."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(part) for key, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(part) for part in value]
+    return value if value is None or isinstance(value, (bool, int, float, str)) else str(value)
+
+
+def inputs_of(published: Iterable[str]) -> Tuple[str, ...]:
+    """Return those of some topics that are inputs."""
+    return tuple(sorted(topic for topic in published if topic.startswith(INPUTS)))

@@ -1,0 +1,74 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The executable ``mhri_replay``: replays a session, a folder of bags or a bag.
+
+It needs a master of its own: ``utils/host/mhri_run.sh --replay FOLDER`` starts both. Parameters it
+sets: ``/<robot>`` of each robot as recorded, ``/mux/sources``, ``/mhri/replay/robots`` ({name:
+number}).
+"""
+import argparse
+import sys
+
+import rospy
+
+from mhri.core.config import ConfigError
+from mhri.core.driving.sources import parse_mux_config
+from mhri.core.session.folder import NotASession
+from mhri.core.session.foreign import robots_of_topics
+from mhri.ros.driving.in_force import STOP_SERVICE, TAKE_SERVICE
+from mhri.ros.graph.master_api import MasterApi
+from mhri.ros.resources import profile_reader, read_text, resource_path, robot_types
+from mhri.ros.session.bag_set import open_session
+from mhri.ros.session.player import Player
+
+ROBOTS_PARAMETER = '/mhri/replay/robots'
+
+
+def main():
+    """Replay until shut down; exit with 1 and a sentence if that cannot be."""
+    parser = argparse.ArgumentParser(prog='mhri_replay', description=__doc__.split('\n')[0])
+    parser.add_argument('path', help="a session's folder, a folder of bags, or a bag")
+    path = parser.parse_args(rospy.myargv(sys.argv)[1:]).path
+    types, _ = robot_types()
+    try:
+        kept = open_session(path, lambda topics, name: robots_of_topics(topics, types, name))
+    except NotASession as error:
+        sys.exit('cannot replay {}'.format(error))
+    rospy.init_node('mhri_replay')
+    for problem in kept.bags.problems:
+        rospy.logwarn('left out: %s', problem)
+    # What is recorded of robots must not meet those that drive.
+    taken = MasterApi(rospy.get_name(), timeout_s=5.0).call_many(
+        [('lookupService', name) for name in (STOP_SERVICE, TAKE_SERVICE)])
+    if any(taken):
+        sys.exit('mhri drives at {}: replay with a master of its own (utils/host/mhri_run.sh '
+                 '--replay)'.format(rospy.core.rosgraph.get_master_uri()))
+    set_parameters(kept.robots)
+    Player(kept).start()
+    rospy.spin()
+    kept.bags.close()
+
+
+def set_parameters(robots):
+    """Set what a screen asks for before it knows a robot (blocking)."""
+    for name, robot in robots.items():
+        parameters = robot.get('parameters')
+        known = {'robot_type': robot.get('type'), 'robot_model': robot.get('model')}
+        rospy.set_param('/' + name, {
+            **(parameters if isinstance(parameters, dict) else {}),
+            **{key: value for key, value in known.items() if isinstance(value, str)}})
+    rospy.set_param(ROBOTS_PARAMETER, {name: number_of(robot) for name, robot in robots.items()})
+    path = resource_path('mux.yaml')
+    try:
+        sources = parse_mux_config(read_text(path), path, profile_reader(path)).sources
+    except (ConfigError, OSError) as error:
+        rospy.logwarn('the names of the sources are not known: %s', error)
+        return
+    rospy.set_param('/mux/sources', [{'name': source.name, 'label': source.label,
+                                      'suspend_service': ''} for source in sources])
+
+
+def number_of(robot):
+    """Return the number of a robot as recorded, 0 if there is none."""
+    number = robot.get('number')
+    return number if isinstance(number, int) else 0

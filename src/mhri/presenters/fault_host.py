@@ -1,0 +1,40 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Joins the list of faults with the simulated robots; everything here runs on the GUI thread."""
+from mhri.gui.drill.faults_page import FaultsPage, TITLE
+from mhri.ros.drill.faults_client import FaultsClient
+
+
+class FaultHost:
+    """Adds the page once there is a simulated robot: with real ones alone nobody sees it.
+
+    :param screen: :class:`mhri.gui.screen.screen.ScreenWidget`
+    :param client: :class:`mhri.ros.drill.faults_client.FaultsClient`
+    """
+
+    def __init__(self, screen, client=None):
+        self._screen = screen
+        self._client = client or FaultsClient()
+        self.page = None
+
+    def show_view(self, view):
+        """Take in the :class:`mhri.core.screen.views.PanelView` of this moment."""
+        self._client.follow([robot.name for robot in view.robots])
+        simulated = self._client.simulated()
+        if self.page is None:
+            if not simulated:
+                return
+            self._add_page()
+        self.page.show_robots(simulated)
+        for news in self._client.take_news():
+            self.page.show_answer(*news)
+
+    def _add_page(self):
+        self.page = FaultsPage()
+        self.page.asked.connect(self._client.ask)
+        self.page.shown.connect(self._client.watch)
+        self._screen.arrangement.add_page(TITLE, self.page)
+
+    def close(self):
+        """Ask nobody any more."""
+        self._client.close()

@@ -1,0 +1,260 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The bags of a session as one: what was newest at a moment, and what came next.
+
+Read by ``rosbag.Bag``. Beneath its public interface are used, here alone: its connections, its
+indexes (for the newest message before a time it offers nothing but reading all) and the reading of
+one message.
+"""
+from bisect import bisect_right
+from collections import OrderedDict
+import heapq
+import os
+from typing import NamedTuple
+
+import rosbag
+from rosbag.bag import ROSBagException
+
+from mhri.core.recording.recording import ACTIVE
+from mhri.core.session.folder import (
+    bags_of, EVENTS_JSONL, NotASession, read_events, read_info, robots_of, SESSION_YAML)
+
+# Open at once: the one that plays, its neighbours, and those that a seek looks into.
+MOST_OPEN = 6
+# A seek looks for what was last heard of a topic in so many earlier bags at most.
+MOST_LOOKED_INTO = 3
+
+
+class Connection(NamedTuple):
+    """Who published a topic: its type as the bag has it, and whether it was latched."""
+
+    topic: str
+    kind: str
+    md5sum: str
+    definition: str
+    latched: bool
+
+
+class Recorded(NamedTuple):
+    """One message: when it was received [ns], by which :class:`Connection`, and its bytes."""
+
+    time_ns: int
+    connection: Connection
+    data: bytes
+
+
+class _Place(NamedTuple):
+    """Where a message is."""
+
+    time_ns: int
+    bag: int
+    number: int
+    entry: object
+
+
+class BagSet:
+    """Bags in the order of time; not thread-safe.
+
+    :param paths: files that were closed; they may overlap a little, as the next one begins with
+        what is latched
+    :raises NotASession: none of them can be read
+    """
+
+    def __init__(self, paths):
+        self._paths, self._starts, self._ends = [], [], []
+        self._kinds, self._there = [], []
+        self._open = OrderedDict()
+        #: sentences about files that are left out
+        self.problems = []
+        for path in paths:
+            self._meet(path)
+        if not self._paths:
+            raise NotASession('; '.join(self.problems) or 'there is no bag in it')
+        order = sorted(range(len(self._paths)), key=lambda index: self._starts[index])
+        for name in ('_paths', '_starts', '_ends', '_kinds', '_there'):
+            setattr(self, name, [getattr(self, name)[index] for index in order])
+
+    def _meet(self, path):
+        """Take in what a bag holds, without its index."""
+        try:
+            with rosbag.Bag(path, 'r', skip_index=True) as bag:
+                if not bag._chunks:
+                    return
+                self._starts.append(min(chunk.start_time.to_nsec() for chunk in bag._chunks))
+                self._ends.append(max(chunk.end_time.to_nsec() for chunk in bag._chunks))
+                self._kinds.append({number: _connection(found)
+                                    for number, found in bag._connections.items()})
+        except (ROSBagException, OSError, ValueError, KeyError) as error:
+            self.problems.append('{} cannot be read: {}'.format(os.path.basename(path), error))
+            return
+        self._paths.append(path)
+        self._there.append({kind.topic for kind in self._kinds[-1].values()})
+
+    @property
+    def start_ns(self):
+        """When the first message was received."""
+        return self._starts[0]
+
+    @property
+    def end_ns(self):
+        """When the last message was received."""
+        return max(self._ends)
+
+    def connections(self):
+        """Return all connections, each once, in order of time."""
+        return list(dict.fromkeys(kind for kinds in self._kinds for kind in kinds.values()))
+
+    def _bag(self, index):
+        """Return a bag with its index, opened if it is not."""
+        if index in self._open:
+            self._open.move_to_end(index)
+            return self._open[index]
+        bag = rosbag.Bag(self._paths[index], 'r', skip_index=True)
+        bag._get_indexes(None)
+        self._open[index] = bag
+        while len(self._open) > MOST_OPEN:
+            self._open.popitem(last=False)[1].close()
+        return bag
+
+    def _read(self, place):
+        bag = self._bag(place.bag)
+        message = bag._read_message((place.entry.chunk_pos, place.entry.offset), raw=True)
+        return Recorded(place.time_ns, self._kinds[place.bag][place.number], message.message[1])
+
+    def newest(self, time_ns, wanted=lambda connection: True):
+        """Return the newest message of each topic at a time, the oldest first.
+
+        :param wanted: tells which connections count
+        """
+        last = max(0, bisect_right(self._starts, time_ns) - 1)
+        found = self._newest_in(last, time_ns, wanted)
+        looked = 0
+        for index in range(last - 1, -1, -1):
+            missing = {kind.topic for kind in self._kinds[index].values()
+                       if wanted(kind) and kind.topic not in found}
+            if missing:
+                looked += 1
+                for topic, place in self._newest_in(
+                        index, time_ns, lambda kind: wanted(kind) and kind.topic in missing).items():
+                    found.setdefault(topic, place)
+            if looked == MOST_LOOKED_INTO:
+                break
+        return [self._read(place) for place in sorted(
+            found.values(), key=lambda place: (place.time_ns, place.bag))]
+
+    def _newest_in(self, index, time_ns, wanted):
+        """Return {topic: where its newest message in a bag is}."""
+        bag, found = self._bag(index), {}
+        for number, kind in self._kinds[index].items():
+            entries = bag._connection_indexes.get(number, ()) if wanted(kind) else ()
+            place = _count_until(entries, time_ns)
+            if place:
+                entry = entries[place - 1]
+                at = _Place(entry.time.to_nsec(), index, number, entry)
+                if kind.topic not in found or found[kind.topic].time_ns <= at.time_ns:
+                    found[kind.topic] = at
+        return found
+
+    def after(self, time_ns, wanted=lambda connection: True):
+        """Yield every message after a time, in order."""
+        first = max(0, bisect_right(self._starts, time_ns) - 1)
+        # The bag before may end a moment after this one begins.
+        for index in range(max(0, first - 1), len(self._paths)):
+            if self._ends[index] <= time_ns:
+                continue
+            bag = self._bag(index)
+            rows = [self._row(index, number, bag._connection_indexes.get(number, ()), time_ns)
+                    for number, kind in self._kinds[index].items() if wanted(kind)]
+            for place in heapq.merge(*rows, key=lambda place: place.time_ns):
+                yield self._read(place)
+
+    @staticmethod
+    def _row(index, number, entries, time_ns):
+        for place in range(_count_until(entries, time_ns), len(entries)):
+            yield _Place(entries[place].time.to_nsec(), index, number, entries[place])
+
+    def close(self):
+        """Close every file."""
+        while self._open:
+            self._open.popitem()[1].close()
+
+
+def _connection(found):
+    """Return the :class:`Connection` of one of ``rosbag``'s."""
+    latched = found.header.get('latching', b'0')
+    return Connection(found.topic, found.datatype, found.md5sum, found.msg_def,
+                      latched in (b'1', '1'))
+
+
+def _count_until(entries, time_ns):
+    """Return how many entries of an index, in order of time, are not after a time."""
+    low, high = 0, len(entries)
+    while low < high:
+        middle = (low + high) // 2
+        if entries[middle].time.to_nsec() <= time_ns:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+class Kept(NamedTuple):
+    """What there is to replay: bags, lines of events, robots, and what goes before each topic."""
+
+    name: str
+    bags: BagSet
+    events: tuple
+    robots: dict
+    prefix: str
+
+
+def open_session(path, foreign):
+    """Open a session's folder, a folder of bags, or a bag of any program (blocking).
+
+    :param foreign: function of ({topic: type}, the file's name) that returns
+        (robots, prefix) where there is no ``session.yaml``
+    :returns: :class:`Kept`
+    :raises NotASession: it cannot be replayed; the text names path and reason
+    """
+    path = os.path.abspath(os.path.expanduser(path))
+    try:
+        return _open_folder(path, foreign) if os.path.isdir(path) else _open_file(path, foreign)
+    except (NotASession, OSError, UnicodeDecodeError) as error:
+        raise NotASession('{}: {}'.format(
+            path, error.strerror if isinstance(error, OSError) else error))
+
+
+def _open_folder(path, foreign):
+    names = sorted(os.listdir(path))
+    bags = bags_of(names) or [name for name in names if name.endswith('.bag')]
+    paths = [os.path.join(path, name) for name in bags if not name.endswith(ACTIVE)]
+    opened = BagSet(paths)
+    opened.problems += ['{} was never closed: rosbag reindex it, and take ".active" off its name'
+                        .format(name) for name in bags if name.endswith(ACTIVE)]
+    name = os.path.basename(path)
+    info = os.path.join(path, SESSION_YAML)
+    if not os.path.exists(info):
+        return Kept(name, opened, (), *foreign(_kinds(opened), name))
+    events = tuple(read_events(_text(os.path.join(path, EVENTS_JSONL))))
+    return Kept(name, opened, events, robots_of(read_info(_text(info)), events), '')
+
+
+def _open_file(path, foreign):
+    if not os.path.exists(path):
+        raise NotASession('there is no such file or folder')
+    name = os.path.splitext(os.path.basename(path))[0]
+    opened = BagSet([path])
+    return Kept(name, opened, (), *foreign(_kinds(opened), name))
+
+
+def _kinds(bags):
+    return {connection.topic: connection.kind for connection in bags.connections()}
+
+
+def _text(path):
+    """Return the text of a file, '' of one that is not there."""
+    try:
+        with open(path, encoding='utf-8', errors='replace') as stream:
+            return stream.read()
+    except FileNotFoundError:
+        return ''

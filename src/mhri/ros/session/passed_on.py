@@ -1,0 +1,51 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Passes the pictures that this screen receives on to the session's recorder.
+
+A second connection to a camera would double what it sends over the radio; this one ends on this
+computer. Only compressed pictures are passed on, and no more of them than the recorder keeps.
+"""
+import time
+
+from sensor_msgs.msg import CompressedImage
+
+
+class PassedOn:
+    """The pictures of all cameras of one program."""
+
+    def __init__(self, clock=time.monotonic):
+        self._clock = clock
+        self._publisher = None
+        self._period_s = None
+        self._due_s = {}
+
+    def open(self, publisher):
+        """Pass on through this publisher of ``mhri/SeenPicture``; None: nothing."""
+        self._publisher = publisher
+
+    def keep(self, hz):
+        """Pass on so many pictures a second of each camera; -1: all, 0: none."""
+        self._period_s = None if not hz else max(0.0, 1.0 / hz)
+
+    def hearing(self, topic, hear):
+        """Return a function of (type, bytes) that calls another one, and passes the bytes on."""
+        def heard(message_type, data):
+            """Take a picture (on the thread that received it)."""
+            hear(message_type, data)
+            if message_type == CompressedImage._type:
+                self._pass(topic, data)
+        return heard
+
+    def _pass(self, topic, data):
+        publisher, period_s = self._publisher, self._period_s
+        if publisher is None or period_s is None or not publisher.get_num_connections():
+            return
+        now = self._clock()
+        if now < self._due_s.get(topic, 0.0):
+            return
+        # A little early is in time: a camera does not keep to the beat of this clock.
+        self._due_s[topic] = now + 0.9 * period_s
+        publisher.publish(topic, bytes(data))
+
+
+PASSED_ON = PassedOn()

@@ -1,0 +1,373 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A link with keys, and whoever has none, a wrong one, or one that was taken back.
+
+The attacker knows all that the host knows, the newest token of the guard among it: what keeps it
+out are the keys. That the same attack moves the robot with a key that drives shows that it is one.
+"""
+import os
+import pathlib
+import random
+import shutil
+import socket
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.linked import Linked, LONG_S, Operator  # noqa: E402
+from support.ros_system import wait_for  # noqa: E402
+
+REPO = pathlib.Path(__file__).resolve().parents[2]
+LISTS = ('authority.pem', 'peers', 'withdrawn', 'withdrawn.pem')
+ATTACK_S = 2.0
+
+
+class Authority:
+    """Keys, made by the script as in the guide."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.run('new')
+
+    def run(self, *words):
+        subprocess.run([str(REPO / 'utils/host/mhri_keys.sh'), *words, '--folder',
+                        str(self.folder / 'authority')], check=True, stdout=subprocess.DEVNULL,
+                       env=dict(os.environ, HOME=str(self.folder)))
+
+    def put(self, name):
+        """Return a folder with the key of somebody, and the lists as they are now."""
+        place, made = self.folder / 'at' / name, self.folder / 'authority'
+        place.mkdir(parents=True, exist_ok=True)
+        files = [made / file for file in LISTS]
+        if (made / 'keys' / name).exists():
+            files += [made / 'keys' / name / 'own.key', made / 'keys' / name / 'own.pem']
+        for file in files:
+            shutil.copy(str(file), str(place / '.new'))
+            (place / '.new').rename(place / file.name)
+        return place
+
+
+class Cable:
+    """Passes on what the host says to the robot and back; keeps a copy, and may hold it up."""
+
+    def __init__(self, endpoint):
+        self._to = int(endpoint.rpartition(':')[2])
+        self._server = socket.create_server(('127.0.0.1', 0))
+        self.endpoint = 'tls/127.0.0.1:{}'.format(self._server.getsockname()[1])
+        self.said = []
+        self.flows = threading.Event()
+        self.flows.set()
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    def _accept(self):
+        while True:
+            try:
+                near, _ = self._server.accept()
+                far = socket.create_connection(('127.0.0.1', self._to))
+            except OSError:
+                continue
+            copy = []
+            self.said.append(copy)
+            for one, other, kept in ((near, far, copy), (far, near, [])):
+                threading.Thread(target=self._pass, args=(one, other, kept), daemon=True).start()
+
+    def _pass(self, one, other, copy):
+        try:
+            while True:
+                data = one.recv(65536)
+                copy.append(data)
+                self.flows.wait()
+                other.sendall(data)
+                if not data:
+                    return
+        except OSError:
+            pass
+        finally:
+            for end in (one, other):
+                end.close()
+
+
+class Attacker:
+    """Says that the robot shall turn, as itself and as the host in control, to whoever lets it in.
+
+    :param key: a folder with ``own.key`` and ``own.pem``, None for no key
+    :param names: what it calls itself
+    """
+
+    def __init__(self, lab, key, names):
+        from mhri.core.link.carried import COMMAND, key_of
+        from mhri.core.link.peer import Peer
+        from mhri.ros.link.carrier import Carrier
+        settings = {'root_ca_certificate': str(lab.at_robot / 'authority.pem'),
+                    'verify_name_on_connect': False, 'enable_mtls': key is not None}
+        if key:
+            settings.update(connect_private_key=str(key / 'own.key'),
+                            connect_certificate=str(key / 'own.pem'))
+        self._lab = lab
+        self._carrier = Carrier(connect=[lab.endpoint], secrets={
+            'transport/link/tls/' + name: value for name, value in settings.items()})
+        self._peer = Peer()
+        self.heard = set()
+        for root in ('mhri/**', *(key_of('bot1', name, 'up', '**') for name in names)):
+            self._carrier.listen(root, self._hear)
+        self._senders = [(self._carrier.sender(key_of('bot1', name, 'down', '_beat'), COMMAND),
+                          self._carrier.sender(key_of('bot1', name, 'down', 'mhri_guard/command'),
+                                               COMMAND)) for name in names]
+
+    def _hear(self, key, data):
+        from mhri.core.link.frames import unpack, unpack_beat
+        from mhri.ros.link.side import boot_clock
+        if '/up/' not in key:
+            return
+        self.heard.add(key)
+        if key.endswith('/_beat'):
+            frame = unpack(data)
+            self._peer.on_beat(frame, unpack_beat(frame.body), boot_clock())
+
+    def attack(self, until, timeout_s):
+        """Command zeros, then a turn, until something is true; return whether it was."""
+        from mhri.core.link.frames import Beat, pack, pack_beat
+        from mhri.ros.link.side import boot_clock
+        number, end = 0, time.monotonic() + timeout_s
+        session = random.getrandbits(32)
+        while time.monotonic() < end:
+            number += 1
+            turn = 0.0 if number % 20 < 6 else 0.5
+            for beat, command in self._senders:
+                now = boot_clock()
+                beat(pack(session, number, now, pack_beat(Beat(self._peer.echo(now)))))
+                command(pack(session, number, now, self._lab.command(session, number, turn)))
+            time.sleep(0.05)
+            if until():
+                return True
+        return False
+
+    def close(self):
+        self._carrier.close()
+
+
+class Lab(Linked):
+    """A host and a robot with keys, the cable between them, and other keys that were made."""
+
+    def __init__(self, folder):
+        self.authority = Authority(folder)
+        for words in (('host', 'lab'), ('host', 'desk'), ('host', 'gallery', '--watch'),
+                      ('robot', 'bot1'), ('robot', 'bot2')):
+            self.authority.run(*words)
+        self.stranger = Authority(folder / 'stranger')
+        self.stranger.run('host', 'lab')
+        self.at_robot = self.authority.put('bot1')
+        super().__init__('tls', self.at_robot, self.authority.put('lab'), self._lay)
+        self.states = []
+        self._token = ''
+
+    def _lay(self, endpoint):
+        self.cable = Cable(endpoint)
+        return self.cable.endpoint
+
+    def listen(self):
+        """Begin to hear the guard's echo and who has control, on the host."""
+        import rospy
+        from geometry_msgs.msg import TwistStamped
+        from mhri.msg import LinkControl
+        rospy.Subscriber('/bot1/mhri_guard/echo', TwistStamped, self._on_echo, queue_size=1)
+        rospy.Subscriber('/bot1/mhri_link/state', LinkControl, self.states.append, queue_size=5)
+
+    def _on_echo(self, message):
+        from mhri.core.driving.guard_link import parse_id
+        self._token = parse_id(message.header.frame_id)[2]
+
+    def command(self, session, number, turn):
+        """Return a command for the guard with its newest token, as bytes."""
+        import io
+        import rospy
+        from geometry_msgs.msg import TwistStamped
+        from mhri.core.driving.guard_link import format_id
+        message = TwistStamped()
+        message.header.frame_id = format_id('bad{}'.format(session), number, self._token)
+        message.header.stamp = rospy.Time.from_sec(time.time())
+        message.twist.angular.z = turn
+        data = io.BytesIO()
+        message.serialize(data)
+        return data.getvalue()
+
+    def said(self):
+        """Return what the robot's side has written into the log."""
+        return pathlib.Path(self.link_of_robot.log).read_text(errors='replace')
+
+    def is_linked(self):
+        return bool(self.states) and self.states[-1].linked and self.witness.live()
+
+    def holder(self):
+        return self.states[-1].holder if self.states else None
+
+    def attacked(self, key, *names, until=lambda: False, timeout_s=ATTACK_S):
+        """Return (whether the robot moved or ``until`` came true, what the attacker heard)."""
+        attacker = Attacker(self, key, names)
+        try:
+            return attacker.attack(lambda: self.moves() or until(), timeout_s), attacker.heard
+        finally:
+            attacker.close()
+
+
+@pytest.fixture(scope='module')
+def lab(tmp_path_factory):
+    import rospy
+    from mhri.ros.graph.master_watch import MasterWatch
+    from mhri.ros.link.carrier import load_library
+    from support.robots import Witness
+    load_library()
+    built = Lab(tmp_path_factory.mktemp('keys'))
+    try:
+        rospy.init_node('keys_test', disable_signals=True)
+        MasterWatch().start()
+        built.watch_gates()
+        built.operator = Operator()
+        built.witness = Witness('bot1')
+        built.listen()
+        wait_for(built.is_linked, LONG_S, lambda: 'the link: {}'.format(built.said()[-3000:]))
+        yield built
+    finally:
+        built.close()
+        rospy.signal_shutdown('done')
+
+
+def test_with_keys_it_is_driven(lab):
+    lab.drive(lab.operator)
+    lab.operator.stick.hold(0.0, 0.0)
+    wait_for(lambda: lab.holder() == 'host:lab', LONG_S, 'the host to be in control')
+    assert lab.states[-1].keys and lab.states[-1].may_drive
+    assert lab.states[-1].host == 'host:lab'
+    wait_for(lambda: not lab.moves(), LONG_S, 'it to stand')
+    assert 'linked by keys alone; here is the key of robot:bot1' in lab.said()
+
+
+@pytest.mark.parametrize('who, names, line', [
+    ('nobody', ('host:lab',), 'somebody without a key was not let in'),
+    ('stranger', ('host:lab',), 'somebody was not let in with a key of another authority'),
+    ('bot2', ('host:lab', 'robot:bot2'), 'somebody was not let in whose key is withdrawn, not on '),
+])
+def test_who_is_not_let_in_hears_nothing_and_moves_nothing(lab, who, names, line):
+    key = {'nobody': None, 'bot2': lab.authority.put('bot2'),
+           'stranger': lab.stranger.put('lab')}[who]
+    moved, heard = lab.attacked(key, *names)
+    assert not moved and heard == set()
+    wait_for(lambda: line in lab.said(), LONG_S, 'a line in the log')
+    assert lab.said().count(line) <= 2, 'one line, not one for each try'
+    assert lab.is_linked()
+
+
+def test_a_watching_key_sees_and_does_not_drive(lab):
+    moved, heard = lab.attacked(lab.authority.put('gallery'), 'host:lab', 'watch:gallery')
+    assert not moved and lab.is_linked()
+    assert heard and all(key.startswith('mhri/bot1/watch:gallery/up/') for key in heard)
+    assert 'linked with gallery, which may only watch' in lab.said()
+
+
+def test_one_host_at_a_time_and_the_other_asks_twice(lab):
+    import rospy
+    from std_srvs.srv import Trigger
+    desk = lab.authority.put('desk')
+    assert lab.holder() == 'host:lab'
+    told = 'desk may not drive: lab has control'
+    moved, _ = lab.attacked(desk, 'host:lab', 'host:desk', until=lambda: (
+        lab.states[-1].said == told), timeout_s=LONG_S)
+    assert moved and not lab.moves(), 'it is told of, and stands'
+    # lab leaves, so that desk may.
+    lab.host.kill(lab.link_of_host)
+    wait_for(lambda: 'lab has given up control' in lab.said(), LONG_S, 'lab to be missed')
+    attacker = Attacker(lab, desk, ('host:desk',))
+    try:
+        lab.start_host_side()
+        wait_for(lambda: attacker.attack(lambda: lab.holder() == 'host:desk', 1.0), LONG_S,
+                 'desk to be in control')
+        # The very attack of the others: with a key that drives it is obeyed.
+        assert attacker.attack(lab.moves, LONG_S)
+        take = rospy.ServiceProxy('/bot1/mhri_link/take_control', Trigger)
+        take.wait_for_service(LONG_S)
+        answers = []
+
+        def taken():
+            answers.append(take())
+            return answers[-1].success
+        threading.Thread(target=attacker.attack, daemon=True, args=(
+            lambda: bool(answers) and answers[-1].success, LONG_S)).start()
+        wait_for(taken, LONG_S, lambda: 'control: {}'.format(answers[-1:]), 0.7)
+        assert any('desk has control and is told' in answer.message for answer in answers)
+    finally:
+        attacker.close()
+    wait_for(lambda: lab.holder() == 'host:lab', LONG_S, 'lab to be in control')
+    assert 'lab asks for control, which desk has' in lab.said()
+    assert 'lab has taken control from desk' in lab.said()
+    lab.drive(lab.operator)
+    lab.operator.stick.hold(0.0, 0.0)
+    wait_for(lambda: not lab.moves(), LONG_S, 'it to stand')
+
+
+def test_a_key_that_is_withdrawn_is_out_within_seconds(lab):
+    _, heard = lab.attacked(lab.authority.put('desk'), 'host:desk')
+    assert heard
+    stolen = lab.authority.put('desk')
+    lab.authority.run('withdraw', 'desk')
+    begun = time.monotonic()
+    lab.authority.put('bot1')
+    wait_for(lambda: 'are in use as they are now' in lab.said(), LONG_S, 'the list to be read')
+    print('MEASURED the list of those withdrawn is in use after {:.1f} s'.format(
+        time.monotonic() - begun))
+    moved, heard = lab.attacked(stolen, 'host:desk', 'host:lab')
+    assert not moved and heard == set()
+    wait_for(lab.is_linked, LONG_S, 'the others to be linked again')
+    lab.drive(lab.operator)
+    lab.operator.stick.hold(0.0, 0.0)
+    wait_for(lambda: not lab.moves(), LONG_S, 'it to stand')
+
+
+def test_garbage_on_the_port_disturbs_nobody(lab):
+    port, begun = int(lab.endpoint.rpartition(':')[2]), time.monotonic()
+    before = lab.said().count('does not speak TLS')
+    for seed in range(20):
+        with socket.create_connection(('127.0.0.1', port)) as caller:
+            caller.sendall(random.Random(seed).choice((
+                b'GET / HTTP/1.1\r\n\r\n', b'\x16\x03\x01\x02\x00\x01\x00', b'')) +
+                random.Random(seed).getrandbits(8000).to_bytes(1000, 'big'))
+    wait_for(lambda: 'does not speak TLS' in lab.said(), LONG_S, 'a line in the log')
+    # One in 10 s.
+    assert lab.said().count('does not speak TLS') - before <= 2 + (time.monotonic() - begun) / 10.0
+    assert lab.is_linked()
+
+
+def test_what_was_said_before_is_not_heard_again(lab):
+    """All that the host ever said, byte by byte, to the robot's port once more."""
+    copies = [b''.join(copy) for copy in list(lab.cable.said)]
+    assert sum(map(len, copies)) > 10000
+    for copy in copies:
+        with socket.create_connection(
+                ('127.0.0.1', int(lab.endpoint.rpartition(':')[2]))) as caller:
+            try:
+                caller.sendall(copy)
+            except OSError:
+                pass
+    time.sleep(ATTACK_S)
+    assert not lab.moves() and lab.is_linked()
+
+
+def test_what_comes_late_is_not_obeyed(lab):
+    lab.drive(lab.operator)
+    since = time.monotonic()
+    lab.cable.flows.clear()
+    try:
+        at = wait_for(lambda: lab.stood_at(since), LONG_S, 'it to stand')
+        time.sleep(0.4)
+    finally:
+        lab.cable.flows.set()
+    wait_for(lab.is_linked, LONG_S, 'the link to be back')
+    # The stick was never let go.
+    time.sleep(1.0)
+    assert [row for row in lab.rows() if row[0] > at and abs(row[2]) > 0.02] == []
+    lab.drive(lab.operator)
+    lab.operator.stick.hold(0.0, 0.0)

@@ -1,0 +1,134 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""R, N and P: the session recorded and marked by keys of the X server's own keyboard."""
+import glob
+import os
+
+import pytest
+from test_keyboard_session import ROBOTS, Session
+
+from mhri.core.session.folder import marks_of, read_events
+
+
+class Recorded(Session):
+    """A person at the keyboard, with the recorder of the session."""
+
+    def __init__(self):
+        super().__init__()
+        self.recorder = self.system.node('mhri_session', '_stop_free_mb:=1', '_warn_free_mb:=1')
+        for name in ROBOTS:
+            self.operator.add(name)
+        self.until(lambda: set(self.host.windows) == set(ROBOTS), 'the tiles')
+        self.until(lambda: self.view.there, 'the recorder')
+
+    @property
+    def view(self):
+        return self.host.session._client.view()
+
+    @property
+    def button(self):
+        return self.host.session.button
+
+    @property
+    def note(self):
+        return self.host.session.note_bar
+
+    def events(self):
+        path, = glob.glob(os.path.join(self.system.home, 'mhri', 'sessions', '*', 'events.jsonl'))
+        with open(path, encoding='utf-8') as file:
+            return read_events(file.read())
+
+
+@pytest.fixture(scope='module')
+def session():
+    running = Recorded()
+    yield running
+    running.close()
+
+
+def test_1_r_records(session):
+    session.to_the_pictures()
+    assert session.button.text() == 'Record'
+    session.key('r')
+    session.until(lambda: session.button.text().startswith('REC 0'), 'the button to say so')
+    assert session.button.isChecked()
+    session.until(lambda: [event.kind for event in session.events()].count('start') == 1,
+                  'the first line')
+
+
+def test_2_n_marks_and_asks_what_is_here(session):
+    session.to_the_pictures()
+    # Nothing is checked: keys do not drive, and the note has the keyboard at once.
+    session.key('n')
+    session.until(lambda: session.note.isVisible() and session.note.edit.hasFocus(), 'the note')
+    session.xdotool('type', 'a red door, seen from W')
+    session.until(lambda: session.note.edit.text().endswith('W'), 'the typing')
+    session.key('Return')
+    session.until(lambda: not session.note.isVisible(), 'the note to go')
+    assert session.screen.stage.hasFocus(), 'the keys drive again'
+    session.until(lambda: [mark.text for mark in marks_of(session.events())]
+                  == ['a red door, seen from W'], 'the note at its mark')
+
+
+def test_3_while_keys_drive_the_note_leaves_them_the_keyboard(session):
+    session.to_the_pictures()
+    session.key('1')
+    session.until(lambda: session.selected == ('bot1',), 'bot1 alone')
+    session.until(lambda: session.host.session._keys_drive, 'the keys to drive')
+    session.key('n')
+    session.until(lambda: session.note.isVisible(), 'the note')
+    assert not session.note.edit.hasFocus()
+    session.hold('w', session.witnesses['bot1'].moving, 'bot1 to drive')
+    session.rests()
+    session.key('1')
+    session.until(lambda: session.selected == (), 'none')
+
+
+def test_4_p_keeps_what_the_cameras_show(session):
+    session.to_the_pictures()
+
+    def still():
+        session.key('p')
+        session.until(lambda: session.host.session._client.answers.empty(), 'the answer')
+        return any(event.kind == 'still' for event in session.events())
+    session.until(still, 'a still')
+    names = [name for event in session.events() for name in event.data.get('stills', ())]
+    folder = session.view.folder
+    assert names and all(os.path.getsize(os.path.join(folder, name)) > 500 for name in names)
+
+
+def test_5_a_mark_has_the_stills_of_what_is_in_sight(session):
+    session.to_the_pictures()
+    before = len(marks_of(session.events()))
+    session.key('n')
+    session.until(lambda: len(marks_of(session.events())) > before, 'the mark')
+    assert marks_of(session.events())[-1].stills
+    session.until(lambda: session.note.isVisible(), 'the note')
+    session.key('Escape')
+    session.until(lambda: not session.note.isVisible(), 'the note to go')
+
+
+def test_6_events_of_the_screen_are_kept(session):
+    session.host.events.note('battery.low', 'battery 25 %: charge it soon', 'bot1')
+    session.until(lambda: [event.robot for event in session.events()
+                           if event.kind == 'battery'] == ['bot1'], 'the battery')
+    kinds = [event.kind for event in session.events()]
+    assert kinds.count('selection') == 2, 'seen on the graph, and not told by the screen as well'
+
+
+def test_7_a_recorder_that_is_killed_is_said(session):
+    session.system.kill(session.recorder)
+    session.until(lambda: session.button.text() == 'not recorded !', 'the button to say so')
+    session.until(lambda: any(event.kind == 'session.trouble'
+                              for event in session.host.events.log.events), 'the event')
+    session.recorder = session.system.node('mhri_session', '_stop_free_mb:=1', '_warn_free_mb:=1')
+    session.until(lambda: session.button.text().startswith('REC 0'), 'the recorder to go on')
+
+
+def test_8_r_ends_it(session):
+    session.to_the_pictures()
+    session.key('r')
+    session.until(lambda: session.button.text() == 'Record', 'the button to say so')
+    assert not session.button.isChecked()
+    assert not glob.glob(os.path.join(session.view.folder, '*1.bag.active'))
+    assert session.events()[-1].kind == 'end'

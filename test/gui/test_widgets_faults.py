@@ -1,0 +1,130 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The list of faults: real clicks begin and end them; it is there for simulated robots alone."""
+import pytest
+from python_qt_binding.QtWidgets import QAbstractButton, QWidget
+
+from mhri.core.drill.faults import FAULTS
+from mhri.core.screen.views import LIVE, PanelView, RobotView
+from mhri.gui.drill.faults_page import FaultsPage, FOR_S
+from mhri.presenters.fault_host import FaultHost
+
+
+@pytest.fixture
+def page(operator):
+    made = FaultsPage()
+    made.resize(420, 760)
+    made.show_robots(('bot1', 'bot2'))
+    return operator.show(made)
+
+
+@pytest.fixture
+def asked(page, heard):
+    return heard(page.asked)
+
+
+def press(page, operator, key):
+    button = page.findChild(QAbstractButton, 'fault_button_' + key)
+    operator.click(button)
+    return button
+
+
+def test_every_fault_is_in_the_list_with_its_default(page, operator, asked):
+    for fault in FAULTS:
+        press(page, operator, fault.key)
+        assert asked[-1] == ('bot1', fault.key, pytest.approx(fault.default), FOR_S)
+        value = page.findChild(QWidget, 'fault_value_' + fault.key)
+        assert (value is not None) == bool(fault.unit)
+    assert len(asked) == len(FAULTS)
+
+
+def test_value_robot_and_time_are_chosen(page, operator, asked):
+    page.findChild(QWidget, 'fault_value_delay').setValue(0.25)
+    page.robot_combo.setCurrentText('bot2')
+    page.duration.setValue(0.0)
+    assert page.duration.text() == 'until ended'
+    press(page, operator, 'delay')
+    press(page, operator, 'node_dead')
+    assert asked == [('bot2', 'delay', 0.25, 0.0), ('bot2', 'node_dead', 0.0, FOR_S)]
+
+
+def test_what_fails_is_said_and_can_be_ended(page, operator, asked):
+    page.show_answer('bot1', True, 'bot1: delay each way 0.4 s, 7 s left')
+    assert page.answer_label.text() == 'bot1: delay each way 0.4 s, 7 s left'
+    button = press(page, operator, 'delay')
+    assert button.text() == 'End' and asked == [('bot1', 'delay', 0.0, -1.0)]
+    page.show_answer('bot1', True, 'bot1: nothing fails')
+    assert button.text() == 'Start'
+    operator.click(page.end_all_button)
+    assert asked[-1] == ('bot1', 'all', 0.0, -1.0)
+
+
+def test_an_answer_is_that_of_its_robot(page):
+    page.show_answer('bot2', False, 'person: there is no room')
+    assert page.answer_label.text() == ''
+    page.robot_combo.setCurrentText('bot2')
+    assert page.answer_label.text() == 'person: there is no room'
+
+
+def test_without_a_robot_nothing_can_be_asked(page, operator, asked):
+    page.show_robots(())
+    press(page, operator, 'delay')
+    assert asked == [] and page.answer_label.text() == 'no simulated robot is there'
+
+
+class Client:
+    """Stands in for the client; bot2 is simulated once it says so."""
+
+    def __init__(self):
+        self.names, self.found, self.asked, self.watched = (), (), [], []
+        self.news = []
+
+    def follow(self, names):
+        self.names = names
+
+    def simulated(self):
+        return self.found
+
+    def ask(self, *words):
+        self.asked.append(words)
+
+    def watch(self, watched):
+        self.watched.append(watched)
+
+    def take_news(self):
+        news, self.news = self.news, []
+        return news
+
+    def close(self):
+        self.watched.append(None)
+
+
+class Screen:
+    """Stands in for the screen: notes the pages that are added."""
+
+    def __init__(self):
+        self.arrangement = self
+        self.pages = []
+
+    def add_page(self, title, page):
+        self.pages.append((title, page))
+
+
+def test_the_page_is_there_for_simulated_robots_alone(operator):
+    client, screen = Client(), Screen()
+    host = FaultHost(screen, client)
+    view = PanelView(robots=(RobotView('bot1', link=LIVE), RobotView('bot2', link=LIVE)))
+    host.show_view(view)
+    assert client.names == ['bot1', 'bot2'] and screen.pages == []
+    client.found = ('bot2',)
+    client.news = [('bot2', True, 'bot2: laser silent')]
+    host.show_view(view)
+    host.show_view(view)
+    (title, page), = screen.pages
+    assert title == 'Faults' and page.robot_combo.count() == 1
+    operator.show(page)
+    assert client.watched == [True]
+    assert page.answer_label.text() == 'bot2: laser silent'
+    press(page, operator, 'delay')
+    assert client.asked == [('bot2', 'delay', pytest.approx(0.4), FOR_S)]
+    host.close()

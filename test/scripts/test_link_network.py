@@ -1,0 +1,185 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A robot with a master of its own on another computer: deployed, linked over ssh, and by a router.
+
+As test_remote_network.py: network namespaces, sshd, stand-ins. bot2 is the router's computer.
+"""
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support import machines  # noqa: E402
+from support.lab import Lab, LONG_S, START_S  # noqa: E402
+from support.ros_system import System, wait_for  # noqa: E402
+
+WHY_NOT = machines.why_not()
+pytestmark = pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))
+
+ROUTER = 'tcp/10.77.0.12:7448'
+LEFT = ('turtle_remote', 'roslaunch', 'roscore', 'rosmaster', 'sim_robot', 'nodelet', 'mhri_guard',
+        'mhri_link', 'colour_camera')
+
+
+@pytest.fixture(scope='module')
+def lab(request, tmp_path_factory):
+    folder = tmp_path_factory.mktemp('lab')
+    with machines.Lan(folder) as lan, System(adopt=False) as system:
+        uri = 'http://{}:{}'.format(machines.HOST_IP, system.port)
+        for environment in (system.env, os.environ):
+            environment.update(ROS_MASTER_URI=uri, ROS_IP=machines.HOST_IP, ROS_HOME=system.home)
+            environment.pop('ROS_HOSTNAME', None)
+        system.start_master()
+        built = Lab(lan, system, folder)
+        for robot in built.robots.values():
+            built.trust(robot)
+        failed = request.session.testsfailed
+        yield built
+        if request.session.testsfailed > failed:
+            built.tell()
+        built.close()
+
+
+@pytest.fixture(scope='module')
+def operator(lab):
+    """Return (stick, witness of bot1): mux, gates and an operator on the host."""
+    import rospy
+    from support.linked import Operator
+    from support.robots import Witness
+    rospy.init_node('lab', disable_signals=True)
+    lab.system.node('mux', '__name:=mux')
+    lab.system.node('gates')
+    yield Operator().stick, Witness('bot1')
+    rospy.signal_shutdown('done')
+
+
+def left(robot):
+    """Return what of turtle_remote.sh's runs on a robot."""
+    return [line for text in LEFT for line in robot.processes(text)]
+
+
+def drive(operator):
+    """Turn bot1 on the spot, and let it stand again; the gates ask for neutral first."""
+    stick, witness = operator
+
+    def through():
+        # Long enough for a few messages of it.
+        stick.hold(0.0, 0.0)
+        time.sleep(0.3)
+        stick.hold(0.0, 0.5)
+        deadline = time.monotonic() + 2.0
+        while time.monotonic() < deadline:
+            if witness.moving():
+                return True
+            time.sleep(0.02)
+        return False
+    wait_for(witness.live, START_S, 'word of bot1', poll_s=0.05)
+    wait_for(through, START_S, 'bot1 to be driven')
+    stick.hold(0.0, 0.0)
+    wait_for(witness.at_rest, LONG_S, 'bot1 to rest', poll_s=0.05)
+
+
+def test_link_is_sent_to_the_robot_once(lab):
+    status, output = lab.deploy('bot1', '--link')
+    assert status == 0 and 'mhri_link.tar.gz' in output, output
+    status, output = lab.deploy('bot1', '--link')
+    assert status == 0 and 'nothing to send' in output, 'the same archive for the same files'
+    status, output = lab.deploy('bot2')
+    assert status == 0, output
+
+
+def test_without_the_deployment_of_the_link_it_says_so(lab):
+    terminal = lab.connect('bot2', '--type', 'turtlebot3', '--link')
+    assert terminal.process.wait(LONG_S) == 1
+    wait_for(lambda: "send it with 'turtlebot_deploy.sh --link'" in terminal.text(), 10, 'the word')
+
+
+def test_robot_on_its_own_master_is_driven(lab, operator):
+    import rosgraph
+    terminal = lab.connect('bot1', '--type', 'turtlebot2', '--link')
+    wait_for(lambda: operator[1].live() or terminal.process.poll() is not None, START_S,
+             'bot1', poll_s=0.1)
+    assert terminal.process.poll() is None, terminal.text()
+    drive(operator)
+    nodes = {node for kind in rosgraph.Master('/lab').getSystemState() for _, users in kind
+             for node in users if node.startswith('/bot1/')}
+    assert nodes == {'/bot1/mhri_link'}, 'the rest is on the master of the robot'
+    assert 'ROS_IP=127.0.0.1' in terminal.text()
+
+
+def test_link_that_is_killed_on_the_robot_is_back(lab, operator):
+    robot = lab.robots['bot1']
+    robot.run('sh', '-c', 'kill -KILL $(pgrep -f "scripts/mhri_lin[k] --side robot")')
+    wait_for(lambda: 'mhri_link was killed' in lab.terminals[-1].text(), LONG_S, 'the word')
+    drive(operator)
+
+
+def test_second_robot_of_the_name_is_refused_here(lab, operator):
+    """Before anybody logs in to it."""
+    logins = lab.robots['bot1'].logins()
+    terminal = lab.connect('bot1', '--type', 'turtlebot2', '--link')
+    assert terminal.process.wait(LONG_S) == 1
+    wait_for(lambda: 'bot1 already runs' in terminal.text(), 10, 'the word')
+    assert lab.robots['bot1'].logins() == logins
+    lab.terminals.remove(terminal)
+
+
+def test_ctrl_c_ends_both_sides(lab, operator):
+    import rosgraph
+    terminal = lab.terminals[-1]
+    terminal.press(b'\x03')
+    assert terminal.process.wait(LONG_S) == 130, terminal.text()
+    wait_for(lambda: not left(lab.robots['bot1']), LONG_S,
+             lambda: 'the robot to be quiet: {}'.format(left(lab.robots['bot1'])), poll_s=0.2)
+    nodes = {node for kind in rosgraph.Master('/lab').getSystemState() for _, users in kind
+             for node in users}
+    assert '/bot1/mhri_link' not in nodes
+    assert 'had ended here' not in terminal.text()
+
+
+def test_router_between_two_that_do_not_reach_each_other(lab, operator):
+    stick, witness = operator
+    robot, between = lab.robots['bot1'], lab.robots['bot2']
+    robot.run('ip', 'route', 'add', 'unreachable', machines.HOST_IP)
+    router = start_router(lab, between)
+    here = lab.system.launch('link.launch', 'side:=host', 'name:=bot1', 'router:=' + ROUTER)
+    there = subprocess.Popen(
+        robot.command('env', '-i', 'HOME={}'.format(robot.home), 'PATH=/usr/bin:/bin:/usr/sbin',
+                      str(robot.home / 'mhri' / 'turtle_remote.sh'), '--link', 'bot1', '--type',
+                      'turtlebot2', '--router', ROUTER),
+        stdin=subprocess.DEVNULL, stdout=(lab.folder / 'there').open('w'), stderr=subprocess.STDOUT)
+    try:
+        wait_for(lambda: witness.live() or there.poll() is not None, START_S, 'bot1', poll_s=0.1)
+        assert there.poll() is None, (lab.folder / 'there').read_text()
+        drive(operator)
+        stick.hold(0.0, 0.5)
+        wait_for(witness.moving, LONG_S, 'bot1 to move', poll_s=0.02)
+        # The lease is as without a router: it stands as soon as nothing comes any more.
+        lab.system.kill(router)
+        wait_for(lambda: not witness.live(), LONG_S, 'silence', poll_s=0.02)
+        router = start_router(lab, between)
+        wait_for(witness.at_rest, START_S, 'bot1 to be back, at rest', poll_s=0.02)
+        drive(operator)
+    finally:
+        there.send_signal(signal.SIGTERM)
+        there.wait(LONG_S)
+        here.send_signal(signal.SIGTERM)
+        lab.system.kill(router)
+    wait_for(lambda: not left(robot), LONG_S, 'the robot to be quiet', poll_s=0.2)
+
+
+def start_router(lab, machine):
+    """Start a router on a machine; return its process once it routes."""
+    log = lab.folder / 'router'
+    process = subprocess.Popen(
+        machine.command(sys.executable, '-c', 'from mhri.nodes.mhri_link import main; main()',
+                        '--side', 'router', '--listen', ROUTER),
+        env=lab.system.env, stdin=subprocess.DEVNULL, stdout=log.open('w'),
+        stderr=subprocess.STDOUT)
+    wait_for(lambda: 'routing on' in log.read_text(), LONG_S, log.read_text, poll_s=0.05)
+    return process

@@ -1,0 +1,174 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A made-up session: what was so at which time is known, so that a replay can be compared with it.
+
+``bot1`` drives ahead, ``bot2`` in a circle. ``python3 made_session.py FOLDER`` writes one.
+"""
+import math
+from pathlib import Path
+import sys
+
+from geometry_msgs.msg import Twist
+import genpy
+from mhri.core.session.folder import (
+    bag_name, event_line, info_text, SESSION_YAML, EVENTS_JSONL, SessionEvent, SessionInfo)
+from mhri.msg import ControlMode, GatesState, RobotGate, RobotSelect
+from nav_msgs.msg import Odometry
+import rosbag
+from sensor_msgs.msg import CompressedImage, Imu, LaserScan
+from std_msgs.msg import Bool
+
+STARTED = 1700000000.0
+ROBOTS = ('bot1', 'bot2')
+LENGTH_S, BAG_S = 60.0, 20.0
+# (from when, what holds from then on)
+MODES = ((0.0, 'joy'), (20.0, 'ps3joy'))
+SELECTED = ((0.0, ()), (5.0, ('bot1',)), (12.0, ('bot1', 'bot2')), (50.0, ('bot2',)))
+STOPPED = ((0.0, False), (30.0, True), (36.0, False))
+# bot2 says nothing then.
+LOST_S = (40.0, 48.0)
+ASKED_MPS = 0.1
+MARKS = ((15.0, 'm1', 'a red bag below the stairs'), (45.0, 'm2', 'smoke'))
+
+
+def at(rows, time_s):
+    """Return what holds at a time."""
+    return [value for since_s, value in rows if since_s <= time_s][-1]
+
+
+def pose(robot, time_s):
+    """Return (x, y, yaw) of a robot [m, m, rad]; it stands while everything is stopped."""
+    stopped_s = STOPPED[2][0] - STOPPED[1][0]
+    time_s = min(time_s, STOPPED[1][0]) + max(0.0, time_s - STOPPED[1][0] - stopped_s)
+    if robot == 'bot1':
+        return 0.1 * time_s, 0.0, 0.0
+    return math.cos(0.1 * time_s), math.sin(0.1 * time_s), 0.0
+
+
+def odometry(robot, time_s):
+    """Return the odometry of a robot; it stands while everything is stopped."""
+    message = Odometry()
+    message.header.stamp = stamp(time_s)
+    x_m, y_m, _ = pose(robot, time_s)
+    message.pose.pose.position.x, message.pose.pose.position.y = x_m, y_m
+    message.pose.pose.orientation.w = 1.0
+    message.twist.twist.linear.x = 0.0 if at(STOPPED, time_s) else 0.1
+    return message
+
+
+def gates_state(time_s, robots=ROBOTS):
+    """Return what the gates said."""
+    stopped, selected = at(STOPPED, time_s), at(SELECTED, time_s)
+    state = GatesState(operator='/mhri_panel', computer='here', stop_all=stopped)
+    for robot in robots:
+        gate = RobotGate(name=robot, topic='/{}/cmd_vel'.format(robot), round_trip_s=math.nan,
+                         obeys='operator' if robot in selected else '',
+                         stands='stopped' if stopped and robot in selected else '')
+        gate.sent.linear.x = 0.1 if robot in selected and not stopped else 0.0
+        state.robots.append(gate)
+    return state
+
+
+def stamp(time_s):
+    """Return a time of the session as ROS counts."""
+    return genpy.Time.from_sec(STARTED + time_s)
+
+
+def rows_between(begin_s, end_s):
+    """Yield (time [s], topic, message, latched) of a part of the session, in order."""
+    found = []
+
+    def latched(time_s, topic, message):
+        found.append((time_s, topic, message, True))
+    for rows, topic, kind in ((MODES, '/mux/mode', ControlMode),
+                              (STOPPED, '/robot_controller/stop_all', Bool),
+                              (SELECTED, '/robot_controller/robot_select', RobotSelect)):
+        for time_s in {begin_s, *(since for since, _ in rows if begin_s < since < end_s)}:
+            latched(time_s, topic, kind(at(rows, time_s)))
+    for step in range(round(10 * begin_s), round(10 * end_s)):
+        time_s = 0.1 * step
+        asked = Twist()
+        asked.linear.x = 0.0 if at(STOPPED, time_s) else ASKED_MPS
+        found.append((time_s, '/robot_controller/twist', asked, False))
+        if step % 5 == 0 or any(abs(time_s - since) < 0.01 for rows in (SELECTED, STOPPED)
+                                for since, _ in rows):
+            latched(time_s + 0.001, '/gates/state', gates_state(time_s + 0.001))
+        for robot in ROBOTS:
+            if robot == 'bot2' and LOST_S[0] <= time_s < LOST_S[1]:
+                continue
+            found.append((time_s, '/{}/odom'.format(robot), odometry(robot, time_s), False))
+            found.append((time_s, '/{}/cmd_vel'.format(robot), Twist(), False))
+    return sorted(found, key=lambda row: row[0])
+
+
+def header(topic, message, latched):
+    """Return the connection header that a publisher would have sent."""
+    return {'topic': topic, 'type': message._type, 'md5sum': message._md5sum,
+            'message_definition': message._full_text, 'latching': '1' if latched else '0',
+            'callerid': '/made'}
+
+
+def write_bag(path, rows):
+    """Write messages as a bag."""
+    with rosbag.Bag(str(path), 'w') as bag:
+        for time_s, topic, message, latched in rows:
+            bag.write(topic, message, stamp(time_s),
+                      connection_header=header(topic, message, latched))
+
+
+def events():
+    """Return the lines of the session."""
+    def line(time_s, kind, text, severity='info', robot='', **data):
+        return SessionEvent(STARTED + time_s, STARTED + time_s, kind, text, severity, robot, data)
+    found = [line(0.0, 'start', 'the session begins', mode='joy', stop_all=False, selected=[])]
+    found += [line(since, 'mode', 'driving with ' + mode) for since, mode in MODES[1:]]
+    found += [line(since, 'selection', 'selected: ' + (', '.join(names) or 'none'))
+              for since, names in SELECTED[1:]]
+    found += [line(since, 'stop', 'STOP ALL' if stopped else 'STOP ALL released',
+                   'warning' if stopped else 'info') for since, stopped in STOPPED[1:]]
+    found.append(line(LOST_S[0] + 1.0, 'lost', 'lost while driven', 'error', 'bot2'))
+    found.append(line(LOST_S[1], 'link', 'back after 8 s', 'info', 'bot2'))
+    for since, mark, text in MARKS:
+        found.append(line(since, 'mark', 'mark', id=mark, poses={
+            robot: [*pose(robot, since), 'map'] for robot in ROBOTS}, stills=[]))
+        found.append(line(since + 2.0, 'note', text, mark=mark))
+    return sorted(found, key=lambda event: event.ros)
+
+
+def write_session(folder):
+    """Write the whole session into a folder, which is made."""
+    folder = Path(folder)
+    folder.mkdir(parents=True)
+    for number in range(round(LENGTH_S / BAG_S)):
+        write_bag(folder / bag_name(number), rows_between(BAG_S * number, BAG_S * (number + 1)))
+    (folder / EVENTS_JSONL).write_text(
+        ''.join(map(event_line, events())) + '{"wall": 17', encoding='utf-8')
+    robots = {robot: {'number': number, 'type': 'turtlebot3', 'model': 'burger',
+                      'parameters': {'robot_type': 'turtlebot3', 'robot_model': 'burger'},
+                      'topics': {'odometry': '/{}/odom'.format(robot)}}
+              for number, robot in enumerate(ROBOTS, 1)}
+    (folder / SESSION_YAML).write_text(info_text(SessionInfo(STARTED, robots=robots)),
+                                       encoding='utf-8')
+    return folder
+
+
+def hour_rows(begin_s, end_s, robots, rates_hz, picture):
+    """Yield messages of robots with all their sensors, for benchmarks."""
+    scan = LaserScan(ranges=[1.0] * 360, angle_increment=0.0174, range_max=10.0)
+    made = {'odom': lambda time_s: odometry('bot1', time_s), 'imu': lambda _: Imu(),
+            'scan': lambda _: scan,
+            'camera/rgb/image_raw/compressed': lambda _: CompressedImage(format='jpeg',
+                                                                         data=picture)}
+    found = [(begin_s, '/mux/mode', ControlMode('joy'), True)]
+    for name, rate_hz in rates_hz.items():
+        for step in range(round((end_s - begin_s) * rate_hz)):
+            time_s = begin_s + step / rate_hz
+            found += [(time_s, '/{}/{}'.format(robot, name), made[name](time_s), False)
+                      for robot in robots]
+    found += [(begin_s + 0.5 * step, '/gates/state', gates_state(begin_s + 0.5 * step, robots),
+               True) for step in range(round(2 * (end_s - begin_s)))]
+    return sorted(found, key=lambda row: row[0])
+
+
+if __name__ == '__main__':
+    write_session(sys.argv[1])

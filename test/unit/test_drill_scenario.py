@@ -1,0 +1,75 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The files of drills: what is shipped can be used, what is wrong is refused by file and key."""
+import math
+import os
+import sys
+
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
+
+from mhri.core.config import ConfigError  # noqa: E402
+from mhri.core.drill.scenario import parse_scenario  # noqa: E402
+from support.drills import drill, NAMES  # noqa: E402
+
+GOOD = """
+title: Small
+about: Go there.
+plan: small.yaml
+robots: [turtlebot2, turtlebot3_burger]
+targets:
+  - {name: there, x: 1, y: 2, range: 0.5, view_deg: 90, robot: bot2}
+faults:
+  - {robot: bot1, fault: delay, at: 3, for: 4}
+limit_s: 60
+routes: {bot1: [[1, 2]], bot2: []}
+"""
+
+
+def test_the_shipped_drills():
+    assert NAMES == ['figure_of_eight', 'lost_link', 'maze', 'search', 'stop_in_time',
+                     'two_corridors']
+    assert len(drill('search')[0].targets) == 8
+    assert len(drill('two_corridors')[0].robots) == 2
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_robots_and_targets_are_where_they_can_be(name):
+    scenario, plan, bodies = drill(name)
+    for robot, start in zip(scenario.robots, plan.starts):
+        assert plan.distance(*start[:2]) > bodies[robot][0].radius_m + 0.1
+        for x, y in scenario.routes[robot]:
+            assert plan.distance(x, y) > bodies[robot][0].radius_m + 0.1
+    assert scenario.about.endswith('.') and len(plan.starts) >= len(scenario.types)
+
+
+def test_a_small_drill():
+    small = parse_scenario(GOOD, 'small.yaml', 'small')
+    assert small.robots == ('bot1', 'bot2') and small.routes == {'bot1': ((1.0, 2.0),), 'bot2': ()}
+    assert small.targets[0].view_rad == pytest.approx(math.pi / 2.0)
+    fault = small.faults[0]
+    assert (fault.fault.key, fault.value, fault.at_s, fault.for_s) == ('delay', 0.4, 3.0, 4.0)
+
+
+@pytest.mark.parametrize('old, new, key, words', [
+    ('limit_s: 60', 'limit: 60', 'limit_s', 'is missing'),
+    ('title: Small', 'title: Small\ncolour: red', 'colour', 'unknown key'),
+    ('view_deg: 90', 'view: 90', 'targets[0].view', 'unknown key'),
+    ('range: 0.5', 'range: 0', 'targets[0].range', 'expected a number from 0.05'),
+    ('fault: delay', 'fault: deley', 'faults[0].fault', 'there is no fault'),
+    ('fault: delay', 'fault: delay, value: 99', 'faults[0].fault', 'from 0.01 to 5 s'),
+    ('robot: bot1', 'robot: bot3', 'faults[0].robot', 'expected bot1 or bot2'),
+    ('for: 4', 'for: 0', 'faults[0].for', 'expected a number'),
+    ('[turtlebot2, turtlebot3_burger]', '[]', 'robots', 'expected 1 to 12 types'),
+    ('[turtlebot2, turtlebot3_burger]', '["a b"]', 'robots', 'expected 1 to 12 types'),
+    ('plan: small.yaml', 'plan: ../small.yaml', 'plan', 'the name of a file in plans/'),
+    ('[[1, 2]]', '[[1, .nan]]', 'routes.bot1', 'expected a place [x, y]'),
+    ('bot2: []', 'bot3: []', 'routes.bot3', 'unknown key'),
+])
+def test_wrong_files_are_refused_by_file_and_key(old, new, key, words):
+    assert old in GOOD
+    with pytest.raises(ConfigError) as refused:
+        parse_scenario(GOOD.replace(old, new), 'small.yaml', 'small')
+    assert str(refused.value).startswith('small.yaml: ' + key + ': ')
+    assert words in str(refused.value)

@@ -1,0 +1,354 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a radio bears, who gets how much of it, and pictures made small and cut in pieces."""
+import math
+import os
+import random
+import struct
+import sys
+
+import cv2
+import numpy as np
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from mhri.core.link.bearing import (  # noqa: E402
+    AROUND_BYTES, Bearing, CUT, LEAST_BYTES_PER_S, Meter, SETTLE_S)
+from mhri.core.link.carried import (  # noqa: E402
+    COMMAND, GUARD_ECHO, Pace, PICTURE, STATE, Stream)
+from mhri.core.link.figures import (  # noqa: E402
+    figures_words, picture_words, RadioFigures, read_figures, thinned_words)
+from mhri.core.link.frames import Frame, FrameError, Heard  # noqa: E402
+from mhri.core.link.pieces import Gathered, MOST_PIECES, PIECE_BYTES, split  # noqa: E402
+from mhri.core.link.shares import Flow, shares, SMALL_BYTES  # noqa: E402
+from mhri.core.link.smaller import Smaller  # noqa: E402
+from mhri.core.robots.link_quality import link_warning  # noqa: E402
+from mhri.core.screen.views import LinkFigures  # noqa: E402
+from support.radio import Channel, read_table, Table  # noqa: E402
+
+CALM, FULL, LOSSY = Heard(5e4, 0.0, 0.0), Heard(5e4, 0.15, 0.0), Heard(5e4, 0.0, 0.2)
+DEMAND = 8e5
+
+
+# --- what comes in
+
+def test_the_meter_counts_what_came_and_what_waited_without_a_common_clock():
+    meter = Meter()
+    for number in range(20):
+        now = 10.0 + 0.02 * number
+        meter.note('odom', Frame(1, number, now - 1000.0 - 0.1 * (number > 5), b''), 40, now)
+    heard = meter.read(10.4)
+    assert heard.bytes_per_s == pytest.approx(20 * (40 + AROUND_BYTES) / 0.5)
+    assert heard.queue_s == pytest.approx(0.1) and heard.loss == 0.0
+    assert meter.read(30.0) == Heard(0.0, 0.0, 0.0)
+
+
+def test_the_meter_counts_each_stream_for_itself_and_another_run_anew():
+    meter = Meter()
+    for number in (1, 2, 5, 6):
+        meter.note('odom', Frame(1, number, 0.0, b''), 40, 1.0)
+    meter.note('imu', Frame(1, 700, 0.0, b''), 40, 1.0)
+    assert meter.read(1.0).loss == pytest.approx(2 / 7)
+    meter.note('odom', Frame(2, 900, 500.0, b''), 40, 1.1)
+    assert meter.read(1.1).queue_s == 0.0
+
+
+# --- what the radio bears
+
+def bound(heard=FULL):
+    """Return a bearing that has found a limit, and when."""
+    bearing = Bearing()
+    for now in (0.8, 1.0, 1.2):
+        assert not bearing.bound
+        bearing.on_heard(heard, DEMAND, now)
+    assert bearing.bound
+    return bearing
+
+
+def test_once_is_no_radio_that_is_full():
+    bearing = Bearing()
+    for now in range(20):
+        bearing.on_heard(CALM if now % 2 else FULL, DEMAND, 0.2 * now)
+    assert not bearing.bound
+
+
+@pytest.mark.parametrize('heard', [FULL, LOSSY])
+def test_what_came_is_what_a_full_radio_bears(heard):
+    assert bound(heard).bytes_per_s == pytest.approx(CUT * 5e4)
+
+
+@pytest.mark.parametrize('heard, later_s, change', [
+    (CALM, 0.2, 0), (CALM, SETTLE_S + 0.2, 1), (FULL, 0.2, 0), (FULL, SETTLE_S + 0.2, -1),
+    (LOSSY, SETTLE_S + 0.2, 1), (Heard(5e4, 0.06, 0.0), SETTLE_S + 0.2, 0),
+    (Heard(2e4, 0.0, 0.6), SETTLE_S + 0.2, -1), (Heard(0.0, 0.15, 0.0), SETTLE_S + 0.2, -1)])
+def test_more_while_nothing_waits_and_less_while_much_does(heard, later_s, change):
+    bearing = bound()
+    before = bearing.bytes_per_s
+    bearing.on_heard(heard, DEMAND, 1.2 + later_s)
+    assert (bearing.bytes_per_s > before) - (bearing.bytes_per_s < before) == change
+    assert bearing.bytes_per_s >= LEAST_BYTES_PER_S
+
+
+def test_all_is_sent_again_where_there_is_little_to_send():
+    bearing = bound()
+    bearing.on_heard(CALM, 1e4, 10.0)
+    assert not bearing.bound
+    lossy = bound()
+    lossy.on_heard(LOSSY, 1e4, 10.0)
+    assert lossy.bound
+
+
+def test_a_way_that_became_longer_is_not_a_full_one():
+    bearing, longer = bound(), Heard(5e4, 0.2, 0.0)
+    rates = []
+    for number in range(40):
+        bearing.on_heard(longer, DEMAND, 2.0 + 0.2 * number)
+        rates.append(bearing.bytes_per_s)
+    assert rates[-1] > 2.0 * min(rates)
+
+
+def simulate(row, count, offered, seconds):
+    """Let senders follow what a radio bears; return (delays [s] and rates of the last half).
+
+    Each has messages of 600 bytes for ``offered`` bytes/s; answers take the way back and a beat.
+    """
+    radio = Channel(Table(read_table([dict(row, at_s=0)]), 0.0), random.Random(1))
+    ends = [(Bearing(), Meter()) for _ in range(count)]
+    numbers, due, answers, delays, rates = [0] * count, [0.0] * count, [], [], []
+
+    class Packet(bytes):
+        """A message of one of them."""
+
+    for step in range(int(seconds * 500)):
+        now = step / 500.0
+        for end, (bearing, _) in enumerate(ends):
+            # Not all at the same moment.
+            due[end] = max(due[end], now - 0.05, 0.01 * end)
+            while due[end] <= now:
+                packet = Packet(600)
+                packet.said = end, numbers[end], now
+                numbers[end] += 1
+                radio.put(now, packet)
+                due[end] += 600 / min(offered, bearing.bytes_per_s)
+        for packet in radio.take(now):
+            end, number, sent_at = packet.said
+            ends[end][1].note('x', Frame(1, number, sent_at + 77.0, b''), 540, now)
+            if now > seconds / 2:
+                delays.append(now - sent_at)
+        if step % 100 == 0:
+            answers += [(now + radio_delay_s(row), end, meter.read(now))
+                        for end, (_, meter) in enumerate(ends)]
+            if now > seconds / 2:
+                rates.append(sum(min(offered, bearing.bytes_per_s) for bearing, _ in ends))
+        while answers and answers[0][0] <= now:
+            _, end, heard = answers.pop(0)
+            ends[end][0].on_heard(heard, offered, now)
+    return sorted(delays), sum(rates) / len(rates)
+
+
+def radio_delay_s(row):
+    return row.get('delay_ms', 0) / 1000.0
+
+
+@pytest.mark.parametrize('row, count, bears', [
+    ({'delay_ms': 200, 'loss_percent': 20, 'rate_mbit': 1}, 1, 125e3),
+    ({'delay_ms': 200, 'loss_percent': 20, 'rate_mbit': 1}, 4, 125e3),
+    ({'delay_ms': 200, 'loss_percent': 5, 'rate_mbit': 2}, 2, 250e3),
+    ({'delay_ms': 20, 'loss_percent': 0, 'rate_mbit': 1}, 1, 125e3)])
+def test_a_radio_is_used_and_its_queue_stays_short(row, count, bears):
+    delays, rate = simulate(row, count, DEMAND / 2, 40.0)
+    waited = [delay_s - radio_delay_s(row) for delay_s in delays]
+    assert waited[len(waited) // 2] < 0.05 and waited[int(0.9 * len(waited))] < 0.2
+    assert 0.5 * bears < rate < 1.2 * bears
+
+
+def test_a_radio_that_bears_everything_gets_everything():
+    delays, rate = simulate({'delay_ms': 5, 'rate_mbit': 10, 'loss_percent': 1}, 1, 1e5, 10.0)
+    assert rate == 1e5 and delays[-1] < 0.05
+
+
+# --- who gets how much
+
+def flow(topic, urgency, hz, size, **options):
+    """Return a flow of a stream that has come for a while until 10.0 s."""
+    found = Flow(Stream(topic, urgency, **options))
+    for number in range(int(5 * hz) + 1):
+        found.came(10.0 - (int(5 * hz) - number) / hz)
+        found.sized(size - AROUND_BYTES)
+    return found
+
+
+def lot():
+    """Return what a robot with a camera sends."""
+    return [flow(GUARD_ECHO, COMMAND, 30, 190), flow('odom', STATE, 50, 300),
+            flow('imu', STATE, 100, 300, weight=0.7), flow('scan', STATE, 10, 2500, weight=0.2),
+            flow('camera', PICTURE, 30, 25000, rate_hz=30.0)]
+
+
+def used(flows, found):
+    """Return what all of it sends [bytes/s]."""
+    return sum(found[flow.stream.topic].bytes_per_s if flow.stream.urgency == PICTURE else
+               min(flow.hz(10.0), found[flow.stream.topic].hz) * flow.size for flow in flows)
+
+
+@pytest.mark.parametrize('bytes_per_s', [1e4, 2e4, 3e4, 1e5, 5e5])
+def test_no_more_is_shared_out_than_there_is(bytes_per_s):
+    flows = lot()
+    found = shares(flows, bytes_per_s, 0.2, 10.0)
+    assert 0.7 * bytes_per_s < used(flows, found) < 1.1 * bytes_per_s
+    assert found['odom'].hz > found['imu'].hz > found['scan'].hz
+    assert found[GUARD_ECHO].hz == 12.0
+
+
+def test_a_picture_is_first_rarer_then_smaller():
+    some = shares(lot(), 3e5, 0.0, 10.0)['camera']
+    assert math.isinf(some.size) and 5.0 <= some.hz < 30.0 and some.times == 1
+    few = shares(lot(), 4e4, 0.0, 10.0)['camera']
+    assert few.size == SMALL_BYTES and 0.5 < few.hz <= 5.0
+    assert shares(lot(), 4e4, 0.2, 10.0)['camera'].times == 2
+
+
+def test_states_get_all_where_nobody_looks():
+    flows = lot()[:-1]
+    assert shares(flows, 3e4, 0.0, 10.0)['odom'].hz > shares(lot(), 3e4, 0.0, 10.0)['odom'].hz
+
+
+def test_several_cameras_share_the_place():
+    flows = lot() + [flow('second', PICTURE, 30, 25000, rate_hz=30.0)]
+    found = shares(flows, 1e5, 0.0, 10.0)
+    assert found['camera'].bytes_per_s == pytest.approx(0.5 * found['camera'].pace)
+
+
+def test_a_flow_that_ended_takes_nothing():
+    ended = flow('camera', PICTURE, 30, 25000)
+    assert ended.hz(10.0) == pytest.approx(30.0, rel=0.1) and ended.hz(30.0) < 0.01
+
+
+def test_a_pace_changes():
+    pace = Pace(0.0)
+    assert all(pace.lets(1.0) for _ in range(5))
+    pace.change(10.0)
+    assert abs(sum(pace.lets(2.0 + 0.01 * number) for number in range(100)) - 10) <= 2
+
+
+# --- pieces
+
+BODY = bytes(range(256)) * 40
+
+
+def test_a_picture_comes_together_of_its_pieces_in_any_order():
+    pieces = split(7, 12.5, BODY)
+    assert max(map(len, pieces)) < PIECE_BYTES + 50
+    random.Random(1).shuffle(pieces)
+    gathered = Gathered()
+    found = [gathered.add(piece) for piece in pieces + pieces]
+    whole = found.pop(len(pieces) - 1)
+    assert (whole.stamp_s, whole.body) == (12.5, BODY) and set(found) == {None}
+
+
+def test_a_picture_that_lost_a_piece_gives_way_to_the_next():
+    gathered = Gathered()
+    for piece in split(1, 1.0, BODY)[:-1]:
+        assert gathered.add(piece) is None
+    assert [whole.stamp_s for whole in map(gathered.add, split(2, 2.0, BODY)) if whole] == [2.0]
+
+
+def test_a_picture_that_is_too_large_is_not_cut():
+    assert split(1, 1.0, bytes(PIECE_BYTES * MOST_PIECES + 1)) == []
+
+
+@pytest.mark.parametrize('data', [
+    b'', bytes(16), struct.pack('>IHHd', 1, 5, 5, 0.0) + b'x', struct.pack('>IHHd', 1, 0, 0, 0.0)
+    + b'x', struct.pack('>IHHd', 1, 0, 65535, 0.0) + b'x'])
+def test_a_piece_that_is_none(data):
+    with pytest.raises(FrameError):
+        Gathered().add(data)
+
+
+def test_pieces_that_do_not_fit_each_other():
+    gathered = Gathered()
+    gathered.add(split(1, 1.0, BODY)[0])
+    with pytest.raises(FrameError):
+        gathered.add(split(1, 1.0, BODY[:3000])[1])
+
+
+# --- smaller pictures
+
+def picture(data):
+    """Return a sensor_msgs/CompressedImage as bytes."""
+    texts = b''.join(struct.pack('<I', len(text)) + text for text in (b'camera', b'jpeg', data))
+    return struct.pack('<III', 7, 11, 22) + texts
+
+
+def jpeg(width=640, height=480):
+    """Return a jpeg of a picture with many edges."""
+    pixels = np.random.RandomState(1).randint(0, 255, (height // 8, width // 8, 3), np.uint8)
+    pixels = cv2.resize(pixels, (width, height), interpolation=cv2.INTER_LINEAR)
+    return cv2.imencode('.jpg', pixels, [cv2.IMWRITE_JPEG_QUALITY, 90])[1].tobytes()
+
+
+@pytest.mark.parametrize('most', [20000, 8000, 4000])
+def test_a_picture_is_made_as_small_as_it_must_be(most):
+    data = picture(jpeg())
+    found = Smaller().fit(data, most)
+    assert 0.2 * most < len(found) <= most < len(data)
+    begin = data.index(b'jpeg') + 8
+    assert found[:begin - 4] == data[:begin - 4]
+    assert struct.unpack_from('<I', found, begin - 4)[0] == len(found) - begin
+    pixels = cv2.imdecode(np.frombuffer(found[begin:], np.uint8), cv2.IMREAD_COLOR)
+    assert pixels.shape[1] * 3 == pixels.shape[0] * 4
+
+
+@pytest.mark.parametrize('data', [picture(b'no picture' * 99), b'', b'short', picture(b'')])
+def test_what_is_no_picture_stays_as_it_is(data):
+    assert Smaller().fit(data, 1) == data
+
+
+def test_a_picture_that_fits_is_not_touched():
+    data = picture(jpeg(64, 48))
+    assert Smaller().fit(data, math.inf) is data
+
+
+def test_it_grows_again_when_there_is_room():
+    smaller, data = Smaller(), picture(jpeg())
+    small = len(smaller.fit(data, 4000))
+    for _ in range(12):
+        large = smaller.fit(data, 30000)
+    assert len(large) > 3 * small
+
+
+# --- what is told of it
+
+@pytest.mark.parametrize('figures, words, says', [
+    (RadioFigures(), '', []),
+    (RadioFigures(0.4123, 0.2), 'round_trip:0.4123 loss:0.2', []),
+    (RadioFigures(bears=112e3), 'bears:112000.0', ['the radio bears 0.9 Mbit/s only']),
+    (RadioFigures(0.4, 0.2, 112e3, 0.52), 'round_trip:0.4 loss:0.2 bears:112000.0 picture_hz:0.52',
+     ['picture 1 in 2 s: the radio bears 0.9 Mbit/s']),
+    (RadioFigures(bears=4000.0, picture_hz=0.02), 'bears:4000.0 picture_hz:0.02',
+     ['no picture: the radio bears 0.1 Mbit/s']),
+    (RadioFigures(bears=9e5, picture_hz=12.3), 'bears:900000.0 picture_hz:12.3',
+     ['picture 12 a second: the radio bears 7.2 Mbit/s'])])
+def test_figures_are_told_in_words_and_read_again(figures, words, says):
+    assert figures_words(figures) == words
+    assert repr(read_figures(words)) == repr(figures)
+    assert thinned_words(figures) == says
+
+
+@pytest.mark.parametrize('words', [
+    'nonsense', 'round_trip', 'round_trip:', 'loss:-1', 'bears:nan', 'bears:inf', 'other:3',
+    'x' * 9999])
+def test_figures_that_cannot_be_count_for_nothing(words):
+    assert repr(read_figures(words)) == repr(RadioFigures())
+
+
+@pytest.mark.parametrize('rate_hz, words', [
+    (0.0, 'no picture'), (0.2, 'picture 1 in 5 s'), (0.9, 'picture 1 in 2 s'),
+    (1.0, 'picture 1 a second'), (4.6, 'picture 5 a second')])
+def test_how_often_a_picture_comes(rate_hz, words):
+    assert picture_words(rate_hz) == words
+
+
+def test_a_thinned_picture_is_a_warning_of_the_row():
+    assert link_warning(LinkFigures(thinned='picture 1 in 2 s')) == 'picture 1 in 2 s'

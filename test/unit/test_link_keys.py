@@ -1,0 +1,112 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whose key may do what on the link: core/link/keys."""
+import pytest
+
+from mhri.core.link.keys import (
+    access, called, check_own, endpoint, host_of, Keys, KeysError, may_drive, partners, read_lists,
+    split)
+
+PEERS = frozenset((
+    'host:lab', 'host:desk.2', 'watch:gallery', 'robot:bot1', 'robot:bot2', 'watched:bot3'))
+SIGNED = '''Certificate Revocation List (CRL):
+    Serial Number: 0AFF12
+        Revocation Date: Nov 22 21:39:09 2026 GMT
+    Serial Number: 77
+'''
+
+
+@pytest.mark.parametrize('owner, role, name', [
+    ('host:lab', 'host', 'lab'), ('robot:bot1.12', 'robot', 'bot1'), ('watch:a-b', 'watch', 'a-b'),
+    ('watched:bot1', 'watched', 'bot1'), ('admin:lab', '', ''), ('host:', '', ''), ('', '', ''),
+    ('host:lab/../x', '', ''), ('host:lab\n', '', ''), ('host:*', '', ''), ('host:lab.x', '', '')])
+def test_names(owner, role, name):
+    assert split(owner) == (role, name)
+
+
+def test_words_and_rights():
+    assert called('host:lab.2') == 'lab' and called('odd') == 'odd'
+    assert [may_drive(owner) for owner in sorted(PEERS)] == [True, True, False, False, False, False]
+    assert host_of('lab-pc2.local') == 'host:lab-pc2' and host_of('') == 'host:unknown'
+    assert host_of('a b$') == 'host:a_b_'
+
+
+@pytest.mark.parametrize('side, robot, let_in', [
+    ('robot', 'bot1', ['host:desk.2', 'host:lab', 'watch:gallery']),
+    ('host', 'bot1', ['robot:bot1']), ('host', 'bot3', ['watched:bot3']), ('host', 'bot9', [])])
+def test_who_is_let_in(side, robot, let_in):
+    assert partners(Keys('x', PEERS), side, robot) == let_in
+
+
+def test_who_is_withdrawn_is_not_let_in():
+    keys = Keys('robot:bot1', PEERS, frozenset(('host:lab', 'robot:bot2')))
+    assert partners(keys, 'robot', 'bot1') == ['host:desk.2', 'watch:gallery']
+    assert partners(keys, 'host', 'bot2') == []
+
+
+def allowed(rules, owner, flow, message):
+    """Return the key expressions on which somebody may do something."""
+    named = {name for policy in rules['policies'] if policy['subjects'] == [owner]
+             for name in policy['rules']}
+    return sorted(key for rule in rules['rules'] if rule['id'] in named
+                  and rule['flows'] == [flow] and message in rule['messages']
+                  for key in rule['key_exprs'])
+
+
+def test_a_host_speaks_below_its_own_name_and_a_watching_one_hardly():
+    rules = access(Keys('robot:bot1', PEERS), 'robot', 'bot1')
+    assert rules['enabled'] and rules['default_permission'] == 'deny'
+    assert {row['id']: row['cert_common_names'] for row in rules['subjects']} == {
+        owner: [owner] for owner in ('host:lab', 'host:desk.2', 'watch:gallery')}
+    assert allowed(rules, 'host:lab', 'ingress', 'put') == ['mhri/bot1/host:lab/down/**']
+    assert allowed(rules, 'host:lab', 'egress', 'put') == ['mhri/bot1/host:lab/up/**']
+    assert allowed(rules, 'watch:gallery', 'ingress', 'put') == [
+        'mhri/bot1/watch:gallery/down/_beat']
+
+
+def test_nobody_commands_a_robot_that_is_only_watched():
+    rules = access(Keys('watched:bot3', PEERS), 'robot', 'bot3')
+    assert allowed(rules, 'host:lab', 'ingress', 'put') == ['mhri/bot3/host:lab/down/_beat']
+
+
+def test_a_host_hears_of_a_robot_from_itself_alone():
+    rules = access(Keys('host:lab', PEERS), 'host', 'bot1')
+    assert [row['id'] for row in rules['subjects']] == ['robot:bot1']
+    assert allowed(rules, 'robot:bot1', 'ingress', 'put') == ['mhri/bot1/host:lab/up/**']
+
+
+@pytest.mark.parametrize('side, robot, own, says', [
+    ('host', 'bot1', 'robot:bot1', 'mhri_keys.sh host NAME'),
+    ('robot', 'bot1', 'robot:bot2', 'that of robot:bot2, and this is the robot bot1'),
+    ('robot', 'bot1', 'host:lab', 'mhri_keys.sh robot bot1'),
+    ('host', 'bot1', '', 'this is a host'),
+    ('host', 'bot1', 'host:old', 'is withdrawn')])
+def test_a_key_that_is_not_for_this_end(side, robot, own, says):
+    with pytest.raises(KeysError, match=says):
+        check_own(Keys(own, PEERS, frozenset(('host:old',))), side, robot)
+
+
+@pytest.mark.parametrize('side, own', [
+    ('host', 'host:lab'), ('host', 'watch:gallery'), ('robot', 'robot:bot1.3'),
+    ('robot', 'watched:bot1')])
+def test_a_key_for_this_end(side, own):
+    check_own(Keys(own, PEERS), side, 'bot1')
+
+
+def test_lists():
+    keys = read_lists('host:lab', 'host:lab\nrobot:bot1\n', '0aff12 host:x\n77 robot:y\n', SIGNED)
+    assert keys == Keys('host:lab', frozenset(('host:lab', 'robot:bot1')),
+                        frozenset(('host:x', 'robot:y')))
+
+
+@pytest.mark.parametrize('withdrawn', ['', '77 robot:y', '0AFF12 a\n77 b\n78 c', '0AFF12\n77 b'])
+def test_a_list_that_the_authority_did_not_sign(withdrawn):
+    with pytest.raises(KeysError, match='put the key in place again'):
+        read_lists('host:lab', '', withdrawn, SIGNED)
+
+
+@pytest.mark.parametrize('text, secret, full', [
+    ('10.0.0.1:7447', True, 'tls/10.0.0.1:7447'), ('10.0.0.1:7447', False, 'tcp/10.0.0.1:7447'),
+    ('udp/10.0.0.1:7447', True, 'udp/10.0.0.1:7447'), ('', True, '')])
+def test_an_endpoint_without_a_protocol(text, secret, full):
+    assert endpoint(text, secret) == full

@@ -1,0 +1,128 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a session keeps before it begins, where its lines come from, what a screen says of it."""
+from dataclasses import replace
+
+import pytest
+
+from mhri.core.events.events import KINDS
+from mhri.core.robots.robot_types import Limits, RobotType
+from mhri.core.session.folder import KINDS as LINES
+from mhri.core.session.lines import GraphWatch, line_of_screen
+from mhri.core.session.ring import Chunk, Latched, Ring
+from mhri.core.session.topics import camera_topics, inputs_of, robot_entry, robot_topics
+from mhri.core.session.view import button_texts, duration_text, SessionView, tip_text
+
+S = 10 ** 9
+KIND = RobotType('x', 'X', 'generic', Limits(1.0, 1.0), command=('cmd_vel',), imu=('imu',),
+                 odometry=('odom', '/abs/odom'), rgb=('camera/image_raw',), battery=('battery',))
+
+
+class Publisher:
+    def __init__(self, latching=False):
+        self.fields = {'latching': '1'} if latching else {}
+
+
+def chunk(publisher, *at_s, size=10):
+    return Chunk([(publisher, round(at * S), b'%g' % at) for at in at_s], size)
+
+
+def test_the_ring_keeps_what_is_new():
+    ring = Ring(10.0, 1000, Latched())
+    for second in range(30):
+        ring.put(chunk(Publisher(), second, second + 0.5))
+    kept = list(ring.take())
+    assert [part.begun_ns for part in kept] == [second * S for second in range(20, 30)]
+    assert ring.size == 0 and list(ring.take()) == []
+
+
+def test_the_ring_keeps_to_its_memory():
+    ring = Ring(1000.0, 100, Latched())
+    for second in range(30):
+        ring.put(chunk(Publisher(), second, size=30))
+    assert ring.size == 90 and len(list(ring.take())) == 3
+    ring.put(chunk(Publisher(), 1.0, size=101))
+    assert ring.size == 0
+
+
+def test_what_is_latched_is_known_from_before_the_ring():
+    latched, publisher, other = Latched(), Publisher(True), Publisher(True)
+    ring = Ring(5.0, 1000, latched)
+    ring.put(chunk(publisher, 0.0))
+    ring.put(chunk(other, 1.0))
+    ring.put(chunk(Publisher(), 1.5))
+    ring.put(chunk(publisher, 20.0))
+    assert latched.at(7) == [(publisher, 7, b'0'), (other, 7, b'1')]
+    heads = []
+    for part in ring.take():
+        heads.append((part.begun_ns, latched.at(part.begun_ns)[0][2]))
+    assert heads == [(20 * S, b'0')]
+    assert latched.at(7)[0] == (publisher, 7, b'20')
+    latched.forget(publisher)
+    assert latched.at(7) == [(other, 7, b'1')]
+
+
+def test_topics_of_a_robot():
+    topics = robot_topics('bot1', KIND)
+    assert topics[:4] == ('/bot1/odom', '/abs/odom', '/bot1/imu', '/bot1/battery')
+    assert '/bot1/cmd_vel' in topics and '/bot1/mhri_guard/command' in topics
+    assert not any('camera' in topic for topic in topics)
+    assert camera_topics('bot1', KIND) == ('/bot1/camera/image_raw/compressed',)
+    assert inputs_of(['/a', '/mux_in/lab', '/mux_in/joy']) == ('/mux_in/joy', '/mux_in/lab')
+
+
+def test_the_entry_of_a_robot_names_what_is_published():
+    entry = robot_entry('bot1', 3, KIND, {'a': {'b': [1, b'x']}}, {'/abs/odom'})
+    assert entry['topics'] == {
+        'odometry': '/abs/odom', 'imu': '/bot1/imu', 'battery': '/bot1/battery',
+        'rgb': '/bot1/camera/image_raw/compressed', 'command': '/bot1/cmd_vel'}
+    assert (entry['number'], entry['type'], entry['model']) == (3, 'x', None)
+    assert entry['parameters'] == {'a': {'b': [1, "b'x'"]}}
+
+
+@pytest.mark.parametrize('kind', sorted(KINDS))
+def test_every_event_of_a_screen_has_a_kind_or_is_seen_elsewhere(kind):
+    line = line_of_screen(kind, KINDS[kind][0], 'bot1', 'words')
+    assert line is None or (line[0] in LINES and line[2:] == ('bot1', 'words'))
+    here = kind.startswith(('mode.', 'drive.', 'control.', 'session.')) or kind in (
+        'stop.engaged', 'stop.released')
+    assert (line is None) == here
+
+
+def test_lines_of_the_graph_come_once():
+    watch = GraphWatch()
+    assert watch.mode('joy') == watch.mode('joy') == []
+    assert [line[0] for line in watch.mode('pedal')] == ['mode']
+    assert watch.stop(False) == [] and watch.stop(True)[0][1] == 'warning'
+    assert watch.stop(True) == [] and watch.stop(False)[0][3] == 'STOP ALL released'
+    assert watch.selection([]) == [] and watch.selection(['a', 'b'])[0][3] == 'selected: a, b'
+    assert watch.selection(['a', 'b']) == [] and watch.selection([])[0][3] == 'selected: none'
+    assert watch.control('', '') == []
+    assert watch.control('/panel', 'pc')[0][3] == 'panel on pc is in control'
+    assert watch.operator == '/panel' and watch.control('', '')[0][3] == 'nobody is in control'
+    assert watch.state() == {'mode': 'pedal', 'stop_all': False, 'operator': '', 'selected': []}
+
+
+def test_a_stop_that_is_in_force_at_the_start_is_told():
+    assert GraphWatch().stop(True)[0][:2] == ('stop', 'warning')
+
+
+def test_silence_is_told_once_and_so_is_its_end():
+    watch = GraphWatch()
+    watch.selection(['b'])
+    assert watch.silence({'a': (0.1, 1.0), 'b': (0.1, 1.0), 'c': (99.0, 0.0)}, 10.0) == []
+    lost = watch.silence({'a': (2.0, 1.0), 'b': (2.0, 1.0)}, 12.0)
+    assert [(line[0], line[1], line[2]) for line in lost] == [
+        ('lost', 'warning', 'a'), ('lost', 'error', 'b')]
+    assert watch.silence({'a': (3.0, 1.0)}, 13.0) == []
+    assert watch.silence({'a': (0.0, 1.0)}, 15.0) == [('link', 'info', 'a', 'back after 5 s')]
+
+
+def test_a_screen_says_how_the_session_does():
+    view = SessionView(True, True, '/s', 3723.0, 10 ** 7, 2)
+    assert button_texts(view) == ('REC 1:02:03',) and duration_text(62.9) == '01:02'
+    assert '/s, 10.0 MB; 2 marks' in tip_text(view)
+    assert button_texts(replace(view, problem='the disk is full')) == ('REC 1:02:03 !',)
+    gone = replace(view, there=False)
+    assert button_texts(gone) == ('not recorded !',) and 'not running' in tip_text(gone)
+    assert button_texts(SessionView()) == ('Record',)

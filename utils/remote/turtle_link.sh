@@ -1,0 +1,81 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+# shellcheck shell=bash
+# For turtle_remote.sh --link: this robot's own ROS master, and its end of the link to the host.
+# Sourced, never run.
+
+CORE_PID=
+LINK_PID=
+LINK_ENV=()
+# What the archive of turtlebot_deploy.sh --link becomes.
+LINK_PLACE=$HERE/link
+
+# prepare_link: unpacks mhri_link where the archive is new, and sees that it can start here.
+prepare_link() {
+  local archive=$HERE/mhri_link.tar.gz sum problem
+  "$LINK" || return 0
+  "$GUARD_PYTHON" -c 'import sys; sys.exit(sys.version_info < (3, 8))' ||
+    die "mhri_link needs Python 3.8, and this robot's ROS runs $("$GUARD_PYTHON" -V 2>&1): leave" \
+      "--link out, or give the robot ROS Noetic"
+  [ -f "$archive" ] ||
+    die "there is no $archive: send it with 'turtlebot_deploy.sh --link' on the host"
+  sum=$(sha256sum <"$archive")
+  if [ "$(cat "$LINK_PLACE/unpacked" 2>/dev/null)" != "$sum" ]; then
+    { rm -rf "$LINK_PLACE" && mkdir "$LINK_PLACE" && tar -xzf "$archive" -C "$LINK_PLACE" &&
+      printf '%s' "$sum" >"$LINK_PLACE/unpacked"; } ||
+      die "could not unpack $archive: see the message above (is the disk full?)"
+  fi
+  LINK_ENV=("PYTHONPATH=$LINK_PLACE/src:$LINK_PLACE/library${PYTHONPATH:+:$PYTHONPATH}"
+    "ROS_PACKAGE_PATH=$LINK_PLACE${ROS_PACKAGE_PATH:+:$ROS_PACKAGE_PATH}"
+    "ROS_NAMESPACE=/$NAME")
+  problem=$(cd / && env "${LINK_ENV[@]}" "$GUARD_PYTHON" -B -c 'import mhri.nodes.mhri_link, zenoh' \
+    2>&1) || die "mhri_link cannot start on this robot (${problem##*$'\n'}): send it again with" \
+      "'turtlebot_deploy.sh --link', or install what this names"
+}
+
+# start_master: this robot's own; one that runs here already is as good.
+start_master() {
+  if (: <"/dev/tcp/127.0.0.1/$PORT") 2>/dev/null; then
+    say "something has port $PORT of this robot already: joining the ROS master there"
+    return
+  fi
+  # Without the mark of this run: it outlives the rest, which is started again without it.
+  "$PYTHON" "$HERE/turtle_check.py" hold roscore -p "$PORT" </dev/null >/dev/null &
+  CORE_PID=$!
+  until (: <"/dev/tcp/127.0.0.1/$PORT") 2>/dev/null; do
+    running "$CORE_PID" || die "roscore could not start a ROS master on this robot: see above"
+    sleep 0.2
+  done
+}
+
+start_link() {
+  local where=(--listen "$LISTEN")
+  [ -z "$ROUTER" ] || where=(--router "$ROUTER")
+  # Beside these files is where mhri_keys.sh puts them.
+  [ ! -e "$HERE/keys/own.pem" ] || where+=(--keys "$HERE/keys")
+  held env "${LINK_ENV[@]}" "$GUARD_PYTHON" "$LINK_PLACE/scripts/mhri_link" --side robot \
+    --name "$NAME" "${where[@]}" </dev/null &
+  LINK_PID=$!
+}
+
+# check_link: starts the link again if it was killed; dies if it could not start, or without a
+# master.
+check_link() {
+  local status=0
+  "$LINK" || return 0
+  if [ -n "$CORE_PID" ] && ! running "$CORE_PID"; then
+    die "this robot's own ROS master has ended"
+  fi
+  if running "$LINK_PID"; then return; fi
+  wait "$LINK_PID" || status=$?
+  [ "$status" -gt 128 ] || die "mhri_link has ended (exit status $status): see its messages above"
+  warn "mhri_link was killed: starting it again"
+  start_link
+}
+
+# end_master: the last of all.
+end_master() {
+  [ -n "$CORE_PID" ] || return 0
+  kill -TERM "$CORE_PID" 2>/dev/null || true
+  wait "$CORE_PID" 2>/dev/null || true
+}
