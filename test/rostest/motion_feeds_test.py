@@ -144,7 +144,7 @@ class MotionFeedsTest(unittest.TestCase):
         self.assertIsNone(feed.age_s())
 
     def test_the_map_has_a_scan_from_where_the_laser_sits(self):
-        """Half a metre ahead, turned about and upside down; before tf is heard, as its type says."""
+        """Ahead, turned about and upside down; before tf is heard, as its type says."""
         message = scan()
         message.header.frame_id = 'mounted/laser'
         self.talk('/mounted/scan', message)
