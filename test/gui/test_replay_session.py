@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A replay on the real screen, played by the real player: looked at and moved by clicks and keys."""
+"""A replay on the real screen, played by the real player: moved by clicks and keys."""
 import os
 import sys
 
