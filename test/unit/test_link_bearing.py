@@ -213,9 +213,9 @@ def test_no_more_is_shared_out_than_there_is(bytes_per_s):
 def test_a_picture_is_first_rarer_then_smaller():
     some = shares(lot(), 3e5, 0.0, 10.0)['camera']
     assert math.isinf(some.size) and 5.0 <= some.hz < 30.0 and some.times == 1
-    few = shares(lot(), 4e4, 0.0, 10.0)['camera']
+    few = shares(lot(), 3e4, 0.0, 10.0)['camera']
     assert few.size == SMALL_BYTES and 0.5 < few.hz <= 5.0
-    assert shares(lot(), 4e4, 0.2, 10.0)['camera'].times == 2
+    assert shares(lot(), 3e4, 0.2, 10.0)['camera'].times == 2
 
 
 def test_states_get_all_where_nobody_looks():
