@@ -30,6 +30,8 @@ PATIENCE_S = 300.0
 # With less than this share of the messages the computer no longer carries all of it.
 CARRIED = 0.9
 TICK_S = 0.01
+# What this computer is called on the link.
+HOST = 'host:bench'
 # Topic, type, sent at every so many ticks.
 STREAMS = (('odom', 'nav_msgs/Odometry', 2), ('imu', 'sensor_msgs/Imu', 1),
            ('scan', 'sensor_msgs/LaserScan', 10),
@@ -71,7 +73,8 @@ def stand_ins(ports):
         """What a robot says on the wire."""
 
         def __init__(self, name, port):
-            super().__init__(name, Carrier(name, ['tcp/127.0.0.1:{}'.format(port)]), 'up')
+            carrier = Carrier(['tcp/127.0.0.1:{}'.format(port)])
+            super().__init__(name, carrier.between(name, HOST), 'up')
             self._about = About({'robot_type': 'turtlebot3', 'robot_model': 'burger'},
                                 tuple(row[:2] for row in STREAMS))
             self.wanted = ()
@@ -211,7 +214,7 @@ def run(counts, window_s, topics):
                 name = 'bot{}'.format(len(sides) + 1)
                 sides.append(system.node('mhri_link', '--side', 'host', '--name', name,
                                          '--connect', 'tcp/127.0.0.1:{}'.format(ports[len(sides)]),
-                                         '__ns:=/' + name))
+                                         '--host', HOST, '--keys', 'off', '__ns:=/' + name))
             looker = Looker(system, count, topics)
             wait_for(lambda: min(looker.counts()) > 20, PATIENCE_S, 'all to be heard', 0.2)
             share, share_m, memory, rate = measure(system, looker, sides, window_s)
