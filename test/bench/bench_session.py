@@ -3,11 +3,12 @@
 """CPU for each recorded message of a session beside ``rosbag record`` (C++), at the same time.
 
 Four simulated robots with all their sensors (cameras compressed, as ``~cameras_out_of_sight`` has
-them) are recorded by ``mhri_session`` and by ``rosbag record`` with the very topics that the session
-has in its bags. What is measured is the time of the processor, of user and system, for each message
-in the bags. Then the session alone: what it costs while it only keeps its ring, and how long a mark
-takes from the call to the answer, its stills on the disk.
-Goals: ratio at most 1.5; a mark within 100 ms.
+them) are recorded by ``mhri_session`` and by ``rosbag record`` with the very topics that the
+session has in its bags. What is measured is the time of the processor, of user and system, for
+each message in the bags. Then the session alone: what it costs while it only keeps its ring, how
+long a mark takes from the call to the answer, its stills on the disk, and how long a stick event
+to the commands of all robots, with the recorder halted and with it recording, in turn.
+Goals: ratio at most 1.5; a mark within 100 ms; the stick as without.
 """
 import argparse
 import glob
@@ -20,6 +21,7 @@ import psutil
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
+from bench_stick_to_robot import measure, percentile, Receiver  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
 ROBOTS = 4
@@ -121,6 +123,66 @@ class Bench:
         return sorted(found)
 
 
+class Stick:
+    """A pedal and a selection, without a screen."""
+
+    def __init__(self):
+        import rospy
+        from mhri.msg import ControlMode, RobotSelect
+        from sensor_msgs.msg import Joy
+        self._joy_class = Joy
+        names = ['bot{}'.format(number + 1) for number in range(ROBOTS)]
+        self._joy = rospy.Publisher('/mux_in/pedal', Joy, queue_size=1, tcp_nodelay=True)
+        mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=1, latch=True)
+        select = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1,
+                                 latch=True)
+        self.receiver = Receiver(['/{}/teleop/input'.format(name) for name in names])
+        mode.publish('pedal')
+        select.publish(names)
+        self._lease = rospy.Timer(rospy.Duration(0.4), lambda _: select.publish(names))
+        wait_for(lambda: self._joy.get_num_connections(), 60, 'the mux')
+        wait_for(self._comes_through, 60, 'a command at every robot')
+
+    def _comes_through(self):
+        self.send(0.0)
+        time.sleep(0.05)
+        self.receiver.expect(0.05)
+        self.send(0.1)
+        return len(self.receiver.wait(0.2)) == self.receiver._count
+
+    def rest(self):
+        """Centre the stick."""
+        self.receiver.expect(0.0)
+        self.send(0.0)
+        self.receiver.wait()
+
+    def send(self, value):
+        """Deflect it."""
+        self._joy.publish(self._joy_class(axes=[0.0, value]))
+
+
+def sticks(bench, events):
+    """Return {case: latencies [ms]} with the recorder halted, and recording, in turn."""
+    stick, found = Stick(), {'recorder halted': [], 'recording': []}
+    process = psutil.Process(bench.session.pid)
+    for turn in range(4):
+        name = 'recording' if turn % 2 else 'recorder halted'
+        if turn % 2:
+            bench.record(True)
+        else:
+            process.suspend()
+        try:
+            found[name] += measure(stick, events // 2, 0.013, turn * 97)
+        except RuntimeError as error:
+            print('{}: {}'.format(name, error))
+        finally:
+            process.resume()
+        if turn % 2:
+            bench.record(False)
+    stick.rest()
+    return {name: sorted(values) for name, values in found.items()}
+
+
 def rate_of(path, seconds):
     """Return messages per second of the newest part of a session's bags."""
     import rosbag
@@ -146,6 +208,7 @@ def main():
         rates = (rate_of(max(glob.glob(os.path.join(bench.state.folder, '*.bag'))), seconds / 2),
                  rate_of(os.path.join(system.home, 'beside.bag'), seconds / 2))
         marks = bench.marks()
+        latencies = sticks(bench, 160 if options.short else 2000)
     print('{} robots, {} topics          us/message   messages/s   % of a core'.format(
         ROBOTS, len(topics)))
     each = {}
@@ -153,10 +216,14 @@ def main():
         each[name] = cpu / seconds / rate * 1e6
         print('{:<28} {:>11.1f} {:>12.0f} {:>13.1f}'.format(
             name, each[name], rate, 100 * cpu / seconds))
-    print('in the bags: session {} messages, {:.1f} MB (with its ring); rosbag {}, {:.1f} MB'.format(
-        session[0], session[1] / 1e6, rosbag[0], rosbag[1] / 1e6))
+    print('in the bags: session {} messages, {:.1f} MB (with its ring); rosbag {}, {:.1f} MB'
+          .format(session[0], session[1] / 1e6, rosbag[0], rosbag[1] / 1e6))
     print('ratio session / rosbag record, by message: {:.2f}'.format(
         each['session'] / each['rosbag']))
+    for name, values in latencies.items():
+        if values:
+            print('stick to {} robots, {:<16} p50 {:.2f} p99 {:.2f} ms'.format(
+                ROBOTS, name + ':', percentile(values, 0.5), percentile(values, 0.99)))
     print('the ring alone: {:.1f} % of a core'.format(100 * idle))
     print('mark, {} stills each: median {:.0f} ms, longest of {} {:.0f} ms'.format(
         ROBOTS, marks[len(marks) // 2], MARKS, marks[-1]))

@@ -19,12 +19,15 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
+from mhri.core.link.control import ASK_FOR, STEP_S, TAKE_IT  # noqa: E402
+from mhri.core.screen.views import LIVE, RobotView  # noqa: E402
 from support.linked import Linked, LONG_S, Operator  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 REPO = pathlib.Path(__file__).resolve().parents[2]
 LISTS = ('authority.pem', 'peers', 'withdrawn', 'withdrawn.pem')
 ATTACK_S = 2.0
+BOT1 = RobotView('bot1', link=LIVE)
 
 
 class Authority:
@@ -175,8 +178,12 @@ class Lab(Linked):
         import rospy
         from geometry_msgs.msg import TwistStamped
         from mhri.msg import LinkControl
+        from mhri.ros.robots.controls import Controls
         rospy.Subscriber('/bot1/mhri_guard/echo', TwistStamped, self._on_echo, queue_size=1)
         rospy.Subscriber('/bot1/mhri_link/state', LinkControl, self.states.append, queue_size=5)
+        self.told = []
+        self.controls = Controls(self.told.append)
+        self.controls.watch('bot1')
 
     def _on_echo(self, message):
         from mhri.core.driving.guard_link import parse_id
@@ -270,8 +277,6 @@ def test_a_watching_key_sees_and_does_not_drive(lab):
 
 
 def test_one_host_at_a_time_and_the_other_asks_twice(lab):
-    import rospy
-    from std_srvs.srv import Trigger
     desk = lab.authority.put('desk')
     assert lab.holder() == 'host:lab'
     told = 'desk may not drive: lab has control'
@@ -288,17 +293,20 @@ def test_one_host_at_a_time_and_the_other_asks_twice(lab):
                  'desk to be in control')
         # The very attack of the others: with a key that drives it is obeyed.
         assert attacker.attack(lab.moves, LONG_S)
-        take = rospy.ServiceProxy('/bot1/mhri_link/take_control', Trigger)
-        take.wait_for_service(LONG_S)
-        answers = []
-
-        def taken():
-            answers.append(take())
-            return answers[-1].success
         threading.Thread(target=attacker.attack, daemon=True, args=(
-            lambda: bool(answers) and answers[-1].success, LONG_S)).start()
-        wait_for(taken, LONG_S, lambda: 'control: {}'.format(answers[-1:]), 0.7)
-        assert any('desk has control and is told' in answer.message for answer in answers)
+            lambda: lab.holder() == 'host:lab', LONG_S)).start()
+        controls, told = lab.controls, lab.told
+        wait_for(lambda: controls.seen(BOT1).ask == ASK_FOR, LONG_S, 'the button')
+        assert controls.seen(BOT1).note == 'desk has control'
+        controls.ask('bot1')
+        wait_for(lambda: controls.seen(BOT1).ask == TAKE_IT, LONG_S, 'the second step')
+        wait_for(lambda: told, LONG_S, 'the answer')
+        assert told == ['bot1: desk has control and is told that you ask: ask again to take it']
+        # The second step is for a hand: not within half a second.
+        time.sleep(STEP_S + 0.1)
+        controls.ask('bot1')
+        wait_for(lambda: told[1:], LONG_S, 'the answer')
+        assert told[1:] == ['bot1: this computer has control of bot1']
     finally:
         attacker.close()
     wait_for(lambda: lab.holder() == 'host:lab', LONG_S, 'lab to be in control')

@@ -104,6 +104,44 @@ def test_each_does_a_task_in_the_frame_that_they_share(lab):
     lab.operator.check(*ROBOTS)
 
 
+def missed(lab):
+    """Return the bag of what was missed of bot2, once it is there."""
+    def found():
+        return sorted(name for name in os.listdir(lab.host.home)
+                      if name.startswith('bot2_missed_') and name.endswith('.bag'))
+    wait_for(lambda: lab.fetching and lab.fetching[-1].startswith('fetched'), LONG_S,
+             lambda: 'what was missed: {}'.format(lab.fetching[-3:]), 0.1)
+    return os.path.join(lab.host.home, found()[0])
+
+
+def test_what_was_missed_is_fetched_when_the_link_is_back(lab):
+    import rosbag
+    lab.keep('bot2')
+    lab.drive(['bot2'])
+    # The robot has to have been asked, and to record.
+    wait_for(lambda: lab.keeps('bot2'), LONG_S, 'bot2 to record', 0.1)
+    lab.cut('bot2', True)
+    wait_for(lambda: lab.gate('bot2') and lab.gate('bot2').stands == 'not_heard', LONG_S,
+             'the gates to miss it')
+    begun = time.time()
+    time.sleep(1.0)
+    ended = time.time()
+    lab.cut('bot2', False)
+    mended_at = time.monotonic()
+    path = missed(lab)
+    print('MEASURED what was missed is there {:.1f} s after the link: {}'.format(
+        time.monotonic() - mended_at, lab.fetching[-1]))
+    assert any(text.startswith('fetching') for text in lab.fetching)
+    with rosbag.Bag(path) as bag:
+        rows = [(message.header.frame_id, when.to_sec())
+                for _, message, when in bag.read_messages(['/bot2/odom'])]
+    stamps = [when for _, when in rows if begun < when < ended]
+    print('of the outage: {} messages in {:.1f} s'.format(len(stamps), ended - begun))
+    assert len(stamps) > 10 and stamps == sorted(set(stamps))
+    assert {frame for frame, _ in rows} == {'bot2/odom'}
+    lab.let_go()
+
+
 def test_a_cut_cable_stops_one_alone_and_nothing_is_made_up_for(lab, tmp_path):
     from mhri.ros.recording.recorder import Recorder
     record = Recorder('bot2', ['/bot2/odom'], str(tmp_path / 'cut.bag'))

@@ -20,7 +20,7 @@ from support.ros_system import wait_for  # noqa: E402
 
 TOPIC = '/mux_in/lab'
 PATIENCE_S = 60.0
-KILLS = 5
+KILLS = 3
 
 
 class Recorder:

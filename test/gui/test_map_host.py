@@ -35,7 +35,7 @@ class Operator:
     @staticmethod
     def feeds(name):
         """Return what knows the type of a robot."""
-        return SimpleNamespace(robot_type=KIND)
+        return SimpleNamespace(robot_type=KIND, base='')
 
 
 class Places:

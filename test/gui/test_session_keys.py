@@ -99,11 +99,16 @@ def test_4_p_keeps_what_the_cameras_show(session):
 
 def test_5_a_mark_has_the_stills_of_what_is_in_sight(session):
     session.to_the_pictures()
-    before = len(marks_of(session.events()))
-    session.key('n')
-    session.until(lambda: len(marks_of(session.events())) > before, 'the mark')
-    assert marks_of(session.events())[-1].stills
-    session.until(lambda: session.note.isVisible(), 'the note')
+
+    def stills():
+        """Mark once more; return what it has."""
+        before = len(marks_of(session.events()))
+        session.to_the_pictures()
+        session.key('n')
+        session.until(lambda: len(marks_of(session.events())) > before, 'the mark')
+        session.until(lambda: session.note.isVisible() and session.note.edit.hasFocus(), 'the note')
+        return marks_of(session.events())[-1].stills
+    session.until(stills, 'a mark with stills')
     session.key('Escape')
     session.until(lambda: not session.note.isVisible(), 'the note to go')
 

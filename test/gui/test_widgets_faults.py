@@ -6,6 +6,7 @@ from python_qt_binding.QtWidgets import QAbstractButton, QWidget
 
 from mhri.core.drill.faults import FAULTS
 from mhri.core.screen.views import LIVE, PanelView, RobotView
+from mhri.gui.doctor.doctor_page import DoctorPage
 from mhri.gui.drill.faults_page import FaultsPage, FOR_S
 from mhri.presenters.fault_host import FaultHost
 
@@ -99,32 +100,26 @@ class Client:
         self.watched.append(None)
 
 
-class Screen:
-    """Stands in for the screen: notes the pages that are added."""
-
-    def __init__(self):
-        self.arrangement = self
-        self.pages = []
-
-    def add_page(self, title, page):
-        self.pages.append((title, page))
-
-
 def test_the_page_is_there_for_simulated_robots_alone(operator):
-    client, screen = Client(), Screen()
-    host = FaultHost(screen, client)
+    client, doctor = Client(), DoctorPage()
+    operator.show(doctor)
+    host = FaultHost(doctor, client)
     view = PanelView(robots=(RobotView('bot1', link=LIVE), RobotView('bot2', link=LIVE)))
     host.show_view(view)
-    assert client.names == ['bot1', 'bot2'] and screen.pages == []
+    assert client.names == ['bot1', 'bot2'] and host.page is None
     client.found = ('bot2',)
     client.news = [('bot2', True, 'bot2: laser silent')]
     host.show_view(view)
     host.show_view(view)
-    (title, page), = screen.pages
-    assert title == 'Faults' and page.robot_combo.count() == 1
-    operator.show(page)
-    assert client.watched == [True]
+    page = host.page
+    assert page.robot_combo.count() == 1 and not page.isVisible() and doctor.text.isVisible()
+    door, = [button for button in doctor.findChildren(QAbstractButton)
+             if button.text() == 'Faults']
+    operator.click(door)
+    assert page.isVisible() and not doctor.text.isVisible() and client.watched == [True]
     assert page.answer_label.text() == 'bot2: laser silent'
     press(page, operator, 'delay')
     assert client.asked == [('bot2', 'delay', pytest.approx(0.4), FOR_S)]
+    operator.click(door)
+    assert not page.isVisible() and doctor.text.isVisible() and client.watched == [True, False]
     host.close()

@@ -15,7 +15,7 @@ import rostest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from support.ros_system import wait_for  # noqa: E402
+from support.ros_system import free_port, wait_for  # noqa: E402
 from support.surgery import BlackHole, Clinic, wrong  # noqa: E402
 
 TWIST, ODOMETRY, BOOL = 'geometry_msgs/Twist', 'nav_msgs/Odometry', 'std_msgs/Bool'
@@ -353,6 +353,27 @@ class DoctorTest(unittest.TestCase):
         listed = subprocess.run(command, shell=True, check=True, env=self.clinic.system.env,
                                 stdout=subprocess.PIPE, universal_newlines=True).stdout
         self.assertIn('/odom', listed.split())
+
+    def link(self, *words):
+        """Start this computer's side of a link to bot9; wait until it tells of itself."""
+        # It goes with the others at the end.
+        self.clinic.set('/bot9/mhri_link', {})
+        self.clinic.start(
+            'env', 'ROS_NAMESPACE=/bot9', sys.executable, '-c',
+            'from mhri.nodes.mhri_link import main; main()', '--side', 'host', '--name', 'bot9',
+            '--keys', 'off', *words)
+        wait_for(lambda: self.clinic.master.hasParam('/bot9/mhri_link/link/endpoint'), 90.0,
+                 'the note of the link', poll_s=0.1)
+
+    def test_linked_robot_that_is_not_there(self):
+        self.link('--connect', 'tcp/127.0.0.1:{}'.format(free_port()))
+        item = self.found('link_silent', about='bot9', remedy='turtle_remote.sh --link bot9')
+        self.assertIn('does not run, though', item['link_silent']['problem'])
+
+    def test_link_that_cannot_start(self):
+        self.link('--connect', 'somewhere')
+        item = self.found('link_endpoint', about='bot9')
+        self.assertIn('somewhere', item['link_endpoint']['problem'])
 
     def test_robot_that_is_not_there(self):
         item = self.found('robot_absent', about='bott1', remedy='turtle_remote.sh',

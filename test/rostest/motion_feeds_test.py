@@ -6,17 +6,21 @@ import math
 import os
 import sys
 import threading
+from types import SimpleNamespace
 import unittest
 
+from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry
 import numpy as np
 import psutil
 import rospy
 import rostest
 from sensor_msgs.msg import Imu, LaserScan
+from tf2_msgs.msg import TFMessage
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
+from mhri.ros.map.map_feed import MapScans  # noqa: E402
 from mhri.ros.sensors.imu_feed import ImuFeed  # noqa: E402
 from mhri.ros.sensors.scan_feed import ScanFeed  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
@@ -138,6 +142,32 @@ class MotionFeedsTest(unittest.TestCase):
         self.assertIsNone(feed.take())
         feed.close()
         self.assertIsNone(feed.age_s())
+
+    def test_the_map_has_a_scan_from_where_the_laser_sits(self):
+        """Half a metre ahead, turned about and upside down; before tf is heard, as its type says."""
+        message = scan()
+        message.header.frame_id = 'mounted/laser'
+        self.talk('/mounted/scan', message)
+        mount = TransformStamped(child_frame_id='mounted/laser')
+        mount.header.frame_id = 'mounted/base'
+        mount.transform.translation.x = 0.5
+        mount.transform.rotation.y = 1.0
+        static = rospy.Publisher('/tf_static', TFMessage, queue_size=1, latch=True)
+        self.addCleanup(static.unregister)
+        scans = MapScans(lambda job: job())
+        self.addCleanup(scans.close)
+        scans.want({'mounted': SimpleNamespace(scan=('scan',), laser_x_m=-0.1)})
+        found = []
+
+        def sits(x_m):
+            found.extend(filter(None, [scans.take('mounted', 'mounted/base')]))
+            return found and abs(found[-1][2][0].x_m - x_m) < 1e-6
+        wait_for(lambda: sits(-0.1), 60, 'a scan')
+        static.publish([mount])
+        wait_for(lambda: sits(0.5), 60, lambda: 'the mount: {}'.format(found[-1][2]))
+        _, _, (pose, turned_over) = found[-1]
+        self.assertTrue(turned_over)
+        self.assertAlmostEqual(abs(pose.heading_rad), math.pi)
 
     def test_toggled_a_thousand_times(self):
         self.talk('/toggle/imu', imu(), 200.0)

@@ -201,31 +201,6 @@ class SessionTest(unittest.TestCase):
         self.assertEqual(texts.count('battery 25 %'), 1)
         self.assertNotIn('seen on the graph itself', texts)
 
-    def test_killed_it_loses_little_and_goes_on(self):
-        """SIGKILL: what was written is there after reindex, and the next one goes on."""
-        process = self.start()
-        folder = self.record()
-        self.wait_for_messages()
-        heard = []
-        ear = rospy.Subscriber('/bot1/odom', rospy.AnyMsg, lambda _: heard.append(time.time()))
-        wait_for(lambda: len(heard) > 10, PATIENCE_S, 'odometry')
-        process.kill()
-        process.wait()
-        killed = time.time()
-        ear.unregister()
-        path = os.path.join(folder, '0000.bag.active')
-        run('rosbag', 'reindex', path)
-        last = times_of(path, '/bot1/odom')[-1]
-        print('MEASURED lost to SIGKILL: {:.2f} s'.format(killed - last))
-        self.assertLess(max(0.0, [at for at in heard if at < killed][-1] - last), 3.0)
-        self.start()
-        wait_for(lambda: self.state.recording, PATIENCE_S, 'it goes on')
-        self.assertEqual(self.state.folder, folder)
-        self.wait_for_messages(100)
-        self.service['record'](False)
-        self.assertIn('0001.bag', os.listdir(folder))
-        self.assertTrue(any(event.data.get('lost') for event in self.events(folder)))
-
     def test_a_folder_that_takes_nothing_is_said(self):
         """Sessions go where they usually do, and the state says so."""
         self.start(folder='/proc/nowhere')

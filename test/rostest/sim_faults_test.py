@@ -92,7 +92,7 @@ class SimFaults(unittest.TestCase):
         recorder.wait(lambda _: True, patience_s=PATIENCE_S)
         self.ask(fault)
         recorder.wait_silence(SILENT_S, PATIENCE_S)
-        self.assertEqual(self.look().link, 'live')
+        self.see_until(lambda row: row.link == 'live', 'a live robot')
         self.ask(fault, duration_s=-1.0)
         recorder.wait(lambda _: True, time.monotonic(), PATIENCE_S)
 
@@ -116,8 +116,8 @@ class SimFaults(unittest.TestCase):
 
     def test_delay(self):
         self.ask('delay', 0.4)
-        self.see_until(lambda row: 'slow link' in row.note, 'the row to say it')
-        self.assertGreaterEqual(self.look().figures.round_trip_s, 0.8)
+        self.see_until(lambda row: 'slow link' in row.note and row.figures.round_trip_s >= 0.8,
+                       'the row to say it')
 
     def test_loss(self):
         self.ask('loss', 40.0)

@@ -83,6 +83,7 @@ class Wishes(VoiceTest):
                            ('robot select number three', ('select', ('rover',))),
                            ('robot select all', ('select_all', ())),
                            ('robot start recording', ('record', ())),
+                           ('robot mark this', ('mark', ())),
                            ('robot stop recording', ('stop_recording', ()))):
             begun = self._said(text, ' '.join((wish[0],) + wish[1]))
             self.assertEqual(self.requests.wait(lambda value: True, begun, HEAR_S).value, wish)

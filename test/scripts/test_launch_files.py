@@ -43,7 +43,7 @@ def test_host_by_default():
     config = load(MHRI)
     found = nodes(config)
     assert sorted(found) == ['/mhri_gates', '/mhri_joy', '/mhri_panel', '/mhri_pedal',
-                             '/mhri_tasks', '/mhri_voice', '/mux']
+                             '/mhri_session', '/mhri_tasks', '/mhri_voice', '/mux']
     assert found['/mhri_panel'].required and '--gui auto' in found['/mhri_panel'].args
     assert '--demo ' not in found['/mhri_panel'].args + ' '
     assert not found['/mux'].respawn, 'two hosts on one master would fight for its name'
@@ -73,14 +73,18 @@ def test_names_of_robots_add_no_options_to_the_panel(robots):
 
 def test_arguments_of_the_host():
     assert sorted(nodes(load(MHRI, 'gui:=none', 'inputs:=none'))) == [
-        '/mhri_gates', '/mhri_tasks', '/mux']
+        '/mhri_gates', '/mhri_session', '/mhri_tasks', '/mux']
     assert sorted(nodes(load(MHRI, 'gui:=none', 'inputs:=joy'))) == [
-        '/mhri_gates', '/mhri_joy', '/mhri_tasks', '/mux']
+        '/mhri_gates', '/mhri_joy', '/mhri_session', '/mhri_tasks', '/mux']
     enabled = load(MHRI, 'enabling:=pedal').params
     assert enabled['/mhri_pedal/role'].value == 'enable'
     assert enabled['/mux/enabling'].value == 'pedal'
     assert load(MHRI, 'automatic_switching:=true').params['/mux/automatic_switching'].value is True
     assert '/mux/automatic_switching' not in load(MHRI).params, "the file's word counts then"
+    recorded = load(MHRI, 'record:=true', 'record_cameras:=2').params
+    assert recorded['/mhri_session/record'].value is True
+    assert recorded['/mhri_session/cameras'].value == 2
+    assert load(MHRI).params['/mhri_session/cameras'].value == 'all'
     assert not nodes(load(MHRI, 'required:=false'))['/mhri_panel'].required
     assert load(MHRI, 'mux_config:=/x.yaml').params['/mux/config'].value == '/x.yaml'
     budget = '/mhri/panel/camera_budget_mbit_s'

@@ -3,9 +3,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the guide's pictures that need no running system: ``guide_pictures.py <folder>``.
 
-``one.png`` is the screen with one robot and the drawer closed, ``doctor.png`` the doctor's page.
+``one.png`` is the screen with one robot and the drawer closed, ``doctor.png`` the doctor's page,
+``faults.png`` its list of faults, ``drill.svg`` the way through a drill.
 """
 import os
+import re
 import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
@@ -19,12 +21,16 @@ from python_qt_binding.QtWidgets import QApplication  # noqa: E402
 
 from mhri.core.doctor.facts import FINE, UNRESOLVED  # noqa: E402
 from mhri.core.doctor.judgement import diagnose  # noqa: E402
+from mhri.core.drill.page import page_of  # noqa: E402
 from mhri.gui.doctor.doctor_page import DoctorPage  # noqa: E402
+from mhri.gui.drill.faults_page import FaultsPage, TITLE  # noqa: E402
 from mhri.gui.screen import theme  # noqa: E402
 from mhri.ros.resources import resource_path  # noqa: E402
+from mhri.sim.rehearsal import Rehearsal  # noqa: E402
 from support import doctor_world, layout_pictures  # noqa: E402
+from support.drills import drill  # noqa: E402
 
-DOCTOR_SIZE, ONE_SIZE = (760, 420), (1280, 720)
+DOCTOR_SIZE, FAULTS_SIZE, ONE_SIZE = (760, 420), (440, 720), (1280, 720)
 
 
 def draw_doctor(path):
@@ -46,6 +52,30 @@ def draw_doctor(path):
     page.grab().save(path)
 
 
+def draw_faults(path):
+    """Draw the list of faults, two of which a robot has."""
+    page, faults = DoctorPage(), FaultsPage()
+    theme.apply(page, theme.DARK)
+    page.add_part(TITLE, faults).setChecked(True)
+    page.setContentsMargins(8, 8, 8, 8)
+    page.resize(*FAULTS_SIZE)
+    faults.show_robots(('bot1', 'bot2'))
+    faults.show_answer('bot1', True, 'bot1: delay each way 0.4 s, 7 s left; laser silent')
+    page.show()
+    QApplication.processEvents()
+    page.grab().save(path)
+
+
+def draw_drill(path):
+    """Draw the way of the scripted operator through the search, with a slow link."""
+    scenario, plan, bodies = drill('search')
+    result = Rehearsal(scenario, plan, bodies, delay_s=0.2).run()
+    picture = re.search('<svg.*</svg>', page_of(result, plan.walls.tolist(), scenario.targets))
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(picture.group().replace('<svg', '<svg xmlns="http://www.w3.org/2000/svg"')
+                   + '\n')
+
+
 def draw_one(application, path):
     """Draw the screen with one robot: a picture that is bound by its height."""
     layout_pictures.Scene.frames = layout_pictures.frames()
@@ -58,6 +88,8 @@ def main(folder):
     """Draw all of them, in the style that needs no desktop."""
     application = QApplication([sys.argv[0], '-style', 'Fusion'])
     draw_doctor(os.path.join(folder, 'doctor.png'))
+    draw_faults(os.path.join(folder, 'faults.png'))
+    draw_drill(os.path.join(folder, 'drill.svg'))
     draw_one(application, os.path.join(folder, 'one.png'))
 
 

@@ -182,6 +182,7 @@ class Masters:
         from geometry_msgs.msg import TwistStamped
         from mhri.msg import ControlMode
         from mhri.ros.graph.master_watch import MasterWatch
+        from std_msgs.msg import String
         from support.robots import Stick, Witness
         rospy.init_node('masters_test', disable_signals=True)
         MasterWatch().start()
@@ -194,6 +195,23 @@ class Masters:
         self._ears = [rospy.Subscriber('/{}/mhri_guard/command'.format(name), TwistStamped,
                                        self._note, name, queue_size=100) for name in ROBOTS]
         self.operator.check(*ROBOTS)
+        self.fetching = []
+        rospy.Subscriber('/bot2/mhri_link/fetching', String,
+                         lambda message: self.fetching.append(message.data))
+
+    def keep(self, name):
+        """Have a robot record what the host misses."""
+        import rospy
+        from std_srvs.srv import SetBool
+        service = '/{}/mhri_link/keep'.format(name)
+        rospy.wait_for_service(service, LONG_S)
+        assert rospy.ServiceProxy(service, SetBool)(True).success
+
+    def keeps(self, name):
+        """Tell whether a robot records."""
+        folder = os.path.join(self._envs[name]['ROS_HOME'], 'mhri', 'link', name, 'kept', 'open')
+        return os.path.isdir(folder) and any(
+            os.path.getsize(os.path.join(folder, file)) > 5000 for file in os.listdir(folder))
 
     def _note(self, message, name):
         """Keep when a command was made."""

@@ -131,6 +131,35 @@ def test_where_it_looked_turns_with_the_robot():
     assert list(looks(np.array([[1.0, 0.0], [0.0, -1.0]]))) == [False, True]
 
 
+FRONT, REAR = Pose(0.2, 0.0, 0.0), Pose(-0.2, 0.0, math.pi)
+
+
+def test_two_lasers_see_what_each_of_them_meets():
+    seen, here = Surroundings(), Pose(1.0, 0.0, 0.3)
+    seen.see(sector(180, 2.0, FRONT), here, 0.00, 'front')
+    seen.see(sector(180, 3.0, REAR), here, 0.05, 'rear')
+    ends = np.array([[1.0, 0.0], [-1.0, 0.0]])
+    assert list(seen.looks(here)(ends)) == [True, True]
+    met = seen.around(here)
+    assert met[:, 0].max() == pytest.approx(2.2, abs=0.01)
+    assert met[:, 0].min() == pytest.approx(-3.2, abs=0.01)
+    for at_s in (0.1, 0.2, 0.25):
+        seen.see(sector(180, 2.0, FRONT), here, at_s, 'front')
+    assert len(seen.around(here)) == len(met)
+
+
+def test_of_two_lasers_one_that_falls_silent_looks_no_more():
+    seen, here = Surroundings(), Pose(0.0, 0.0, 0.0)
+    seen.see(sector(180, 0.8, FRONT), here, 0.0, 'front')
+    for at_s in (0.1, 0.2, 0.31, 0.4):
+        seen.see(sector(180, 3.0, REAR), here, at_s, 'rear')
+    assert list(seen.looks(here)(np.array([[1.0, 0.0], [-1.0, 0.0]]))) == [False, True]
+    # What it met near by is remembered.
+    ahead = braked(Velocity(0.3, 0.0), seen.around(here), RADIUS_M, 0.1, seen.looks(here))
+    assert ahead.linear_mps == 0.0
+    assert (seen.around(here)[:, 0] > 0.9).any()
+
+
 def test_beams_that_measured_nothing_do_not_look():
     looked = np.arange(61) < 20
     scan = sector(60, looked=looked)

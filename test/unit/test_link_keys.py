@@ -4,8 +4,8 @@
 import pytest
 
 from mhri.core.link.keys import (
-    access, called, check_own, endpoint, host_of, Keys, KeysError, may_drive, partners, read_lists,
-    split)
+    access, access_of_router, called, check_own, endpoint, host_of, Keys, KeysError, may_drive,
+    partners, read_lists, split)
 
 PEERS = frozenset((
     'host:lab', 'host:desk.2', 'watch:gallery', 'robot:bot1', 'robot:bot2', 'watched:bot3'))
@@ -110,3 +110,36 @@ def test_a_list_that_the_authority_did_not_sign(withdrawn):
     ('udp/10.0.0.1:7447', True, 'udp/10.0.0.1:7447'), ('', True, '')])
 def test_an_endpoint_without_a_protocol(text, secret, full):
     assert endpoint(text, secret) == full
+
+
+def test_a_router_lets_everybody_speak_below_the_own_name():
+    rules = access_of_router(Keys('router:hub', PEERS | {'router:hub'}))
+    assert rules['default_permission'] == 'deny'
+    assert {row['id'] for row in rules['subjects']} == PEERS
+    assert allowed(rules, 'host:lab', 'ingress', 'put') == ['mhri/*/host:lab/down/**']
+    assert allowed(rules, 'host:lab', 'egress', 'put') == ['mhri/*/host:lab/up/**']
+    assert allowed(rules, 'watch:gallery', 'ingress', 'put') == ['mhri/*/watch:gallery/down/_beat']
+    assert allowed(rules, 'robot:bot1', 'ingress', 'put') == ['mhri/bot1/*/up/**']
+    assert allowed(rules, 'robot:bot1', 'egress', 'put') == ['mhri/bot1/*/down/**']
+
+
+def test_who_is_withdrawn_is_not_let_in_by_a_router():
+    rules = access_of_router(Keys('router:hub', PEERS, frozenset(('host:lab',))))
+    assert {row['id'] for row in rules['subjects']} == PEERS - {'host:lab'}
+
+
+def test_behind_a_router_its_certificate_stands_for_all():
+    keys = Keys('robot:bot1', PEERS | {'router:hub', 'router:old'}, frozenset(('router:old',)))
+    rules = access(keys, 'robot', 'bot1', routed=True)
+    assert [row['cert_common_names'] for row in rules['subjects']] == [['router:hub']]
+    said = allowed(rules, 'router:hub', 'ingress', 'put')
+    assert 'mhri/bot1/host:lab/down/**' in said and 'mhri/bot1/watch:gallery/down/_beat' in said
+    assert not [key for key in said if 'bot2' in key]
+
+
+@pytest.mark.parametrize('own, side', [('host:lab', 'router'), ('router:hub', 'host'),
+                                       ('router:hub', 'robot')])
+def test_the_key_of_a_router_is_for_a_router(own, side):
+    with pytest.raises(KeysError, match='the key in place is that of ' + own):
+        check_own(Keys(own), side, 'bot1')
+    check_own(Keys('router:hub'), 'router', '')

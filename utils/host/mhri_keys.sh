@@ -21,6 +21,8 @@ Lists that are put in place again are in use within seconds.
   new                  make the authority
   host NAME            make a key for a computer that may drive
   robot NAME           make a key for a robot
+  router NAME          make a key for a router between computers and robots that do not reach each
+                       other; put all other keys in place again: so they know it
   put NAME             put a key in place on this computer: ~/.config/mhri/keys
   put NAME USER@IP     put a key in place on a robot or another computer, over ssh
   list                 show who has a key, and until when
@@ -30,8 +32,9 @@ Lists that are put in place again are in use within seconds.
                        again: they get the list of those withdrawn
 
   --watch              host: it may only watch; robot: it is only watched
-  --ip ADDR            host, robot: its address, for programs that compare it (may be repeated)
-  --days N             host, robot, renew: how long the key is good (default 365, at most 3650)
+  --ip ADDR            host, robot, router: its address, for programs that compare it (may be repeated)
+  --days N             host, robot, router, renew: how long the key is good (default 365, at most
+                       3650)
   --folder FOLDER      where the authority is (default ~/.config/mhri/authority)
   --ssh-port PORT      put: the port of the ssh server (default: from ssh's settings, else 22)
   --to FOLDER          put: the key goes into FOLDER/keys in USER's home (default mhri)
@@ -111,11 +114,11 @@ parse_arguments() {
   LOGIN=${words[2]:-}
   case "$COMMAND ${#words[@]}" in
     'new 1' | 'list 1' | 'check 1' | 'put 3') ;;
-    'host 2' | 'robot 2' | 'put 2' | 'renew 2' | 'withdraw 2') ;;
+    'host 2' | 'robot 2' | 'router 2' | 'put 2' | 'renew 2' | 'withdraw 2') ;;
     new\ * | list\ * | check\ *) usage_error "$COMMAND goes without a name: '$NAME'" ;;
     put\ *) usage_error "give the name of a key, and where it goes: put NAME [USER@IP]" ;;
-    host\ * | robot\ * | renew\ * | withdraw\ *) usage_error "give one name: $COMMAND NAME" ;;
-    ' 0') usage_error "give a command: new, host, robot, put, list, check, renew or withdraw" ;;
+    host\ * | robot\ * | router\ * | renew\ * | withdraw\ *) usage_error "give one name: $COMMAND NAME" ;;
+    ' 0') usage_error "give a command: new, host, robot, router, put, list, check, renew or withdraw" ;;
     *) usage_error "there is no command '$COMMAND'" ;;
   esac
 }
@@ -132,11 +135,11 @@ check_arguments() {
   [ "$COMMAND" = new ] || [ -z "$NAME" ] || check_name "$NAME"
   if "$WATCH"; then goes_with --watch host robot; fi
   for address in "${ADDRESSES[@]}"; do
-    goes_with --ip host robot
+    goes_with --ip host robot router
     check_ip --ip "$address" 192.168.0.7
   done
   if [ -n "$DAYS" ]; then
-    goes_with --days host robot renew
+    goes_with --days host robot router renew
     [[ $DAYS =~ ^[1-9][0-9]{0,3}$ && $DAYS -le 3650 ]] ||
       usage_error "--days: '$DAYS' is no whole number from 1 to 3650"
   fi
@@ -200,6 +203,7 @@ meaning() {
     host) printf 'a computer that may drive' ;;
     watch) printf 'a computer that may only watch' ;;
     robot) printf 'a robot' ;;
+    router) printf 'a router, which passes on what others say' ;;
     watched) printf 'a robot that is only watched' ;;
   esac
 }
@@ -337,7 +341,7 @@ main() {
   if [ "$COMMAND" = new ]; then new_authority; return; fi
   open_authority
   case "$COMMAND" in
-    host | robot) first_key "$COMMAND" ;;
+    host | robot | router) first_key "$COMMAND" ;;
     *) "$COMMAND" ;;
   esac
 }

@@ -165,9 +165,10 @@ check_arguments() {
 # check_replay: a replay has a master of its own, and nothing beside it.
 check_replay() {
   [ -n "$REPLAY" ] || return 0
-  [ -z "$IP$MASTER$SIM$PICTURE$DRILL" ] && [ "${#LINKS[@]}" = 0 ] && ! "$DEMO" ||
+  if [ -n "$IP$MASTER$SIM$PICTURE$DRILL${LINKS[*]}" ] || "$DEMO"; then
     usage_error "--replay runs on this machine alone, with its own master and without robots:" \
       "leave out --ip, --master, --sim, --link, --demo, --drill and --screenshot"
+  fi
   [ -e "$REPLAY" ] || usage_error "--replay: there is no $REPLAY"
   [[ $REPLAY != *[\'\"\$]* ]] ||
     usage_error "--replay: a quote or a dollar sign is in $REPLAY: choose another name"
@@ -198,7 +199,8 @@ choose_drill() {
   [ -n "$DRILL" ] || return 0
   lines=$(rosrun mhri mhri_drill --arguments "$DRILL") || die "the drill $DRILL cannot be used: see above"
   { read -r SIM; read -r SIM_TYPES; read -r PLAN; } <<<"$lines"
-  LAUNCH_ARGS+=("sim_plan:=$PLAN" "drill:=$DRILL")
+  LAUNCH_ARGS=("robots:=$(seq -s ' ' -f 'bot%g' "$SIM")" "${LAUNCH_ARGS[@]}"
+    "sim_plan:=$PLAN" "drill:=$DRILL")
   if "$SCRIPTED"; then LAUNCH_ARGS+=("drill_args:=--scripted" gui:=none inputs:=none); fi
 }
 

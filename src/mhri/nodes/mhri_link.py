@@ -57,7 +57,7 @@ def parse(words):
         prog='mhri_link', description='Link a robot on a ROS master of its own to the host.')
     parser.add_argument('--side', choices=('robot', 'host', 'router'), required=True,
                         help='whose master this node is on; router: on none, it stands between')
-    parser.add_argument('--name', type=robot_name, default='', help='the robot')
+    parser.add_argument('--name', type=robot_name, help='the robot')
     parser.add_argument('--listen', default='', metavar='ENDPOINTS',
                         help='where the other side may call, e.g. tcp/0.0.0.0:7447')
     parser.add_argument('--connect', default='', metavar='ENDPOINTS',
@@ -102,13 +102,10 @@ def call(options):
     :raises LibraryMissing: there is no zenoh
     """
     folder = find_folder(options.keys)
-    if folder and (options.router or options.side == 'router'):
-        raise KeysError('behind a router nobody can tell yet whose key it is: give --keys off, and '
-                        'let only your own reach the router (a VPN)')
-    keys = KeyFolder(folder, options.side, options.name) if folder else None
+    keys = KeyFolder(folder, options.side, options.name, bool(options.router)) if folder else None
     secrets = keys.read() if keys else None
     if keys:
-        tell_knocks(load_library(), options.name)
+        tell_knocks(load_library(), options.name or options.side)
     ends = [[endpoint(word, bool(keys)) for word in words.split()]
             for words in (options.listen, options.connect or options.router)]
     place = 'router' if options.side == 'router' else 'routed' if options.router else 'peer'
@@ -118,12 +115,15 @@ def call(options):
 def route(options):
     """Be the router until a signal comes; with keys that cannot be used end with 1 and why."""
     try:
-        _, carrier = call(options)
+        keys, carrier = call(options)
     except (CarrierError, KeysError, LibraryMissing) as error:
         sys.exit('mhri_link: {}'.format(error))
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: sys.exit(0))
-    print('mhri_link: routing on', options.listen, flush=True)
+    print('mhri_link: routing on {}, {}'.format(
+        options.listen, 'by keys alone' if keys else 'without keys'), flush=True)
+    if keys:
+        watch_keys(keys, carrier)
     try:
         signal.pause()
     finally:

@@ -6,14 +6,14 @@ from mhri.ros.drill.faults_client import FaultsClient
 
 
 class FaultHost:
-    """Adds the page once there is a simulated robot: with real ones alone nobody sees it.
+    """Adds the list once there is a simulated robot: with real ones alone nobody sees it.
 
-    :param screen: :class:`mhri.gui.screen.screen.ScreenWidget`
+    :param doctor: :class:`mhri.gui.doctor.doctor_page.DoctorPage`, which has room for it
     :param client: :class:`mhri.ros.drill.faults_client.FaultsClient`
     """
 
-    def __init__(self, screen, client=None):
-        self._screen = screen
+    def __init__(self, doctor, client=None):
+        self._doctor = doctor
         self._client = client or FaultsClient()
         self.page = None
 
@@ -33,7 +33,7 @@ class FaultHost:
         self.page = FaultsPage()
         self.page.asked.connect(self._client.ask)
         self.page.shown.connect(self._client.watch)
-        self._screen.arrangement.add_page(TITLE, self.page)
+        self._doctor.add_part(TITLE, self.page)
 
     def close(self):
         """Ask nobody any more."""

@@ -173,14 +173,16 @@ class MapHost(QObject):
 
         :param pose: where it is now, like ``origin`` of its odometry in the frame
         """
-        news = self._scans.take(name)
+        feeds = self._operator.feeds(name)
+        news = self._scans.take(name, feeds.base if feeds is not None else '')
         if news is not None:
-            scan, age_s = news
+            scan, age_s, (mount, turned_over) = news
             ahead, left, _ = scan_points(*scan[:3])
+            seen = in_frame(mount, np.column_stack((ahead, -left if turned_over else left)))
             track = self._tracks.get(name)
             then = track.at(now - age_s) if track is not None else None
             self._points[name] = now, in_frame(
-                pose if then is None else composed(origin, then), np.column_stack((ahead, left)))
+                pose if then is None else composed(origin, then), seen)
         at, points = self._points.get(name, (-math.inf, None))
         return points if now - at <= OLD_SCAN_S else None
 

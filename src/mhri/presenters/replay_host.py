@@ -107,6 +107,7 @@ class ReplayHost(ScreenHost):
         super().draw()
         screen = self.screen
         screen.joystick.show_active(False)
+        self.session.button.hide()
         screen.drive_note.show_text(NOTHING_DRIVES)
         for part in (screen.record_button, screen.all_button, screen.none_button,
                      screen.look_button, screen.doctor_button):

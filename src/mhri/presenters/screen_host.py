@@ -66,7 +66,7 @@ class ScreenHost(QObject):
         self.pad = PadHost(operator, self.screen, parent=self)
         self.tasks = TaskHost(operator, self.screen, self._select, self._note_task)
         self.map = MapHost(operator, self.screen, self.tasks)
-        self.faults = FaultHost(self.screen)
+        self.faults = FaultHost(self.doctor.page)
         self._connect()
 
     @property

@@ -102,7 +102,9 @@ class SessionHost:
 
     def _show_answer(self, asked, done, text, mark):
         """Say what has become of a request."""
-        if not done:
+        if not done and asked == 'still':
+            self._save_stills()
+        elif not done:
             self._events.note('session.trouble', text)
         elif asked == 'mark':
             self._events.note('session.mark', text)

@@ -51,6 +51,7 @@ def _picture(result: Mapping[str, Any], walls: Sequence[Sequence[float]],
         parts.append('<circle cx="{}" cy="{}" r=".12" fill="{}" stroke="#222" stroke-width=".03">'
                      '<title>{}</title></circle>'.format(
                          x, y, '#009e73' if target.name in found else '#fff', escape(target.name)))
+    parts.insert(0, '<rect width="100%" height="100%" fill="#fafafa"/>')
     return '<svg viewBox="0 0 {:.2f} {:.2f}" width="{}">{}</svg>'.format(
         wide, high, _WIDTH_PX, ''.join(parts))
 

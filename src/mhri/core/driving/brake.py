@@ -7,7 +7,7 @@ within the way that is free, after the time that scan and command take: zero bef
 """
 from dataclasses import dataclass
 import math
-from typing import Callable, Iterable, Optional, Tuple
+from typing import Callable, Dict, Iterable, Optional, Tuple
 
 import numpy as np
 
@@ -99,8 +99,18 @@ class Scan:
         return faced
 
 
+@dataclass(frozen=True)
+class _Seen:
+    """The newest scan of one laser: when and where it was made, what it met in odometry's frame."""
+
+    at_s: float
+    scan: Scan
+    odometry: Pose
+    points: np.ndarray
+
+
 class Surroundings:
-    """What a robot's laser has met: the newest scan, and what it no longer looks at.
+    """What a robot's lasers have met: the newest scan of each, and what they no longer look at.
 
     Many lasers do not see what is nearer than 0.45 m, or only what is ahead: what came that close
     is remembered, in the frame of odometry, until a scan has looked there again.
@@ -109,18 +119,27 @@ class Surroundings:
     def __init__(self) -> None:
         self._met = _NOTHING
         self._fresh = 0
-        self._newest: Optional[Tuple[Scan, Pose]] = None
+        self._newest: Dict[str, _Seen] = {}
 
-    def see(self, scan: Scan, odometry: Pose) -> None:
-        """Take in a scan that was made here."""
-        kept = self.around(odometry)
-        kept = self._met[~scan.looks_at(kept) & (np.hypot(kept[:, 0], kept[:, 1]) < KEEP_M)]
+    def see(self, scan: Scan, odometry: Pose, at_s: float = 0.0, laser: str = '') -> None:
+        """Take in a scan that was made here.
+
+        :param at_s: when [s]; where another laser looks counts for :data:`SCAN_OLD_S` from its own
+        :param laser: which one it was, on a robot that has several
+        """
+        before = self._newest.pop(laser, None)
+        old = [name for name, seen in self._newest.items() if at_s - seen.at_s > SCAN_OLD_S]
+        gone = [self._newest.pop(name) for name in old] + ([before] if before else [])
+        kept = np.vstack([seen.points for seen in gone] + [self._met[self._fresh:]])
+        here = _into(odometry, kept)
+        kept = kept[~scan.looks_at(here) & (np.hypot(here[:, 0], here[:, 1]) < KEEP_M)]
         if len(kept):
             # One of each cell; none is moved, which time after time would lead it astray.
             kept = kept[np.unique(np.round(kept / _GRID_M), axis=0, return_index=True)[1]]
-        fresh = _out_of(odometry, scan.points())
-        self._newest = scan, odometry
-        self._met, self._fresh = np.vstack((fresh, kept)), len(fresh)
+        self._newest[laser] = _Seen(at_s, scan, odometry, _out_of(odometry, scan.points()))
+        fresh = [seen.points for seen in self._newest.values()]
+        self._fresh = sum(map(len, fresh))
+        self._met = np.vstack((*fresh, kept))
 
     def forget(self, odometry: Pose, robots: Iterable[Tuple[float, float, float]]) -> None:
         """Forget what is remembered where robots are known to be: they move, and leave nothing.
@@ -140,13 +159,17 @@ class Surroundings:
         return _into(odometry, self._met)
 
     def looks(self, odometry: Pose) -> Looks:
-        """Return what tells where the newest scan looks, seen from a robot that is here."""
-        if self._newest is None:
-            return lambda points: np.zeros(len(points), dtype=bool)
-        scan, seen_from = self._newest
-        if scan.all_round:
+        """Return what tells where the newest scans look, seen from a robot that is here."""
+        newest = list(self._newest.values())
+        if any(seen.scan.all_round for seen in newest):
             return everywhere
-        return lambda points: scan.faces(_into(seen_from, _out_of(odometry, points)))
+
+        def look(points: np.ndarray) -> np.ndarray:
+            found = np.zeros(len(points), dtype=bool)
+            for seen in newest:
+                found |= seen.scan.faces(_into(seen.odometry, _out_of(odometry, points)))
+            return found
+        return look
 
 
 def _turned(angle_rad: float) -> np.ndarray:

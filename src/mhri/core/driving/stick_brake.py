@@ -64,16 +64,17 @@ class StickBrake:
             self._seen, self._scan_at = Surroundings(), None
         self._pose = pose
 
-    def see(self, scan: Scan, now: float, pose: Optional[Pose] = None) -> None:
+    def see(self, scan: Scan, now: float, pose: Optional[Pose] = None, laser: str = '') -> None:
         """Take in a scan that is heard now.
 
+        :param laser: which one made it, on a robot that has several
         :param pose: where the robot was when it was made; None: where it was heard last
         """
         pose = (pose or self._pose) if self._pose is not None else None
         if pose is None:
             # Without odometry nothing can be remembered: it would move along with the robot.
             self._seen = Surroundings()
-        self._seen.see(scan, pose or _HERE)
+        self._seen.see(scan, pose or _HERE, now, laser)
         self._scan_at = now
 
     def allow(self, velocity: Velocity, now: float) -> Velocity:

@@ -11,7 +11,8 @@ import re
 from typing import Dict, FrozenSet, Iterable, List, Sequence, Tuple
 
 DRIVES, WATCHES, ROBOT, WATCHED = 'host', 'watch', 'robot', 'watched'
-_NAME = re.compile(r'(host|watch|robot|watched):([A-Za-z0-9_-]{1,64})(\.[0-9]{1,6})?\Z')
+ROUTER = 'router'
+_NAME = re.compile(r'(host|watch|robot|watched|router):([A-Za-z0-9_-]{1,64})(\.[0-9]{1,6})?\Z')
 _ODD = re.compile(r'[^A-Za-z0-9_-]')
 _SERIAL = re.compile(r'^\s*Serial Number:\s*([0-9A-Fa-f]+)\s*$', re.MULTILINE)
 ALONE, TLS = ('tcp', 'udp'), ('tls', 'quic')
@@ -82,7 +83,7 @@ def read_lists(own: str, peers: str, withdrawn: str, signed: str) -> Keys:
 def check_own(keys: Keys, side: str, robot: str) -> None:
     """Refuse a key that is not for this end of a link.
 
-    :param side: ``robot`` or ``host``
+    :param side: ``robot``, ``host`` or ``router``
     :raises KeysError: it is somebody else's, or withdrawn
     """
     role, name = split(keys.own)
@@ -91,6 +92,9 @@ def check_own(keys: Keys, side: str, robot: str) -> None:
     if side == 'host' and role not in (DRIVES, WATCHES):
         raise KeysError('the key in place is that of {}, and this is a host: put one in place that '
                         '"mhri_keys.sh host NAME" made'.format(keys.own))
+    if side == 'router' and role != ROUTER:
+        raise KeysError('the key in place is that of {}, and this is a router: put one in place '
+                        'that "mhri_keys.sh router NAME" made'.format(keys.own))
     if side == 'robot' and (role not in (ROBOT, WATCHED) or name != robot):
         raise KeysError('the key in place is that of {}, and this is the robot {}: put one in '
                         'place that "mhri_keys.sh robot {}" made'.format(keys.own, robot, robot))
@@ -103,35 +107,77 @@ def partners(keys: Keys, side: str, robot: str) -> List[str]:
                   if split(owner)[0] in wanted and (side == 'robot' or split(owner)[1] == robot))
 
 
-def access(keys: Keys, side: str, robot: str) -> Dict[str, object]:
+def routers(keys: Keys) -> List[str]:
+    """Return the names of the routers that have a key, in order."""
+    return sorted(owner for owner in keys.peers - keys.withdrawn if split(owner)[0] == ROUTER)
+
+
+def access(keys: Keys, side: str, robot: str, routed: bool = False) -> Dict[str, object]:
     """Return zenoh's ``access_control``: each partner on its own keys, all else refused.
 
     A host speaks and hears below ``mhri/<robot>/<its name>`` alone, so the name in a key is that of
     the certificate. One that may only watch says what it wants to see, and nothing else.
+
+    :param routed: all comes through a router, so its certificate is the only one that zenoh sees
+        here; it has to be of one with a key, and sees to it that everybody uses the own name
     """
-    rules: List[Dict[str, object]] = []
-    subjects: List[Dict[str, object]] = []
-    policies: List[Dict[str, object]] = []
-
-    def allow(owner: str, flow: str, messages: Sequence[str], keys_of: Iterable[str]) -> None:
-        rules.append({'id': 'rule{}'.format(len(rules)), 'permission': 'allow', 'flows': [flow],
-                      'messages': list(messages), 'key_exprs': list(keys_of)})
-        policies.append({'rules': [rules[-1]['id']], 'subjects': [owner]})
-
     coming, going = ('down', 'up') if side == 'robot' else ('up', 'down')
-    for owner in partners(keys, side, robot):
-        subjects.append({'id': owner, 'cert_common_names': [owner]})
+    known = partners(keys, side, robot)
+    table = _Table(routers(keys) if routed else known, routers(keys) if routed else ())
+    # By the beats a robot finds out who is there; every host may know that it wants them.
+    beats = 'mhri/{}/*/down/_beat'.format(robot)
+    for owner in known:
         root = 'mhri/{}/{}/'.format(robot, owner if side == 'robot' else keys.own)
         silent = side == 'robot' and not (may_drive(owner) and split(keys.own)[0] == ROBOT)
-        said = root + coming + ('/_beat' if silent else '/**')
-        allow(owner, 'ingress', ['put'], [said])
-        allow(owner, 'egress', ['put'], [root + going + '/**'])
-        # By the beats a robot finds out who is there; every host may know that it wants them.
-        beats = 'mhri/{}/*/down/_beat'.format(robot)
-        allow(owner, 'ingress', ['declare_subscriber'], [root + going + '/**', beats])
-        allow(owner, 'egress', ['declare_subscriber'], [root + coming + '/**', beats])
-    return {'enabled': True, 'default_permission': 'deny', 'rules': rules, 'subjects': subjects,
-            'policies': policies}
+        table.allow(owner, root + coming + ('/_beat' if silent else '/**'), root + going + '/**',
+                    [root + going + '/**', beats], [root + coming + '/**', beats])
+    return table.settings()
+
+
+def access_of_router(keys: Keys) -> Dict[str, object]:
+    """Return zenoh's ``access_control`` of a router: each on its own keys, all else refused."""
+    known = sorted(owner for owner in keys.peers - keys.withdrawn if split(owner)[0] != ROUTER)
+    table = _Table(known)
+    for owner in known:
+        role, name = split(owner)
+        beats = 'mhri/{}/*/down/_beat'.format('*' if is_host(owner) else name)
+        if is_host(owner):
+            up, down = 'mhri/*/{}/up/**'.format(owner), 'mhri/*/{}/down/'.format(owner)
+            table.allow(owner, down + ('**' if role == DRIVES else '_beat'), up, [up, beats],
+                        [down + '**', beats])
+        else:
+            up, down = 'mhri/{}/*/up/**'.format(name), 'mhri/{}/*/down/**'.format(name)
+            table.allow(owner, up, down, [down, beats], [up, beats])
+    return table.settings()
+
+
+class _Table:
+    """Zenoh's rules, in the making.
+
+    :param subjects: the names in the certificates of those who call
+    :param instead: of them, who stands for everybody; () for nobody
+    """
+
+    def __init__(self, subjects: Iterable[str], instead: Sequence[str] = ()) -> None:
+        self._subjects = [{'id': owner, 'cert_common_names': [owner]} for owner in subjects]
+        self._instead = list(instead)
+        self._rules: List[Dict[str, object]] = []
+        self._policies: List[Dict[str, object]] = []
+
+    def allow(self, owner: str, says: str, gets: str, wants: List[str], asked: List[str]) -> None:
+        """Let somebody say and get messages, want some, and be asked for some."""
+        for flow, message, on in (
+                ('ingress', 'put', [says]), ('egress', 'put', [gets]),
+                ('ingress', 'declare_subscriber', wants), ('egress', 'declare_subscriber', asked)):
+            self._rules.append({'id': 'rule{}'.format(len(self._rules)), 'permission': 'allow',
+                                'flows': [flow], 'messages': [message], 'key_exprs': on})
+            self._policies.append({'rules': [self._rules[-1]['id']],
+                                   'subjects': self._instead or [owner]})
+
+    def settings(self) -> Dict[str, object]:
+        """Return zenoh's ``access_control``."""
+        return {'enabled': True, 'default_permission': 'deny', 'rules': self._rules,
+                'subjects': self._subjects, 'policies': self._policies}
 
 
 def endpoint(text: str, secret: bool) -> str:

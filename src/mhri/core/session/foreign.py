@@ -14,7 +14,8 @@ VELOCITY_TYPES = frozenset((
     'geometry_msgs/Twist', 'geometry_msgs/TwistStamped', 'geometry_msgs/TwistWithCovariance',
     'geometry_msgs/TwistWithCovarianceStamped', 'mhri/TeamTwist'))
 # Nor what somebody asked for: it is shown by what came of it.
-_INPUTS = ('/mux_in/', '/gates_in/', '/panel_in/', '/mhri_replay/', '/clock', '/rosout')
+_INPUTS = ('/mux_in/', '/gates_in/', '/panel_in/', '/panel/', '/mhri_session/', '/mhri_replay/',
+           '/clock', '/rosout')
 _REQUESTS = ('/goal', '/cancel')
 # What each kind of topic may be of.
 _SENSOR_TYPES = {

@@ -219,7 +219,8 @@ class TaskKind:
     :param needs_place: robots have to be placed in the frame of the map; see :meth:`placed`
     :param slots: function (values, count, where) -> the place (x, y) [m] in the frame of the map of
         each of so many robots, none where nobody can tell; ``where`` returns the :class:`Pose` of a
-        robot by its name, of a mark by :data:`MARK` and its name, or None. Who takes which is chosen so that their ways do not cross
+        robot by its name, of a mark by :data:`MARK` and its name, or None. Who takes which is
+        chosen so that their ways do not cross
     """
 
     key: str

@@ -44,7 +44,7 @@ class DoctorPage(QWidget):
             button.setFocusPolicy(Qt.TabFocus)
         self.text = QTextBrowser(self)
         self.text.setOpenLinks(False)
-        head = QHBoxLayout()
+        head = self._head = QHBoxLayout()
         head.addWidget(self.again_button)
         head.addWidget(self.copy_button)
         head.addStretch(1)
@@ -58,6 +58,23 @@ class DoctorPage(QWidget):
         """Wire the buttons."""
         self.again_button.clicked.connect(self.examine_requested)
         self.copy_button.clicked.connect(self._copy)
+
+    def add_part(self, title, part):
+        """Give the page a further part, in the place of what was found; return its button.
+
+        :param title: of the button that shows it, and hides it again
+        """
+        button = QPushButton(title, self)
+        button.setCheckable(True)
+        button.setMinimumHeight(theme.touch_size(self))
+        button.setFocusPolicy(Qt.TabFocus)
+        self._head.insertWidget(self._head.count() - 1, button)
+        self.layout().addWidget(part, 1)
+        part.hide()
+        button.toggled.connect(part.setVisible)
+        for own in (self.text, self.summary):
+            button.toggled.connect(own.setHidden)
+        return button
 
     def show_busy(self):
         """Say that the examination is under way; what was found before stays to be read."""

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page of the drawer where simulated robots are asked to fail, for practice."""
+"""Where simulated robots are asked to fail, for practice: a part of the doctor's page."""
 from python_qt_binding.QtCore import Qt, Signal
 from python_qt_binding.QtWidgets import (
     QComboBox, QDoubleSpinBox, QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QScrollArea,
@@ -23,9 +23,9 @@ class _Number(QDoubleSpinBox):
 
     def __init__(self, low, high, value, unit, parent):
         super().__init__(parent)
-        self.setDecimals(2 if high < 10.0 else 0)
+        self.setDecimals(2 if high <= 10.0 else 0)
         self.setRange(low, high)
-        self.setSingleStep(0.1 if high < 10.0 else 5.0)
+        self.setSingleStep(0.1 if high <= 10.0 else 5.0)
         self.setSuffix(' ' + unit)
         self.setValue(value)
         self.setFocusPolicy(Qt.StrongFocus)

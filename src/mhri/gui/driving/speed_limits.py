@@ -149,8 +149,9 @@ class SpeedLimits(QWidget):
         self.brake_box = SwitchBox('obstacle brake', self)
         self.brake_box.setObjectName('brake_box')
         self.brake_box.setToolTip(
-            'Robots in hand slow down for what their laser sees in the way, to a stop before it.\n'
-            'Backing away and turning stay possible; what the laser does not see is not avoided.')
+            'Robots in hand slow down for what their laser sees in the way, to a stop before it;\n'
+            'without a laser, for what their depth camera sees. Backing away and turning stay\n'
+            'possible; what neither sees is not avoided.')
         self.pace_label = TextLine(self)
         self.pace_label.setObjectName('pace_label')
         group = QHBoxLayout()

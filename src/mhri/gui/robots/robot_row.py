@@ -226,7 +226,7 @@ class RobotRow(QWidget):
         self._offer_to_carry_on(view.carry_on)
         self._offer_control(view.ask)
         # Who waits stands: the room is for the reason.
-        self.linear.setVisible(not (view.carry_on or view.on_task and view.task
+        self.linear.setVisible(not (view.ask or view.carry_on or view.on_task and view.task
                                     and view.task.waits))
         tone = theme.TASK if view.on_task else theme.DRIVE if view.driven else None
         if tone != self._tone:

@@ -5,7 +5,6 @@ from python_qt_binding.QtCore import Qt, QTimer, Signal
 from python_qt_binding.QtWidgets import QHBoxLayout, QLineEdit, QPushButton, QSizePolicy, QWidget
 
 from mhri.gui.screen import theme
-from mhri.gui.screen.labels import TextLine
 
 # It goes away by itself where nobody types.
 SHOWN_MS = 20000
@@ -28,22 +27,19 @@ class NoteBar(QWidget):
 
     def _build(self):
         """Make and place the parts."""
-        self._line = TextLine(self)
         self.edit = QLineEdit(self)
         self.edit.setObjectName('note_edit')
         self.edit.setMaxLength(LONGEST)
-        self.edit.setPlaceholderText('what is here? (Return keeps it, Esc does not)')
         self.edit.setAccessibleName('Note to the mark')
+        self.edit.setToolTip('Return keeps what you type, Esc leaves the mark without words')
         self.keep_button = QPushButton('Keep', self)
         self.keep_button.setObjectName('note_button')
         self.keep_button.setFocusPolicy(Qt.TabFocus)
         side = theme.touch_size(self)
         for part in (self.edit, self.keep_button):
             part.setMinimumHeight(side)
-        self._line.setFixedWidth(theme.text_width(self.font(), 'Mark 8888 kept'))
         row = QHBoxLayout(self)
         row.setContentsMargins(2, 0, 2, 0)
-        row.addWidget(self._line)
         row.addWidget(self.edit, 1)
         row.addWidget(self.keep_button)
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
@@ -70,7 +66,7 @@ class NoteBar(QWidget):
             self.noted.emit(self._mark, self.edit.text().strip())
         self._mark = mark
         self.edit.clear()
-        self._line.show_text('Mark {} kept'.format(mark[1:]))
+        self.edit.setPlaceholderText('mark {} kept: what is here?'.format(mark[1:]))
         self.show()
         self._timer.start()
         if take_keyboard:

@@ -54,7 +54,7 @@ class ReplayKeys(QObject):
         if not self._takes(watched, key, event):
             return False
         event.accept()
-        if event.type() == QEvent.KeyPress and key in _MOVES and not self._repeats(event):
+        if event.type() == QEvent.KeyPress and key in _MOVES and self._moves(event):
             name, *words = _MOVES[key]
             getattr(self._bar, name)(*words)
         return True
@@ -69,6 +69,9 @@ class ReplayKeys(QObject):
         return key in _MOVES or key in _IDLE or key in _DIGITS
 
     @staticmethod
-    def _repeats(event):
-        """Tell whether a key is held and means one press."""
-        return event.isAutoRepeat() and event.key() not in (Qt.Key_Left, Qt.Key_Right)
+    def _moves(event):
+        """Tell whether a press moves in time: Shift+Space, a stop, does not, nor a key held."""
+        if event.isAutoRepeat() and event.key() not in (Qt.Key_Left, Qt.Key_Right):
+            return False
+        return not event.modifiers() & (Qt.ShiftModifier | Qt.ControlModifier | Qt.AltModifier) \
+            or event.key() == Qt.Key_Plus

@@ -35,7 +35,8 @@ class TimeLineBar(QWidget):
         self._line = TimeLine(0.0, 0.0)
         #: {robot: number} of the session on show
         self.numbers = None
-        self._position_s = 0.0
+        #: where the replay is [s from the start]
+        self.position_s = 0.0
         self._playing = False
         self._speed = 1.0
         self._build()
@@ -116,11 +117,11 @@ class TimeLineBar(QWidget):
         """Show a session: :class:`mhri.core.session.timeline.TimeLine`, {robot: number}."""
         self._line, self.numbers = line, dict(numbers)
         self.canvas.show_time_line(line, numbers)
-        self.show_state(self._position_s, self._speed, self._playing)
+        self.show_state(self.position_s, self._speed, self._playing)
 
     def show_state(self, position_s, speed, playing):
         """Show where the replay is, and how it goes on."""
-        self._position_s, self._speed, self._playing = position_s, speed, playing
+        self.position_s, self._speed, self._playing = position_s, speed, playing
         self.canvas.show_position(position_s)
         text = PAUSE if playing else PLAY
         if text != self.play_button.text():
@@ -144,19 +145,19 @@ class TimeLineBar(QWidget):
 
     def go_on(self):
         """Go to the next mark, stop or event."""
-        tick = self._line.next_tick(self._position_s)
+        tick = self._line.next_tick(self.position_s)
         if tick is not None:
             self.seek_requested.emit(tick.at_s)
 
     def go_back(self):
         """Go to the mark, stop or event before."""
-        tick = self._line.previous_tick(self._position_s)
+        tick = self._line.previous_tick(self.position_s)
         if tick is not None:
             self.seek_requested.emit(tick.at_s)
 
     def skip(self, seconds):
         """Go so much further, or back."""
-        self.seek_requested.emit(min(max(0.0, self._position_s + seconds), self._line.length_s))
+        self.seek_requested.emit(min(max(0.0, self.position_s + seconds), self._line.length_s))
 
     def change_speed(self, steps):
         """Go faster (positive) or slower by steps."""

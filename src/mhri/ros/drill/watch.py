@@ -49,20 +49,20 @@ class OperatorWatch:
 
 
 class FaultCaller:
-    """Asks robots to fail, on a thread of its own; every method returns at once."""
+    """Asks robots to fail, on a thread of its own."""
 
     def __init__(self, robots):
         self._robots = robots
         self._worker = Worker('faults').start()
 
     def begin(self, robot, key, value, for_s):
-        """Begin a fault, for so many seconds."""
+        """Begin a fault, for so many seconds; return at once."""
         self._worker.do(self._call, robot, key, value, for_s)
 
     def end_all(self):
-        """End every fault of every robot."""
-        for robot in self._robots:
-            self._worker.do(self._call, robot, ALL, 0.0, -1.0)
+        """End every fault of every robot, and wait for their answers."""
+        for robot in self._robots if not rospy.is_shutdown() else ():
+            self._call(robot, ALL, 0.0, -1.0)
 
     @staticmethod
     def _call(robot, key, value, duration_s):

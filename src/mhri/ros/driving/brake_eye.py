@@ -24,7 +24,7 @@ POSE_EVERY_S = 0.04
 
 
 class BrakeEye:
-    """Reads a robot's laser (``sensor_msgs/LaserScan``) for its brake, while that is asked for.
+    """Reads a robot's lasers (``sensor_msgs/LaserScan``) for its brake, while that is asked for.
 
     Robots of a type without a laser are read their depth camera, see
     :class:`mhri.ros.sensors.depth_scans.DepthScans`; where either sits tf says, see
@@ -52,6 +52,7 @@ class BrakeEye:
         self._refusals = Refusals(', '.join(self._topics), clock)
         self._subscribers = []
         self._settling = threading.Lock()
+        self._seeing = threading.Lock()
         self._pose_at = 0.0
 
     def want(self, wanted):
@@ -69,7 +70,7 @@ class BrakeEye:
                 (self._depth.open if self.brake.asked else self._depth.close)()
             elif self.brake.asked and not self._subscribers:
                 self._subscribers = [
-                    rospy.Subscriber(topic, LaserScan, self._on_scan, queue_size=1,
+                    rospy.Subscriber(topic, LaserScan, self._on_scan, topic, queue_size=1,
                                      buff_size=1 << 20, tcp_nodelay=True)
                     for topic in self._topics]
             elif not self.brake.asked:
@@ -90,13 +91,15 @@ class BrakeEye:
             self._mounts.see_odometry(message)
             self.brake.move(Pose(motion.x_m, motion.y_m, motion.heading_rad))
 
-    def _on_scan(self, message):
+    def _on_scan(self, message, topic):
         now = self._clock()
         message = self._refusals.read(message, LaserScan)
         if message is None:
             return
         try:
-            self.brake.see(read_beams(message, self._mounts), now)
+            # Each laser has a thread of its own.
+            with self._seeing:
+                self.brake.see(read_beams(message, self._mounts), now, laser=topic)
         except ValueError as error:
             self._refusals.note(error)
 

@@ -12,6 +12,7 @@ import rospkg
 
 from mhri.core.link.carried import COMMAND, key_of, PICTURE
 from mhri.core.link.keys import ALONE, TLS
+from mhri.core.link.records import RECORD
 
 # utils/host/common.sh installs it.
 VERSION = '1.5.1'
@@ -137,7 +138,8 @@ class Carrier:
 
     def _publisher(self, key, urgency):
         priorities = {COMMAND: self._zenoh.Priority.REAL_TIME,
-                      PICTURE: self._zenoh.Priority.DATA_LOW}
+                      PICTURE: self._zenoh.Priority.DATA_LOW,
+                      RECORD: self._zenoh.Priority.BACKGROUND}
         return self._session.declare_publisher(
             key, express=urgency == COMMAND,
             congestion_control=self._zenoh.CongestionControl.DROP,

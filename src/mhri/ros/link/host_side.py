@@ -16,6 +16,7 @@ from mhri.core.link.keys import called
 from mhri.core.link.peer import held_s
 from mhri.core.link.renaming import stamp_of
 from mhri.ros.graph.master_api import MasterError
+from mhri.ros.link.host_record import HostRecord
 from mhri.ros.link.robot_side import PARAMETERS
 from mhri.ros.link.host_control import HostControl
 from mhri.ros.link.side import ABOUT, CONTROL, Side
@@ -55,6 +56,12 @@ class HostSide(Side):
         self._publishers = {}
         self._unusable = set()
         self._down = []
+        self._record = HostRecord(self, lambda: dict(self._about.topics))
+
+    def start(self):
+        """Begin, and fetch what was missed."""
+        self._record.start()
+        return super().start()
 
     def said(self):
         """Name what is known of the robot, and which of its topics somebody here listens to."""
@@ -72,6 +79,8 @@ class HostSide(Side):
         if topic == ABOUT:
             self._news = unpack_about(frame.body)
             self.to_do.set()
+            return
+        if self._record.on_frame(topic, frame.body):
             return
         if topic == CONTROL:
             self._control.on_standing(unpack_standing(frame.body))
@@ -154,6 +163,7 @@ class HostSide(Side):
         status.add('keys', 'TLS both ways' if self._control.state.keys else
                    'none: whoever reaches the robot can drive it')
         status.add('control', called(self._control.state.holder) or 'nobody')
+        status.add('recording', self._record.text or 'nothing was missed')
         return status
 
     def less(self):

@@ -7,7 +7,8 @@ import threading
 
 import rospy
 
-from mhri.core.link.keys import access, check_own, KeysError, read_lists
+from mhri.core.link.keys import (
+    access, access_of_router, check_own, KeysError, read_lists, routers)
 from mhri.ros.link.carrier import CarrierError
 
 OFF, AUTO = 'off', 'auto'
@@ -33,11 +34,12 @@ def find_folder(text):
 class KeyFolder:
     """Reads the keys of one end of a robot's link, and notices other ones.
 
-    :param side: ``robot`` or ``host``
+    :param side: ``robot``, ``host`` or ``router``
+    :param routed: what is called is a router
     """
 
-    def __init__(self, folder, side, robot):
-        self.folder, self._side, self._robot = folder, side, robot
+    def __init__(self, folder, side, robot, routed=False):
+        self.folder, self._side, self._robot, self._routed = folder, side, robot, routed
         self._seen = None
         self.keys = None
 
@@ -67,6 +69,9 @@ class KeyFolder:
                     if line.strip().startswith('commonName')), '')
         keys = read_lists(own, self._text('peers'), self._text('withdrawn'), signed)
         check_own(keys, self._side, self._robot)
+        if self._routed and not routers(keys):
+            raise KeysError('no router has a key: make one with "mhri_keys.sh router NAME", and '
+                            'put all keys in place again')
         self.keys, self._seen = keys, seen
         return self._settings(keys)
 
@@ -79,7 +84,8 @@ class KeyFolder:
             # The name is what access_control compares: it knows the robot, not its address, and
             # lets nobody in whom a public authority has given a certificate.
             _TLS + 'verify_name_on_connect': False, _TLS + 'close_link_on_expiration': True,
-            'access_control': access(keys, self._side, self._robot)}
+            'access_control': access_of_router(keys) if self._side == 'router' else access(
+                keys, self._side, self._robot, self._routed)}
 
     def _path(self, name):
         return os.path.join(self.folder, name)

@@ -149,6 +149,20 @@ class Reception:
             if standing is not None:
                 side.send(CONTROL, COMMAND, pack_standing(standing))
 
+    def fill(self, status):
+        """Fill a ``DiagnosticStatusWrapper``: of the host in control, else of the first."""
+        with self._lock:
+            holder = self._control.holder
+        sides = dict(self._sides)
+        if not sides:
+            status.summary(status.WARN, 'no host was ever heard: does one call, with a key that is '
+                                        'on the list here?')
+            return status
+        side, desk = sides.get(holder) or next(iter(sides.values()))
+        status.add('host', called(desk.host))
+        status.add('hosts that were here', len(sides))
+        return side.fill(status)
+
     def close(self):
         """End all of it; the guard ends what is being driven."""
         for side, _ in list(self._sides.values()):

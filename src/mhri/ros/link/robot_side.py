@@ -11,6 +11,7 @@ from mhri.core.link.carried import (
 from mhri.core.link.control import moves
 from mhri.core.link.frames import About, DEFLATED, pack_about, PIECE, PLAIN, Thinned
 from mhri.core.link.peer import may_pass
+from mhri.core.link.records import ASK
 from mhri.core.link.renaming import first_text, renamer, rewritten, Transforms
 from mhri.core.link.shares import Flow, shares
 from mhri.core.robots.robot_types import resolve_robot_type
@@ -19,6 +20,7 @@ from mhri.ros.graph.subscription import Subscription
 from mhri.ros.link.note import versions
 from mhri.ros.link.pictures import Pictures
 from mhri.ros.link.recall import Recall
+from mhri.ros.link.robot_record import RobotRecord
 from mhri.ros.link.side import CONTROL, Side
 from mhri.ros.messages import bytes_of, message_class
 
@@ -118,6 +120,7 @@ class RobotSide(Side):
         self._types = types
         self._rename = renamer(name, shared)
         self._recall = Recall()
+        self._record = RobotRecord(self, self._recorded)
         self._about = About({'link': versions()}, ())
         self._told_at = self._looked_at = 0.0
         self._wanted = ()
@@ -130,6 +133,18 @@ class RobotSide(Side):
             stream.topic: rospy.Publisher(
                 full_topic(namespace, stream.topic), bytes_of(message_class(kind)), queue_size=10,
                 tcp_nodelay=True) for stream, kind in DOWN}
+
+    def start(self):
+        """Begin, and record what the host asks for."""
+        self._record.start()
+        return super().start()
+
+    def _recorded(self):
+        """Return what is recorded: all but pictures."""
+        topics = [stream.topic for stream in list(self._streams.values())
+                  if stream.urgency != PICTURE]
+        return sorted(full_topic(self._namespace, topic) for topic in topics + [GUARD_COMMAND]) \
+            if topics else []
 
     def said(self):
         """Name what this robot says of itself."""
@@ -176,6 +191,9 @@ class RobotSide(Side):
 
     def on_frame(self, topic, frame, now):
         """Give the guard a command, unless it is late, or another host has control."""
+        if topic == ASK:
+            self._record.on_ask(frame.body)
+            return
         if topic == CONTROL:
             self._desk.on_asked(frame.body, now)
             return

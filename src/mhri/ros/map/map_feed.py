@@ -12,6 +12,8 @@ from mhri.core.map.grid import grid_of, GridError
 from mhri.core.robots.mocap import Pose
 from mhri.ros.convert import yaw_of
 from mhri.ros.graph.rospy_inside import unsubscribe
+from mhri.ros.map.tf_feed import TfFeed
+from mhri.ros.sensors.mounts import Mounts
 from mhri.ros.sensors.refusals import Refusals
 from mhri.ros.sensors.scan_feed import ScanFeed
 
@@ -81,6 +83,8 @@ class MapScans:
         self._do = do
         self._wanted = {}
         self._open = {}
+        # Lasers sit still on their robots: what moves is not listened to.
+        self._frames = TfFeed(time.monotonic, moving=False)
 
     def want(self, robots):
         """Listen to the lasers of these robots and no others: {name: RobotType}; returns at once.
@@ -95,6 +99,8 @@ class MapScans:
     def _switch(self):
         """Open and close feeds until they match the newest wish (blocking, on the worker)."""
         wanted = self._wanted
+        if wanted:
+            self._frames.open()
         for name, (kind, feed) in list(self._open.items()):
             if wanted.get(name) != kind:
                 del self._open[name]
@@ -109,13 +115,22 @@ class MapScans:
         """Return the robots whose lasers are listened to now."""
         return tuple(self._open)
 
-    def take(self, name):
-        """Return (a robot's scan as :meth:`ScanFeed.take` does, its age [s]), or None."""
-        row = self._open.get(name)
-        scan = row[1].take() if row else None
-        return None if scan is None else (scan, row[1].age_s() or 0.0)
+    def take(self, name, base):
+        """Return (a robot's scan as :meth:`ScanFeed.take` does, its age [s], its mount), or None.
+
+        :param base: the robot's own frame, '' where it is not known
+        :returns: its mount as :meth:`Mounts.laser` does
+        """
+        kind, feed = self._open.get(name, (None, None))
+        scan = feed.take() if feed else None
+        if scan is None:
+            return None
+        mounts = Mounts(kind, self._frames)
+        mounts.base = base
+        return scan, feed.age_s() or 0.0, mounts.laser(feed.frame)
 
     def close(self):
         """Stop listening (blocking: it asks the master)."""
         self._wanted = {}
         self._switch()
+        self._frames.close()

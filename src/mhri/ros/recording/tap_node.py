@@ -58,18 +58,19 @@ class TapNode:
 
     rospy has one connection for all subscribers of a topic in a program, with the class and the
     queue of one message that the displays ask for: a recording beside them needs its own. The node
-    renews its subscriptions every 2 s, which also restores them after a restart of the master.
+    renews its subscriptions now and then, which also restores them after a restart of the master.
 
     :param name: the node's name, e.g. ``/mhri_recorder_bot1``
     :param topics: absolute names
+    :param renewal_s: how often to renew them [s]
     :param on_publishers: called with (topic, XML-RPC addresses) at every report, on a thread of
         this node; the same ones come repeatedly
     """
 
-    def __init__(self, name, topics, on_publishers):
+    def __init__(self, name, topics, on_publishers, renewal_s=RENEWAL_S):
         self.name = name
         self.topics = tuple(topics)
-        self.worker = Worker('tap_' + name.strip('/'), self._renew, RENEWAL_S)
+        self.worker = Worker('tap_' + name.strip('/'), self._renew, renewal_s)
         self._on_publishers = on_publishers
         self._server = None
         self._api = None

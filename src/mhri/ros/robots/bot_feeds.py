@@ -19,6 +19,8 @@ class BotFeeds:
 
     def __init__(self, robot, robot_type, worker):
         self.robot_type = robot_type
+        #: the robot's own tf frame, '' until its odometry has named it
+        self.base = ''
         self._robot = robot
         self._worker = worker
         made = {row.key: load(row.feed).of(robot, robot_type, row.key) for row in VIEW_ROWS}

@@ -44,7 +44,7 @@ class Controls:
         if state is None or not state.linked or view.link != LIVE:
             return view
         note, ask = shown(state.host, state.may_drive, state.holder, state.asking)
-        return replace(view, note=note or view.note, slow=view.slow or bool(note and not ask),
+        return replace(view, note=note or view.note, slow=view.slow or bool(state.asking and not ask and note),
                        ask=ask, said=state.said)
 
     def ask(self, name):

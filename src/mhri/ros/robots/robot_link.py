@@ -13,6 +13,8 @@ from sensor_msgs.msg import BatteryState
 from std_msgs.msg import String
 
 from mhri.core.link.figures import FIGURES, FIGURES_S, read_figures, thinned_words
+from mhri.core.link.records import FETCHING, FETCHING_WORD
+from mhri.core.map.tf_tree import frame_name
 from mhri.core.robots.link import link_note, link_state
 from mhri.core.robots.link_quality import LinkQuality, link_warning
 from mhri.core.robots.names import topic_of
@@ -127,6 +129,7 @@ class RobotLink:
         self._guard_feeds = []
         self._dropped_at = -math.inf
         self._radio = None
+        self._fetching = ''
         self._feeds = self._open_feeds()
         self._battery_feeds = [
             Feed(topic_of(name, topic), BatteryState, battery_fraction, self._on_battery,
@@ -148,7 +151,12 @@ class RobotLink:
             rospy.logwarn('%s: cannot read its odometry, %s is not installed here', self.name,
                           self.robot_type.odometry_type)
             return []
-        return [Feed(topic_of(self.name, topic), message_class, read, self._on_message,
+
+        def read_motion(message):
+            """Read what moves, and take note of what the robot calls its own frame."""
+            self.feeds.base = frame_name(getattr(message, 'child_frame_id', ''))
+            return read(message)
+        return [Feed(topic_of(self.name, topic), message_class, read_motion, self._on_message,
                      self._clock) for topic in self.robot_type.odometry]
 
     def _on_message(self, feed, message, now):
@@ -173,13 +181,19 @@ class RobotLink:
                 Feed('/{}/{}'.format(self.name, DROPPED), TwistStamped, lambda message: message,
                      self._on_dropped, self._clock),
                 Feed('/{}/{}'.format(self.name, FIGURES), String,
-                     lambda message: read_figures(message.data), self._on_radio, self._clock)]
+                     lambda message: read_figures(message.data), self._on_radio, self._clock),
+                Feed('/{}/{}'.format(self.name, FETCHING), String,
+                     lambda message: message.data[:80], self._on_fetching, self._clock)]
 
     def _on_dropped(self, feed, message, now):
         self._dropped_at = now
 
     def _on_radio(self, feed, message, now):
         self._radio = (now, feed.value(message))
+
+    def _on_fetching(self, feed, message, now):
+        text = feed.value(message)
+        self._fetching = text if text.startswith(FETCHING_WORD) else ''
 
     def _on_battery(self, feed, message, now):
         self._battery = feed.value(message)
@@ -226,7 +240,8 @@ class RobotLink:
         view = RobotView(
             name=self.name, type_label=self.robot_type.label, window=self.robot_type.window,
             link=state, age_s=age,
-            note=link_note(state, age, self._heard_wall, now - self.added_at) or warning,
+            note=link_note(state, age, self._heard_wall, now - self.added_at) or warning
+            or self._fetching,
             figures=figures, slow=bool(warning),
             linear_mps=motion and motion.linear_mps, angular_rad_s=motion and motion.angular_rad_s,
             heading_rad=motion and motion.heading_rad, x_m=motion and motion.x_m,

@@ -36,6 +36,8 @@ class ScanFeed:
         self._subscribers = []
         self._message = None
         self._heard_at = None
+        #: tf frame of the newest scan that was taken
+        self.frame = ''
         self._refusals = [Refusals(topic, clock) for topic in self._topics]
 
     def open(self):
@@ -80,6 +82,7 @@ class ScanFeed:
             message, self._message = self._message, None
         if message is None:
             return None
+        self.frame = message.header.frame_id
         ranges, together = thinned(measured_ranges(
             message.ranges, message.range_min, message.range_max), MOST_POINTS)
         step = message.angle_increment

@@ -134,9 +134,8 @@ class BagSet:
                        if wanted(kind) and kind.topic not in found}
             if missing:
                 looked += 1
-                for topic, place in self._newest_in(
-                        index, time_ns, lambda kind: wanted(kind) and kind.topic in missing).items():
-                    found.setdefault(topic, place)
+                found = {**self._newest_in(index, time_ns, lambda kind: wanted(kind)
+                                           and kind.topic in missing), **found}
             if looked == MOST_LOOKED_INTO:
                 break
         return [self._read(place) for place in sorted(

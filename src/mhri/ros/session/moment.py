@@ -82,6 +82,10 @@ class Moment:
                 for place in message.robots if place.odometry.x == place.odometry.x
                 }, message.header.frame_id
 
+    def frame(self):
+        """Return the frame in which robots are placed."""
+        return self._origins()[1] or 'map'
+
     def poses(self):
         """Return {robot: [x [m], y [m], heading [rad], frame]} of those that are heard.
 

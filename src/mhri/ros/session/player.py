@@ -26,7 +26,7 @@ from mhri.srv import (
 
 NOTHING_DRIVES = 'this is a replay: nothing drives'
 STATE_S = 0.1
-# While it pauses, what is new is repeated so often, for whoever came or lost interest meanwhile [s].
+# While it pauses, what is new is repeated so often, for whoever came meanwhile [s].
 REPEAT_S = 0.5
 # A message that is older than this is repeated only if it was latched [s].
 NEW_S = 2.0

@@ -236,8 +236,8 @@ class Session:
     def _info(self):
         options = self.options
         recorded = options.cameras if options.rate_hz in (None, 0.0) else CAMERA_RATE
-        return SessionInfo(time.time(), _version(), socket.gethostname(), 'map', recorded,
-                           options.rate_hz or 0.0, dict(self.robots.entries))
+        return SessionInfo(time.time(), _version(), socket.gethostname(), self._moment.frame(),
+                           recorded, options.rate_hz or 0.0, dict(self.robots.entries))
 
     def _begin(self):
         """Make a folder and record into it.

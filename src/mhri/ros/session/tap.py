@@ -20,6 +20,10 @@ from mhri.ros.session.session_writer import NewBag
 
 _LENGTH = struct.Struct('<I')
 _NS = 10 ** 9
+# There are hundreds of topics with a dozen robots [s].
+RENEWAL_S = 5.0
+# Of two screens that pass on the same camera, the second counts once the first was silent so long.
+_PASSES_ON_NS = 2 * _NS
 
 
 class Source:
@@ -67,6 +71,7 @@ class SessionTap:
         self._ring = Ring(ring_s, ring_bytes, self._latched)
         self._sources = {}
         self._pictures = {}
+        self._passed_by = {}
         self._cameras = frozenset()
         self._pictures_ns = 0
         self._keep_pictures = True
@@ -76,7 +81,7 @@ class SessionTap:
         self._wanted = ()
         self._ended = threading.Event()
         self._reader = RawReader(name, self._on_frame, self._on_turn, self._ended.set)
-        self._node = TapNode(name, (), self._reader.want)
+        self._node = TapNode(name, (), self._reader.want, RENEWAL_S)
 
     def start(self):
         """Join the graph.
@@ -151,7 +156,9 @@ class SessionTap:
         now_ns = self._clock_ns()
         source = link.publisher or self._meet(link)
         if link.key[0] == PICTURES:
-            source, frame = self._unpack(link, frame)
+            source, frame = self._unpack(link, frame, now_ns)
+            if source is None:
+                return
         if source.watch is not None:
             source.watch(source.fields, now_ns, frame)
         source.frame, source.at_ns = frame, now_ns
@@ -185,14 +192,20 @@ class SessionTap:
                 self._pictures[topic] = of_topic[key]
             return of_topic[key]
 
-    def _unpack(self, link, frame):
-        """Return the source and the frame of a camera's picture that a screen has passed on."""
+    def _unpack(self, link, frame, now_ns):
+        """Return the source and the frame of a camera's picture that a screen has passed on.
+
+        The source is None where another screen passes on the same camera.
+        """
         end = 8 + _LENGTH.unpack_from(frame, 4)[0]
         topic = frame[8:end].decode()
         source = self._pictures.get(topic) or self._source(topic, {
             'topic': topic, 'type': CompressedImage._type, 'md5sum': CompressedImage._md5sum,
             'message_definition': CompressedImage._full_text,
             'callerid': link.fields['callerid']}, True)
+        if self._passed_by.get(topic) != link.key and now_ns - source.at_ns < _PASSES_ON_NS:
+            return None, b''
+        self._passed_by[topic] = link.key
         return source, frame[end:]
 
     def _flush(self):

@@ -26,6 +26,9 @@ from mhri.ros.sensors.mounts import Mounts
 from mhri.ros.sensors.refusals import Refusals
 
 
+_NO_SCAN = (None, None, None)
+
+
 class _Newest:
     """The newest message of some topics, read when it is asked for."""
 
@@ -85,7 +88,9 @@ class RobotSenses:
         # By motion capture: (pose, when it was heard [s]).
         self.seen_at = None
         self._odometry = self._open_odometry()
-        self._scan = self._depth = self._battery = None
+        self._depth = self._battery = None
+        # One for each laser: {topic: its newest scan}.
+        self._scans = {}
         # (scan, when it was heard [s], its stamp [s]), newer than what was looked at.
         self._depth_scan = self._scan_at = None
         self._mounts = Mounts(robot_type, frames)
@@ -114,8 +119,9 @@ class RobotSenses:
 
     def open(self):
         """Begin to listen to laser or depth camera, and battery (blocking: it asks the master)."""
-        if self._scan is None and self.has_laser:
-            self._scan = _Newest(self._topics('scan'), LaserScan, self._clock, buff_size=1 << 20)
+        if not self._scans:
+            self._scans = {topic: _Newest([topic], LaserScan, self._clock, buff_size=1 << 20)
+                           for topic in self._topics('scan')}
         if self._depth is None and self.has_eye and not self.has_laser:
             self._depth = DepthScans(self.name, self.robot_type.depth, self._mounts,
                                      self._on_depth, self._clock)
@@ -167,22 +173,25 @@ class RobotSenses:
         self.trail.add(self.pose, self._clock())
 
     def _see(self):
-        """Take in what laser or depth camera have measured, where the robot was at that time."""
-        found = self._read_laser() if self._scan else self._depth_scan
+        """Take in what lasers or depth camera have measured, where the robot was at that time."""
+        found = [(topic, *self._read_laser(scan)) for topic, scan in self._scans.items()]
+        found.append(('', *(self._depth_scan or _NO_SCAN)))
         self._depth_scan = None
-        if found is not None:
-            scan, self._scan_at, stamp_s = found
-            self._surroundings.see(scan, self._track.at(stamp_s) or self.pose)
+        for laser, scan, heard_at, stamp_s in found:
+            if scan is not None:
+                self._scan_at = heard_at
+                self._surroundings.see(scan, self._track.at(stamp_s) or self.pose, heard_at, laser)
 
-    def _read_laser(self):
-        heard_at = self._scan.heard_at
-        message = self._scan.take()
+    def _read_laser(self, newest):
+        """Return (scan, when it was heard [s], its stamp [s]), or :data:`_NO_SCAN`."""
+        heard_at = newest.heard_at
+        message = newest.take()
         try:
-            return message and (read_beams(message, self._mounts), heard_at or self._clock(),
-                                message.header.stamp.to_sec())
+            return (read_beams(message, self._mounts), heard_at or self._clock(),
+                    message.header.stamp.to_sec()) if message else _NO_SCAN
         except ValueError as error:
-            self._scan.note(error)
-        return None
+            newest.note(error)
+        return _NO_SCAN
 
     def looks(self):
         """Return what tells where its laser or depth camera looks, as the brake has it."""
@@ -213,6 +222,7 @@ class RobotSenses:
 
     def close(self):
         """Stop listening (blocking: it asks the master)."""
-        for feed in (self._odometry, self._scan, self._depth, self._battery, self._mocap):
+        for feed in (self._odometry, *self._scans.values(), self._depth, self._battery,
+                     self._mocap):
             if feed is not None:
                 feed.close()

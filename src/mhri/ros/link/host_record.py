@@ -1,0 +1,198 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""On the host: fetches what the robot kept while the link was gone, and makes one bag of it."""
+import collections
+from datetime import datetime
+import os
+import threading
+
+import rosbag
+import rospy
+from std_msgs.msg import String
+from std_srvs.srv import SetBool, SetBoolResponse
+
+from mhri.core.link.carried import FRAME_NAMES, GUARD_COMMAND, TF, TF_STATIC
+from mhri.core.link.records import (
+    ASK, crc_of, Fetch, FETCHING, OFFER, pack_ask, PART, piece_of, RECORD, unpack_offer,
+    unpack_part)
+from mhri.core.link.renaming import renamer, rewritten, Transforms
+from mhri.core.recording.recording import ros_home
+from mhri.msg import SessionState
+from mhri.ros import parameters
+from mhri.ros.link.keeper import folder_of
+
+WAIT_S = 0.1
+# Pieces overlap a little: of so many messages it is remembered that they are in the bag.
+REMEMBERED = 5000
+
+
+def join(robot, paths, target, topics):
+    """Write one bag of pieces, with the names that everything has on the host.
+
+    :param topics: what is carried of the robot, as in :class:`mhri.core.link.carried.Stream`
+    :raises OSError, rosbag.ROSBagException: a piece cannot be read, or the bag not be written
+    """
+    rename = renamer(robot)
+    recent = collections.deque(maxlen=REMEMBERED)
+    with rosbag.Bag(target, 'w') as bag:
+        for path in paths:
+            with rosbag.Bag(path) as piece:
+                for name, raw, when in piece.read_messages(raw=True):
+                    kind, data, md5, _, message_class = raw
+                    key = name, data
+                    if key in recent:
+                        continue
+                    recent.append(key)
+                    name = on_host(robot, name, topics)
+                    data = renamed(name, kind, data, rename)
+                    bag.write(name, (kind, data, md5, message_class), when, raw=True)
+
+
+def on_host(robot, topic, topics):
+    """Return the name on the host of a topic on the robot."""
+    own = [name for name in topics if topic.endswith('/' + name)]
+    return '/{}/{}'.format(robot, max(own, key=len)) if own else topic
+
+
+def renamed(topic, kind, data, rename):
+    """Return a message with the names that its frames have on the host."""
+    try:
+        if topic in (TF, TF_STATIC):
+            moved = Transforms(rename, False)
+            moved.add(data)
+            return moved.take() or data
+        return rewritten(data, int.from_bytes(data[:4], 'little'), FRAME_NAMES.get(kind, 0), rename)
+    except ValueError:
+        return data
+
+
+class HostRecord:
+    """Asks the robot, writes what comes, and says how far it is, on a thread of its own.
+
+    Publishes ``/<robot>/mhri_link/fetching`` (``std_msgs/String``, latched), serves
+    ``/<robot>/mhri_link/keep`` (``std_srvs/SetBool``): whether the robot shall record for later
+    what this host misses. It does so anyway while a session is recorded
+    (``/mhri_session/state``, ``mhri/SessionState``). The bag is ``<robot>_missed_<date-time>.bag``
+    in the folder of the session, or in ``$ROS_HOME``.
+
+    :param side: of the link
+    :param topics: function that returns what is carried of the robot
+
+    The parameter ``~keep`` (false) says whether it does from the start.
+    """
+
+    def __init__(self, side, topics):
+        self._side = side
+        self._topics = topics
+        self._folder = folder_of(side.name, 'fetched')
+        self._part = os.path.join(self._folder, 'part')
+        self._came = collections.deque()
+        self._work = threading.Event()
+        self._fetch = None
+        self._keep = parameters.flag('~keep', False)
+        self._said = None
+        self.text = ''
+        self._session = None
+        self._publisher = rospy.Publisher('/{}/{}'.format(side.name, FETCHING), String,
+                                          queue_size=1, latch=True)
+        self._service = rospy.Service('/{}/mhri_link/keep'.format(side.name), SetBool,
+                                      self._on_keep)
+        self._subscriber = rospy.Subscriber('/mhri_session/state', SessionState, self._on_session,
+                                            queue_size=1)
+
+    def _on_session(self, message):
+        self._session = message
+
+    def _on_keep(self, request):
+        self._keep = request.data
+        self._work.set()
+        return SetBoolResponse(True, 'the robot keeps what is missed here' if request.data
+                               else 'what is missed here is lost')
+
+    def start(self):
+        """Begin."""
+        threading.Thread(target=self._run, name='record', daemon=True).start()
+
+    def on_frame(self, topic, body):
+        """Take in what the robot says, if it is of this class; return whether it is."""
+        if topic not in (OFFER, PART):
+            return False
+        self._came.append((topic, body))
+        self._work.set()
+        return True
+
+    def _run(self):
+        while not rospy.is_shutdown():
+            self._work.wait(WAIT_S)
+            self._work.clear()
+            try:
+                self._tick(self._side.clock())
+            except Exception as error:  # the disk, bytes that are none: the link goes on
+                if not rospy.is_shutdown():
+                    rospy.logwarn_throttle(10.0, '{}: cannot fetch what was recorded: {!r}'.format(
+                        self._side.name, error))
+
+    def _tick(self, now):
+        if self._fetch is None:
+            os.makedirs(self._folder, exist_ok=True)
+            # Those of an earlier run; what came in part goes by the name that it gets when whole.
+            self._fetch = Fetch(done=[piece for piece in map(piece_of, os.listdir(self._folder))
+                                      if piece is not None])
+        fetch = self._fetch
+        fetch.keep = self._keep or self._session is not None and self._session.recording
+        while self._came:
+            topic, body = self._came.popleft()
+            if topic == OFFER:
+                fetch.on_offer(unpack_offer(body))
+            else:
+                self._on_part(*unpack_part(body), now)
+        whole = fetch.whole()
+        if whole is not None:
+            self._check(whole)
+        done = fetch.finished()
+        if done:
+            self._finish(done)
+        self._say(fetch.words(self._side.name) or self.text)
+        ask = fetch.ask(now) if self._side.peer.heard(now) else None
+        if ask is not None:
+            self._side.send(ASK, RECORD, pack_ask(ask))
+
+    def _path(self, piece):
+        return os.path.join(self._folder, piece.name)
+
+    def _on_part(self, number, offset, data, now):
+        if self._fetch.on_part(number, offset, data, now):
+            with open(self._part, 'r+b' if offset else 'wb') as file:
+                file.seek(offset)
+                file.write(data)
+
+    def _check(self, piece):
+        with open(self._part, 'rb') as file:
+            good = crc_of(file.read()) == piece.crc
+        if good:
+            os.rename(self._part, self._path(piece))
+        else:
+            rospy.logwarn('%s: %s came wrong: fetched once more', self._side.name, piece.name)
+        self._fetch.checked(piece, good)
+
+    def _finish(self, pieces):
+        """Make one bag of what came."""
+        begun = datetime.fromtimestamp(1e-3 * pieces[0].begun_ms)
+        folder = self._session.folder if self._session is not None else ''
+        target = os.path.join(
+            folder if os.path.isdir(folder) else ros_home(os.environ),
+            '{}_missed_{:%Y-%m-%d-%H-%M-%S}.bag'.format(self._side.name, begun))
+        paths = [self._path(piece) for piece in pieces]
+        # Never over another file.
+        os.close(os.open(target, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+        join(self._side.name, paths, target, list(self._topics()) + [GUARD_COMMAND])
+        for path in paths:
+            os.unlink(path)
+        self.text = 'fetched {:.0f} s from {}: {}'.format(
+            1e-3 * sum(piece.lasts_ms for piece in pieces), self._side.name, target)
+        rospy.loginfo('%s', self.text)
+
+    def _say(self, text):
+        if text != self._said:
+            self._said = text
+            self._publisher.publish(text)

@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every drill driven by the scripted operator, with links of 0, 200 and 400 ms each way.
+
+Without ROS, in a virtual clock: the time each takes does not depend on the machine. The long form
+adds runs on the graph (some minutes), where it does: each once, the first one three times.
+"""
+import argparse
+import os
+from pathlib import Path
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
+
+from mhri.sim.rehearsal import Rehearsal  # noqa: E402
+from support.drills import drill, NAMES  # noqa: E402
+
+DELAYS_S = (0.0, 0.2, 0.4)
+LIVE = 'figure_of_eight'
+AGAIN = 3
+PATIENCE_S = 400.0
+# Runs that are the same but for chance differ by less.
+REPEATS_WITHIN = 0.05
+
+
+def rehearsed():
+    """Print a line for each drill; return whether more delay took longer everywhere."""
+    print('{:18}{:>12}{:>12}{:>12}{:>12}'.format(
+        'drill', *('{:.0f} ms'.format(1e3 * delay_s) for delay_s in DELAYS_S), 'contacts'))
+    good = True
+    for name in NAMES:
+        results = [Rehearsal(*drill(name), delay_s=delay_s).run() for delay_s in DELAYS_S]
+        times = [result['time_s'] for result in results]
+        good = good and times == sorted(set(times))
+        print('{:18}{}{:>12}'.format(name, ''.join('{:10.1f} s'.format(each) for each in times),
+                                     sum(result['contacts'] for result in results)))
+    return good
+
+
+def live(name, delay_s):
+    """Return the result of a run on the graph."""
+    from mhri.ros.drill.files import result_in
+    from support.ros_system import System, wait_for
+    scenario = drill(name)[0]
+    plan = Path(__file__).resolve().parents[2] / 'resource' / 'drills' / 'plans' / scenario.plan
+    with System() as system:
+        system.start_master()
+        launched = system.launch(
+            'mhri.launch', 'gui:=none', 'inputs:=none', 'sim:={}'.format(len(scenario.types)),
+            'sim_types:=' + ' '.join(scenario.types), 'sim_plan:={}'.format(plan),
+            'drill:=' + name, 'drill_args:=--scripted --delay {}'.format(delay_s))
+        wait_for(lambda: launched.poll() is not None, PATIENCE_S, 'the drill', poll_s=0.5)
+        folder, = (Path(system.home) / 'mhri' / 'drills').iterdir()
+        return result_in(str(folder))
+
+
+def on_the_graph():
+    """Print runs of one drill on the graph; return whether they are as they should be."""
+    times = []
+    for delay_s in DELAYS_S:
+        times.append([live(LIVE, delay_s)['time_s'] for _ in range(AGAIN)])
+        print('{} on the graph, {:3.0f} ms: {}'.format(
+            LIVE, 1e3 * delay_s, ', '.join('{:.1f} s'.format(each) for each in times[-1])))
+    spread = max(max(each) / min(each) - 1.0 for each in times[:2])
+    print('runs of one kind differ by {:.1f} % at most, up to 200 ms'.format(100.0 * spread))
+    return spread < REPEATS_WITHIN and max(times[0]) < min(times[1]) < max(times[1]) < min(times[2])
+
+
+def main():
+    """Print the tables; exit with 1 if a link with more delay is not slower."""
+    parser = argparse.ArgumentParser(description=__doc__.partition('\n')[0])
+    parser.add_argument('--short', action='store_true', help='without ROS alone')
+    options = parser.parse_args()
+    good = rehearsed()
+    if not options.short:
+        good = on_the_graph() and good
+    sys.exit(0 if good else 1)
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,142 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The link through a router, without keys and with: both ends call it, and never each other.
+
+Across networks that do not reach each other: test_link_network.py.
+"""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from mhri.core.link.carried import COMMAND  # noqa: E402
+from mhri.core.link.keys import KeysError  # noqa: E402
+from mhri.nodes.mhri_link import parse  # noqa: E402
+from mhri.ros.link.carrier import Carrier  # noqa: E402
+from mhri.ros.link.key_folder import KeyFolder  # noqa: E402
+from support.ros_system import free_port, wait_for  # noqa: E402
+
+SCRIPT = pathlib.Path(__file__).resolve().parents[2] / 'utils/host/mhri_keys.sh'
+LISTS = ('authority.pem', 'peers', 'withdrawn', 'withdrawn.pem')
+LONG_S = 60.0
+
+
+class Authority:
+    """Keys of a host, one that only watches, a robot, and a router, or not."""
+
+    def __init__(self, folder, with_router=True):
+        self.folder = folder
+        for words in ([['new'], ['host', 'lab'], ['host', 'gallery', '--watch'], ['robot', 'bot1']]
+                      + [['router', 'hub']] * with_router):
+            subprocess.run([str(SCRIPT), *words, '--folder', str(folder / 'made')], check=True,
+                           stdout=subprocess.DEVNULL, env=dict(os.environ, HOME=str(folder)))
+
+    def secrets(self, name, side, routed=True):
+        """Return zenoh's settings for somebody."""
+        place, made = self.folder / name, self.folder / 'made'
+        if not place.exists():
+            shutil.copytree(str(made / 'keys' / name), str(place))
+            for file in LISTS:
+                shutil.copy(str(made / file), str(place))
+        return KeyFolder(str(place), side, 'bot1', routed).read()
+
+
+@pytest.fixture(scope='module')
+def authority(tmp_path_factory):
+    return Authority(tmp_path_factory.mktemp('authority'))
+
+
+def through(sender, heard):
+    """Send until something arrives; return it."""
+    def send():
+        sender(b'x')
+        return heard[-1:] or None
+    return wait_for(send, LONG_S, 'a message to come through', poll_s=0.02)
+
+
+@pytest.mark.parametrize('secret', [False, True])
+def test_both_call_the_router_whoever_comes_first(authority, secret):
+    endpoint = '{}/127.0.0.1:{}'.format('tls' if secret else 'tcp', free_port())
+
+    def opened(name, side, place):
+        ends = ([endpoint], []) if place == 'router' else ([], [endpoint])
+        return Carrier(*ends, secrets=authority.secrets(name, side) if secret else None,
+                       place=place)
+    host, robot = opened('lab', 'host', 'routed'), opened('bot1', 'robot', 'routed')
+    up, down = [], []
+    host.between('bot1', 'host:lab').listen('up', lambda *heard: up.append(heard))
+    robot.between('bot1', 'host:lab').listen('down', lambda *heard: down.append(heard))
+    send_up = robot.between('bot1', 'host:lab').sender('up', 'odom', COMMAND)
+    send_down = host.between('bot1', 'host:lab').sender('down', 'mhri_guard/command', COMMAND)
+    try:
+        for _ in range(2):
+            router = opened('hub', 'router', 'router')
+            try:
+                assert through(send_up, up) == [('odom', b'x')]
+                assert through(send_down, down) == [('mhri_guard/command', b'x')]
+            finally:
+                router.close()
+            del up[:], down[:]
+    finally:
+        host.close()
+        robot.close()
+
+
+def test_router_passes_on_no_more_than_a_key_allows(authority):
+    """Who may only watch says with what it wants to see, and not as somebody else."""
+    endpoint = 'tls/127.0.0.1:{}'.format(free_port())
+    # The watcher has a program of its own, which forbids it nothing.
+    watching = authority.secrets('gallery', 'host')
+    del watching['access_control']
+    sessions = [Carrier([endpoint], secrets=authority.secrets('hub', 'router'), place='router')]
+    for secrets in (authority.secrets('bot1', 'robot'), watching):
+        sessions.append(Carrier([], [endpoint], secrets=secrets, place='routed'))
+    robot, watch = sessions[1:]
+    heard = []
+    robot.listen('mhri/bot1/*/down/_beat', lambda key, data: heard.append((key, data)))
+    for host in ('host:lab', 'watch:gallery'):
+        robot.between('bot1', host).listen('down', lambda *said: heard.append(said))
+    try:
+        tries = [watch.between('bot1', host).sender('down', topic, COMMAND)
+                 for host, topic in (('watch:gallery', 'mhri_guard/command'),
+                                     ('host:lab', 'mhri_guard/command'), ('host:lab', '_beat'))]
+        beat = watch.between('bot1', 'watch:gallery').sender('down', '_beat', COMMAND)
+
+        def said():
+            for send in tries:
+                send(b'no')
+            beat(b'yes')
+            return len([data for _, data in heard if data == b'yes']) > 20
+        wait_for(said, LONG_S, 'the beats of who may only watch', poll_s=0.02)
+        assert not [row for row in heard if row[1] == b'no']
+    finally:
+        for session in sessions:
+            session.close()
+
+
+def test_without_a_key_for_a_router_it_says_what_to_do(tmp_path):
+    with pytest.raises(KeysError, match='mhri_keys.sh router NAME'):
+        Authority(tmp_path, with_router=False).secrets('lab', 'host')
+
+
+@pytest.mark.parametrize('words, said', [
+    ('--side router', 'a router has --listen alone'),
+    ('--side router --listen 0.0.0.0:1 --name bot1', 'a router has --listen alone'),
+    ('--side host --router 192.0.2.1:1', 'give the robot with --name'),
+    ('--side host --name bot1 --router 192.0.2.1:1 --connect 192.0.2.1:1', 'stands in place of'),
+    ('--side host --name bot1', 'give --listen, --connect or --router')])
+def test_options_that_do_not_go_together(words, said, capsys):
+    with pytest.raises(SystemExit) as ended:
+        parse(words.split())
+    assert ended.value.code == 2 and said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('words', [
+    '--side router --listen 0.0.0.0:7447', '--side robot --name bot1 --router 192.0.2.1:7447'])
+def test_options_of_a_router(words):
+    assert parse(words.split()).side in words

@@ -1,0 +1,143 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Fetching what a robot kept during an outage, over a radio that loses things."""
+import random
+
+import pytest
+
+from mhri.core.link.frames import FrameError
+from mhri.core.link.records import (
+    Ask, AGAIN_S, crc_of, Fetch, MOST_PARTS, pack_ask, pack_offer, pack_part, PART_BYTES, Piece,
+    piece_of, too_many, unpack_ask, unpack_offer, unpack_part)
+
+FILES = {3: bytes(range(256)) * 500, 4: b'x' * 70000, 7: b'y'}
+
+
+def pieces():
+    return [Piece(number, 1000 * number, 10000, len(data), crc_of(data))
+            for number, data in FILES.items()]
+
+
+class Robot:
+    """Answers an ask with the parts that the radio lets through."""
+
+    def __init__(self, dice, loss):
+        self.kept = {piece.number: piece for piece in pieces()}
+        self._dice, self._loss = dice, loss
+        self.sent = 0
+
+    def answer(self, ask):
+        for number in ask.have:
+            self.kept.pop(number, None)
+        for part in range(ask.count if ask.number in self.kept else 0):
+            begin = ask.offset + part * PART_BYTES
+            data = FILES[ask.number][begin:begin + PART_BYTES]
+            self.sent += len(data)
+            if data and self._dice.random() >= self._loss:
+                yield unpack_part(pack_part(ask.number, begin, data))
+
+
+def fetched(loss, fetch, robot, came, until=600.0, spoil=None):
+    """Let host and robot talk; return when all was there [s]."""
+    now = 0.0
+    while now < until:
+        now += 0.01
+        if int(now * 100) % 100 == 0:
+            fetch.on_offer(unpack_offer(pack_offer(robot.kept.values())))
+        ask = fetch.ask(now)
+        for number, offset, data in robot.answer(unpack_ask(pack_ask(ask))) if ask else ():
+            if fetch.on_part(number, offset, data, now):
+                came[number] = came.get(number, b'')[:offset] + (spoil or (lambda part: part))(data)
+        whole = fetch.whole()
+        if whole:
+            good = crc_of(came[whole.number]) == whole.crc
+            fetch.checked(whole, good)
+            spoil = None
+        if fetch.finished():
+            return now
+    raise AssertionError('not fetched')
+
+
+@pytest.mark.parametrize('loss', [0.0, 0.05, 0.3])
+def test_all_comes_whole_whatever_is_lost(loss):
+    robot, came = Robot(random.Random(1), loss), {}
+    fetched(loss, Fetch(), robot, came)
+    assert came == FILES and robot.kept == {}
+    # What is lost is not sent many times over.
+    assert robot.sent < (1.0 + 12.0 * loss) * sum(map(len, FILES.values())) + 1
+
+
+def test_it_goes_on_where_it_had_got_to():
+    robot = Robot(random.Random(1), 0.0)
+    came = {3: FILES[3][:100000]}
+    fetched(0.0, Fetch({3: 100000}), robot, came)
+    assert came == FILES and robot.sent == sum(map(len, FILES.values())) - 100000
+
+
+def test_a_piece_that_came_wrong_is_fetched_once_more():
+    robot, came = Robot(random.Random(1), 0.0), {}
+    fetched(0.0, Fetch(), robot, came, spoil=lambda data: b'?' * len(data))
+    assert came == FILES
+
+
+def test_an_outage_only_asks_for_less():
+    fetch = Fetch(window=MOST_PARTS)
+    fetch.on_offer(pieces())
+    counts, now = [], 0.0
+    for _ in range(6):
+        counts.append(fetch.ask(now).count)
+        assert fetch.ask(now + 0.5 * AGAIN_S) is None
+        now += AGAIN_S + 0.01
+    assert counts == [16, 8, 4, 2, 1, 1]
+
+
+def test_it_says_how_far_it_is():
+    fetch = Fetch({3: 64000})
+    assert fetch.words('bot1') == ''
+    fetch.on_offer(pieces())
+    assert fetch.words('bot1') == 'fetching 5 of 30 s from bot1'
+
+
+@pytest.mark.parametrize('offset', [1, PART_BYTES, 10 ** 9])
+def test_a_part_that_does_not_follow_is_not_taken(offset):
+    fetch = Fetch()
+    fetch.on_offer(pieces())
+    fetch.ask(0.0)
+    assert not fetch.on_part(3, offset, b'x', 0.1)
+    assert not fetch.on_part(4, 0, b'x', 0.1)
+
+
+@pytest.mark.parametrize('most, numbers', [(10 ** 9, []), (100000, [3]), (0, [3, 4, 7])])
+def test_the_oldest_go_where_there_is_no_room(most, numbers):
+    assert [piece.number for piece in too_many(pieces(), most)] == numbers
+
+
+def test_a_name_says_what_a_piece_is():
+    piece = Piece(12, 1700000000123, 10000)
+    assert piece_of(piece.name) == piece
+    for name in ('000012.bag', '000012_1_2.bag.active', 'x000012_1_2.bag', '000012_1_2.bag/..'):
+        assert piece_of(name) is None
+
+
+@pytest.mark.parametrize('body', [
+    b'', b'{}', b'[1]', b'[true,[],0,0]', b'[true,[],0,-1,1]', b'[true,[],0,0,9999]',
+    b'[true,["a"],0,0,1]', b'[1,[],0,0,1]', b'[true,[],0.5,0,1]', b'\xff'])
+def test_what_is_no_ask_is_refused(body):
+    with pytest.raises(FrameError):
+        unpack_ask(body)
+
+
+@pytest.mark.parametrize('body', [b'', b'[[1]]', b'[[1,2,3,4,-5]]', b'[["a",1,1,1,1]]', b'{}'])
+def test_what_is_no_offer_is_refused(body):
+    with pytest.raises(FrameError):
+        unpack_offer(body)
+
+
+def test_what_is_no_part_is_refused():
+    with pytest.raises(FrameError):
+        unpack_part(b'short')
+
+
+def test_an_ask_comes_back_as_it_was():
+    ask = Ask(True, (1, 2), 3, 4, 5)
+    assert unpack_ask(pack_ask(ask)) == ask
