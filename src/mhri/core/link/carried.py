@@ -34,6 +34,8 @@ _PACKED = ('/compressed', '/compressedDepth')
 _TYPE = re.compile(r'[A-Za-z][A-Za-z0-9_]{0,99}/[A-Za-z][A-Za-z0-9_]{0,99}\Z')
 _TOPIC = re.compile(r'/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*\Z')
 MOST_LETTERS = 250
+# Of a robot's parameters these are carried up.
+PARAMETERS = ('robot_type', 'robot_model', 'mhri')
 
 
 @dataclass(frozen=True)

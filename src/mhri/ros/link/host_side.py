@@ -8,7 +8,8 @@ import rospy
 from std_msgs.msg import String
 
 from mhri.core.link.carried import (
-    COMMAND, DOWN, full_topic, GUARD_COMMAND, GUARD_ECHO, PICTURE, STATE, TF, TF_STATIC, TF_TYPE)
+    COMMAND, DOWN, full_topic, GUARD_COMMAND, GUARD_ECHO, PARAMETERS, PICTURE, STATE, TF, TF_STATIC,
+    TF_TYPE)
 from mhri.core.link.control import unpack_standing
 from mhri.core.link.figures import FIGURES, figures_words, RadioFigures
 from mhri.core.link.frames import About, Thinned, unpack_about
@@ -17,7 +18,6 @@ from mhri.core.link.peer import held_s
 from mhri.core.link.renaming import stamp_of
 from mhri.ros.graph.master_api import MasterError
 from mhri.ros.link.host_record import HostRecord
-from mhri.ros.link.robot_side import PARAMETERS
 from mhri.ros.link.host_control import HostControl
 from mhri.ros.link.side import ABOUT, CONTROL, Side
 from mhri.ros.messages import bytes_of, message_class, MessageMissing

@@ -6,8 +6,8 @@ import rospy
 from mhri.core.driving.guard_link import parse_id
 from mhri.core.link.bearing import Bearing
 from mhri.core.link.carried import (
-    DOWN, FRAME_NAMES, full_topic, GUARD_COMMAND, Pace, PICTURE, TF, TF_STATIC, up_streams,
-    worth_carrying)
+    DOWN, FRAME_NAMES, full_topic, GUARD_COMMAND, Pace, PARAMETERS, PICTURE, TF, TF_STATIC,
+    up_streams, worth_carrying)
 from mhri.core.link.control import moves
 from mhri.core.link.frames import About, DEFLATED, pack_about, PIECE, PLAIN, Thinned
 from mhri.core.link.peer import may_pass
@@ -24,7 +24,6 @@ from mhri.ros.link.robot_record import RobotRecord
 from mhri.ros.link.side import CONTROL, Side
 from mhri.ros.messages import bytes_of, message_class
 
-PARAMETERS = ('robot_type', 'robot_model', 'mhri')
 LOOK_S = 1.0
 # What nobody on the host listens to any more stays subscribed for a while [s].
 LINGER_S = 5.0
