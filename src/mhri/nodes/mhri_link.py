@@ -36,7 +36,6 @@ from mhri.ros.link.host_side import HostSide
 from mhri.ros.link.key_folder import AUTO, find_folder, KeyFolder, watch_keys
 from mhri.ros.link.note import Note
 from mhri.ros.link.knocks import tell_knocks
-from mhri.ros.link.reception import Reception
 from mhri.ros.resources import robot_types
 
 
@@ -167,6 +166,8 @@ def main():
         publish_diagnostics({'link to ' + options.name: side.fill})
         note.follow(side, watch, bool(keys))
     else:
+        # Packs pictures with OpenCV, 28 MB that the host's side, one for each robot, does without.
+        from mhri.ros.link.reception import Reception
         types, errors = robot_types()
         for error in errors:
             rospy.logwarn('robot type left out: %s', error)

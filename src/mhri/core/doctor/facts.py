@@ -209,9 +209,9 @@ class LinkNote:
 
     ``endpoint`` is whom it calls, ``router`` whether that is a router, ``secret`` whether with
     keys; ``heard`` is ``yes``, ``no`` (not any more) or ``never``. ``problem`` says why it could
-    not start, ``trouble`` what with: ``library``, ``keys`` or ``endpoint``. ``own`` and ``peer`` are
-    the versions of both sides: {``mhri`` or ``zenoh``: version}. ``reach`` says how the endpoint
-    answers, '' if nobody asked.
+    not start, ``trouble`` what with: ``library``, ``keys`` or ``endpoint``. ``own`` and ``peer``
+    are the versions of both sides: {``mhri`` or ``zenoh``: version}. ``reach`` says how the
+    endpoint answers, '' if nobody asked.
     """
 
     robot: str
