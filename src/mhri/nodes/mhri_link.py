@@ -17,6 +17,7 @@ or one that was withdrawn, is not let in. Keys that are replaced take effect wit
 It is called ``/<name>/mhri_link`` on both masters.
 """
 import argparse
+import logging
 import os
 import signal
 import socket
@@ -182,3 +183,6 @@ def main():
         watch_keys(keys, carrier)
     rospy.spin()
     carrier.close()
+    # A thread of zenoh that waits for Python while Python ends aborts the process.
+    logging.shutdown()
+    os._exit(0)
