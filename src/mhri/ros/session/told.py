@@ -1,0 +1,273 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A session read for its report: nothing is ever written into its folder, and no master needed."""
+from contextlib import contextmanager
+import os
+import shutil
+import tempfile
+from typing import NamedTuple
+
+import genpy
+import rosbag
+from rosbag.bag import ROSBagException
+
+from mhri.core.config import ConfigError, short
+from mhri.core.drill.results import FILE as DRILL_FILE, read_result, rows_of
+from mhri.core.map.grid import GridError
+from mhri.core.recording.recording import ACTIVE
+from mhri.core.robots.mocap import Pose
+from mhri.core.session.folder import (
+    bags_of, EVENTS_JSONL, NotASession, read_events, read_info, robots_of, SESSION_YAML)
+from mhri.core.session.report import finite_events, report_of
+from mhri.core.session.survey import RobotSurvey
+from mhri.core.session.timeline import read_time_line
+from mhri.ros.convert import motion_from_odometry, motion_from_turtle_pose
+from mhri.ros.map.map_feed import grid_of_message, MAP_TOPIC
+from mhri.ros.messages import message_class, MessageMissing
+from mhri.ros.session.bag_set import BagSet
+
+GATES, PLACES = '/gates/state', '/mhri_tasks/places'
+_MOTIONS = {'nav_msgs/Odometry': motion_from_odometry, 'turtlesim/Pose': motion_from_turtle_pose}
+_HOST = {GATES: 'mhri/GatesState', PLACES: 'mhri/Places', MAP_TOPIC: 'nav_msgs/OccupancyGrid'}
+# What comes more often than this [s] is thinned, but for so long after a stop [s].
+_STEP_S, _DENSE_S = 0.1, 4.0
+_NS = 10 ** 9
+_LARGEST_EVENTS = 200 * 10 ** 6
+
+
+class ThinnedBags(BagSet):
+    """Bags of which no more messages are read than a report needs.
+
+    ``dense`` is a list of times [ns] after which all of them are read.
+    """
+
+    dense = ()
+
+    def _row(self, index, number, entries, time_ns):
+        due = 0
+        for place in super()._row(index, number, entries, time_ns):
+            if place.time_ns >= due or any(0 <= place.time_ns - begin < _DENSE_S * _NS
+                                           for begin in self.dense):
+                due = place.time_ns + round(_STEP_S * _NS)
+                yield place
+
+
+class Session(NamedTuple):
+    """A session's folder, opened: ``bags`` is None if none can be read."""
+
+    path: str
+    info: object
+    events: list
+    robots: dict
+    bags: object
+    problems: list
+
+    @property
+    def name(self):
+        """The folder's own name."""
+        return os.path.basename(self.path)
+
+
+@contextmanager
+def opened(path):
+    """Open a session for as long as the block lasts (blocking); yields a :class:`Session`.
+
+    Bags that were never closed are copied and indexed in a folder of their own.
+
+    :raises NotASession: it is none; the text names the path, the reason and the remedy
+    """
+    path = os.path.abspath(os.path.expanduser(path))
+    with tempfile.TemporaryDirectory(prefix='mhri_report_') as copies:
+        try:
+            session = _open(path, copies)
+        except OSError as error:
+            raise NotASession('{}: {}'.format(path, error.strerror))
+        except NotASession as error:
+            raise NotASession('{}: {}'.format(path, error))
+        try:
+            yield session
+        finally:
+            if session.bags is not None:
+                session.bags.close()
+
+
+def _open(path, copies):
+    if not os.path.isdir(path):
+        raise NotASession('a session is a folder' if os.path.exists(path)
+                          else 'there is no such folder')
+    if not os.path.isfile(os.path.join(path, SESSION_YAML)):
+        raise NotASession('it has no {}, so it is no session of mhri; bags of other programs can '
+                          'be looked at (mhri_run.sh --replay), not reported on'.format(
+                              SESSION_YAML))
+    info = read_info(_text(os.path.join(path, SESSION_YAML)))
+    problems = []
+    events, strange = finite_events(read_events(_text(os.path.join(path, EVENTS_JSONL), problems)))
+    if strange:
+        problems.append('{} lines of {} have times that cannot be'.format(strange, EVENTS_JSONL))
+    bags = None
+    try:
+        bags = ThinnedBags(_closed(path, copies, problems))
+        problems += bags.problems
+    except NotASession as error:
+        problems.append('no bag can be read: {}'.format(error))
+    return Session(path, info, events, robots_of(info, events), bags, problems)
+
+
+def _text(path, problems=None):
+    """Return the text of a file; '' of one that is not there, and of none that is too large."""
+    if not os.path.isfile(path):
+        return ''
+    if os.path.getsize(path) > _LARGEST_EVENTS:
+        (problems if problems is not None else []).append(
+            '{} is larger than {} MB and was not read'.format(
+                os.path.basename(path), _LARGEST_EVENTS // 10 ** 6))
+        return ''
+    with open(path, encoding='utf-8', errors='replace') as stream:
+        return stream.read()
+
+
+def _closed(path, copies, problems):
+    """Return the paths of bags that are closed: copies of those that are not."""
+    paths = []
+    for name in bags_of(sorted(os.listdir(path))):
+        bag = os.path.join(path, name)
+        if name.endswith(ACTIVE):
+            bag = _indexed(bag, os.path.join(copies, name[:-len(ACTIVE)]), problems)
+        paths += [bag] if bag else []
+    return paths
+
+
+def _indexed(path, copy, problems):
+    """Copy a bag that was never closed, and index the copy; return it, None where that fails."""
+    name = os.path.basename(path)
+    try:
+        shutil.copyfile(path, copy)
+        with rosbag.Bag(copy, 'a', allow_unindexed=True) as bag:
+            for _ in bag.reindex():
+                pass
+    except (ROSBagException, OSError, ValueError, KeyError) as error:
+        problems.append('{} was never closed, and cannot be read: {}'.format(name, error))
+        return None
+    problems.append('{} was never closed: its last second may be missing'.format(name))
+    return copy
+
+
+class Teller:
+    """Reads a :class:`Session` once, and makes a report of it.
+
+    ``grid`` is the last map, None without any; ``frame`` that in which robots are placed.
+    """
+
+    def __init__(self, session):
+        self._session = session
+        self._classes, self._refused = {}, set()
+        bags = session.bags
+        self.start = bags.start_ns / _NS if bags else min(
+            [session.info.started] + [event.ros for event in session.events])
+        end = bags.end_ns / _NS if bags else max(
+            [self.start] + [event.ros for event in session.events])
+        self.line = read_time_line(session.events, self.start, end - self.start)
+        self._surveys = {name: RobotSurvey(self.line.stopped) for name in session.robots}
+        self._odometry = {}
+        for name, robot in session.robots.items():
+            topics = robot.get('topics')
+            topic = topics.get('odometry') if isinstance(topics, dict) else None
+            self._odometry[topic if isinstance(topic, str) else '/{}/odom'.format(name)] = name
+        self.grid = None
+
+    def read(self):
+        """Read all bags (blocking: up to a minute for an hour); return the :class:`Report`."""
+        session = self._session
+        if session.bags is not None:
+            session.bags.dense = [round((self.start + span.begin_s - 1.0) * _NS)
+                                  for span in self.line.stopped[:20]]
+            try:
+                for recorded in session.bags.after(session.bags.start_ns - 1, self._wanted):
+                    self._take(recorded)
+            except (ROSBagException, OSError, ValueError, KeyError) as error:
+                session.problems.append('a bag is damaged, what follows is missing: {}'.format(
+                    error))
+        for survey in self._surveys.values():
+            survey.end(self.line.length_s)
+        impossible = sum(survey.impossible for survey in self._surveys.values())
+        if impossible:
+            session.problems.append('{} readings of odometry cannot be, and do not count'.format(
+                impossible))
+        try:
+            return report_of(session.name, session.info, self.line, session.robots, self._surveys,
+                             drills=tuple(self._drills()), problems=tuple(session.problems))
+        except NotASession as error:
+            raise NotASession('{}: {}'.format(session.path, error))
+
+    def _wanted(self, connection):
+        return connection.kind == _HOST.get(connection.topic) or (
+            connection.topic in self._odometry and connection.kind in _MOTIONS)
+
+    def _take(self, recorded):
+        message = self.message(recorded)
+        if message is None:
+            return
+        topic = recorded.connection.topic
+        if topic in self._odometry:
+            self._surveys[self._odometry[topic]].on_motion(
+                recorded.time_ns / _NS - self.start, _MOTIONS[recorded.connection.kind](message))
+        elif topic == MAP_TOPIC:
+            self._take_map(message)
+        else:
+            self._take_robots(topic, message.robots)
+
+    def _take_map(self, message):
+        try:
+            self.grid = grid_of_message(message)
+        except GridError as error:
+            self._refuse('{}: no map: {}'.format(MAP_TOPIC, error))
+
+    def _take_robots(self, topic, rows):
+        """Take what gates or places say of each robot."""
+        for row in rows:
+            survey = self._surveys.get(row.name if topic == GATES else row.robot)
+            if survey is not None and topic == GATES:
+                survey.on_round_trip(row.round_trip_s)
+            elif survey is not None:
+                survey.on_place(_pose(row.odometry))
+
+    def message(self, recorded):
+        """Return a recorded message, None where it cannot be read here; that is said once."""
+        kind = recorded.connection.kind
+        try:
+            if kind not in self._classes:
+                self._classes[kind] = message_class(kind)
+            if self._classes[kind]._md5sum != recorded.connection.md5sum:
+                self._refuse('{} is of another version of {}'.format(
+                    recorded.connection.topic, kind))
+                return None
+            message = self._classes[kind]()
+            message.deserialize(recorded.data)
+            return message
+        except (MessageMissing, genpy.DeserializationError, ValueError) as error:
+            self._refuse('{} cannot be read: {}'.format(recorded.connection.topic, error))
+            return None
+
+    def _refuse(self, sentence):
+        if sentence not in self._refused and len(self._refused) < 20:
+            self._refused.add(sentence)
+            self._session.problems.append(sentence)
+
+    def _drills(self):
+        """Yield (title, rows) of what drills have left in the session."""
+        stem, _, ending = DRILL_FILE.partition('.')
+        for name in sorted(os.listdir(self._session.path)):
+            if not (name.startswith(stem) and name.endswith('.' + ending)):
+                continue
+            try:
+                result = read_result(_text(os.path.join(self._session.path, name)), name)
+            except (ConfigError, OSError) as error:
+                self._refuse(short(error))
+                continue
+            yield result['title'], [('driven by', result['operator']), ('ended', result['ended']),
+                                    *rows_of([result])]
+
+
+def _pose(place):
+    """Return a place of ``mhri/Place`` as a :class:`Pose`, None for NaN."""
+    return Pose(place.x, place.y, place.theta) if place.x == place.x else None
