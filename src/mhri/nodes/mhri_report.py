@@ -14,6 +14,7 @@ import time
 from mhri.core.config import short
 from mhri.core.recording.recording import size_text
 from mhri.core.session.folder import NotASession
+from mhri.ros.session.film import Film
 from mhri.ros.session.report_files import folder_for, write_report
 from mhri.ros.session.told import opened, Teller
 
@@ -21,11 +22,18 @@ from mhri.ros.session.told import opened, Teller
 def parse(argv):
     """Return the options of a command line."""
     parser = argparse.ArgumentParser(
-        prog='mhri_report', description='Make a page and a map of a recorded session.')
+        prog='mhri_report', description='Make a page, a map and a film of a recorded session.')
     parser.add_argument('session', metavar='FOLDER', help='of the session')
     parser.add_argument('--output', metavar='FOLDER', help='where the files go; else '
                         '$ROS_HOME/mhri/reports/<name of the session>')
-    return parser.parse_args(argv)
+    parser.add_argument('--film', action='store_true',
+                        help='a film of the cameras, too; takes a while')
+    parser.add_argument('--fps', type=float, default=10.0, metavar='N',
+                        help='frames of the film in a second, 1 to 60 (10)')
+    options = parser.parse_args(argv)
+    if not 1.0 <= options.fps <= 60.0:
+        parser.error('--fps: expected 1 to 60, got {:g}'.format(options.fps))
+    return options
 
 
 def make(options):
@@ -39,12 +47,34 @@ def make(options):
         teller = Teller(session)
         report = teller.read()
         told(write_report(report, teller.grid, session.path, folder), began)
+        if options.film:
+            began = time.monotonic()
+            told([Film(session, teller, report).write(folder, options.fps, Progress())], began)
+
+
+class Progress:
+    """Shows how far the film is: on a terminal in place, else a line for every tenth."""
+
+    def __init__(self, stream=sys.stderr):
+        self._stream = stream
+        self._there = -1
+
+    def __call__(self, done, count):
+        """Take in how many frames are done."""
+        step = 1 if self._stream.isatty() else 10
+        percent = 100 * done // count // step * step
+        if percent != self._there:
+            self._there = percent
+            end = '\r' if step == 1 and done < count else '\n'
+            self._stream.write('film: {} %, {} of {} frames{}'.format(percent, done, count, end))
+            self._stream.flush()
 
 
 def told(paths, began):
     """Print what was written, how large it is, and how long it took [s, monotonic]."""
     for path in paths:
-        print('{}  {}'.format(path, size_text(os.path.getsize(path))))
+        size = os.path.getsize(path)
+        print('{}  {}'.format(path, size_text(size) if size >= 1000 else '{} bytes'.format(size)))
     print('made in {:.1f} s'.format(time.monotonic() - began), flush=True)
 
 

@@ -29,26 +29,29 @@ from mhri.ros.session.bag_set import BagSet
 GATES, PLACES = '/gates/state', '/mhri_tasks/places'
 _MOTIONS = {'nav_msgs/Odometry': motion_from_odometry, 'turtlesim/Pose': motion_from_turtle_pose}
 _HOST = {GATES: 'mhri/GatesState', PLACES: 'mhri/Places', MAP_TOPIC: 'nav_msgs/OccupancyGrid'}
-# What comes more often than this [s] is thinned, but for so long after a stop [s].
-_STEP_S, _DENSE_S = 0.1, 4.0
+# After a stop all that was heard counts for so long [s].
+_DENSE_S = 4.0
 _NS = 10 ** 9
 _LARGEST_EVENTS = 200 * 10 ** 6
+# A line with more lists in it than this is nobody's: the decoder would run out of stack.
+_MOST_NESTED = 500
 
 
 class ThinnedBags(BagSet):
     """Bags of which no more messages are read than a report needs.
 
-    ``dense`` is a list of times [ns] after which all of them are read.
+    ``step_s`` is the least time between two of a topic; ``dense`` are times [ns] after which all of
+    them are read for a while.
     """
 
-    dense = ()
+    step_s, dense = 0.1, ()
 
     def _row(self, index, number, entries, time_ns):
         due = 0
         for place in super()._row(index, number, entries, time_ns):
             if place.time_ns >= due or any(0 <= place.time_ns - begin < _DENSE_S * _NS
                                            for begin in self.dense):
-                due = place.time_ns + round(_STEP_S * _NS)
+                due = place.time_ns + round(self.step_s * _NS)
                 yield place
 
 
@@ -101,7 +104,9 @@ def _open(path, copies):
                               SESSION_YAML))
     info = read_info(_text(os.path.join(path, SESSION_YAML)))
     problems = []
-    events, strange = finite_events(read_events(_text(os.path.join(path, EVENTS_JSONL), problems)))
+    lines = _text(os.path.join(path, EVENTS_JSONL), problems).split('\n')
+    events, strange = finite_events(read_events('\n'.join(
+        line for line in lines if line.count('[') + line.count('{') < _MOST_NESTED)))
     if strange:
         problems.append('{} lines of {} have times that cannot be'.format(strange, EVENTS_JSONL))
     bags = None
@@ -199,9 +204,21 @@ class Teller:
         except NotASession as error:
             raise NotASession('{}: {}'.format(session.path, error))
 
+    def is_odometry(self, connection):
+        """Tell whether a connection is the odometry of one of the robots."""
+        return connection.topic in self._odometry and connection.kind in _MOTIONS
+
+    def odometry_topic(self, robot):
+        """Return where a robot's odometry is recorded."""
+        return next(topic for topic, name in self._odometry.items() if name == robot)
+
+    def motion(self, recorded):
+        """Return the :class:`Motion` of a message of odometry, None where it cannot be read."""
+        message = self.message(recorded)
+        return None if message is None else _MOTIONS[recorded.connection.kind](message)
+
     def _wanted(self, connection):
-        return connection.kind == _HOST.get(connection.topic) or (
-            connection.topic in self._odometry and connection.kind in _MOTIONS)
+        return connection.kind == _HOST.get(connection.topic) or self.is_odometry(connection)
 
     def _take(self, recorded):
         message = self.message(recorded)
