@@ -150,12 +150,14 @@ def test_figures_are_those_of_the_drive(session):
         told = Teller(kept).read()
     by_name = {robot.name: robot.survey for robot in told.robots}
     # Ahead at 0.1 m/s but for the 6 s of the stop.
-    assert by_name['bot1'].distance_m == pytest.approx(0.1 * (made.LENGTH_S + EXTRA_S - 6.0), abs=0.1)
+    way_m = 0.1 * (made.LENGTH_S + EXTRA_S - 6.0)
+    assert by_name['bot1'].distance_m == pytest.approx(way_m, abs=0.1)
     assert [round(span.end_s - span.begin_s) for span in by_name['bot2'].silences] == [8]
     assert [robot.driven_s for robot in told.robots] == pytest.approx([45.0, 52.0], abs=0.1)
     (stop,) = told.stops
     assert (stop.span.begin_s, stop.span.end_s) == pytest.approx((30.0, 36.0))
-    assert [words for _, words, _ in stop.proofs] == ['stood still after 0.00 s, 0.01 m further'] * 2
+    assert [words for _, words, _ in stop.proofs] == 2 * [
+        'stood still after 0.00 s, 0.01 m further']
 
 
 def test_the_map_lies_where_its_world_file_says(report):
@@ -196,10 +198,10 @@ def test_the_film_is_as_long_as_the_session(report):
     assert length_s == pytest.approx(made.LENGTH_S + EXTRA_S, abs=0.01)
     video = cv2.VideoCapture(str(report / 'film.mp4'))
     shown = [video.read()[1] for _ in range(frames)]
-    # No picture for a minute, then ever brighter ones.
+    # No picture for a minute, then ever brighter ones; a damaged one leaves the one before it.
     shades = [int(shown[place][300, 300].mean()) for place in (0, 119, 123, 127)]
     assert shades[0] < 40 and shades[1] < 40
-    assert shades[2] == pytest.approx(60, abs=12) and shades[3] == pytest.approx(170, abs=12)
+    assert shades[2] == pytest.approx(45, abs=12) and shades[3] == pytest.approx(170, abs=12)
 
 
 def test_a_cancelled_film_leaves_no_half_of_it(session, tmp_path):
@@ -227,7 +229,8 @@ def test_a_failure_keeps_what_was_there(tmp_path):
 
 def test_what_is_no_session_is_refused_in_a_sentence(tmp_path, session):
     (tmp_path / 'empty').mkdir()
-    for path, said in ((tmp_path / 'none', 'no such folder'), (tmp_path / 'empty', 'no session.yaml'),
+    for path, said in ((tmp_path / 'none', 'no such folder'),
+                       (tmp_path / 'empty', 'no session.yaml'),
                        (session / '0000.bag', 'is a folder')):
         with pytest.raises(NotASession) as caught:
             with opened(str(path)):
