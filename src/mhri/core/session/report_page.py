@@ -10,6 +10,8 @@ from mhri.core.session.report import (
 from mhri.core.session.report_svg import time_line_svg
 from mhri.core.session.timeline import duration_text
 
+#: the line of a stop, which is counted as one
+STOP_ALL = 'STOP ALL'
 _STYLE = '''
 body{font:15px/1.5 system-ui,sans-serif;max-width:62em;margin:2em auto;padding:0 1.5em;color:#222;
 background:#fff}
@@ -19,7 +21,8 @@ break-after:avoid}p{margin:.4em 0}
 dl.figures{display:flex;flex-wrap:wrap;gap:.4em 2.4em;margin:1.2em 0 0}dl.figures div{min-width:5em}
 dt{color:#555;font-size:.87em}dd{margin:0;font-size:1.5em;font-variant-numeric:tabular-nums}
 table{border-collapse:collapse;width:100%;margin:.3em 0}td,th{padding:.25em 1.2em .25em 0;
-text-align:left;vertical-align:top;border-bottom:1px solid #ddd;overflow-wrap:anywhere}
+text-align:left;vertical-align:top;border-bottom:1px solid #ddd}
+td:last-child{overflow-wrap:anywhere}table.robots td{white-space:nowrap}
 th{font-weight:600;color:#555;font-size:.87em}td{font-variant-numeric:tabular-nums}
 td:first-child,td.time{white-space:nowrap}tr{break-inside:avoid}
 svg{width:100%;height:auto;display:block}svg text{font-family:system-ui,sans-serif;fill:#222}
@@ -34,7 +37,7 @@ border-radius:50%;margin-right:.5em}
 figure{margin:0;break-inside:avoid}figure img{width:18.5em;max-width:100%;display:block;
 border:1px solid #bbb}figcaption{color:#555;font-size:.87em}
 @media print{body{margin:0;max-width:none;padding:0;font-size:10.5pt;
-print-color-adjust:exact;-webkit-print-color-adjust:exact}}@page{margin:16mm}
+print-color-adjust:exact;-webkit-print-color-adjust:exact}td,th{padding-right:.8em}}@page{margin:16mm}
 '''
 
 
@@ -77,7 +80,7 @@ def _about(report: Report) -> str:
 
 
 def _figures(report: Report) -> str:
-    trouble = sum(event.severity != INFO for event in report.line.events)
+    trouble = sum(event.severity != INFO and event.text != STOP_ALL for event in report.line.events)
     distance_m = sum(robot.survey.distance_m for robot in report.robots)
     found = (('length', duration_text(report.line.length_s)), ('robots', len(report.robots)),
              ('distance', '{:.1f} m'.format(distance_m)), ('marks', len(report.marks)),
@@ -96,8 +99,8 @@ def _map_note(report: Report, note: str) -> str:
             text += ' Not placed on the map, and not drawn: {}.'.format(', '.join(missing))
     else:
         text = 'No robot was placed on a map: each way is as its own odometry has it.'
-    return '<p class="quiet">{} Ring: where it began; disc: where it was last. {}</p>'.format(
-        escape(text), escape(note))
+    return ('<p class="quiet">{} Ring: where it began; disc: where it was last; gap: nothing was '
+            'heard of it. {}</p>').format(escape(text), escape(note))
 
 
 def _table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -114,10 +117,10 @@ def _head(heads: Sequence[str]) -> str:
 
 def _robots(report: Report) -> List[str]:
     rows = ['<tr><td><span class="chip" style="background:{}"></span>{} {}</td>{}</tr>'.format(
-        robot.colour, robot.number, escape(robot.name),
-        ''.join('<td>{}</td>'.format(escape(cell)) for cell in robot.cells()))
+        robot.colour, robot.number, escape(robot.name[:40]),
+        ''.join('<td>{}</td>'.format(escape(cell[:40])) for cell in robot.cells()))
         for robot in report.robots]
-    return ['<h2>Robots</h2>', '<table>{}{}</table>'.format(
+    return ['<h2>Robots</h2>', '<table class="robots">{}{}</table>'.format(
         _head(('robot', *ROBOT_HEADS)), ''.join(rows)),
         '<p class="quiet">Distance by odometry. Driven: selected for driving. Silent: nothing '
         'heard for more than a second. Round trip: of the link, the middle one and what 95 % '
@@ -195,7 +198,8 @@ def _events(report: Report) -> List[str]:
     rows: List[Tuple[str, ...]] = []
     for event in shown:
         tone = event.severity if event.severity in ('warning', 'error') else ''
-        words = {'error': 'TROUBLE: ', 'warning': 'warning: '}.get(tone, '')
+        words = {'error': 'TROUBLE: ', 'warning': 'warning: '}.get(
+            tone, '') if event.text != STOP_ALL else ''
         rows.append(tuple(map(escape, (
             report.clock(event.ros - report.line.start), event.robot[:60], event.kind[:20]))) + (
             '<span class="{}">{}{}</span>'.format(tone, words, escape(event.text[:500])),))

@@ -59,8 +59,8 @@ def write_report(report, grid, session, folder):
         ways = ways_of(report.robots, _WITHIN_PX * sheet.px_m)
         base = ground(sheet, grid)
         drawing = map_svg(sheet, _uri('png', _encoded('.png', base)), ways, spots)
-        note = 'As a file: {} with its world file {}, {:.4g} m a pixel.'.format(
-            MAP, WORLD, sheet.px_m)
+        note = 'As a file: {} with its world file {}, {:.4g} mm a pixel.'.format(
+            MAP, WORLD, 1e3 * sheet.px_m)
         paths.append(_write(folder, MAP, _encoded('.png', drawn(sheet, base, ways, spots))))
         paths.append(_write(folder, WORLD, sheet.world_file().encode('ascii')))
     page = page_of(report, drawing, _stills(report, session), note)
