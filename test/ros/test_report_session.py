@@ -8,6 +8,7 @@ from pathlib import Path
 import random
 import re
 import shutil
+import signal
 import subprocess
 import sys
 
@@ -214,6 +215,20 @@ def test_a_cancelled_film_leaves_no_half_of_it(session, tmp_path):
         with pytest.raises(KeyboardInterrupt):
             film.Film(kept, teller, report).write(str(tmp_path), FPS, cancel)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_ends_it_cleanly(session, tmp_path, number):
+    process = subprocess.Popen(
+        [sys.executable, '-c', 'from mhri.nodes.mhri_report import main; main()', str(session),
+         '--output', str(tmp_path), '--film', '--fps', '60'],
+        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+        universal_newlines=True)
+    assert process.stderr.readline().startswith('film: 0 %')
+    process.send_signal(number)
+    assert process.stderr.read().endswith('mhri_report: cancelled\n')
+    assert process.wait(timeout=60.0) == 130
+    assert not list(tmp_path.glob('film*')) and (tmp_path / 'report.html').is_file()
 
 
 def test_a_failure_keeps_what_was_there(tmp_path):

@@ -44,7 +44,7 @@ class ThinnedBags(BagSet):
     them are read for a while.
     """
 
-    step_s, dense = 0.1, ()
+    step_s, dense = 0.08, ()
 
     def _row(self, index, number, entries, time_ns):
         due = 0

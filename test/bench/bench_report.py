@@ -1,0 +1,68 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""How long the report of a session takes, without the film: one hour, four robots.
+
+The session is made: a bag a minute, as a recording has them. Goal: 60 s at most. It writes about
+1 GB, at the rates of real robots; with ``--short`` far less.
+"""
+import argparse
+import os
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from mhri.core.session.folder import (  # noqa: E402
+    bag_name, event_line, EVENTS_JSONL, info_text, SESSION_YAML, SessionEvent, SessionInfo)
+from mhri.nodes import mhri_report  # noqa: E402
+from support import made_session as made  # noqa: E402
+
+ROBOTS = tuple('bot{}'.format(number + 1) for number in range(4))
+SHORT = {'odom': 1.0}
+FULL = {'odom': 20.0, 'imu': 50.0, 'scan': 5.0, 'camera/rgb/image_raw/compressed': 5.0}
+
+
+def write(folder, minutes, rates_hz):
+    """Write the session, with a mark and a stop each minute; return its messages."""
+    count, events = 0, []
+    for number in range(minutes):
+        rows = made.hour_rows(60.0 * number, 60.0 * (number + 1), ROBOTS, rates_hz, bytes(10000))
+        made.write_bag(os.path.join(folder, bag_name(number)), rows)
+        count += len(rows)
+        for after_s, kind, text in ((10.0, 'mark', 'mark'), (20.0, 'stop', 'STOP ALL'),
+                                    (25.0, 'stop', 'STOP ALL released')):
+            at = made.STARTED + 60.0 * number + after_s
+            data = {'id': 'm{}'.format(number + 1)} if kind == 'mark' else {}
+            events.append(SessionEvent(at, at, kind, text, data=data))
+    robots = {robot: {'number': number, 'type': 'turtlebot3', 'topics': {}}
+              for number, robot in enumerate(ROBOTS, 1)}
+    for name, text in ((EVENTS_JSONL, ''.join(map(event_line, events))),
+                       (SESSION_YAML, info_text(SessionInfo(made.STARTED, robots=robots)))):
+        with open(os.path.join(folder, name), 'w', encoding='utf-8') as stream:
+            stream.write(text)
+    return count
+
+
+def main():
+    """Measure, and print it."""
+    parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
+    parser.add_argument('--short', action='store_true', help='few messages')
+    parser.add_argument('--minutes', type=int, default=60, help='how long it is [min]')
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix='mhri_bench_') as folder:
+        session = os.path.join(folder, 'session')
+        os.mkdir(session)
+        begun = time.monotonic()
+        count = write(session, options.minutes, SHORT if options.short else FULL)
+        print('{} messages of {} min written in {:.1f} s'.format(
+            count, options.minutes, time.monotonic() - begun), flush=True)
+        begun = time.monotonic()
+        mhri_report.make(mhri_report.parse([
+            session, '--output', os.path.join(folder, 'report')]))
+        print('MEASURED report of a session of {} min with {} robots, without the film: {:.1f} s'
+              .format(options.minutes, len(ROBOTS), time.monotonic() - begun))
+
+
+if __name__ == '__main__':
+    main()
