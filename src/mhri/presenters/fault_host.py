@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Joins the list of faults with the simulated robots; everything here runs on the GUI thread."""
 from mhri.gui.drill.faults_page import FaultsPage, TITLE
-from mhri.ros.drill.faults_client import FaultsClient
 
 
 class FaultHost:
@@ -12,9 +11,9 @@ class FaultHost:
     :param client: :class:`mhri.ros.drill.faults_client.FaultsClient`
     """
 
-    def __init__(self, doctor, client=None):
+    def __init__(self, doctor, client):
         self._doctor = doctor
-        self._client = client or FaultsClient()
+        self._client = client
         self.page = None
 
     def show_view(self, view):

@@ -29,6 +29,7 @@ from mhri.presenters.stop_watch import StopWatch
 from mhri.presenters.task_host import TaskHost
 from mhri.presenters.tiles_host import TilesHost
 from mhri.ros.devices.device_client import choose_device
+from mhri.ros.drill.faults_client import FaultsClient
 from mhri.ros.resources import resource_path
 
 DRAW_MS = 50
@@ -66,7 +67,7 @@ class ScreenHost(QObject):
         self.pad = PadHost(operator, self.screen, parent=self)
         self.tasks = TaskHost(operator, self.screen, self._select, self._note_task)
         self.map = MapHost(operator, self.screen, self.tasks)
-        self.faults = FaultHost(self.doctor.page)
+        self.faults = FaultHost(self.doctor.page, FaultsClient())
         self._connect()
 
     @property

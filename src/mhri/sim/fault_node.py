@@ -19,6 +19,7 @@ import rospy
 from mhri.core.config import short
 from mhri.core.drill.delay_line import DelayLine
 from mhri.core.drill.faults import ALL, checked_duration, fault_named, FaultBook, FaultRefused
+from mhri.inputs.child import command
 from mhri.ros.graph.rospy_inside import answer_late, skip_number
 from mhri.sim.body import BodyType
 from mhri.sim.world import World, WorldFull, WorldRefused
@@ -29,9 +30,6 @@ PERSON = BodyType(0.25, 1.7, 1.0, 1.0, 1.0, 1.0, 1.0, 0.1, 1.0, colour=(60, 90, 
 PERSON_NAME = 'person {}'
 # Whoever waits for a frozen computer gives up sooner.
 FROZEN_S = 60.0
-# A program that is dead comes back by this: it waits, and is then the robot's driver again.
-_COME_BACK = ('import os, sys, time; time.sleep(float(sys.argv[1]));'
-              'os.execv(sys.executable, [sys.executable] + sys.argv[2:])')
 
 
 class Person:
@@ -155,8 +153,8 @@ class Failing:
         place = ['_{}:={!r}'.format(key, getattr(body, key)) for key in ('x', 'y', 'yaw')]
         arguments = [word for word in sys.argv
                      if word.partition(':=')[0] not in ('_x', '_y', '_yaw')]
-        os.execv(sys.executable, [sys.executable, '-c', _COME_BACK, repr(duration_s), *arguments,
-                                  *place])
+        waiting = command('mhri.sim.come_back', repr(duration_s), *arguments, *place)
+        os.execv(waiting[0], waiting)
 
     def _wait_for_link(self):
         """Wait as long as a question and its answer are under way."""

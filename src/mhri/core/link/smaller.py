@@ -11,8 +11,6 @@ from mhri.core.link.renaming import after_texts
 _LENGTH = struct.Struct('<I')
 # (how many times fewer pixels each way, jpeg quality), from large to small.
 STEPS = ((1, 60), (1, 40), (1, 25), (2, 70), (2, 50), (2, 30), (4, 70), (4, 45), (8, 50), (8, 20))
-_READ = {1: cv2.IMREAD_COLOR, 2: cv2.IMREAD_REDUCED_COLOR_2, 4: cv2.IMREAD_REDUCED_COLOR_4,
-         8: cv2.IMREAD_REDUCED_COLOR_8}
 # Less than this part of what may be used: a larger one is tried next time.
 _ROOM = 0.6
 KIND = 'sensor_msgs/CompressedImage'
@@ -39,9 +37,13 @@ class Smaller:
         coded = np.frombuffer(data, np.uint8)[begin + 4:]
         while coded.size:
             factor, quality = STEPS[self._step]
-            pixels = cv2.imdecode(coded, _READ[factor])
+            pixels = cv2.imdecode(coded, cv2.IMREAD_COLOR)
             if pixels is None:
                 return data
+            if factor > 1:
+                # OpenCV 4.2 does not know how to read fewer pixels from memory.
+                pixels = cv2.resize(pixels, None, fx=1.0 / factor, fy=1.0 / factor,
+                                    interpolation=cv2.INTER_AREA)
             found: bytes = cv2.imencode(
                 '.jpg', pixels, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
             if begin + 4 + len(found) <= most or self._step == len(STEPS) - 1:

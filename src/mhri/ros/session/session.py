@@ -311,9 +311,6 @@ class Session:
         writer.finish()
         closed = writer.closed.wait(CLOSE_S)
         messages, size = writer.written
-        with self._saying:
-            self._folder = None
-            self._recent.clear()
         folder.close()
         said = '{} messages, {}: {}'.format(messages, size_text(size), folder.path)
         problem = writer.failure if closed else 'the disk does not answer'
@@ -371,8 +368,13 @@ class Session:
                              severity, robot, data or {})
         self._publish(event)
         with self._saying:
-            if self._folder is not None:
-                self._folder.tell(event)
+            folder = self._folder
+            if folder is not None:
+                if kind == 'end':
+                    # Nothing is said behind it.
+                    self._folder = None
+                    self._recent.clear()
+                folder.tell(event)
                 return
             self._recent.append(event)
             while self._recent[0].wall < event.wall - self.options.ring_s:
