@@ -109,6 +109,7 @@ def frame_of(tiles: Sequence[Tile], heading: str, stopped: bool) -> np.ndarray:
         if tile.picture is not None:
             _fit(part, tile.picture, tile.age_s > OLD_S)
         part[:_WORDS_PX] //= 3
+        part[:, -1] = part[-1] = _BAR
         _write(part, tile.words(), 10, 20, width - 20)
     return frame
 

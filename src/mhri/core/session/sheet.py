@@ -116,7 +116,7 @@ def ground(sheet: Sheet, grid: Optional[Grid]) -> np.ndarray:
     shades[known] = (_PAPER - (_PAPER - _TAKEN) * np.minimum(
         grid.cells[known].astype(np.float32) / TAKEN_FROM, 1.0)).astype(np.uint8)
     shades[grid.cells == UNKNOWN] = _UNKNOWN
-    shades = shades[::-1]
+    shades = np.ascontiguousarray(shades[::-1])
     scale = grid.resolution_m / sheet.px_m
     height, width = (max(1, round(side * scale)) for side in shades.shape)
     if scale < 1.0:

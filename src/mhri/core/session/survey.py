@@ -135,7 +135,7 @@ class RobotSurvey:
 
     def _watch_stop(self, at_s: float, motion: Motion) -> None:
         place = bisect_right(self._begins, at_s) - 1
-        if place >= 0 and at_s <= self._stops[place].end_s:
+        if place >= 0 and at_s < self._stops[place].end_s:
             if place not in self._watches:
                 self._watches[place] = _StopWatch(self._begins[place], self._last)
             self._watches[place].see(at_s, motion)
