@@ -197,7 +197,8 @@ def _word(picture: np.ndarray, text: str, x: float, y: float, unit: float,
     text = text.encode('ascii', 'replace').decode()[:12]
     thick = max(1, round(1.5 * unit))
     (wide, high), _ = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, 0.5 * unit, thick)
-    cv2.putText(picture, text, (round(x - wide / 2), round(y + high / 2)),
+    # Of a number of an old numpy, round() makes no whole one.
+    cv2.putText(picture, text, (round(float(x) - wide / 2), round(float(y) + high / 2)),
                 cv2.FONT_HERSHEY_SIMPLEX, 0.5 * unit, colour, thick, cv2.LINE_AA)
 
 
