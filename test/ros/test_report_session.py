@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 import rosbag
 from sensor_msgs.msg import CompressedImage
+import yaml
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
@@ -88,6 +89,10 @@ def session(tmp_path_factory):
     """Return a session of a killed program, with stills."""
     folder = made.write_session(tmp_path_factory.mktemp('sessions') / '2023-11-14-22-13-20')
     write_unclosed(folder / '0003.bag.active')
+    (folder / 'drill.yaml').write_text(yaml.safe_dump({
+        'format': 1, 'title': 'A <maze>', 'drill': 'maze', 'operator': 'script', 'begun': 1.0,
+        'ended': 'all found', 'targets': 2, 'found': 2, 'time_s': 59.5}))
+    (folder / 'drill-2.yaml').write_text('format: 99\n')
     (folder / 'stills').mkdir()
     (folder / 'stills' / 'm3_bot1.jpg').write_bytes(jpeg())
     (folder / 'stills' / 'm3_bot2.jpg').write_bytes(b'no picture')
@@ -136,6 +141,7 @@ def test_the_page_says_what_happened_and_stands_alone(report):
     words = ' '.join(' '.join(page.words).split())
     for said in ('a red bag below the stairs', 'smoke', 'a <b>valve</b> & "rust"', '1:04',
                  'lost while driven', 'STOP ALL at', 'for 6.0 s', 'once, 8.1 s',
+                 'Drill: A <maze>', '59.5 s', '2 of 2', 'drill-2.yaml: format: expected 1',
                  '0003.bag.active was never closed', '2 stills are not shown'):
         assert said in words, said
     assert 'script' not in page.tags and 'link' not in page.tags and 'b' not in page.tags
@@ -159,6 +165,18 @@ def test_figures_are_those_of_the_drive(session):
     assert (stop.span.begin_s, stop.span.end_s) == pytest.approx((30.0, 36.0))
     assert [words for _, words, _ in stop.proofs] == 2 * [
         'stood still after 0.00 s, 0.01 m further']
+
+
+def test_odometry_that_the_session_names_wrongly_is_found(session, tmp_path):
+    folder = tmp_path / 'session'
+    shutil.copytree(str(session), str(folder))
+    path = folder / 'session.yaml'
+    text = path.read_text().replace('odometry: /bot1/odom', 'odometry: /bot1/pose')
+    path.write_text(text.replace('odometry: /bot2/odom', 'odometry: []'))
+    with opened(str(folder)) as kept:
+        teller = Teller(kept)
+        assert all(robot.survey.readings for robot in teller.read().robots)
+        assert teller.odometry_topic('bot2') == '/bot2/odom'
 
 
 def test_the_map_lies_where_its_world_file_says(report):
@@ -293,7 +311,7 @@ def test_a_hostile_session_has_a_report_of_bounded_size(session, tmp_path):
                  poses={'bot1': [1e300, float('nan'), 0.0, 'map']}, stills=['stills/none.jpg'] * 3)
             for number in range(10000)]
     add_lines(folder, *many, line(1e300, 'mark', 'never', id='y'), line(-1e9, 'stop', 'STOP ALL'),
-              line(3.0, 'found', 'x', topics='no', number='1'), *[
+              line(3.0, 'found', 'x', topics='no', number='1'), line(4.0, 'note', 'x', mark=[]), *[
                   line(0.01 * number, 'stop', 'STOP ALL' + ' released' * (number % 2))
                   for number in range(2000)])
     with open(str(folder / EVENTS_JSONL), 'ab') as stream:
@@ -301,4 +319,4 @@ def test_a_hostile_session_has_a_report_of_bounded_size(session, tmp_path):
                      + b'[' * 100000)
     text = report_text(folder, tmp_path / 'report')
     assert len(text) < 3000000
-    assert '<script' not in text and 'of 10003 marks' in text and 'times that cannot be' in text
+    assert '<script' not in text and 'of 10003 marks' in text and 'make no sense' in text

@@ -124,9 +124,10 @@ def stills_of(events: Sequence[SessionEvent]) -> Tuple[Tuple[float, str], ...]:
                  for name in event.data['stills'])
 
 
-def finite_events(events: Sequence[SessionEvent]) -> Tuple[List[SessionEvent], int]:
-    """Return the events whose times can be, and how many others there are."""
-    good = [event for event in events if 0.0 <= event.ros < 1e11 and 0.0 <= event.wall < 1e11]
+def sound_events(events: Sequence[SessionEvent]) -> Tuple[List[SessionEvent], int]:
+    """Return the events whose times and marks can be, and how many others there are."""
+    good = [event for event in events if 0.0 <= event.ros < 1e11 and 0.0 <= event.wall < 1e11
+            and isinstance(event.data.get('mark', ''), str)]
     return good, len(events) - len(good)
 
 

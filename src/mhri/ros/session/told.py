@@ -18,7 +18,7 @@ from mhri.core.recording.recording import ACTIVE
 from mhri.core.robots.mocap import Pose
 from mhri.core.session.folder import (
     bags_of, EVENTS_JSONL, NotASession, read_events, read_info, robots_of, SESSION_YAML)
-from mhri.core.session.report import finite_events, report_of
+from mhri.core.session.report import report_of, sound_events
 from mhri.core.session.survey import RobotSurvey
 from mhri.core.session.timeline import read_time_line
 from mhri.ros.convert import motion_from_odometry, motion_from_turtle_pose
@@ -105,10 +105,10 @@ def _open(path, copies):
     info = read_info(_text(os.path.join(path, SESSION_YAML)))
     problems = []
     lines = _text(os.path.join(path, EVENTS_JSONL), problems).split('\n')
-    events, strange = finite_events(read_events('\n'.join(
+    events, strange = sound_events(read_events('\n'.join(
         line for line in lines if line.count('[') + line.count('{') < _MOST_NESTED)))
     if strange:
-        problems.append('{} lines of {} have times that cannot be'.format(strange, EVENTS_JSONL))
+        problems.append('{} lines of {} make no sense'.format(strange, EVENTS_JSONL))
     bags = None
     try:
         bags = ThinnedBags(_closed(path, copies, problems))
@@ -173,11 +173,11 @@ class Teller:
             [self.start] + [event.ros for event in session.events])
         self.line = read_time_line(session.events, self.start, end - self.start)
         self._surveys = {name: RobotSurvey(self.line.stopped) for name in session.robots}
-        self._odometry = {}
-        for name, robot in session.robots.items():
-            topics = robot.get('topics')
-            topic = topics.get('odometry') if isinstance(topics, dict) else None
-            self._odometry[topic if isinstance(topic, str) else '/{}/odom'.format(name)] = name
+        recorded = {connection.topic: connection.kind
+                    for connection in bags.connections()} if bags else {}
+        self._topics = {name: _odometry_of(name, robot, recorded)
+                        for name, robot in session.robots.items()}
+        self._odometry = {topic: name for name, topic in self._topics.items()}
         self.grid = None
 
     def read(self):
@@ -210,7 +210,7 @@ class Teller:
 
     def odometry_topic(self, robot):
         """Return where a robot's odometry is recorded."""
-        return next(topic for topic, name in self._odometry.items() if name == robot)
+        return self._topics[robot]
 
     def motion(self, recorded):
         """Return the :class:`Motion` of a message of odometry, None where it cannot be read."""
@@ -283,6 +283,18 @@ class Teller:
                 continue
             yield result['title'], [('driven by', result['operator']), ('ended', result['ended']),
                                     *rows_of([result])]
+
+
+def _odometry_of(name, robot, recorded):
+    """Return the topic of a robot's odometry: as the session names it, else one that is recorded.
+
+    :param recorded: {topic: type} of what is in the bags
+    """
+    topics = robot.get('topics')
+    named = topics.get('odometry') if isinstance(topics, dict) else None
+    others = sorted(topic for topic, kind in recorded.items()
+                    if kind in _MOTIONS and topic.startswith('/{}/'.format(name)))
+    return named if isinstance(named, str) and named in recorded else (others or [''])[0]
 
 
 def _pose(place):
