@@ -70,7 +70,7 @@ def page_of(report: Report, map_drawing: str, stills: Mapping[str, str],
 
 def _about(report: Report) -> str:
     info = report.info
-    cameras = 'pictures {:g} times a second'.format(info.rate_hz) \
+    cameras = 'pictures {} times a second'.format(info.rate_hz) \
         if info.recorded == CAMERA_RATE else {'all': 'all pictures', 'stills': 'stills only'}.get(
             info.recorded, str(info.recorded))
     words = ['recorded' + (' on {}'.format(info.host) if info.host else '')
