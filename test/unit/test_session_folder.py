@@ -48,11 +48,21 @@ def test_events_come_back_as_they_were_written():
 
 
 @pytest.mark.parametrize('line', [
-    '', '{"wall": 1', 'null', '[1]', '{}', '{"wall": "x", "ros": 1, "kind": "", "text": ""}'])
+    '', '{"wall": 1', 'null', '[1]', '{}', '{"wall": "x", "ros": 1, "kind": "", "text": ""}',
+    '{"wall": NaN, "ros": 1, "kind": "", "text": ""}', '[' * 100000],
+    ids=lambda line: line[:20])
 def test_what_is_no_event_is_left_out(line):
     whole = event_line(SessionEvent(1.0, 1.0, 'mode', 'pad'))
     assert len(read_events(whole + line)) == 1
     assert len(read_events(whole + line + '\n' + whole)) == 2
+
+
+def test_a_note_to_no_mark_is_left_out():
+    mark = SessionEvent(1.0, 1.0, 'mark', 'mark 1', data={'id': 'm1'})
+    notes = [SessionEvent(2.0, 2.0, 'note', 'to none', data={'mark': name})
+             for name in (['m1'], {}, None, 'm2')]
+    found, = marks_of([mark, *notes])
+    assert found.text == 'mark 1'
 
 
 def test_a_number_that_json_has_not_becomes_null():

@@ -9,6 +9,7 @@ touches a disk.
 from dataclasses import asdict, dataclass, field, fields
 from datetime import datetime
 import json
+import math
 import re
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple
 
@@ -158,10 +159,13 @@ def _read_line(line: str) -> Optional[SessionEvent]:
     try:
         found = json.loads(line)
         data = found.get('data')
-        return SessionEvent(float(found['wall']), float(found['ros']), str(found['kind']),
+        wall, ros = float(found['wall']), float(found['ros'])
+        if not (math.isfinite(wall) and math.isfinite(ros)):
+            return None
+        return SessionEvent(wall, ros, str(found['kind']),
                             str(found['text']), str(found.get('severity', INFO)),
                             str(found.get('robot', '')), data if isinstance(data, dict) else {})
-    except (ValueError, TypeError, KeyError, AttributeError):
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
         return None
 
 
@@ -239,8 +243,8 @@ def marks_of(events: Iterable[SessionEvent]) -> Tuple[SessionMark, ...]:
                 str(data['id']), event.wall, event.ros, event.text,
                 poses if isinstance(poses, dict) else {},
                 tuple(map(str, stills)) if isinstance(stills, list) else ())
-        elif event.kind == 'note' and data.get('mark') in marks:
-            mark = marks[data['mark']]
+        elif event.kind == 'note' and str(data.get('mark')) in marks:
+            mark = marks[str(data['mark'])]
             marks[mark.id] = SessionMark(mark.id, mark.wall, mark.ros, event.text, mark.poses,
                                          mark.stills)
     return tuple(marks.values())
