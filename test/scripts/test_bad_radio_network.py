@@ -103,7 +103,9 @@ def test_stream_is_whole_where_packets_are_lost(link):
 def test_burst_overflows_the_queue(link):
     took_s, did = link.under({'rate_mbit': 0.1, 'queue_ms': 100}, 'udp', count=1000, pace=0.0)
     assert did['to far']['queue_full'] > 0
-    assert len(took_s) == did['to near']['passed'] < 1000
+    # On a busy machine one may come when nobody listens any more.
+    assert 0 <= did['to near']['passed'] - len(took_s) <= 2
+    assert len(took_s) < 1000
 
 
 def test_nothing_passes_while_it_is_down(link):
