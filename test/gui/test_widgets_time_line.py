@@ -130,3 +130,4 @@ def test_it_says_where_it_is_and_how_it_goes_on(bar):
     assert bar.play_button.text() == PAUSE and bar.speed_label.text() == '8\u00d7'
     assert not bar.faster_button.isEnabled() and not bar.next_button.isEnabled()
     assert 'nothing drives' in bar.replay_label.text()
+    assert bar.replay_label.geometry().right() < bar.previous_button.geometry().left()

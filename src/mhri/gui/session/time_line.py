@@ -71,7 +71,7 @@ class TimeLineBar(QWidget):
         self.tick_label.setObjectName('tick_label')
         self.replay_label.setObjectName('replay_label')
         self.replay_label.setFont(theme.larger(self.font(), 1.15, bold=True))
-        self.replay_label.setMinimumWidth(theme.text_width(self.replay_label.font(), 'REPLAY'))
+        self.replay_label.fix_width('REPLAY')
         self._sign = Sign(self)
         self._sign.show_sign((theme.TRIANGLE, theme.ATTENTION))
         self.canvas = TimeLineCanvas(self)
