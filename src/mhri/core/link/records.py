@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 import json
 import re
 import struct
-from typing import Any, Collection, Dict, List, Optional, Tuple
+from typing import Collection, Dict, List, Optional, Tuple
 import zlib
 
-from mhri.core.link.frames import FrameError
+from mhri.core.link.frames import FrameError, read_rows
 
 RECORD = 'record'
 # Where the host's side says how far it is, and how that begins.
@@ -102,7 +102,7 @@ def unpack_ask(body: bytes) -> Ask:
 
     :raises FrameError: they are none
     """
-    found = _rows(body)
+    found = read_rows(body)
     if (len(found) != 5 or type(found[0]) is not bool or not isinstance(found[1], list)
             or not all(type(part) is int for part in found[1] + found[2:])
             or found[3] < 0 or not 0 <= found[4] <= MOST_PARTS):
@@ -122,22 +122,12 @@ def unpack_offer(body: bytes) -> List[Piece]:
 
     :raises FrameError: they say none
     """
-    found = _rows(body)
+    found = read_rows(body)
     for row in found:
         if not (isinstance(row, list) and len(row) == 5
                 and all(type(part) is int and part >= 0 for part in row)):
             raise FrameError('a recording that none can be')
     return [Piece(*row) for row in found[:MOST_PIECES]]
-
-
-def _rows(body: bytes) -> List[Any]:
-    try:
-        found = json.loads(body.decode('ascii'))
-    except (ValueError, RecursionError):
-        raise FrameError('cannot be read') from None
-    if not isinstance(found, list):
-        raise FrameError('cannot be read')
-    return found
 
 
 def pack_part(number: int, offset: int, data: bytes) -> bytes:
