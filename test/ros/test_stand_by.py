@@ -23,7 +23,9 @@ def end(number, _):
 for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
     signal.signal(number, end)
 print('here', os.getpid(), flush=True)
-time.sleep(60)
+# A signal that comes just before a sleep begins is heard when that ends.
+for _ in range(600):
+    time.sleep(0.1)
 '''
 
 

@@ -116,9 +116,13 @@ class Session:
         self.tap.start()
         self.lines.start()
         self._set_pictures()
+        gone_on = threading.Event()
         self._worker.start()
-        self._worker.do(self._look)
-        self._worker.do(self._go_on)
+        for job in (self._go_on, gone_on.set, self._look):
+            self._worker.do(job)
+        # Whoever asked before this is known would begin a second session, or end none.
+        while not gone_on.wait(0.1) and not rospy.is_shutdown():
+            pass
 
     @property
     def pictures_hz(self):

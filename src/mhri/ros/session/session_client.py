@@ -36,6 +36,7 @@ class SessionClient:
         self._worker = Worker('session_client')
         self._state = None
         self._heard_at = 0.0
+        self._gone = False
         self._events = self._pictures = self._subscriber = None
         self.answers = queue.Queue()
 
@@ -55,6 +56,7 @@ class SessionClient:
     def _hear(self, message):
         self._heard_at = self._clock()
         self._state = message
+        self._gone = False
         PASSED_ON.keep(message.pictures_hz)
 
     def view(self):
@@ -62,7 +64,10 @@ class SessionClient:
         said, subscriber = self._state, self._subscriber
         if said is None or subscriber is None:
             return SessionView()
-        there = bool(subscriber.get_num_connections()) and not (
+        if not subscriber.get_num_connections():
+            # What the next one does is unknown until it has said so.
+            self._gone = True
+        there = not self._gone and not (
             said.recording and self._clock() - self._heard_at > SILENT_S)
         return SessionView(there, said.recording, tidy_text(said.folder), said.lasts.to_sec(),
                            said.bytes, said.marks, tidy_text(said.problem))
