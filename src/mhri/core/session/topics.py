@@ -34,6 +34,11 @@ def robot_topics(robot: str, kind: RobotType) -> Tuple[str, ...]:
     return tuple(dict.fromkeys((*topics, _MOCAP.format(robot))))
 
 
+def fault_topic(robot: str) -> str:
+    """Return where a simulated robot says what it was asked to let fail, absolute."""
+    return '/{}/base/faults'.format(robot)
+
+
 def camera_topics(robot: str, kind: RobotType) -> Tuple[str, ...]:
     """Return the compressed pictures of a robot's cameras, absolute."""
     return tuple(topic_of(robot, name) + suffix
