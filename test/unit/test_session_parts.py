@@ -118,6 +118,19 @@ def test_silence_is_told_once_and_so_is_its_end():
     assert watch.silence({'a': (0.0, 1.0)}, 15.0) == [('link', 'info', 'a', 'back after 5 s')]
 
 
+def test_faults_on_request_are_told_with_their_end():
+    watch, slow, silent = GraphWatch(), 'delay each way 0.4 s', 'laser silent'
+    assert watch.faults('a', '') == []
+    assert watch.faults('a', slow) == [('fault', 'warning', 'a', 'simulated fault: ' + slow)]
+    assert watch.faults('a', slow) == watch.faults('b', '') == []
+    assert [line[1:] for line in watch.faults('a', silent)] == [
+        ('warning', 'a', 'simulated fault: ' + silent),
+        ('info', 'a', 'simulated fault over: ' + slow)]
+    assert [line[3] for line in watch.faults('b', silent)] == ['simulated fault: ' + silent]
+    assert [line[2:] for line in watch.faults('a', '')] == [('a', 'simulated fault over: ' + silent)]
+    assert len(watch.faults('c', 'x\x1b' * 99 + '\n' + 'many\n' * 99)) == 20
+
+
 def test_a_screen_says_how_the_session_does():
     view = SessionView(True, True, '/s', 3723.0, 10 ** 7, 2)
     assert button_texts(view) == ('REC 1:02:03',) and duration_text(62.9) == '01:02'
