@@ -76,6 +76,8 @@ def test_the_entry_of_a_robot_names_what_is_published():
     assert entry['topics'] == {
         'odometry': '/abs/odom', 'imu': '/bot1/imu', 'battery': '/bot1/battery',
         'rgb': '/bot1/camera/image_raw/compressed', 'command': '/bot1/cmd_vel'}
+    raw = {'/bot1/camera/image_raw', '/bot1/battery'}
+    assert robot_entry('bot1', 3, KIND, {}, raw)['topics']['rgb'] == entry['topics']['rgb']
     assert (entry['number'], entry['type'], entry['model']) == (3, 'x', None)
     assert entry['parameters'] == {'a': {'b': [1, "b'x'"]}}
 
