@@ -27,7 +27,8 @@ USED = {
     'openssl': 'makes keys',
     'roslaunch': 'starts everything', 'rqt_gui': 'the window of the panel'}
 TOOLS = {'ffmpeg': 'counts the pictures of a film', 'python3-flake8': 'the linter', 'rosnode': 'a command',
-         'rosparam': 'a command', 'rostest': 'runs them', 'rostopic': 'a command', 'topic_tools': 'a relay'}
+         'rosparam': 'a command', 'rostest': 'runs them', 'rostopic': 'a command',
+         'topic_tools': 'a relay'}
 STDLIB = getattr(sys, 'stdlib_module_names', None)
 
 
