@@ -129,7 +129,8 @@ def test_faults_on_request_are_told_with_their_end():
         ('warning', 'a', 'simulated fault: ' + silent),
         ('info', 'a', 'simulated fault over: ' + slow)]
     assert [line[3] for line in watch.faults('b', silent)] == ['simulated fault: ' + silent]
-    assert [line[2:] for line in watch.faults('a', '')] == [('a', 'simulated fault over: ' + silent)]
+    assert [line[1:] for line in watch.faults('a', '')] == [
+        ('info', 'a', 'simulated fault over: ' + silent)]
     assert len(watch.faults('c', 'x\x1b' * 99 + '\n' + 'many\n' * 99)) == 20
 
 
