@@ -60,7 +60,7 @@ def target_of(path):
     name = os.path.basename(path)[:-len('.xml')]
     if name.startswith('MISSING-'):
         name = name[len('MISSING-'):]
-    found = re.match('pytest-((?:scripts|faults)_(?:calm|timed)|gui|bench)-(test_.+)$', name)
+    found = re.match('pytest-((?:scripts|faults|gui)_(?:calm|timed)|bench)-(test_.+)$', name)
     if found:
         return '{}_{}'.format(*found.groups())
     found = re.match('(?:rosunit-|rostest-test_rostest_)(.+)$', name)

@@ -7,10 +7,10 @@ set -euo pipefail
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 GROUPS_IN_ORDER=(lint unit oldest scripts rostest gui faults bench)
-# Targets whose files may run at the same time (the longest first), and those that measure time or
-# share a screen, which run alone.
-CALM=(scripts_calm rostest_calm faults_calm oldest unit lint)
-TIMED=(rostest_timed scripts_timed faults_timed gui bench)
+# Targets whose files may run at the same time (the longest first), and those that measure time,
+# which run alone.
+CALM=(scripts_calm rostest_calm faults_calm oldest unit lint gui_calm)
+TIMED=(rostest_timed scripts_timed faults_timed gui_timed bench)
 
 help_text() {
   cat <<'HELP'
@@ -22,8 +22,8 @@ and nothing failed.
 
   --only GROUP   run one group only (may be repeated): lint, unit, oldest, scripts, rostest,
                  gui, faults, bench, or fast
-  --jobs N       run N files at once; those that measure time run alone (default: the number of
-                 processors, at most 4); 1: one after another
+  --jobs N       run N files at once; those that measure time run alone (default: one more than
+                 there are processors, as most wait; at most 4); 1: one after another
   --bench        run the benchmarks (test/bench) in full instead of their short form
   --once         do not run a second time what failed (see below)
   -h, --help     this text
@@ -71,7 +71,7 @@ parse_arguments() {
     shift
   done
   [ "${#ONLY[@]}" -gt 0 ] || ONLY=("${GROUPS_IN_ORDER[@]}")
-  if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 4 ? $(nproc) : 4)); fi
+  if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 4 ? $(nproc) + 1 : 4)); fi
 }
 
 # Installs in the workspace, at fixed versions, the tools that Debian and Ubuntu do not package.
@@ -90,11 +90,12 @@ install_tools() {
   fi
 }
 
-# Keeps the operator's master, screen and ~/.ros out of the tests.
+# Keeps the operator's master, screen and ~/.ros out of the tests. Files of test/gui that run at the
+# same time share no screen: two windows cannot both have the keyboard.
 isolate() {
   unset ROS_HOSTNAME ROS_NAMESPACE WAYLAND_DISPLAY
   export ROS_IP=127.0.0.1 ROS_MASTER_URI=http://127.0.0.1:9 ROS_HOME="$SCRATCH/ros"
-  export QT_QPA_PLATFORM=xcb MHRI_BENCH=$BENCH
+  export QT_QPA_PLATFORM=xcb MHRI_BENCH=$BENCH MHRI_OWN_SCREEN=1
   start_xvfb
 }
 
