@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """A ROS system of a test's own: its master, its nodes, its screen; it ends what it started."""
+import contextlib
 import os
 import shutil
 import signal
@@ -46,6 +47,25 @@ def answers(port):
     with socket.socket() as probe:
         probe.settimeout(0.2)
         return probe.connect_ex(('127.0.0.1', port)) == 0
+
+
+def processes_with(*words, master=None):
+    """Return the processes of a master whose command line has words; one that ends is not there.
+
+    Other tests run at the same time, with masters of their own.
+
+    :param words: arguments, or the ends of them
+    :param master: its URI; None: of this process
+    """
+    master = master or os.environ['ROS_MASTER_URI']
+    found = []
+    for process in psutil.process_iter(['cmdline']):
+        said = process.info['cmdline'] or ()
+        if all(any(one.endswith(word) for one in said) for word in words):
+            with contextlib.suppress(psutil.Error):
+                if process.environ().get('ROS_MASTER_URI') == master:
+                    found.append(process)
+    return found
 
 
 class System:
