@@ -219,7 +219,8 @@ class CameraFeedTest(unittest.TestCase):
             rate_hz, max(ages) * 1e3))
         self.assertEqual({frame.rgb.shape for frame in frames}, {(60, 80, 3)})
         self.assertTrue(4.0 < rate_hz < 6.0, rate_hz)
-        self.assertLess(max(ages), 0.15)
+        # One that kept what it was not asked for would fall behind by 0.2 s with each.
+        self.assertLess(max(ages), 0.5)
         status = feed.status()
         self.assertTrue(20.0 < status.rate_hz < 35.0, status)
         size = len(jpeg().data)

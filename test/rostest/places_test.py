@@ -229,7 +229,8 @@ class WherePlaced(unittest.TestCase):
                 (self.fit_place('bot3', 'x' * 5000), 'bot3 has to be placed')):
             self.refused(answer, words) if words != 'bot3 has to be placed' else \
                 self.assertFalse(answer.success)
-        self.assertEqual((self.places.last().marks, self.places.last().fence), ([], []))
+        wait_until(lambda: (self.places.last().marks, self.places.last().fence) == ([], []),
+                   'something is left', PATIENCE_S)
 
     def test_a_robot_on_a_task_is_not_placed(self):
         self.put('bot3', *BOT3)

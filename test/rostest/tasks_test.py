@@ -183,8 +183,8 @@ class Tasks(unittest.TestCase):
         wait_until(lambda: math.dist(self.places['bot1'].last(), self.places['bot2'].last()) < 1.25,
                    'bot2 is left behind', PATIENCE_S)
         self.assertGreater(math.dist(self.places['bot1'].last(), self.places['bot2'].last()), 0.6)
-        self.assertIn('bot2', [robot.robot for run in self.lists.last().runs
-                               for robot in run.robots])
+        wait_until(lambda: 'bot2' in [robot.robot for run in self.lists.last().runs
+                                      for robot in run.robots], 'bot2 is not listed', 30.0)
         following.cancel()
         self.assertEqual(self.ends(following), [(TaskState.STOPPED, 'it was cancelled')])
         self.done('bot2', 'return', '')
@@ -200,7 +200,7 @@ class Tasks(unittest.TestCase):
         self.commands['bot1'].wait_silence(1.2, 30.0)
         self.assertEqual([item for item in self.commands['bot1'].since(stopped + 0.5)
                           if moves(item.value)], [])
-        self.assertEqual(self.lists.last().runs, [])
+        wait_until(lambda: not self.lists.last().runs, 'the list has it still', 30.0)
 
     def test_checking_a_robot_takes_it_over(self):
         goal, _ = self.on_its_way()
