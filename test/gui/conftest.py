@@ -37,7 +37,7 @@ class Operator:
     def __init__(self, application):
         self.application = application
 
-    def wait_until(self, condition, within_s=10.0):
+    def wait_until(self, condition, within_s=60.0):
         """Run the event loop until a condition holds; fail after a deadline."""
         timer, watch = QTimer(), QElapsedTimer()
         timer.start(5)

@@ -18,12 +18,21 @@ import psutil
 from support.xvfb import start_xvfb
 
 
-def wait_for(condition, timeout_s=10.0, what='the condition', poll_s=0.002):
+# How long a computer that is busy with other things may take for what is done in a moment [s].
+PATIENCE_S = 60.0
+# Who waits for less asks whether it is quick [s].
+QUICK_S = 10.0
+
+
+def wait_for(condition, timeout_s=PATIENCE_S, what='the condition', poll_s=0.002):
     """Return the first true value of a condition.
 
+    :param timeout_s: from QUICK_S on it is patience, of which there is never less than PATIENCE_S
     :param what: what is waited for, or a function that says so at the end
     :raises AssertionError: it did not come true in time
     """
+    if timeout_s >= QUICK_S:
+        timeout_s = max(timeout_s, PATIENCE_S)
     deadline = time.monotonic() + timeout_s
     while True:
         value = condition()
