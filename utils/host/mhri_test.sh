@@ -10,7 +10,7 @@ GROUPS_IN_ORDER=(lint unit oldest scripts rostest gui faults bench)
 # Targets whose files may run at the same time (the longest first), those of which two may, and those
 # that measure time, which run alone.
 CALM=(scripts_calm rostest_calm faults_calm oldest unit lint gui_calm)
-PAIRED=(rostest_paired gui_paired faults_paired scripts_paired)
+PAIRED=(scripts_paired rostest_paired gui_paired faults_paired)
 TIMED=(rostest_timed scripts_timed faults_timed gui_timed bench)
 
 help_text() {
