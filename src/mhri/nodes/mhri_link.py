@@ -26,13 +26,14 @@ import sys
 import rospy
 
 from mhri.core.link.carried import SHARED_FRAMES, split_frames
-from mhri.core.link.keys import endpoint, host_of, is_host, KeysError
+from mhri.core.link.keys import endpoint, host_of, is_host, KeysError, marked
 from mhri.core.robots.names import name_problem, tidy_name
 from mhri.ros.diagnostics import publish_diagnostics
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.link.carrier import Carrier, CarrierError, LibraryMissing, load_library
+from mhri.ros.link.computer import facts
 from mhri.ros.link.host_side import HostSide
 from mhri.ros.link.key_folder import AUTO, find_folder, KeyFolder, watch_keys
 from mhri.ros.link.note import Note
@@ -72,7 +73,8 @@ def parse(words):
                         help='where the keys are, or off; by default where mhri_keys.sh puts '
                         'them, and without any: off')
     parser.add_argument('--host', default=host_of(socket.gethostname()), metavar='NAME',
-                        help='on a host without keys: its name on the link (default: %(default)s)')
+                        help='on a host without keys: its name on the link (default: %(default)s); '
+                        'a mark of the computer is added')
     options = parser.parse_args(words)
     if not is_host(options.host):
         parser.error('--host: {!r} is no name such as host:lab'.format(options.host[:60]))
@@ -161,7 +163,7 @@ def main():
     watch = MasterWatch().start()
     own = keys.keys.own if keys else None
     if options.side == 'host':
-        host = own or options.host
+        host = own or marked(options.host, facts())
         side = HostSide(options.name, carrier.between(options.name, host), watch.set_parameter,
                         host, bool(keys))
         publish_diagnostics({'link to ' + options.name: side.fill})
