@@ -9,8 +9,30 @@ from mhri.core.recording.recording import ENDED, MB, RECORDING, RecordingStatus
 from mhri.ros.link.keeper import Keeper, LATE_S
 
 
+class FakeRecorder:
+    """Writes as many bytes as the time that it ran is worth."""
+
+    def __init__(self, lab, path):
+        self.lab, self.path, self.begun, self.ended = lab, path, lab.now, None
+
+    def start(self):
+        """Begin."""
+
+    def stop(self):
+        self.ended = self.lab.now
+        with open(self.path, 'wb') as file:
+            file.truncate(self.size())
+
+    def size(self):
+        return int(self.lab.rate * ((self.ended or self.lab.now) - self.begun))
+
+    def status(self):
+        return RecordingStatus(RECORDING if self.ended is None else ENDED, self.path, messages=1,
+                               bytes=self.size())
+
+
 class Lab:
-    """A keeper, its clock, and a recorder that writes so many bytes a second."""
+    """A keeper, its clock, and its recorders with so many bytes a second."""
 
     def __init__(self, folder, most_mb):
         self.folder, self.now, self.rate, self.topics = folder, 1700000000.0, 0, []
@@ -19,23 +41,7 @@ class Lab:
 
     def make(self, _robot, topics, path):
         self.topics.append(list(topics))
-        self.begun, self.ended, self.path = self.now, None, path
-        return self
-
-    def start(self):
-        """Be a recorder."""
-
-    def stop(self):
-        self.ended = self.now
-        with open(self.path, 'wb') as file:
-            file.write(b'x' * self.size())
-
-    def size(self):
-        return int(self.rate * ((self.ended or self.now) - self.begun))
-
-    def status(self):
-        return RecordingStatus(RECORDING if self.ended is None else ENDED, self.path, messages=1,
-                               bytes=self.size())
+        return FakeRecorder(self, path)
 
     def go_on(self, seconds, heard, rate, pictures=False):
         """Let time pass, half a second at a time."""
@@ -59,7 +65,7 @@ def test_nothing_is_kept_while_the_host_is_there(tmp_path):
     assert lab.keeper.pieces() == []
 
 
-@pytest.mark.parametrize('rate', [1000, MB // 10, 4 * MB])
+@pytest.mark.parametrize('rate', [1000, MB // 10, MB])
 def test_of_an_outage_the_newest_is_kept_and_no_more_than_there_is_room_for(tmp_path, rate):
     lab = Lab(tmp_path, 10)
     lab.go_on(20, True, rate)
