@@ -62,6 +62,8 @@ A bad radio
   --router ENDPOINT    with --link: instead call a router that the host calls, too, such as
                        192.0.2.1:7447
                        With a key in place (mhri_keys.sh put), the link is by keys alone
+  --keep-mb MB         with --link: of what the host missed while it was out of reach this robot
+                       keeps so much on its disk, the newest (default 500)
 
 Other
   --setup FILE         the setup.bash of the robot's workspace. Default: what this shell has already
@@ -94,6 +96,7 @@ BACK_AFTER=
 LINK=false
 LISTEN=
 ROUTER=
+KEEP_MB=
 IP=
 PORT=11311
 SETUP=
@@ -126,6 +129,7 @@ parse_arguments() {
       --link) LINK=true ;;
       --listen) LISTEN=$(value "$@"); shift ;;
       --router) ROUTER=$(value "$@"); shift ;;
+      --keep-mb) KEEP_MB=$(value "$@"); shift ;;
       --ip) IP=$(value "$@"); shift ;;
       --port) PORT=$(value "$@"); shift ;;
       --setup) SETUP=$(value "$@"); shift ;;

@@ -138,10 +138,10 @@ class RobotSide(Side):
         self._record.start()
         return super().start()
 
-    def _recorded(self):
-        """Return what is recorded: all but pictures."""
+    def _recorded(self, pictures):
+        """Return what is recorded."""
         topics = [stream.topic for stream in list(self._streams.values())
-                  if stream.urgency != PICTURE]
+                  if pictures or stream.urgency != PICTURE]
         return sorted(full_topic(self._namespace, topic) for topic in topics + [GUARD_COMMAND]) \
             if topics else []
 
