@@ -169,22 +169,20 @@ class MapHost(QObject):
                                           places.robots[view.name].origin, now))
 
     def _met(self, name, pose, origin, now):
-        """Return what a robot's laser has met (n, 2) [m], from where it was then.
+        """Return what a robot's lasers have met (n, 2) [m], from where it was then.
 
         :param pose: where it is now, like ``origin`` of its odometry in the frame
         """
         feeds = self._operator.feeds(name)
-        news = self._scans.take(name, feeds.base if feeds is not None else '')
-        if news is not None:
-            scan, age_s, (mount, turned_over) = news
+        kept, track = self._points.setdefault(name, {}), self._tracks.get(name)
+        for laser, (scan, age_s, (mount, turned_over)) in self._scans.take(
+                name, feeds.base if feeds is not None else '').items():
             ahead, left, _ = scan_points(*scan[:3])
             seen = in_frame(mount, np.column_stack((ahead, -left if turned_over else left)))
-            track = self._tracks.get(name)
             then = track.at(now - age_s) if track is not None else None
-            self._points[name] = now, in_frame(
-                pose if then is None else composed(origin, then), seen)
-        at, points = self._points.get(name, (-math.inf, None))
-        return points if now - at <= OLD_SCAN_S else None
+            kept[laser] = now, in_frame(pose if then is None else composed(origin, then), seen)
+        fresh = [points for at, points in kept.values() if now - at <= OLD_SCAN_S]
+        return np.vstack(fresh) if fresh else None
 
     # What is done.
 
