@@ -165,7 +165,7 @@ class MapHost(QObject):
             trail.add(robot.pose, link_grade(view.figures, True), now)
         return map_robot(view, places.robots.get(view.name), robot.radius_m, robot.looked_at,
                          trail, self._points(view.name, robot.pose,
-                                          places.robots[view.name].origin, now))
+                                             places.robots[view.name].origin, now))
 
     def _points(self, name, pose, origin, now):
         """Return what a robot's lasers have met (n, 2) [m], from where it was then.

@@ -10,7 +10,7 @@ OLD_SCAN_S = 1.0
 
 
 class Met:
-    """The newest scan of each laser of a robot; times are seconds of a clock that never goes back."""
+    """The newest scan of each laser of a robot; times are those of one clock [s]."""
 
     def __init__(self) -> None:
         self._newest: Dict[int, Tuple[float, np.ndarray]] = {}
