@@ -75,9 +75,11 @@ BAD = suite(PASS, FAIL)
      'faults_timed_test_b scripts_calm_test_a'),
     (['rosunit-x', 'rostest-test_rostest_x'], 'rostest_test_rostest_x.test'),
     (['pytest-bench-test_benchmarks'], 'bench_test_benchmarks'),
+    (['pytest-unit-ros', 'pytest-oldest-widgets'], 'oldest_widgets unit_ros'),
     # What does not depend on the computer is not asked twice.
     (['pytest-unit-unit', 'pytest-gui-test_a'], ''),
     (['pytest-lint-test_lint'], ''),
+    (['pytest-oldest-unit', 'pytest-unit-ros'], ''),
     # So many failures are no accident.
     (['pytest-gui-test_{}'.format(number) for number in range(5)], '')])
 def test_set_aside(tmp_path, names, targets):

@@ -61,8 +61,10 @@ def target_of(path):
     if name.startswith('MISSING-'):
         name = name[len('MISSING-'):]
     found = re.match('pytest-((?:scripts|faults)_(?:calm|timed)|gui|bench)-(test_.+)$', name)
+    # Of what runs beside the rules: processes and windows.
+    found = found or re.match('pytest-(unit)-(ros)$|pytest-(oldest)-(widgets)$', name)
     if found:
-        return '{}_{}'.format(*found.groups())
+        return '_'.join(filter(None, found.groups()))
     found = re.match('(?:rosunit-|rostest-test_rostest_)(.+)$', name)
     if found:
         return 'rostest_test_rostest_{}.test'.format(found.group(1))
