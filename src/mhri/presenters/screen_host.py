@@ -162,7 +162,7 @@ class ScreenHost(QObject):
             self.operator.add(name, parameters)
         del self._to_add[:ADD_AT_ONCE]
         view = self._why.tell(self.tasks.tell(self.operator.view()), self.screen.stick(),
-                              time.monotonic())
+                              self.operator.clock())
         self._mode = view.mode or self._mode
         self.screen.show_view(view)
         self._feel_losses(view)
