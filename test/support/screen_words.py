@@ -28,10 +28,10 @@ _LIVE_WORDS = re.compile(r'(\d+ ms|\d+(\.\d)? s ago)')
 _NUMBER = re.compile(r'\d+(?:\.\d+)?')
 
 
-def _word(widget):
-    """Return what can be read on a widget, None where nothing can."""
+def _word(widget, part):
+    """Return what can be read on a widget of a part of the screen, None where nothing can."""
     if not isinstance(widget, (QLabel, Pill, QAbstractButton, Sign, QComboBox)) \
-            or not widget.isVisible():
+            or not widget.isVisibleTo(part):
         return None
     if isinstance(widget, Pill):
         return widget.word
@@ -47,7 +47,7 @@ def _word(widget):
 def _words(kind, part):
     """Yield (name, word) of all widgets that an object has as attributes."""
     for name, widget in vars(part).items():
-        word = _word(widget)
+        word = _word(widget, part)
         if word and '{}.{}'.format(kind, name) not in BY_NATURE:
             yield '{}.{}'.format(kind, name), word
 
@@ -74,6 +74,11 @@ def words_of(host):
                 found.update(('{} {}'.format(name, place), word)
                              for place, word in _words(kind, part))
     return {place: _LIVE_WORDS.sub('...', word) for place, word in found.items()}
+
+
+def framed(words):
+    """Return words without their numbers."""
+    return {place: _NUMBER.sub('#', word) for place, word in words.items()}
 
 
 def differences(then, now):

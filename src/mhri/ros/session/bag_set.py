@@ -4,11 +4,12 @@
 
 Read by ``rosbag.Bag``. Beneath its public interface are used, here alone: its connections, its
 indexes (for the newest message before a time it offers nothing but reading all) and the reading of
-one message.
+one message. A bag that was never closed is indexed in memory; nothing is ever written.
 """
 from bisect import bisect_right
 from collections import OrderedDict
 import heapq
+import io
 import os
 from typing import NamedTuple
 
@@ -55,8 +56,7 @@ class _Place(NamedTuple):
 class BagSet:
     """Bags in the order of time; not thread-safe.
 
-    :param paths: files that were closed; they may overlap a little, as the next one begins with
-        what is latched
+    :param paths: files; they may overlap a little, as the next one begins with what is latched
     :raises NotASession: none of them can be read
     """
 
@@ -77,7 +77,10 @@ class BagSet:
     def _meet(self, path):
         """Take in what a bag holds, without its index."""
         try:
-            with rosbag.Bag(path, 'r', skip_index=True) as bag:
+            with _opened(path) as bag:
+                if path.endswith(ACTIVE):
+                    self.problems.append('{} was never closed: its last second may be missing'
+                                         .format(os.path.basename(path)))
                 if not bag._chunks:
                     return
                 self._starts.append(min(chunk.start_time.to_nsec() for chunk in bag._chunks))
@@ -109,9 +112,9 @@ class BagSet:
         if index in self._open:
             self._open.move_to_end(index)
             return self._open[index]
-        bag = rosbag.Bag(self._paths[index], 'r', skip_index=True)
-        bag._get_indexes(None)
-        self._open[index] = bag
+        bag = self._open[index] = _opened(self._paths[index])
+        if not self._paths[index].endswith(ACTIVE):
+            bag._get_indexes(None)
         while len(self._open) > MOST_OPEN:
             self._open.popitem(last=False)[1].close()
         return bag
@@ -178,6 +181,26 @@ class BagSet:
             self._open.popitem()[1].close()
 
 
+def _opened(path):
+    """Open a bag to read, without its index unless it was never closed.
+
+    :raises ROSBagException, OSError, ValueError, KeyError: it cannot be read
+    """
+    if not path.endswith(ACTIVE):
+        return rosbag.Bag(path, 'r', skip_index=True)
+    bag = rosbag.Bag(path, 'r', allow_unindexed=True, skip_index=True)
+    try:
+        for _ in bag.reindex():
+            pass
+    except io.UnsupportedOperation:
+        pass  # it would cut off what is not whole, and the file is open to read
+    whole = bag._chunk_headers
+    for number, entries in bag._connection_indexes.items():
+        bag._connection_indexes[number] = [
+            entry for entry in entries if entry.chunk_pos in whole]
+    return bag
+
+
 def _connection(found):
     """Return the :class:`Connection` of one of ``rosbag``'s."""
     latched = found.header.get('latching', b'0')
@@ -226,10 +249,7 @@ def open_session(path, foreign):
 def _open_folder(path, foreign):
     names = sorted(os.listdir(path))
     bags = bags_of(names) or [name for name in names if name.endswith('.bag')]
-    paths = [os.path.join(path, name) for name in bags if not name.endswith(ACTIVE)]
-    opened = BagSet(paths)
-    opened.problems += ['{} was never closed: rosbag reindex it, and take ".active" off its name'
-                        .format(name) for name in bags if name.endswith(ACTIVE)]
+    opened = BagSet([os.path.join(path, name) for name in bags])
     name = os.path.basename(path)
     info = os.path.join(path, SESSION_YAML)
     if not os.path.exists(info):
