@@ -147,8 +147,11 @@ class Teller:
         self._odometry = {topic: name for name, topic in self._topics.items()}
         self.grid = None
 
-    def read(self):
-        """Read all bags (blocking: up to a minute for an hour); return the :class:`Report`."""
+    def read(self, progress=lambda done, count: None):
+        """Read all bags (blocking: up to a minute for an hour); return the :class:`Report`.
+
+        :param progress: called with how many seconds of how many are read
+        """
         session = self._session
         if session.bags is not None:
             session.bags.dense = [round((self.start + span.begin_s - 1.0) * _NS)
@@ -156,6 +159,8 @@ class Teller:
             try:
                 for recorded in session.bags.after(session.bags.start_ns - 1, self._wanted):
                     self._take(recorded)
+                    progress((recorded.time_ns - session.bags.start_ns) // _NS,
+                             max(1, round(self.line.length_s)))
             except (ROSBagException, OSError, ValueError, KeyError) as error:
                 session.problems.append('a bag is damaged, what follows is missing: {}'.format(
                     error))
