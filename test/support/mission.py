@@ -13,6 +13,7 @@ import json
 import os
 import random
 import shutil
+import signal
 import sys
 import time
 from typing import NamedTuple
@@ -277,6 +278,8 @@ def main():
     parser.add_argument('--seed', type=int, default=14)
     parser.add_argument('--patience', type=float, default=10.0, metavar='S')
     options = parser.parse_args()
+    # What was started is ended, whoever ends this.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     if options.what == 'live':
         live(options.folder, options.laps)
         return 0
