@@ -25,10 +25,11 @@ QUEUE_MOST_S, QUEUE_CALM_S = 0.07, 0.03
 # Of the messages; the first makes the link careful, with the second it goes down, with the third
 # nothing is lost any more.
 LOSSY, LOSS_MOST, LOSSLESS = 0.08, 0.5, 0.01
-# So much of what is carried is sent from then on; half of it the first time, for the queues are full
-# then and nobody knows yet how long the way is without them. Then by such a part more each second:
-# up to near what was too much, around that, and beyond it, where the part grows each second. What
-# came before the first cut was whole pictures, or rather was not: that is made up for quickly.
+# So much of what is carried is sent from then on; half of it the first time, when the queues are
+# full and nobody knows how long the way is without them. Then by such a part more each second: up to
+# near what was too much, around that, and beyond it, where the part grows each second. What came
+# before the first cut was whole pictures, or rather was not, and another radio bears nobody knows
+# what: that is found out quickly.
 CUT, FIRST_CUT = 0.85, 0.5
 GROWTH, AROUND_GROWTH, BEYOND_GROWTH = 0.03, 0.015, 0.01
 FIRST_GROWTH, NEW_GROWTH = 0.15, 0.5

@@ -79,8 +79,8 @@ def shares(flows: List[Flow], bytes_per_s: float, loss: float, now: float,
            drains: bool = False) -> Dict[str, Share]:
     """Return {topic: its :class:`Share`} of what a radio bears.
 
-    :param drains: no pictures, since the radio is full of them still
     :param loss: the share of packets that it loses, from 0 to 1
+    :param drains: no pictures, since the radio is full of them still
     """
     by_class: Dict[str, List[Flow]] = {COMMAND: [], STATE: [], PICTURE: []}
     for flow in flows:
@@ -98,7 +98,8 @@ def shares(flows: List[Flow], bytes_per_s: float, loss: float, now: float,
         left -= min(hz, flow.hz(now)) * flow.size
     left = max(left, 0.1 * bytes_per_s)
     for flow in by_class[PICTURE]:
-        found[flow.stream.topic] = Share(0.0) if drains else _of_picture(flow, left, max(1, len(looked_at)), loss)
+        found[flow.stream.topic] = Share(0.0) if drains else _of_picture(
+            flow, left, max(1, len(looked_at)), loss)
     return found
 
 
