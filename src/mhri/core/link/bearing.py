@@ -40,6 +40,8 @@ _LEAST_GROWTH, _LEAST_FIRST = 1300.0, 3000.0
 _MIDDLE = 30000.0
 # What is not used says nothing about the radio: no more than this times what came.
 _USED = 2.0
+# What came in half a second varies: a cut believes no less than this part of what was sent.
+_SURELY = 0.7
 # What was sent before a cut is still on its way [s].
 SETTLE_S, DRAIN_S = 1.0, 1.5
 # What does not wait for less after two cuts, or the first, does not wait because of what is sent:
@@ -202,6 +204,8 @@ class Bearing:
         if now - self._cut_at > 2.0 * SETTLE_S:
             # At first it is unknown what was sent.
             self._top = self.bytes_per_s if self.bound else carried
+        if self.bound:
+            carried = max(carried, _SURELY * self.bytes_per_s)
         self.bytes_per_s = max(LEAST_BYTES_PER_S, part * min(carried, self.bytes_per_s))
         self._cut_at, self._bad, self._cut_loss = now, 0, heard.loss
 

@@ -15,8 +15,9 @@ ECHO_HZ = 12.0
 TO_PICTURES, SOME_BYTES_PER_S, MOST_TO_PICTURES = 0.4, 4500.0, 0.65
 # States are never less frequent than that, times their weight [Hz].
 LEAST_HZ = 1.0
-# First fewer pictures, down to this, then smaller ones, down to this, then fewer again [Hz, bytes].
+# First fewer pictures, down to this, then smaller ones, down to this; then once more [Hz, bytes].
 FEW_HZ, SMALL_BYTES = 5.0, 3000.0
+RARE_HZ, LEAST_BYTES = 1.5, 1500.0
 # (from this loss on, so many pieces of a picture have a spare one), see pieces.py.
 SPARE = ((0.08, 3), (0.01, 6))
 # Time constant of the means [s].
@@ -122,6 +123,6 @@ def _of_picture(flow: Flow, bytes_per_s: float, count: int, loss: float) -> Shar
     usable = bytes_per_s / count / (1.0 + (1.0 / group if group else 0.0))
     size = flow.size
     if usable < FEW_HZ * size:
-        size = min(size, max(usable / FEW_HZ, SMALL_BYTES))
+        size = min(size, max(usable / FEW_HZ, min(SMALL_BYTES, usable / RARE_HZ), LEAST_BYTES))
     return Share(min(usable / size, flow.stream.rate_hz or math.inf),
                  math.inf if size == flow.size else size, group, bytes_per_s / count, bytes_per_s)
