@@ -10,7 +10,7 @@ from typing import Dict, Iterable, List, Mapping, Optional, Tuple
 
 from mhri.core.events.events import ALARM, ATTENTION, CALM
 from mhri.core.screen.text import tidy_text
-from mhri.core.session.folder import ERROR, INFO, WARNING
+from mhri.core.session.folder import ERROR, INFO, SessionEvent, WARNING
 
 # (kind, severity, robot, text)
 Line = Tuple[str, str, str, str]
@@ -39,6 +39,19 @@ def line_of_screen(kind: str, severity: str, robot: str, text: str) -> Optional[
         return None
     name = 'lost' if kind in _LOST else _KINDS.get(subject, 'event')
     return name, _SEVERITIES.get(severity, INFO), robot, text
+
+
+def link_notes(events: Iterable[SessionEvent]) -> Dict[str, List[Tuple[float, str]]]:
+    """Return what the lines of a session say of bad links: {robot: [(ROS time [s], words)]}.
+
+    The words are '' from when the link was good again, or the robot lost.
+    """
+    found: Dict[str, List[Tuple[float, str]]] = {}
+    for event in events:
+        if event.robot and event.kind in ('link', 'lost'):
+            bad = event.kind == 'link' and event.severity == WARNING
+            found.setdefault(event.robot, []).append((event.ros, event.text if bad else ''))
+    return found
 
 
 class GraphWatch:

@@ -3,6 +3,8 @@
 """What of the graph belongs to a session."""
 from typing import Any, Container, Dict, Iterable, Mapping, Tuple
 
+from mhri.core.link.figures import FIGURES
+from mhri.core.link.records import FETCHING
 from mhri.core.recording.recording import GUARD_COMMAND
 from mhri.core.robots.names import topic_of
 from mhri.core.robots.robot_types import RobotType
@@ -13,11 +15,14 @@ EVENTS, PANEL_EVENTS = '/mhri_session/events', '/panel/events'
 PICTURES = '/panel/pictures'
 #: what the host says, whoever drives
 HOST_TOPICS = (
-    '/mux_in/mode_select', '/mux/mode', '/robot_controller/twist', '/robot_controller/task_twist',
+    '/mux_in/mode_select', '/mux/mode', '/mux/waits_for', '/mux/pushed', '/mux/advice',
+    '/mux/dead_man', '/mux/speed_limit', '/robot_controller/twist', '/robot_controller/task_twist',
     '/robot_controller/stop_all', '/robot_controller/robot_select', '/gates/state',
-    '/gates_in/group_speed', '/mhri_tasks/list', '/mhri_tasks/places', '/tf', '/tf_static', '/map',
-    EVENTS)
+    '/gates_in/group_speed', '/mhri_tasks/list', '/mhri_tasks/places', '/mhri_tasks/run/feedback',
+    '/mhri_tasks/run/result', '/mhri_voice/heard', '/tf', '/tf_static', '/map', EVENTS)
 _MOCAP = '/vrpn_client_node/{}/pose'
+# What a robot's row says of its link and its guard, beside its own sensors.
+_TOLD = ('mhri_guard/dropped', 'mhri_link/state', FIGURES, FETCHING)
 # Kinds of a robot's sensors, as keys of a RobotType and of session.yaml.
 _SENSORS = ('odometry', 'imu', 'scan', 'battery')
 _CAMERAS = (('rgb', '/compressed'), ('depth', '/compressedDepth'))
@@ -30,7 +35,9 @@ def robot_topics(robot: str, kind: RobotType) -> Tuple[str, ...]:
     listens to commands changes nothing.
     """
     names = [name for key in _SENSORS for name in getattr(kind, key)]
-    topics = [topic_of(robot, name) for name in (*names, *kind.command, GUARD_COMMAND)]
+    switch = (kind.hardware_stop.name,) if kind.hardware_stop else ()
+    topics = [topic_of(robot, name) for name in (*names, *kind.command, GUARD_COMMAND, *_TOLD,
+                                                 *switch)]
     return tuple(dict.fromkeys((*topics, _MOCAP.format(robot))))
 
 

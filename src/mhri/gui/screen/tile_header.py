@@ -171,9 +171,10 @@ class TileHeader(QWidget):
         name.setMinimumWidth(1)
         self.number_label.fix_width(self.number_label.text() or '0')
         first, end = (0, len(_LEFT_OUT) + 1) if self.large else (_OF_SMALL, len(_LEFT_OUT))
+        shortest = theme.text_width(name.font(), (name.text(), *words.name_ends(name.text()))[-1])
         for count in range(first, end):
             self._leave_out(_LEFT_OUT[:count])
-            if self._needed(natural if count < _BEFORE_NAME else 1) <= self.width():
+            if self._needed(natural if count < _BEFORE_NAME else shortest) <= self.width():
                 break
         # Showing a part that was left out after all has squeezed the others.
         self._row.activate()
