@@ -53,7 +53,7 @@ def run(tmp_path):
 
     def runner(script, *arguments, **environment):
         done = subprocess.run(
-            [str(SCRIPTS[script])] + list(arguments), cwd=str(tmp_path), timeout=60,
+            [str(SCRIPTS[script])] + list(arguments), cwd=str(tmp_path), timeout=300,
             env=dict({'PATH': '{}:/usr/bin:/bin'.format(folder), 'HOME': str(tmp_path)},
                      **environment),
             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,

@@ -40,8 +40,8 @@ Robot
   --no-guard           do not start mhri_guard, which drops late commands, stops the robot when none
                        arrive, and holds a stop-all on the robot when the network is lost
   --brake              mhri_guard slows down for what the laser meets in the way, to a stop before
-                       it; without laser data there is no way forward. One laser, and no depth
-                       camera: those the brake on the screen takes
+                       it; without laser data there is no way forward. No depth camera: that is
+                       for the brake on the screen
   --back-after SECONDS once mhri was not heard for so long (1 to 3600), mhri_guard drives the robot
                        back along its trail, slowly and braking, until it is heard again, 5 m at
                        most. Only where a robot may drive while nobody looks

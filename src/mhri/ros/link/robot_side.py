@@ -174,7 +174,8 @@ class RobotSide(Side):
         bearing.on_heard(heard, sum(flow.demand(now) for flow in flows), now)
         if not (was_bound or bearing.bound):
             return
-        found = shares(flows, bearing.bytes_per_s, bearing.loss, now) if bearing.bound else {}
+        found = shares(flows, bearing.bytes_per_s, bearing.loss, now, bearing.drains) \
+            if bearing.bound else {}
         for carried in opened:
             carried.thin(found.get(carried.stream.topic))
         self._pictures.share(found)
