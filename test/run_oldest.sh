@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-# Unit and widget tests with the oldest libraries that mhri supports, in an environment that is made in
-# build/.ws/oldest. Usage: run_oldest.sh unit|widgets FOLDER, which gets the result file. Where there is
-# no Python 3.8, or pip cannot fetch the libraries, the result is a skipped test that says so.
+# Unit and widget tests, and what carries the link, with the oldest libraries that mhri supports, in an
+# environment that is made in build/.ws/oldest. Usage: run_oldest.sh unit|widgets|link FOLDER, which gets
+# the result file. Where there is no Python 3.8, or pip cannot fetch the libraries, the result is a
+# skipped test that says so.
 set -uo pipefail
 
 REPO=$(cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)
-KIND=${1:?which tests, unit or widgets}
+KIND=${1:?which tests, unit, widgets or link}
 RESULTS=${2:?where does the result file go}
 XML="$RESULTS/pytest-oldest-$KIND.xml"
 WANTED="$REPO/test/requirements_oldest.txt"
@@ -64,12 +65,16 @@ fi
 exec 9>&-
 if [ "$KIND" = unit ]; then
   TESTS=("${LEFT_OUT[@]}" test/unit)
+elif [ "$KIND" = link ]; then
+  # mhri_test.sh has installed it there; its one build is for Python 3.8 and all later ones.
+  [ -d build/.ws/link/zenoh ] || skip 'the library zenoh is not in build/.ws/link'
+  TESTS=(test/ros/test_carrier.py)
 else
   # Their conftest.py starts a screen for them alone.
   unset DISPLAY XAUTHORITY
   TESTS=(test/gui/test_widgets_*.py)
 fi
 # Nothing of a workspace or of ROS is on the path.
-PYTHONPATH="$REPO/src" timeout --kill-after=10 300 "$HOME_OF_IT/bin/python" -m pytest \
+PYTHONPATH="$REPO/src" ROS_PACKAGE_PATH="$REPO" timeout --kill-after=10 300 "$HOME_OF_IT/bin/python" -m pytest \
   -p no:cacheprovider -q -rs -W ignore::DeprecationWarning -o faulthandler_timeout=120 \
   --junitxml="$XML" "${TESTS[@]}"

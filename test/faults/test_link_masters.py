@@ -16,7 +16,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 
 from support import machines  # noqa: E402
 from support.hostile import is_long, seed_of  # noqa: E402
-from support.masters import KEPT, LONG_S, Masters, ROBOTS  # noqa: E402
+from support.masters import KEPT, LONG_S, Masters, ROBOTS, ROUTED  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 WHY_NOT = machines.why_not()
@@ -190,12 +190,12 @@ def test_what_is_killed_on_the_robots_comes_back(lab):
     lab.let_go()
 
 
-@pytest.mark.parametrize('part', ['link_bot1', 'gates', 'mux', 'master'])
+@pytest.mark.parametrize('part', ['link_bot1', 'router', 'gates', 'mux', 'master'])
 def test_what_is_killed_on_the_host_comes_back(lab, part):
     lab.drive()
     since = time.monotonic()
     lab.kill('host', part)
-    stand = {'link_bot1': ['bot1'], 'master': []}.get(part, list(ROBOTS))
+    stand = {'link_bot1': ['bot1'], 'router': [ROUTED], 'master': []}.get(part, list(ROBOTS))
     for name in stand:
         print('MEASURED {} of the host killed: {} stands after {:.2f} s'.format(
             part, name, lab.stands_from(name, since) - since))

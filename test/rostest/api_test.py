@@ -14,7 +14,7 @@ import rostest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
 from mhri.ros.resources import read_text, robot_types  # noqa: E402
-from support.ros_system import System, wait_for  # noqa: E402
+from support.ros_system import free_port, System, wait_for  # noqa: E402
 
 INPUTS = ('mhri_joy', 'mhri_pedal', 'mhri_voice')
 # Behind what is installed: the message that takes the power from a TurtleBot2's motors.
@@ -28,16 +28,21 @@ EVERYWHERE = ('/rosout', '/clock')
 ROW = re.compile(r'^\| (publishes|subscribes|serves) \| `([^`]+)` \| (?:`([^`]+)`|[^|]+) \|', re.M)
 
 
-def documented(section):
-    """Return {(direction, name, type)} of one section of the page."""
+def documented(section, *parts):
+    """Return {(direction, name, type)} of one section of the page, or of it from part to part.
+
+    :param parts: the line that a table stands behind, and the next such line or none
+    """
     path = os.path.join(rospkg.RosPack().get_path('mhri'), 'doc', 'ros_api.md')
     text = read_text(path).split('\n## {}\n'.format(section), 1)[1].split('\n## ', 1)[0]
+    for part, side in zip(parts, (1, 0)):
+        text = text.split('\n{}\n'.format(part), 1)[side]
     return set(ROW.findall(text))
 
 
-def running(node):
-    """Return {(direction, name, type)} of a node as the master knows it."""
-    master = rosgraph.Master('/api_test')
+def running(node, uri=None):
+    """Return {(direction, name, type)} of a node as a master knows it, by default this one."""
+    master = rosgraph.Master('/api_test', uri)
     publishers, subscribers, services = master.getSystemState()
     types = dict(master.getTopicTypes())
     found = {('publishes', name, types[name]) for name, nodes in publishers
@@ -54,6 +59,21 @@ def always(node):
     """Return what a node has, without the camera and scan that a tile on show subscribes."""
     return {row for row in running('/' + node) if row[0] != 'subscribes'
             or '/camera/' not in row[1] and not row[1].endswith('/scan')}
+
+
+def filled(rows, robot, streams):
+    """Return documented rows of a link for a robot of which these streams are carried.
+
+    :param streams: {topic below the robot: type}
+    """
+    found = set()
+    for direction, name, kind in rows:
+        if '<topic>' in name:
+            found |= {(direction, '/{}/{}'.format(robot, topic), streams[topic])
+                      for topic in streams}
+        else:
+            found.add((direction, name.replace('<robot>', robot), kind))
+    return found
 
 
 def camera_topics(template):
@@ -126,6 +146,44 @@ class ApiTest(unittest.TestCase):
             wait_for(lambda: always(node) == wanted, 60, node)
         except AssertionError:
             self.assertEqual(always(node), wanted)
+
+    def test_both_ends_of_a_link(self):
+        with System(adopt=False) as robot:
+            robot.start_master()
+            end = 'tcp/127.0.0.1:{}'.format(free_port())
+            robot.launch('turtlebot.launch', 'name:=bot3', 'type:=turtlebot3_waffle')
+            robot.launch('link.launch', 'side:=robot', 'name:=bot3', 'keys:=off', 'listen:=' + end)
+            link = self.system.node('mhri_link', '--side', 'host', '--name', 'bot3', '--keys',
+                                    'off', '--connect', end, '__ns:=/bot3')
+            self.addCleanup(self.system.kill, link)
+            kind = robot_types()[0]['turtlebot3']
+            carried = {topic for topic in (
+                *kind.imu, *kind.odometry, *kind.scan, *kind.battery, kind.rgb[0] + '/compressed')}
+            uri = robot.env['ROS_MASTER_URI']
+            streams = {}
+
+            def known():
+                types = dict(rosgraph.Master('/api_test', uri).getTopicTypes())
+                streams.update({topic: types[name] for topic in carried
+                                for name in ['/bot3/' + topic] if name in types})
+                return set(streams) == carried
+            wait_for(known, 60, lambda: 'the topics of bot3: {}'.format(sorted(streams)))
+            there = "On the robot's own master:"
+            self.becomes('/bot3/mhri_link', None, filled(
+                documented('mhri_link', 'On the host:', there), 'bot3', streams))
+            # Somebody listens to all of it.
+            self.system.start('rostopic', 'hz', *sorted(
+                name for direction, name, _ in running('/bot3/mhri_link')
+                if direction == 'publishes' and name != '/diagnostics'))
+            self.becomes('/bot3/mhri_link', uri, filled(
+                documented('mhri_link', there), 'bot3', streams))
+
+    def becomes(self, node, uri, wanted):
+        """Wait until a node has this and nothing else; show the difference where it does not."""
+        try:
+            wait_for(lambda: running(node, uri) == wanted, 60, node, 0.1)
+        except AssertionError:
+            self.assertEqual(running(node, uri), wanted)
 
     def test_input_nodes(self):
         for name in INPUTS:

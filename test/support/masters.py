@@ -28,7 +28,9 @@ ROBOTS = {'bot1': ('turtlebot2', '', ('teleop/input', 'cmd_vel_mux/input/teleop'
           # A robot that calls itself by another name.
           'bot3': ('turtlebot3', 'burger', ('cmd_vel',), 'turtle', 3.2)}
 LANE_M = 5.0
-OF_HOST = ('master', 'mux', 'gates', 'tasks') + tuple('link_' + name for name in ROBOTS)
+# This one and the host call a router.
+ROUTED = 'bot3'
+OF_HOST = ('master', 'mux', 'gates', 'tasks', 'router') + tuple('link_' + name for name in ROBOTS)
 OF_ROBOT = ('master', 'base', 'guard', 'link')
 # What a robot needs no restart of: it is the robot.
 KEPT = ('base',)
@@ -62,6 +64,7 @@ class Masters:
     def __init__(self, lan):
         self.folder = lan.folder
         self.port = free_port()
+        self._router = ['--router', 'tcp/{}:{}'.format(machines.HOST_IP, free_port())]
         self.host = System(adopt=False)
         self.computers = {name: Computer(11 + number) for number, name in enumerate(ROBOTS)}
         self.logs = {name: ToldRobot(str(self.folder / name)) for name in ROBOTS}
@@ -124,8 +127,11 @@ class Masters:
         link = [sys.executable, '-c', NODE.format('mhri_link')]
         if part.startswith('link_'):
             name = part[5:]
-            return link + ['--side', 'host', '--name', name, '--connect', 'tcp/{}:{}'.format(
-                self.computers[name].ip, self.port)], {'ROS_NAMESPACE': '/' + name}
+            where = ['--connect', 'tcp/{}:{}'.format(self.computers[name].ip, self.port)]
+            return link + ['--side', 'host', '--name', name] + (
+                self._router if name == ROUTED else where), {'ROS_NAMESPACE': '/' + name}
+        if part == 'router':
+            return link + ['--side', 'router', '--listen', self._router[1]], {}
         if place == 'host':
             return [sys.executable, '-c', NODE.format(part)], {}
         _, _, topics, space, y_m = ROBOTS[place]
@@ -134,8 +140,9 @@ class Masters:
                      '_x:="{}"'.format(LANE_M), '_y:="{}"'.format(y_m), '_yaw:="0.0"',
                      '_placed:=true', '_seed:=1'],
             'guard': [sys.executable, GUARD, '_command:=' + topics[0]],
-            'link': link + ['--side', 'robot', '--name', place, '--namespace', space, '--listen',
-                            'tcp/0.0.0.0:{}'.format(self.port)]}[part]
+            'link': link + ['--side', 'robot', '--name', place, '--namespace', space] + (
+                self._router if place == ROUTED else
+                ['--listen', 'tcp/0.0.0.0:{}'.format(self.port)])}[part]
         return words, {'ROS_NAMESPACE': '/' + space}
 
     def start(self, place, part):
@@ -284,4 +291,4 @@ class Masters:
         return ages
 
 
-__all__ = ['KEPT', 'LONG_S', 'Masters', 'OF_HOST', 'OF_ROBOT', 'ROBOTS']
+__all__ = ['KEPT', 'LONG_S', 'Masters', 'OF_HOST', 'OF_ROBOT', 'ROBOTS', 'ROUTED']

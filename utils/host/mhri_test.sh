@@ -189,7 +189,9 @@ main() {
     build_workspace ON
     source_setup "$WS/devel/setup.bash"
     if wanted lint; then install_tools; fi
-    if wanted unit || wanted scripts || wanted rostest || wanted faults; then install_link; fi
+    if wanted unit || wanted oldest || wanted scripts || wanted rostest || wanted faults; then
+      install_link
+    fi
     isolate
     rm -rf "$RESULTS" "$RESULTS.first"
     if wanted fast; then run 1 fast; fi
