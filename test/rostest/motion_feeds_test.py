@@ -157,11 +157,14 @@ class MotionFeedsTest(unittest.TestCase):
         self.addCleanup(static.unregister)
         scans = MapScans(lambda job: job())
         self.addCleanup(scans.close)
-        scans.want({'mounted': SimpleNamespace(scan=('scan',), laser_x_m=-0.1)})
-        found = []
+        self.talk('/mounted/rear_scan', scan())
+        scans.want({'mounted': SimpleNamespace(scan=('scan', 'rear_scan'), laser_x_m=-0.1)})
+        found, lasers = [], set()
 
         def sits(x_m):
-            found.extend(filter(None, [scans.take('mounted', 'mounted/base')]))
+            taken = scans.take('mounted', 'mounted/base')
+            lasers.update(taken)
+            found.extend(filter(None, [taken.get(0)]))
             return found and abs(found[-1][2][0].x_m - x_m) < 1e-6
         wait_for(lambda: sits(-0.1), 60, 'a scan')
         static.publish([mount])
@@ -169,6 +172,7 @@ class MotionFeedsTest(unittest.TestCase):
         _, _, (pose, turned_over) = found[-1]
         self.assertTrue(turned_over)
         self.assertAlmostEqual(abs(pose.heading_rad), math.pi)
+        wait_for(lambda: sits(0.5) and lasers == {0, 1}, 60, 'the scans of both lasers')
 
     def test_toggled_again_and_again(self):
         self.talk('/toggle/imu', imu(), 200.0)

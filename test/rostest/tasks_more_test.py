@@ -20,13 +20,17 @@ from nav_msgs.msg import Odometry
 import rosbag
 import rospy
 import rostest
-from rostest_tools import measured, moves, NEUTRAL, Recorder, rests, Stick, wait_until
+from rostest_tools import measured, moves, NEUTRAL, Process, Recorder, rests, Stick, wait_until
 from std_srvs.srv import SetBool
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 sys.path[:0] = [os.path.join(HERE, '..'), os.path.join(HERE, '..', 'support', 'messages')]
 
-from mhri.msg import ControlMode, RunTaskAction, RunTaskGoal, TaskList, TaskState  # noqa: E402
+from mhri.core.map.grid import grid_of  # noqa: E402
+from mhri.core.robots.mocap import Pose  # noqa: E402
+from mhri.msg import (  # noqa: E402
+    ControlMode, Places, RunTaskAction, RunTaskGoal, TaskList, TaskState)
+from mhri.ros.map.map_source import grid_message, publish_map  # noqa: E402
 from mhri.srv import SetFence, SetMark  # noqa: E402
 from support.fake_mux import FakeOperator, StateEar  # noqa: E402
 from support.ros_system import processes_with  # noqa: E402
@@ -211,6 +215,25 @@ class TasksMore(unittest.TestCase):
         self.assertEqual(unplaced[0][0], TaskState.FAILED)
         self.assertIn('there is a fence, and ', unplaced[0][1])
 
+    def test_the_end_of_the_floor_on_a_map_holds_a_robot(self):
+        """What its laser does not see: cells that are not free, from 4.4 m on."""
+        self.done('bot2', 'goto', '{x: 2.0, y: 2.6, speed: 0.4}')
+        self.done('bot1', 'goto', '{x: 3.6, y: 1.8, heading: 0.0, speed: 0.4}')
+        frames = Recorder('/mhri_tasks/places', Places, lambda message: message.header.frame_id)
+        publisher = publish_map(grid_of(0.1, Pose(2.0, 0.0, 0.0), 30, 30, (
+            [0] * 24 + [100] * 6) * 30))
+        # A map of one free cell ends nowhere.
+        self.addCleanup(publisher.publish, grid_message(grid_of(
+            0.1, Pose(2.0, 0.0, 0.0), 1, 1, [0])))
+        wait_until(lambda: frames.last() == 'map', 'the map is not heard', 60.0)
+        begun = time.monotonic()
+        ended = self.ended('bot1', 'square', '{side: 3.0}')
+        self.assertEqual(ended, [
+            (TaskState.BLOCKED, 'for 5 s: it is at the end of the free floor on the map')])
+        furthest = max(item.value[0] for item in self.places['bot1'].since(begun))
+        print('floor up to 4.40 m: the middle of the robot came to {:.2f} m'.format(furthest))
+        self.assertLess(furthest, 4.4 - 0.15)
+
     def sent(self):
         """Send the robot that has move_base somewhere; return the goal, once it is on its way."""
         begun = time.monotonic()
@@ -303,6 +326,13 @@ class TasksMore(unittest.TestCase):
         self.commands.wait_silence(1.2, 60.0)
         wait_until(lambda: self.lists.since(killed) and not self.lists.last().runs,
                    'mhri_tasks does not come back', 60.0)
+
+    def test_a_result_waits_for_who_is_not_connected_yet(self):
+        ended = self.ends(self.start('bot1', 'return', '{mark: nowhere}'))
+        late = Process(['rostopic', 'echo', '-n', '1', '/mhri_tasks/run/result/result'])
+        self.addCleanup(late.end)
+        self.assertEqual(late.wait(PATIENCE_S), 0, late.said())
+        self.assertIn(ended[0][1], late.said())
 
     def test_a_turtle_does_what_its_topics_allow(self):
         x, y, _ = self.turtle.last()
