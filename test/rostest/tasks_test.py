@@ -100,7 +100,7 @@ class Tasks(unittest.TestCase):
 
         Again where something came too late: on a busy machine that says nothing of the task.
         """
-        for _ in range(5):
+        for _ in range(12):
             ended = self.ends(self.start(robot, task, parameters))
             if ended[0][0] != TaskState.LOST:
                 break
@@ -112,7 +112,7 @@ class Tasks(unittest.TestCase):
 
         Again where it did not come to move: on a busy machine that says nothing of the task.
         """
-        for _ in range(5):
+        for _ in range(12):
             begun = time.monotonic()
             x = self.places[robot].last()[0]
             goal = self.start(robot, 'goto', parameters.replace('9.0', '9.0' if x < 6.0 else '2.0'))
