@@ -138,5 +138,6 @@ def test_8_r_ends_it(session):
     session.key('r')
     session.until(lambda: session.button.text() == 'Record', 'the button to say so')
     assert not session.button.isChecked()
-    assert not glob.glob(os.path.join(session.view.folder, '*1.bag.active'))
-    assert session.events()[-1].kind == 'end'
+    session.until(lambda: not glob.glob(os.path.join(session.view.folder, '*1.bag.active')),
+                  'the bag to be closed')
+    session.until(lambda: session.events()[-1].kind == 'end', 'the last line')

@@ -136,7 +136,7 @@ class TasksMore(unittest.TestCase):
 
         Again where something came too late: on a busy machine that says nothing of the task.
         """
-        for tries_left in reversed(range(5)):
+        for tries_left in reversed(range(12)):
             ended = self.ends(self.start(robots, task, parameters))
             if not (tries_left and ended[0][0] == TaskState.LOST):
                 return ended
@@ -149,7 +149,7 @@ class TasksMore(unittest.TestCase):
         return ended[0][1]
 
     def test_a_formation_keeps_its_spacing_in_a_bend(self):
-        for tries_left in reversed(range(4)):
+        for tries_left in reversed(range(8)):
             self.done('bot1', 'goto', '{x: 3.0, y: 1.2, heading: 0.0, speed: 0.4}')
             self.done('bot2', 'goto', '{x: 2.2, y: 1.2, heading: 0.0, speed: 0.4}')
             begun = time.monotonic()
