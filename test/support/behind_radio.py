@@ -282,8 +282,8 @@ class World:
         keys = [str(self._keys[who]) if way in SECRET else 'off' for who in (name, 'lab')]
         code = 'from mhri.nodes.mhri_link import main; main()'
         self.system.start(*self._words(
-            way, sys.executable, '-c', code, '--side', 'robot', '--name', name, '--listen', endpoint,
-            '--keys', keys[0], '__ns:=/' + name))
+            way, sys.executable, '-c', code, '--side', 'robot', '--name', name, '--listen',
+            endpoint, '--keys', keys[0], '__ns:=/' + name))
         self.system.node('mhri_link', '--side', 'host', '--name', name, '--connect', endpoint,
                          '--keys', keys[1], '__ns:=/' + name)
 
