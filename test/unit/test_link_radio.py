@@ -26,8 +26,8 @@ def test_poses_stay_young_and_pictures_come_of_each(seed):
     at_first, _, _ = world.figures(BAD_S + 0.5, FOUND_S)
     poses, pictures, gap_s = world.figures(FOUND_S, END_S)
     carried = world.up.counts[1].bytes_passed / 0.8 / (END_S - BAD_S)
-    print('MEASURED pose p95 {:.3f}, at first {:.3f} s; picture p95 {:.3f} s, longest gap '
-          '{:.1f} s; {:.0f} bytes/s'.format(p95(poses), p95(at_first), p95(pictures), gap_s, carried))
+    print('MEASURED pose p95 {:.3f}, at first {:.3f} s; picture p95 {:.3f}, longest gap {:.1f} s; '
+          '{:.0f} bytes/s'.format(p95(poses), p95(at_first), p95(pictures), gap_s, carried))
     assert p95(poses) <= 0.45 and p95(at_first) <= 0.7
     assert gap_s <= 2.0 and p95(pictures) <= 0.8
     assert carried > 0.75 * 125e3
