@@ -62,7 +62,7 @@ def ear(names):
     import rospy
     from geometry_msgs.msg import Twist
     from nav_msgs.msg import Odometry
-    rospy.init_node('ear', disable_signals=True)
+    rospy.init_node('ear_' + names[0], disable_signals=True)
     told, been = {name: [] for name in names}, {name: [] for name in names}
 
     def hear(name):
