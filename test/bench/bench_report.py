@@ -62,10 +62,11 @@ def main():
     """Measure, and print it."""
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
     parser.add_argument('--short', action='store_true', help='few messages')
-    parser.add_argument('--minutes', type=int, default=60, help='how long it is [min]')
+    parser.add_argument('--minutes', type=int,
+                        help='how long it is [min]: 60, or with its film 5')
     parser.add_argument('--film', action='store_true', help='at full rates, with a film')
     options = parser.parse_args()
-    minutes = FILM_MIN if options.film else options.minutes
+    minutes = options.minutes or (FILM_MIN if options.film else 60)
     rates_hz = FASTEST if options.film else SHORT if options.short else FULL
     pictures = [picture()] if options.film else []
     with tempfile.TemporaryDirectory(prefix='mhri_bench_') as folder:

@@ -139,7 +139,7 @@ class ApiTest(unittest.TestCase):
         for robot, kind, node in (('bot1', 'turtlebot2', '/bot1/base'),
                                   ('bot2', 'turtlebot3', '/bot2/base')):
             template = robot_types()[0][kind]
-            own = {'/tf', '/tf_static', node + '/set_fault'}
+            own = {'/tf', '/tf_static', node + '/set_fault', node + '/faults'}
             own |= {'/{}/{}'.format(robot, topic) for topic in (
                 *template.command, *template.imu, *template.odometry, *template.scan,
                 *template.cloud, *template.battery, template.motor_power.name,

@@ -187,7 +187,8 @@ class SessionTest(unittest.TestCase):
         marks = []
 
         def still_of_mark():
-            """Mark, until the picture has come."""
+            """Mark, until the picture has come; after a while it is not in sight any more."""
+            publisher.publish(topic, buffer.getvalue())
             marks.append(self.service['mark']('here'))
             return '1 still' in marks[-1].message
         wait_for(still_of_mark, PATIENCE_S, 'a still', poll_s=0.2)
@@ -197,7 +198,8 @@ class SessionTest(unittest.TestCase):
         self.service['record'](False)
         bag = os.path.join(folder, '0000.bag')
         self.assertLess(min(times_of(bag, '/bot1/odom')), before)
-        self.assertEqual(len(times_of(bag, topic)), 1)
+        self.assertLessEqual(1, len(times_of(bag, topic)))
+        self.assertLessEqual(len(times_of(bag, topic)), 1 + len(marks))
         events = self.events(folder)
         mark = marks_of(events)[-1]
         with open(os.path.join(folder, mark.stills[0]), 'rb') as file:

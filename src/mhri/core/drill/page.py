@@ -43,9 +43,14 @@ def _picture(result: Mapping[str, Any], walls: Sequence[Sequence[float]],
         return '{:.2f},{:.2f}'.format(x - left, top - y)
     parts = ['<polyline points="{} {}" stroke="#444" stroke-width=".05"/>'.format(
         at(*wall[:2]), at(*wall[2:])) for wall in walls]
-    for number, robot in enumerate(result['robots'].values()):
+    for number, (name, robot) in enumerate(result['robots'].items()):
         parts.append('<polyline points="{}" fill="none" stroke="{}" stroke-width=".04"/>'.format(
             ' '.join(at(x, y) for x, y in robot['trail']), _COLOURS[number % len(_COLOURS)]))
+        for x, y in robot['trail'][:1]:
+            parts.append('<text x="{:.2f}" y="{:.2f}" font-size=".25" font-family="sans-serif" '
+                         'text-anchor="middle" fill="{}">{}</text>'.format(
+                             x - left, top - y - 0.12, _COLOURS[number % len(_COLOURS)],
+                             escape(name)))
     for target in targets:
         x, y = at(target.x_m, target.y_m).split(',')
         parts.append('<circle cx="{}" cy="{}" r=".12" fill="{}" stroke="#222" stroke-width=".03">'
@@ -77,9 +82,10 @@ def page_of(result: Mapping[str, Any], walls: Sequence[Sequence[float]],
         '<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>{}</title>'.format(title),
         '<style>{}</style><h1>{}</h1>'.format(_STYLE, title),
         '<p>{} after {:.1f} s, driven by a {}.</p>'.format(
-            escape(result['ended']), result['time_s'], escape(result['operator'])),
+            escape(result['ended'].capitalize()), result['time_s'], escape(result['operator'])),
         _table(('', ''), rows_of([result])), _picture(result, walls, targets),
-        '<p><small>From above; a full circle is a target that was found.</small></p>',
+        '<p><small>From above; a name is where the robot began, a full circle a target '
+        'that was found.</small></p>',
         _table(('robot', 'type', 'driven', 'neglected', 'distance', 'contacts'), robots),
         _table(('target', 'found by', 'at'), found),
         _table(('robot', 'fault', 'at', 'reaction'), reactions),
