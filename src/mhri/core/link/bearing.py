@@ -152,7 +152,9 @@ class Bearing:
             self._begin(heard, full, now)
         elif self.drains:
             self._top = max(self._top, self._carried(heard))
-            if now - self._cut_at >= DRAIN_S:
+            # Others may not have begun yet, or the computer is slow: then it takes longer.
+            falls = heard.queue_s < self._waited_s - _FALLS_S
+            if now - self._cut_at >= (DRAIN_S if falls else 2.0 * DRAIN_S):
                 self._drained(heard)
         elif full:
             # On a long way it takes a while until what waits gets less.
@@ -178,7 +180,7 @@ class Bearing:
         self._bad = self._bad + 1 if full or heard.loss > LOSSY else 0
         if self._bad >= BAD or heard.loss > LOSS_MOST:
             self._cut(heard, now, FIRST_CUT)
-            self.drains = True
+            self.drains, self._waited_s = True, max(heard.queue_s, _FALLS_S + QUEUE_CALM_S)
 
     def _drained(self, heard: Heard) -> None:
         """Take what things still wait for as the length of the way."""
