@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Robots behind a bad radio: how old is what they obey, and what the operator is shown of them.
 
-Side by side: by one ROS master for all (TCPROS), and by the link (``mhri_link``, ``udp`` and
-``tcp`` endpoints). What goes over the radio: the commands (20 Hz) and what guard and gates tell
-each other, and of each robot odometry (50 Hz), IMU (100 Hz), laser (10 Hz), and the pictures of a
-camera (jpeg, 30 Hz). Delays are those of one way. See ``support/behind_radio.py``.
+Side by side: by one ROS master for all (TCPROS), and by the link (``mhri_link``; ``udp`` and
+``tcp`` endpoints, and with keys ``tls`` and ``quic``). What goes over the radio: the commands
+(20 Hz) and what guard and gates tell each other, and of each robot odometry (50 Hz), IMU (100 Hz),
+laser (10 Hz), and the pictures of a camera (jpeg, 30 Hz). Delays are those of one way. See
+``support/behind_radio.py``.
 
 - command: age of a command when the robot first obeyed it, from the stick on; and in what share of
   the time in which the stick was held the robot drove

@@ -8,9 +8,7 @@ out are the keys. That the same attack moves the robot with a key that drives sh
 import os
 import pathlib
 import random
-import shutil
 import socket
-import subprocess
 import sys
 import threading
 import time
@@ -21,38 +19,12 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 
 from mhri.core.link.control import ASK_FOR, STEP_S, TAKE_IT  # noqa: E402
 from mhri.core.screen.views import LIVE, RobotView  # noqa: E402
+from support.authority import Authority  # noqa: E402
 from support.linked import Linked, LONG_S, Operator  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
-REPO = pathlib.Path(__file__).resolve().parents[2]
-LISTS = ('peers', 'withdrawn', 'withdrawn.pem', 'authority.pem')
 ATTACK_S = 2.0
 BOT1 = RobotView('bot1', link=LIVE)
-
-
-class Authority:
-    """Keys, made by the script as in the guide."""
-
-    def __init__(self, folder):
-        self.folder = folder
-        self.run('new')
-
-    def run(self, *words):
-        subprocess.run([str(REPO / 'utils/host/mhri_keys.sh'), *words, '--folder',
-                        str(self.folder / 'authority')], check=True, stdout=subprocess.DEVNULL,
-                       env=dict(os.environ, HOME=str(self.folder)))
-
-    def put(self, name):
-        """Return a folder with the key of somebody, and the lists as they are now."""
-        place, made = self.folder / 'at' / name, self.folder / 'authority'
-        place.mkdir(parents=True, exist_ok=True)
-        files = [made / file for file in LISTS]
-        if (made / 'keys' / name).exists():
-            files += [made / 'keys' / name / 'own.key', made / 'keys' / name / 'own.pem']
-        for file in files:
-            shutil.copy(str(file), str(place / '.new'))
-            (place / '.new').rename(place / file.name)
-        return place
 
 
 class Cable:

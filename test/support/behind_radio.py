@@ -10,13 +10,16 @@ alone: then next to nothing of theirs goes over the radio.
 import json
 import math
 import os
+from pathlib import Path
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
+from support.authority import Authority  # noqa: E402
 from support.bad_radio import BadRadio, FAR_IP, NEAR_IP, Place  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
@@ -24,7 +27,9 @@ HERE = os.path.abspath(__file__)
 GUARD = os.path.join(os.path.dirname(HERE), '..', '..', 'utils', 'remote', 'mhri_guard')
 TCPROS = 'TCPROS'
 # What the names of a way's robots begin with; all but TCPROS are protocols of the link.
-WAYS = {TCPROS: 'ros', 'udp': 'udp', 'tcp': 'tcp'}
+WAYS = {TCPROS: 'ros', 'udp': 'udp', 'tcp': 'tcp', 'tls': 'tls', 'quic': 'quic'}
+# Of these, those that need keys.
+SECRET = ('tls', 'quic')
 FIRST_PORT, FAR_MASTER = 7447, 11411
 COMMAND, ODOMETRY = 'teleop/input', 'odom'
 PICTURE = 'camera/rgb/image_raw/compressed'
@@ -57,7 +62,7 @@ def ear(names):
     import rospy
     from geometry_msgs.msg import Twist
     from nav_msgs.msg import Odometry
-    rospy.init_node('ear', disable_signals=True)
+    rospy.init_node('ear_' + names[0], disable_signals=True)
     told, been = {name: [] for name in names}, {name: [] for name in names}
 
     def hear(name):
@@ -204,6 +209,8 @@ class World:
                       for way in ways}
         self.shown = {name: Shown(name) for names in self.names.values() for name in names}
         self._ears = {}
+        self._keys = {}
+        self._folder = tempfile.TemporaryDirectory()
         self.far = Place()
         self.radio = BadRadio(self.far)
         self.system = System()
@@ -220,6 +227,7 @@ class World:
         self.system.__exit__(failure)
         self.radio.close()
         self.far.close()
+        self._folder.cleanup()
 
     def _words(self, way, *words):
         """Return the command line of a process beside the robots of a way."""
@@ -237,6 +245,7 @@ class World:
                                                 '-p', str(FAR_MASTER)))
         self.system.node('mux')
         self.system.node('gates')
+        self._make_keys([name for way in SECRET for name in self.names.get(way, [])])
         port = FIRST_PORT
         for way, names in self.names.items():
             subprocess.run(self._words(way, sys.executable, '-c', TYPES, *names), check=True,
@@ -260,13 +269,23 @@ class World:
         self.system.start(*self._words(way, 'ROS_NAMESPACE=' + name, sys.executable, GUARD,
                                        '_command:=' + COMMAND))
 
+    def _make_keys(self, robots):
+        """Make keys for the host and for robots, if there are any."""
+        if robots:
+            authority = Authority(Path(self._folder.name))
+            for kind, name in [('host', 'lab')] + [('robot', name) for name in robots]:
+                authority.run(kind, name)
+            self._keys = {name: authority.put(name) for name in ['lab'] + robots}
+
     def _link(self, way, name, port):
         endpoint = '{}/{}:{}'.format(way, FAR_IP, port)
+        keys = [str(self._keys[who]) if way in SECRET else 'off' for who in (name, 'lab')]
         code = 'from mhri.nodes.mhri_link import main; main()'
-        self.system.start(*self._words(way, sys.executable, '-c', code, '--side', 'robot', '--name',
-                                       name, '--listen', endpoint, '__ns:=/' + name))
+        self.system.start(*self._words(
+            way, sys.executable, '-c', code, '--side', 'robot', '--name', name, '--listen',
+            endpoint, '--keys', keys[0], '__ns:=/' + name))
         self.system.node('mhri_link', '--side', 'host', '--name', name, '--connect', endpoint,
-                         '__ns:=/' + name)
+                         '--keys', keys[1], '__ns:=/' + name)
 
     def _show(self):
         while True:

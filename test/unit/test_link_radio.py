@@ -26,8 +26,22 @@ def test_poses_stay_young_and_pictures_come_of_each(seed):
     at_first, _, _ = world.figures(BAD_S + 0.5, FOUND_S)
     poses, pictures, gap_s = world.figures(FOUND_S, END_S)
     carried = world.up.counts[1].bytes_passed / 0.8 / (END_S - BAD_S)
-    print('MEASURED pose p95 {:.3f}, at first {:.3f} s; picture p95 {:.3f} s, longest gap {:.1f} s; '
+    print('MEASURED pose p95 {:.3f}, at first {:.3f} s; picture p95 {:.3f}, longest gap {:.1f} s; '
           '{:.0f} bytes/s'.format(p95(poses), p95(at_first), p95(pictures), gap_s, carried))
     assert p95(poses) <= 0.45 and p95(at_first) <= 0.7
     assert gap_s <= 2.0 and p95(pictures) <= 0.8
     assert carried > 0.75 * 125e3
+
+
+@pytest.mark.parametrize('row, pose_s', [
+    ({'delay_ms': 50, 'loss_percent': 1, 'rate_mbit': 10}, 0.15),
+    ({'delay_ms': 200, 'loss_percent': 5, 'rate_mbit': 2}, 0.4),
+    ({'delay_ms': 20, 'rate_mbit': 1}, 0.25)])
+def test_other_radios_are_used_too_and_a_good_one_gets_everything_again(row, pose_s):
+    world = RadioWorld([{'at_s': 0}, dict(row, at_s=BAD_S)] + [
+        {'at_s': END_S, 'delay_ms': 0, 'loss_percent': 0, 'rate_mbit': 0}], 2, 1)
+    world.run(END_S)
+    poses, _, gap_s = world.figures(FOUND_S, END_S)
+    assert p95(poses) <= pose_s and gap_s <= 1.0
+    world.run(2.0 * END_S)
+    assert not any(sender.bearing.bound for sender in world.senders)

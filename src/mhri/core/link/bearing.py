@@ -26,8 +26,8 @@ QUEUE_MOST_S, QUEUE_CALM_S = 0.07, 0.03
 # nothing is lost any more.
 LOSSY, LOSS_MOST, LOSSLESS = 0.08, 0.5, 0.01
 # So much of what is carried is sent from then on; half of it the first time, when the queues are
-# full and nobody knows how long the way is without them. Then by such a part more each second: up to
-# near what was too much, around that, and beyond it, where the part grows each second. What came
+# full and nobody knows how long the way is without them. Then by such a part more each second: up
+# to near what was too much, around that, and beyond it, where the part grows each second. What came
 # before the first cut was whole pictures, or rather was not, and another radio bears nobody knows
 # what: that is found out quickly.
 CUT, FIRST_CUT = 0.85, 0.5
@@ -37,6 +37,7 @@ NEAR, BEYOND = 0.85, 1.15
 # Never by less than this: who has little gains on who has much, so that robots that share a radio
 # come to the same [bytes/s^2].
 _LEAST_GROWTH, _LEAST_FIRST = 1300.0, 3000.0
+# Who has more than this gives way sooner, who has less later [bytes/s].
 _MIDDLE = 30000.0
 # What is not used says nothing about the radio: no more than this times what came.
 _USED = 2.0
@@ -151,7 +152,9 @@ class Bearing:
             self._begin(heard, full, now)
         elif self.drains:
             self._top = max(self._top, self._carried(heard))
-            if now - self._cut_at >= DRAIN_S:
+            # Others may not have begun yet, or the computer is slow: then it takes longer.
+            falls = heard.queue_s < self._waited_s - _FALLS_S
+            if now - self._cut_at >= (DRAIN_S if falls else 2.0 * DRAIN_S):
                 self._drained(heard)
         elif full:
             # On a long way it takes a while until what waits gets less.
@@ -177,7 +180,7 @@ class Bearing:
         self._bad = self._bad + 1 if full or heard.loss > LOSSY else 0
         if self._bad >= BAD or heard.loss > LOSS_MOST:
             self._cut(heard, now, FIRST_CUT)
-            self.drains = True
+            self.drains, self._waited_s = True, max(heard.queue_s, _FALLS_S + QUEUE_CALM_S)
 
     def _drained(self, heard: Heard) -> None:
         """Take what things still wait for as the length of the way."""
