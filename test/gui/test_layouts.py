@@ -128,6 +128,17 @@ def test_most_of_the_screen_is_picture(scene, size, count, least, drawer):
     assert share >= least
 
 
+def test_most_of_the_screen_is_picture_while_two_of_three_drive(scene):
+    made = scene(LARGE, 3, mode='ps3joy')
+    made.robots = tuple(replace(robot, selected=robot.number < 3) for robot in made.robots)
+    made.view = replace(made.view, robots=made.robots)
+    made.show()
+    assert made.screen.stage.large == ('bot1', 'bot2')
+    share = share_of_picture(made.pixels())
+    print('MEASURED {:.1f} % is picture, two of three driven, drawer open'.format(100.0 * share))
+    assert share >= 0.50
+
+
 def test_stop_is_the_largest_control(scene):
     for size, count, drawer in (((1024, 600), 3, True), (SMALL, 3, True), (LARGE, 3, True),
                                 (SMALL, 1, False), (LARGE, 1, False)):

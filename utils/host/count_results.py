@@ -60,9 +60,11 @@ def target_of(path):
     name = os.path.basename(path)[:-len('.xml')]
     if name.startswith('MISSING-'):
         name = name[len('MISSING-'):]
-    found = re.match('pytest-((?:scripts|faults)_(?:calm|timed)|gui|bench)-(test_.+)$', name)
+    found = re.match('pytest-((?:scripts|faults|gui)_(?:calm|paired|timed)|bench)-(test_.+)$', name)
+    # Of what runs beside the rules: processes and windows.
+    found = found or re.match('pytest-(unit)-(ros)$|pytest-(oldest)-(widgets)$', name)
     if found:
-        return '{}_{}'.format(*found.groups())
+        return '_'.join(filter(None, found.groups()))
     found = re.match('(?:rosunit-|rostest-test_rostest_)(.+)$', name)
     if found:
         return 'rostest_test_rostest_{}.test'.format(found.group(1))

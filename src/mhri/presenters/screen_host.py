@@ -170,6 +170,7 @@ class ScreenHost(QObject):
         self.tiles.show_view(view, [name for name, _ in self._to_add])
         self.events.show(view)
         self.session.show_view(view)
+        self.tiles.show_session(self.session.recorded_s)
         self._tell_budget()
         self.pad.show_view(view)
         self.map.show_view(view)

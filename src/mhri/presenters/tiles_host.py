@@ -97,6 +97,11 @@ class TilesHost(QObject):
         self._cameras.settle(wish for robot in self._due
                              for wish in self.hosts[robot.name].wishes(robot.selected))
 
+    def show_session(self, lasts_s):
+        """Say in every tile for how long the session has been recorded, None where it is not."""
+        for tile in self.windows.values():
+            tile.header.show_session(lasts_s)
+
     def _show_tiles(self):
         """Let the stage have the tiles, and know of those that come next; return if that is new."""
         placed = ({robot.name: self.windows[robot.name] for robot in self._robots

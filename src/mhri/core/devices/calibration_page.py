@@ -201,7 +201,7 @@ class CalibrationPage:
             return self._calibration.prompt, \
                 'Next' if step == REST else '' if step in (FORWARD, LEFT) else 'None'
         return {
-            ABSENT: ('Plug a pad in, or press its PS button.', ''),
+            ABSENT: ('Here you can try a pad out, and calibrate it.', ''),
             READY: ('Try its sticks and buttons: they show below. Calibrating stops all robots.'
                     if not self._stopped else 'All robots are stopped: nothing drives.',
                     'Calibrate' if self._stopped else 'Stop all and calibrate'),

@@ -56,5 +56,8 @@ def _silence(source: Source, heard: Heard) -> str:
     node = sorted(heard.publishers)[0]
     if not heard.spoke:
         return '{} has said nothing yet: move the stick once'.format(node)
+    if source.exclusive:
+        # The virtual joystick of a screen, which says all the time where it is.
+        return 'the screen is not heard; this computer may be too busy'
     return ('{} has fallen silent; if it sends changes only (joy_node without autorepeat_rate), '
             'write holds: true into its row of mux.yaml'.format(node))

@@ -20,8 +20,9 @@ _STRIP_SHARES = tuple(share / 100.0 for share in range(10, 52, 2))
 # width counts so much.
 _SMALL_ENOUGH = 0.26
 _SMALL_COUNTS = 1.3
-# With room to spare it becomes larger, up to this part of the area of a large one.
-_SMALL_AT_MOST = 0.45
+# With room to spare it becomes larger, up to this part of the area of a large one: still smaller at
+# a glance.
+_SMALL_AT_MOST = 0.72
 # So much more has to be seen in another arrangement before the tiles move.
 WORTH_MOVING = 1.06
 # Shape (width / height) of a picture that has not arrived yet.

@@ -41,6 +41,11 @@ def robot_topics(robot: str, kind: RobotType) -> Tuple[str, ...]:
     return tuple(dict.fromkeys((*topics, _MOCAP.format(robot))))
 
 
+def fault_topic(robot: str) -> str:
+    """Return where a simulated robot says what it was asked to let fail, absolute."""
+    return '/{}/base/faults'.format(robot)
+
+
 def camera_topics(robot: str, kind: RobotType) -> Tuple[str, ...]:
     """Return the compressed pictures of a robot's cameras, absolute."""
     return tuple(topic_of(robot, name) + suffix
@@ -52,15 +57,20 @@ def robot_entry(robot: str, number: int, kind: RobotType, parameters: Mapping[st
     """Return what ``session.yaml`` says of a robot.
 
     :param parameters: those of its namespace
-    :param published: absolute names; of several candidates the first that is published counts, of
-        none the first
+    :param published: absolute names; of several candidates the first that is published counts, be
+        it raw (a screen compresses it), of none the first
     """
     topics: Dict[str, str] = {}
     suffixes = dict(_CAMERAS)
     for key in (*_SENSORS, 'rgb', 'depth', 'command'):
-        names = [topic_of(robot, name) + suffixes.get(key, '') for name in getattr(kind, key)]
-        if names:
-            topics[key] = next((name for name in names if name in published), names[0])
+        suffix = suffixes.get(key, '')
+        names = [topic_of(robot, name) for name in getattr(kind, key)]
+        for name in names:
+            if name + suffix in published or name in published:
+                topics[key] = name + suffix
+                break
+        else:
+            topics.update({key: name + suffix for name in names[:1]})
     return {'number': number, 'type': kind.name, 'model': kind.model,
             'parameters': _plain(parameters), 'topics': topics}
 

@@ -61,6 +61,12 @@ def stream_text(status, slowed=None):
     return '  '.join(parts)
 
 
+def shorter_stream_texts(text):
+    """Return a :func:`stream_text` in fewer and fewer words: at last the rate alone."""
+    parts = text.split('  ')
+    return tuple('  '.join(parts[:count]) for count in range(len(parts) - 1, 0, -1))
+
+
 def stream_warning(status):
     """Return what is said across a picture that is not live any more; '' while it is.
 
@@ -201,7 +207,7 @@ class CameraView(QWidget):
             trouble = old or (status.bad and status.problem)
             text = stream_text(status, slowed)
             self._say((theme.TRIANGLE, theme.ATTENTION) if trouble else None, text,
-                      (rate_text(status, slowed),) if text and (slowed or status.thinned) else ())
+                      () if status.bad else shorter_stream_texts(text))
 
     def show_note(self, text, good=True):
         """Show a sentence in the status line for a while, e.g. where a still went."""

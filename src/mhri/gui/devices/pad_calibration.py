@@ -43,7 +43,8 @@ class PadCalibration(QWidget):
         self.prompt.setMinimumHeight(_PROMPT_LINES * self.fontMetrics().lineSpacing())
         self.problem_sign = Sign(self)
         self.problem = self._wrapped()
-        self.problem.setMinimumHeight(2 * self.fontMetrics().lineSpacing())
+        # A label wants a pixel more than its lines.
+        self.problem.setMinimumHeight(2 * self.fontMetrics().lineSpacing() + 2)
         self.action_button = QPushButton(self)
         self.action_button.setObjectName('pad_action')
         self.again_button = QPushButton('Start again', self)

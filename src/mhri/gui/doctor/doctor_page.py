@@ -16,6 +16,8 @@ from mhri.gui.screen.labels import TextLine
 # Shapes as well as colours, those of the states of a robot.
 _MARKS = {FAULT: ('\u2612', theme.STOP), WARNING: ('\u25b2', theme.ATTENTION),
           FINE: ('\u25cf', theme.LIVE)}
+EXAMINE, EXAMINE_AGAIN = 'Examine', 'Examine again'
+NOT_YET = 'Examines network, master and robots in 3 s at most, while everything goes on.'
 
 
 class DoctorPage(QWidget):
@@ -37,13 +39,16 @@ class DoctorPage(QWidget):
         self.setFont(theme.base_font(self.font()))
         self.summary = TextLine(self)
         self.summary.setFont(theme.larger(self.font(), 1.2, bold=True))
-        self.again_button = QPushButton('Examine again', self)
+        self.again_button = QPushButton(EXAMINE, self)
+        self.again_button.setMinimumWidth(theme.touch_size(self) // 2 + theme.text_width(
+            self.font(), EXAMINE_AGAIN))
         self.copy_button = QPushButton('Copy', self)
         for button in (self.again_button, self.copy_button):
             button.setMinimumHeight(theme.touch_size(self))
             button.setFocusPolicy(Qt.TabFocus)
         self.text = QTextBrowser(self)
         self.text.setOpenLinks(False)
+        self.text.setPlaceholderText(NOT_YET)
         head = self._head = QHBoxLayout()
         head.addWidget(self.again_button)
         head.addWidget(self.copy_button)
@@ -89,6 +94,7 @@ class DoctorPage(QWidget):
         :param took_s: how long it took [s]
         """
         self._findings, self._took_s = findings, took_s
+        self.again_button.setText(EXAMINE_AGAIN)
         bad = [item for item in findings if item.severity != FINE]
         faults = sum(item.severity == FAULT for item in bad)
         self.summary.show_text(

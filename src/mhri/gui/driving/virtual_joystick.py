@@ -99,7 +99,7 @@ class VirtualJoystick(QWidget):
 
     def minimumSizeHint(self):  # noqa: N802
         """Return the least that can be steered with."""
-        side = self.fontMetrics().height() * 8
+        side = self.fontMetrics().height() * 7
         return QSize(side, side)
 
     def event(self, event):

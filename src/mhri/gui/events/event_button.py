@@ -44,8 +44,8 @@ class EventButton(QPushButton):
             return
         self._severity = headline.severity
         number = '{} event{}'.format(count, '' if count == 1 else 's')
-        self._texts = (text, text.partition(' (')[0], number) \
-            if headline.severity != CALM else (text,)
+        self._texts = (text, text.partition(' (')[0], number, str(count)) \
+            if headline.severity != CALM else (text, str(count)) if count else (text,)
         self.setText(text)
         self.setToolTip(plain_tip(text))
 

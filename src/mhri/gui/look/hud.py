@@ -236,11 +236,12 @@ class Hud(QWidget):
                           max(unit, foot))
             texts = [words.kept_together(text) for text in (
                 self._sentence, *words.beginnings(self._sentence, most=4))]
-            text = next((text for text in texts if metrics.boundingRect(
-                room.toRect(), flags, text).height() <= room.height()), '')
+            text = next((text for text in texts if painter.boundingRect(
+                room, flags, text).height() <= room.height()), '')
             if text == texts[0]:
                 break
-        needed = metrics.boundingRect(room.toRect(), flags, text)
+        # As the painter breaks it: metrics of whole pixels may break it elsewhere.
+        needed = painter.boundingRect(room, flags, text)
         ground = QRectF(0.4 * unit, needed.top() - 0.15 * unit,
                         needed.right() - 0.4 * unit + 0.5 * unit, needed.height() + 0.3 * unit)
         painter.setPen(Qt.NoPen)

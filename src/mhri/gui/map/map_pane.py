@@ -346,6 +346,13 @@ class MapPane(QWidget):
         room = self.view.width() - 2 * gap - (size.width() + gap if self.large else 0)
         self.strip.fit(QPoint(gap, gap), room)
 
+    def clear_of_buttons(self, place):
+        """Return a :class:`QRect` of this pane, moved to the left of the buttons over the map."""
+        side = self.side.geometry().translated(self.view.pos())
+        if place.intersects(side):
+            place.moveRight(side.left() - self.fontMetrics().height() // 2)
+        return place
+
     def paintEvent(self, event):  # noqa: N802
         """Paint the ground of tools and line."""
         painter = QPainter(self)

@@ -244,6 +244,9 @@ class RobotRow(QWidget):
     def _offer_control(self, text):
         """Offer to ask for control, or to take it; '' where there is nobody to ask."""
         self.ask_button.setVisible(bool(text))
+        # The button has the room of what is in the tile as well.
+        for part in (self.age, self.battery):
+            part.setVisible(not text)
         if text != self.ask_button.text():
             self.ask_button.setText(text)
             self.ask_button.setAccessibleName('{} of {}'.format(text, self.name))

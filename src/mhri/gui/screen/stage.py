@@ -289,8 +289,12 @@ class Stage(QWidget):
                 room = self.rect() if tile is None else \
                     tile.picture_area().translated(tile.pos())
             side = round(min(_FLOAT_UNITS * unit, _FLOAT_SHARE * min(room.width(), room.height())))
-            self._float.setGeometry(room.right() - side - unit // 2,
-                                    room.bottom() - side - unit // 2, side, side)
+            place = QRect(room.right() - side - unit // 2, room.bottom() - side - unit // 2,
+                          side, side)
+            if under is None and self._map_state == MAP_LARGE and self._map is not None:
+                place = self._map.clear_of_buttons(place.translated(-self._map.pos())).translated(
+                    self._map.pos())
+            self._float.setGeometry(place)
             self._float.raise_()
         for tile in self._tiles.values():
             tile.hud.keep_clear(side + unit // 2 if tile is under else 0)

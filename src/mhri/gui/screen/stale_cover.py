@@ -16,6 +16,8 @@ OLD_AFTER_S = 0.6
 # A part that could not be painted is told for so long after the last time.
 SLIP_SHOWN_S = 2.0
 _HATCH_UNITS = 3.0
+# Of the size of the words; the first line is larger. A small tile takes a smaller size.
+_SCALES = (1.0, 0.85, 0.7, 0.55)
 _WRAPPED = int(Qt.AlignLeft | Qt.AlignTop | Qt.TextWordWrap)
 _MOST_PX = 10000.0
 
@@ -125,11 +127,18 @@ class StaleCover(QWidget):
             painter.setFont(font)
             painter.drawText(room, _WRAPPED, line)
 
+    def _font(self, row, scale):
+        """Return the font of a line."""
+        return theme.larger(self.font(), scale * (1.3 if row == 0 else 1.0), bold=row == 0)
+
     def _rows(self, unit):
         """Return (font, where, text) of each line, below each other, broken where it is narrow."""
         found, top, width = [], 0.6 * unit, self.width() - 5.0 * unit
-        for row, line in enumerate(self.texts()):
-            font = theme.larger(self.font(), 1.3 if row == 0 else 1.0, bold=row == 0)
+        texts = self.texts()
+        scale = next((scale for scale in _SCALES if theme.text_width(
+            self._font(0, scale), *texts[0].split()) <= width), _SCALES[-1])
+        for row, line in enumerate(texts):
+            font = self._font(row, scale)
             metrics = QFontMetricsF(font)
             if row > 1:
                 # Why it failed is for whoever mends it: it is in the log, too.

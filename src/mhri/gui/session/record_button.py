@@ -30,7 +30,7 @@ class RecordButton(QPushButton):
         self.setMinimumHeight(touch)
         self.setMinimumWidth(touch // 2 + max(
             theme.text_width(self.font(), text) for text in _WIDEST))
-        self.setSizePolicy(QSizePolicy.Fixed, QSizePolicy.Fixed)
+        self.setSizePolicy(QSizePolicy.Minimum, QSizePolicy.Fixed)
 
     def _connect(self):
         """Show what is so, not what was clicked."""

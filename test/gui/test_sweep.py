@@ -1,0 +1,127 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every widget of every page: text of 11 points, 36 pixels for a finger, and no word cut off."""
+from dataclasses import replace
+import os
+import sys
+
+import pytest
+from python_qt_binding.QtWidgets import (
+    QAbstractButton, QAbstractSlider, QAbstractSpinBox, QComboBox, QLabel, QLineEdit, QPushButton,
+    QScrollBar, QTabBar)
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from mhri.core.doctor.facts import Finding, WARNING  # noqa: E402
+from mhri.core.events.events import ALARM, Headline  # noqa: E402
+from mhri.core.screen.task_views import FieldView, KindView, TasksView  # noqa: E402
+from mhri.core.screen.views import ControlView, LinkFigures  # noqa: E402
+from mhri.core.session.view import SessionView  # noqa: E402
+from mhri.gui.devices.pad_calibration import PadCalibration  # noqa: E402
+from mhri.gui.doctor.doctor_page import DoctorPage  # noqa: E402
+from mhri.gui.drill.faults_page import FaultsPage  # noqa: E402
+from mhri.gui.events.event_list import EventList  # noqa: E402
+from mhri.gui.screen.labels import TextLine  # noqa: E402
+from mhri.gui.session.note_bar import NoteBar  # noqa: E402
+from mhri.gui.session.record_button import RecordButton  # noqa: E402
+from mhri.gui.session.time_line import TimeLineBar  # noqa: E402
+from mhri.gui.tasks.tasks_page import TasksPage  # noqa: E402
+
+TARGETS = (QAbstractButton, QAbstractSlider, QAbstractSpinBox, QComboBox, QLineEdit, QTabBar)
+WORDS = (QAbstractButton, QAbstractSpinBox, QComboBox, QLabel, QLineEdit, QTabBar)
+KINDS = (KindView('goto', 'Go to', 'to a place, around a single thing in the way', (
+    FieldView('x', 'm', 'where', ''), FieldView('speed', 'm/s', 'at most', '0.2', 0.05, 0.5),
+    FieldView('frame', '', 'of its places', "''", choices=('', 'odom')))),)
+THINNED = 'picture 1 in 2 s: the radio bears 0.9 Mbit/s'
+
+
+def on_show(whole, kinds):
+    """Return the widgets of some kinds that are in sight, without the insides of others."""
+    return [widget for widget in whole.findChildren(kinds)
+            if widget.isVisible() and not widget.visibleRegion().isEmpty()
+            and not isinstance(widget, QScrollBar)
+            and not isinstance(widget.parentWidget(), (QAbstractSpinBox, QComboBox, QTabBar))]
+
+
+def is_whole(label):
+    """Tell whether all words of a label are in sight."""
+    if isinstance(label, TextLine):
+        return label.shown_text() in label.texts
+    if label.wordWrap():
+        return not label.text() or label.heightForWidth(label.width()) <= label.height()
+    return not label.text() or label.sizeHint().width() <= label.width()
+
+
+def flaws(whole):
+    """Return what is too small or cut off: (object name, what, how)."""
+    found = [(one.objectName(), 'font', one.font().pointSizeF()) for one in on_show(whole, WORDS)
+             if one.font().pointSizeF() < 11.0]
+    found += [(one.objectName(), 'target', (one.width(), one.height()))
+              for one in on_show(whole, TARGETS) if min(one.width(), one.height()) < 36]
+    found += [(one.objectName(), 'cut off', one.text()) for one in on_show(whole, QPushButton)
+              if not hasattr(one, 'shown_text')
+              and one.fontMetrics().horizontalAdvance(one.text()) > one.width() - 4]
+    found += [(one.objectName(), 'cut off', one.text()) for one in on_show(whole, QLabel)
+              if not is_whole(one)]
+    # What scrolls does so up and down.
+    return found + [(one.objectName(), 'outside', one.text())
+                    for one in on_show(whole, (QPushButton, TextLine))
+                    if one.visibleRegion().boundingRect().width() < one.width()]
+
+
+@pytest.fixture
+def whole_screen(scene):
+    """Return a maker of screens with all pages, and with what comes and goes."""
+    def make(size, font):
+        made = scene(size, 3, font)
+        made.robots = (made.robots[0], replace(
+            made.robots[1], ask='Take control', note='lab has control', slow=True), replace(
+            made.robots[2], slow=True, note=THINNED, figures=LinkFigures(0.41, 0.0, 0.2, THINNED)))
+        made.view = replace(made.view, robots=made.robots,
+                            control=ControlView(False, 'panel on lab-pc2 since 14:02'))
+        screen = made.screen
+        doctor, tasks, events, faults = DoctorPage(), TasksPage(), EventList(), FaultsPage()
+        for title, page in (('Tasks', tasks), ('Events', events), ('Doctor', doctor),
+                            ('Pad', PadCalibration())):
+            screen.arrangement.add_page(title, page)
+        doctor.show_findings([Finding(WARNING, 'clock', 'bot1', 'its clock is 3 s off')], 0.4)
+        faults.show_robots(('bot1', 'bot2'))
+        tasks.show_tasks(TasksView(kinds=KINDS), list(made.robots[:1]), ['bot1', 'bot2', 'bot3'])
+        events.show_robots(('bot1', 'bot2', 'bot3'))
+        screen.events_button.show_headline(
+            Headline('bot3 lost while driven 14:02:06 (2 more)', ALARM), 3)
+        record, note = RecordButton(screen.foot), NoteBar(screen.foot)
+        record.show_session(SessionView(True, True, 'here', 252.0))
+        screen.small_row.insertWidget(1, record)
+        screen.foot_column.insertWidget(1, note)
+        note.ask('m3', False)
+        made.faults_button = doctor.add_part('Faults', faults)
+        return made
+    return make
+
+
+@pytest.mark.parametrize('size, font', [
+    ((1024, 600), 1.0), ((1366, 768), 1.0), ((1920, 1080), 2.0)])
+def test_every_page_is_fit_for_eyes_and_fingers(whole_screen, size, font):
+    made = whole_screen(size, font)
+    tabs, found = made.show().tabs, {}
+    for place in range(tabs.count()):
+        tabs.setCurrentIndex(place)
+        made.show()
+        found[tabs.tabText(place)] = flaws(made.screen)
+        if tabs.tabText(place) == 'Doctor':
+            made.faults_button.setChecked(True)
+            made.show()
+            found['Faults'] = flaws(made.screen)
+    made.screen.drawer_button.setChecked(False)
+    made.show()
+    found['drawer closed'] = flaws(made.screen)
+    assert {'Tasks', 'Events', 'Doctor', 'Faults', 'Pad', 'Screen', 'Robots'} <= set(found)
+    assert {page: flaw for page, flaw in found.items() if flaw} == {}
+
+
+@pytest.mark.parametrize('width', [1024, 1920])
+def test_the_bar_of_a_replay_is_fit_for_eyes_and_fingers(operator, width):
+    bar = TimeLineBar()
+    bar.resize(width, bar.sizeHint().height())
+    assert flaws(operator.show(bar)) == []
