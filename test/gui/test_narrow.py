@@ -68,10 +68,10 @@ def test_a_narrow_bottom_line_says_what_happens(application, operator):
 @pytest.mark.parametrize('size', [(794, 700), (1024, 600), SMALL, LARGE])
 def test_every_page_of_the_drawer_has_its_tab_in_sight(scene, size):
     made = scene(size, 3)
-    for title in ('Tasks', 'Events', 'Doctor', 'Sessions', 'Pad'):
+    for title in ('Tasks', 'Events', 'Doctor', 'Pad'):
         made.screen.arrangement.add_page(title, QWidget())
     tabs = made.show().tabs
-    assert {'Robots', 'Screen', 'Tasks', 'Events', 'Doctor', 'Sessions', 'Pad'} <= {
+    assert {'Robots', 'Screen', 'Tasks', 'Events', 'Doctor', 'Pad'} <= {
         tabs.tabText(index) for index in range(tabs.count())}
     for index in range(tabs.count()):
         room = tabs.tabRect(index)

@@ -41,9 +41,10 @@ class Desk:
         """Open the page as an operator does, and wait until it is read."""
         tabs = self.screen.tabs
         place = next(index for index in range(tabs.count())
-                     if tabs.tabText(index) == 'Sessions')
+                     if tabs.tabText(index) == 'Screen')
         self.screen.drawer_button.setChecked(True)
         QTest.mouseClick(tabs, Qt.LeftButton, Qt.NoModifier, tabs.tabRect(place).center())
+        QTest.mouseClick(self.host.button, Qt.LeftButton)
         self.until(lambda: self.page.isVisible() and self.page.note.text() != 'reading ...',
                    'the list')
         return self

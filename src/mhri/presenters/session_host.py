@@ -136,7 +136,7 @@ class ShelfHost:
     def __init__(self, screen, shelf=None):
         self._shelf = shelf or SessionShelf()
         self.page = SessionsPage()
-        screen.arrangement.add_page(TITLE, self.page)
+        self.button = screen.arrangement.looks.add_part(TITLE, self.page)
         self._connect()
 
     def _connect(self):
