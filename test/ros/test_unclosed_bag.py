@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The last bag of a session whose recorder was killed: read as far as it is whole, never written."""
+"""The last bag of a killed recorder: read as far as it is whole, never written."""
 import os
 import stat
 import sys

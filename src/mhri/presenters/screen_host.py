@@ -24,8 +24,7 @@ from mhri.presenters.map_host import MapHost
 from mhri.gui.screen.screen import ScreenWidget
 from mhri.presenters.pad_host import PadHost
 from mhri.presenters.requests_host import RequestsHost
-from mhri.presenters.session_host import SessionHost
-from mhri.presenters.shelf_host import ShelfHost
+from mhri.presenters.session_host import SessionHost, ShelfHost
 from mhri.presenters.stop_watch import StopWatch
 from mhri.presenters.task_host import TaskHost
 from mhri.presenters.tiles_host import TilesHost

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The sessions that were recorded, as a list shows them: when, how long, who, marks, size."""
 from dataclasses import dataclass
+from datetime import datetime
 import re
-import time
 from typing import Iterable, Mapping, Optional, Sequence, Tuple
 
 from mhri.core.recording.recording import size_text
@@ -37,8 +37,8 @@ class SessionRow:
     @property
     def title(self) -> str:
         """The first line: when it began, by the clock of this computer, or what it is called."""
-        return self.name if self.started is None else time.strftime(
-            '%Y-%m-%d  %H:%M', time.localtime(self.started))
+        return self.name if self.started is None else '{:%Y-%m-%d  %H:%M}'.format(
+            datetime.fromtimestamp(self.started))
 
     @property
     def figures(self) -> str:

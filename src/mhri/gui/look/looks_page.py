@@ -91,6 +91,19 @@ class LooksPage(QScrollArea):
         self.map_box.clicked.connect(self.map_chosen)
         self.full_screen_button.clicked.connect(self.full_screen_requested)
 
+    def add_part(self, title, part):
+        """Give the page a further part, above the others; return the button that shows it."""
+        button = QPushButton(title, self)
+        button.setCheckable(True)
+        button.setFocusPolicy(Qt.TabFocus)
+        button.setMinimumHeight(theme.touch_size(self))
+        column = self.widget().layout()
+        column.insertWidget(0, button, 0, Qt.AlignLeft)
+        column.insertWidget(1, part)
+        part.hide()
+        button.toggled.connect(part.setVisible)
+        return button
+
     def show_choices(self, layout, theme_name, numbers):
         """Show what is in force."""
         self._layouts[layout].setChecked(True)

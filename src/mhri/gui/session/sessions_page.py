@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page of the drawer with what was recorded: replay a session, or make its report."""
+"""A part of the drawer with what was recorded: replay a session, or make its report."""
 from python_qt_binding.QtCore import QAbstractListModel, QModelIndex, QRect, QSize, Qt, Signal
 from python_qt_binding.QtGui import QPalette
 from python_qt_binding.QtWidgets import (
@@ -12,7 +12,7 @@ from mhri.gui.look.wide_scroll_bar import WideScrollBar
 from mhri.gui.screen import theme
 from mhri.gui.screen.labels import plain_tip, TextLine
 
-TITLE = 'Sessions'
+TITLE = 'Recorded sessions'
 NONE_YET = 'nothing recorded yet: R records a session'
 READING = 'reading ...'
 
@@ -137,6 +137,7 @@ class SessionsPage(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.list, 1)
+        self.list.setMinimumHeight(9 * self.fontMetrics().height())
         column.addWidget(self.progress)
         column.addWidget(self.note)
         column.addLayout(buttons)
