@@ -3,6 +3,7 @@
 """A robot on a master of its own, linked to the host: driven, looked at, and whatever dies."""
 import os
 import signal
+import subprocess
 import sys
 import time
 
@@ -11,10 +12,18 @@ import pytest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from support.linked import Linked, LONG_S, Operator  # noqa: E402
-from support.ros_system import wait_for  # noqa: E402
+from support.ros_system import System, wait_for  # noqa: E402
 
 # The lease is 0.3 s, and the robot brakes; the rest is for a busy computer.
 STANDS_S = 3.0
+# Asks on another master.
+ASK = '''
+import sys, rospy
+from std_srvs.srv import Trigger
+rospy.init_node('asks', disable_signals=True)
+rospy.wait_for_service('/bot1/mhri_link/take_control', 20)
+print(rospy.ServiceProxy('/bot1/mhri_link/take_control', Trigger)().message)
+'''
 
 
 @pytest.fixture(scope='module')
@@ -76,6 +85,32 @@ def test_it_is_driven_through_its_guard(lab):
     wait_for(lambda: not lab.moves(), LONG_S, 'it to stand')
 
 
+def test_another_host_of_the_same_name_has_to_ask(lab):
+    """Without keys, and with the name of this one: it is another computer."""
+    other = System(adopt=False)
+    try:
+        other.start_master()
+        other.node('mhri_link', '--side', 'host', '--name', 'bot1', '--connect', lab.endpoint,
+                   '--keys', 'off', '--host', 'host:lab', '__ns:=/bot1')
+        lab.drive(lab.operator)
+        asked = [sys.executable, '-c', ASK]
+        said = wait_for(lambda: [text for text in [subprocess.run(
+            asked, env=other.env, stdout=subprocess.PIPE, universal_newlines=True).stdout]
+            if 'is it linked' not in text and text], LONG_S, 'an answer', 0.2)[0]
+        assert 'has control and is told that you ask' in said, said
+        # Nobody has taken it: it is still driven from here.
+        lab.drive(lab.operator)
+        since = time.monotonic()
+        lab.host.kill(lab.link_of_host)
+        wait_for(lambda: lab.stood_at(since), LONG_S, 'it to stand')
+        lab.start_host_side()
+        # The same computer as before: it goes on without asking.
+        lab.drive(lab.operator)
+        lab.operator.stick.hold(0.0, 0.0)
+    finally:
+        other.close()
+
+
 def test_pictures_only_for_those_who_look(lab):
     import rospy
     from sensor_msgs.msg import CompressedImage
@@ -109,6 +144,38 @@ def test_the_host_side_is_killed_and_comes_back(lab):
     assert not lab.moves()
     lab.drive(lab.operator)
     lab.operator.stick.hold(0.0, 0.0)
+
+
+def test_pictures_that_were_missed_are_fetched(lab):
+    """Where that is asked for."""
+    import rosbag
+    lab.host.kill(lab.link_of_host)
+    lab.start_host_side('--keep', 'pictures')
+    folder = os.path.join(lab.robot.home, 'mhri', 'link', 'bot1', 'kept', 'open')
+    camera = '/bot1/camera/rgb/image_raw/compressed'
+    wait_for(lambda: listeners_of_camera(lab) and os.path.isdir(folder) and any(
+        os.path.getsize(os.path.join(folder, name)) > 50000 for name in os.listdir(folder)),
+        LONG_S, 'the robot to record', 0.1)
+    lab.host.kill(lab.link_of_host)
+    begun = time.time()
+    time.sleep(1.0)
+    ended = time.time()
+    lab.start_host_side()
+
+    def fetched():
+        for name in os.listdir(lab.host.home):
+            if name.startswith('bot1_missed_') and name.endswith('.bag'):
+                try:
+                    with rosbag.Bag(os.path.join(lab.host.home, name)) as bag:
+                        return [(message.header.frame_id, when.to_sec())
+                                for _, message, when in bag.read_messages([camera])]
+                except rosbag.ROSBagException:
+                    pass  # it is being written
+        return None
+    rows = [frame for frame, when in wait_for(fetched, LONG_S, 'what was missed', 0.2)
+            if begun < when < ended]
+    assert len(rows) > 1 and all(frame.startswith('bot1/') for frame in rows)
+    wait_for(lambda: listeners_of_camera(lab) == 0, LONG_S, 'the camera to be left alone')
 
 
 @pytest.mark.parametrize('side', ['host', 'robot'])

@@ -279,7 +279,7 @@ def test_a_watching_key_sees_and_does_not_drive(lab):
         attacker.close()
     assert all(key.startswith('mhri/bot1/watch:gallery/up/') for key in attacker.heard)
     wait_for(lab.is_linked, LONG_S, 'the link')
-    assert 'linked with gallery, which may only watch' in lab.said()
+    wait_for(lambda: 'linked with gallery, which may only watch' in lab.said(), LONG_S, 'the word')
 
 
 def test_one_host_at_a_time_and_the_other_asks_twice(lab):
@@ -316,8 +316,8 @@ def test_one_host_at_a_time_and_the_other_asks_twice(lab):
     finally:
         attacker.close()
     wait_for(lambda: lab.holder() == 'host:lab', LONG_S, 'lab to be in control')
-    assert 'lab asks for control, which desk has' in lab.said()
-    assert 'lab has taken control from desk' in lab.said()
+    for words in ('lab asks for control, which desk has', 'lab has taken control from desk'):
+        wait_for(lambda words=words: words in lab.said(), LONG_S, words)
     lab.drive(lab.operator)
     lab.operator.stick.hold(0.0, 0.0)
     wait_for(lambda: not lab.moves(), LONG_S, 'it to stand')

@@ -80,10 +80,7 @@ class Moments:
 
     def get_going(self):
         """Have all robots on patrol, and let some time pass."""
-        self.system.patrol()
-        time.sleep(self.dice.uniform(0.0, 2.0))
-        wait_for(lambda: all(log.drives() for log in self.system.logs.values()), PATIENCE_S,
-                 'all to drive', 0.01)
+        self.system.patrol(self.dice.uniform(0.0, 2.0))
 
 
 def test_robots_on_tasks_stand_in_time_and_stay(system):

@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A real Qt on a real X server for every GUI test: the one at hand, else an Xvfb of our own."""
+"""A real Qt on a real X server for every GUI test: the one at hand, else an Xvfb of our own.
+
+With ``MHRI_OWN_SCREEN`` it is always one of our own, so that files may run at the same time.
+"""
 import atexit
 import os
 import sys
@@ -12,8 +15,8 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 from support.xvfb import start_xvfb  # noqa: E402
 
 # Before the first import of Qt by a test module.
-if not os.environ.get('DISPLAY'):
-    _server, os.environ['DISPLAY'] = start_xvfb('1600x1200x24')
+if not os.environ.get('DISPLAY') or os.environ.get('MHRI_OWN_SCREEN'):
+    _server, os.environ['DISPLAY'] = start_xvfb()
     atexit.register(_server.terminate)
 os.environ['QT_QPA_PLATFORM'] = 'xcb'
 
@@ -34,7 +37,7 @@ class Operator:
     def __init__(self, application):
         self.application = application
 
-    def wait_until(self, condition, within_s=10.0):
+    def wait_until(self, condition, within_s=60.0):
         """Run the event loop until a condition holds; fail after a deadline."""
         timer, watch = QTimer(), QElapsedTimer()
         timer.start(5)

@@ -14,7 +14,7 @@ from python_qt_binding.QtWidgets import QApplication, QWidget
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from mhri.presenters.demo import Grip  # noqa: E402
-from support.ros_system import System, wait_for  # noqa: E402
+from support.ros_system import processes_with, System, wait_for  # noqa: E402
 
 ROBOTS = ('bot1', 'bot2', 'bot3')
 
@@ -237,11 +237,9 @@ def test_stop_all_with_proof_and_release_in_two_steps(session):
 
 
 def test_a_robot_switched_off_is_gone_and_not_confirmed_and_comes_back(session):
-    import psutil
-    base = [process for process in psutil.process_iter(['cmdline'])
-            if 'bot3' in ' '.join(process.info['cmdline'] or ())
-            and 'sim_robot' in ' '.join(process.info['cmdline'] or ())
-            and process.environ().get('ROS_MASTER_URI') == session.system.env['ROS_MASTER_URI']]
+    base = [process for process in processes_with(
+        'sim_robot', master=session.system.env['ROS_MASTER_URI'])
+        if 'bot3' in ' '.join(process.cmdline())]
     assert base, 'no process of bot3'
     base[0].send_signal(signal.SIGKILL)
     until(lambda: session.robot('bot3').link == 'gone', 5, 'bot3 to be gone')

@@ -52,6 +52,9 @@ def test_1_r_records(session):
     session.key('r')
     session.until(lambda: session.button.text().startswith('REC 0'), 'the button to say so')
     assert session.button.isChecked()
+    labels = [tile.header.rec_label for tile in session.host.windows.values()]
+    session.until(lambda: all(label.isVisible() and label.text().startswith('REC')
+                              for label in labels), 'every tile to say so')
     session.until(lambda: [event.kind for event in session.events()].count('start') == 1,
                   'the first line')
 

@@ -20,6 +20,7 @@ import rosgraph
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from support.panel_session import PanelSession  # noqa: E402
+from support.ros_system import processes_with  # noqa: E402
 
 TOGGLES = 1000
 WARM_UP = 100
@@ -121,19 +122,9 @@ def row(name, figures):
         for item in figures.items()))
 
 
-def robot_process(session):
-    """Return the process of the simulated robot."""
-    uri = session.system.env['ROS_MASTER_URI']
-    for process in psutil.process_iter(['cmdline']):
-        words = process.info['cmdline'] or ()
-        if any(word.endswith('sim_robot') for word in words) \
-                and process.environ().get('ROS_MASTER_URI') == uri:
-            return process
-    raise AssertionError('no process of the robot')
-
-
 def test_a_thousand_toggles_leave_nothing_behind(session, window):
-    panel, robot = psutil.Process(), robot_process(session)
+    robot = processes_with('sim_robot', master=session.system.env['ROS_MASTER_URI'])[0]
+    panel = psutil.Process()
     for number in range(WARM_UP):
         toggle(session, window, number)
     session.until(lambda: window.view('rgb').picture.frame is not None, what='the picture')

@@ -8,6 +8,7 @@ from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QWidget
 
+from mhri.core.recording.recording import RECORDING, RecordingStatus
 from mhri.core.screen import views
 from mhri.core.screen.views import ProofView, RobotView
 from mhri.gui.screen import theme
@@ -173,6 +174,35 @@ def test_the_header_lies_on_the_picture_where_that_is_all(window, operator):
     window.switches.choose({'rgb', 'imu'})
     operator.settle()
     assert window.view('rgb').mapTo(window, window.rect().topLeft()).y() >= window.header.height()
+
+
+def test_the_header_says_what_is_recorded(window, operator):
+    header, rec = window.header, window.header.rec_label
+
+    def shown():
+        operator.settle()
+        assert not rec.isVisible() or rec.shown_text() == rec.text(), 'cut off'
+        return rec.text() if rec.isVisible() else ''
+    window.resize(1200, 700)
+    own = RecordingStatus(RECORDING, duration_s=31.0)
+    header.show_recording(None)
+    assert shown() == ''
+    header.show_session(252.0)
+    assert shown() == 'REC 04:12'
+    header.show_recording(own)
+    assert shown() == 'REC 04:12 + 00:31'
+    window.show_large(False)
+    assert shown() == 'REC'
+    window.show_large(True)
+    header.show_session(3600.0)
+    assert shown() == 'REC 1:00:00 + 00:31'
+    header.show_session(None)
+    assert shown() == 'REC 00:31'
+    header.show_recording(None)
+    assert shown() == ''
+    header.show_replay()
+    header.show_session(252.0)
+    assert shown() == 'REPLAY'
 
 
 def test_the_numbers_of_a_robot_that_says_nothing():

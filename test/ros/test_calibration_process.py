@@ -35,7 +35,7 @@ def fixture_terminal(tmp_path):
 
 
 def ended(process):
-    return process.popen.wait(20)
+    return process.popen.wait(60)
 
 
 def asks(process, words, count=1):

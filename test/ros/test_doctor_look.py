@@ -48,8 +48,8 @@ def test_name_that_changes_is_seen_at_once(monkeypatch):
 
 def test_name_is_watched_until_the_end(monkeypatch):
     begun = time.monotonic()
-    uri, asked = watch(monkeypatch, 'http://a:1/', limit_s=0.1)
-    assert uri == 'http://a:1/' and asked > 3 and 0.1 <= time.monotonic() - begun < 5.0
+    uri, asked = watch(monkeypatch, 'http://a:1/', limit_s=1.0)
+    assert uri == 'http://a:1/' and asked > 3 and 1.0 <= time.monotonic() - begun < 30.0
     assert watch(monkeypatch, 'http://a:1/', limit_s=-1.0) == ('http://a:1/', 0)
 
 

@@ -98,17 +98,23 @@ TELL = 'import time; from mhri.ros.started import started_s; print(time.monotoni
 
 
 def test_time_counts_from_the_start_of_the_program():
-    begun = time.monotonic()
-    told = subprocess.run(['sh', '-c', 'sleep 0.5; exec "$@"', 'sh', sys.executable, '-c', TELL],
-                          env=os.environ, stdout=subprocess.PIPE, check=True)
-    assert 0.5 <= float(told.stdout) <= time.monotonic() - begun + 0.02
+    for _ in range(5):
+        begun = time.monotonic()
+        told = subprocess.run(
+            ['sh', '-c', 'sleep 0.5; exec "$@"', 'sh', sys.executable, '-c', TELL],
+            env=os.environ, stdout=subprocess.PIPE, check=True)
+        took_s = time.monotonic() - begun
+        # A start that took longer, on a busy computer, is not believed.
+        if took_s < BELIEVED_S:
+            break
+    assert 0.5 <= float(told.stdout) <= took_s + 0.02
 
 
 def test_age_of_a_shell_that_became_the_program_is_not_believed(monkeypatch):
     now = time.clock_gettime(time.CLOCK_BOOTTIME)
     for age_s in (BELIEVED_S + 60.0, -60.0):
         monkeypatch.setattr(time, 'clock_gettime', lambda _, age=age_s: now + age)
-        assert time.monotonic() - started_s() < 0.1
+        assert time.monotonic() - started_s() < 5.0
     monkeypatch.undo()
     monkeypatch.setattr('builtins.open', lambda *_: (_ for _ in ()).throw(OSError()))
-    assert time.monotonic() - started_s() < 0.1
+    assert time.monotonic() - started_s() < 5.0

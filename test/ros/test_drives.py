@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Drives read from bags."""
+import random
+
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
 import pytest
@@ -73,3 +75,17 @@ def test_a_bag_that_was_not_closed_names_the_remedy(bag):
         stream.write(bytes(8))
     with pytest.raises(DriveError, match='rosbag reindex'):
         read_drive(path, ['/bot1/odom'])
+
+
+@pytest.mark.parametrize('seed', range(40))
+def test_a_damaged_bag_is_refused_with_its_name_or_read(bag, seed):
+    path, dice = bag(odom=Odometry), random.Random(seed)
+    data = bytearray(open(path, 'rb').read())
+    for _ in range(dice.choice((1, 20, 200))):
+        data[dice.randrange(len(data))] = dice.randrange(256)
+    with open(path, 'wb') as out:
+        out.write(data)
+    try:
+        assert all(pose.is_finite() for pose in read_drive(path, ['/bot1/odom']))
+    except DriveError as error:
+        assert path in str(error)

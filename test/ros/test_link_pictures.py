@@ -48,15 +48,28 @@ def pictures(way):
     return Pictures(time.monotonic, way.send, lambda data, names, number: data)
 
 
-def test_a_picture_goes_in_pieces_each_as_often_as_it_must():
+def test_a_picture_goes_in_pieces_with_as_many_spare_ones_as_it_must():
     way = Way()
     sends = pictures(way)
-    sends.share({'camera': Share(5.0, times=2)})
+    sends.share({'camera': Share(5.0, group=2)})
     body = bytes(range(250)) * 20
     sends.offer(CAMERA, RAW, body, 1)
-    count = 2 * -(-len(body) // PIECE_BYTES)
-    wait_for(lambda: len(way.pieces) == count, LONG_S, 'all pieces, twice')
+    count = -(-len(body) // PIECE_BYTES)
+    count += -(-count // 2)
+    wait_for(lambda: len(way.pieces) == count, LONG_S, 'all pieces, and the spare ones')
     assert way.came() == [body] and sends.most_hz() > 0.0
+
+
+def test_none_goes_while_the_radio_bears_none():
+    way = Way()
+    sends = pictures(way)
+    sends.share({'camera': Share(0.0), 'second': Share(5.0)})
+    sends.offer(CAMERA, RAW, b'first', 1)
+    sends.offer(SECOND, RAW, b'other', 1)
+    wait_for(lambda: way.came('second') == [b'other'], LONG_S, 'the other one')
+    assert not way.came() and sends.waits()
+    sends.share({'camera': Share(5.0)})
+    wait_for(lambda: way.came() == [b'first'], LONG_S, 'the first')
 
 
 def test_of_those_that_wait_the_newest_goes():

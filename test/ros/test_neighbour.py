@@ -27,7 +27,7 @@ def _child():
 def test_a_process_that_is_still_the_same_is_ended(child):
     process = Process(child.pid)
     assert process.is_there() and process.end()
-    assert child.wait(10.0) == -9
+    assert child.wait(60.0) == -9
 
 
 def test_one_that_has_gone_is_not(child):
@@ -67,7 +67,7 @@ def test_what_a_launcher_started_comes_back_through_a_shell_as_well(tmp_path, sh
         assert Process(int(parent.stdout.readline())).comes_back()
     finally:
         parent.stdin.close()
-        parent.wait(10.0)
+        parent.wait(60.0)
         parent.stdout.close()
 
 

@@ -42,7 +42,7 @@ def start():
     yield run
     for process in begun:
         process.kill()
-        process.communicate(timeout=20)
+        process.communicate(timeout=60)
 
 
 def here(process):
@@ -72,7 +72,7 @@ def test_a_signal_to_end_is_handed_on_once_and_the_status_with_it(start, number,
     process = start()
     here(process)
     send(process.pid, number)
-    assert process.wait(20) == status
+    assert process.wait(60) == status
     assert process.stdout.read().split() == ['signal', str(int(number))]
 
 
@@ -81,13 +81,13 @@ def test_no_child_outlives_its_parent(start):
     child = psutil.Process(here(process))
     process.kill()
     assert process.stdout.readline().split() == ['signal', str(int(signal.SIGTERM))]
-    child.wait(20)
+    child.wait(60)
 
 
 def test_one_that_is_killed_at_once_is_not_started_for_ever(start):
     process = start(least_life_s=60.0)
     os.kill(here(process), signal.SIGSEGV)
-    assert process.wait(20) == 128 + signal.SIGSEGV
+    assert process.wait(60) == 128 + signal.SIGSEGV
 
 
 def test_the_child_has_a_processes_ordinary_signals(start):

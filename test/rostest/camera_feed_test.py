@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Camera feeds against real publishers: all transports, none, late, killed, garbage, 1000 times."""
+"""Camera feeds against real publishers: all transports, none, late, killed, garbage, toggled."""
 import gc
 import os
 import signal
@@ -30,7 +30,8 @@ RGB = colour_picture(320, 240)
 MM = depth_picture(320, 240)
 M = np.where(MM > 0, MM / np.float32(1000), np.nan).astype(np.float32)
 RATE_HZ = 30.0
-TOGGLES = 1000
+# The thousand are clicked in test/gui/test_toggling.py.
+TOGGLES = 300
 
 
 def jpeg(rgb=RGB, fmt='rgb8; jpeg compressed bgr8'):
@@ -143,13 +144,13 @@ class CameraFeedTest(unittest.TestCase):
                  'compressed, as soon as it is there')
         self.assertEqual(feed.transports(), ['compressed', 'raw'])
         feed.choose('raw')
-        wait_for(lambda: feed.take() and feed.status().transport == 'raw', 5.0, 'raw as chosen')
-        wait_for(lambda: compressed.publisher.get_num_connections() == 0, 5.0, 'one at a time')
+        wait_for(lambda: feed.take() and feed.status().transport == 'raw', 10.0, 'raw as chosen')
+        wait_for(lambda: compressed.publisher.get_num_connections() == 0, 10.0, 'one at a time')
         feed.choose('compressedDepth')
         wait_for(lambda: 'offers compressed, raw, not compressedDepth' in feed.status().problem,
                  5.0, 'why nothing comes')
         feed.choose('auto')
-        wait_for(lambda: feed.take() and feed.status().transport == 'jpeg', 5.0, 'auto again')
+        wait_for(lambda: feed.take() and feed.status().transport == 'jpeg', 10.0, 'auto again')
 
     def test_second_topic_of_the_template(self):
         self.begin(Camera('/second/raspicam_node/image/compressed', jpeg()))
@@ -165,17 +166,17 @@ class CameraFeedTest(unittest.TestCase):
         self.assertEqual(nothing.transports(), [])
         text = rospy.Publisher('/text/camera/image_raw/compressed', String, queue_size=1)
         feed = self.feed('text')
-        wait_for(lambda: 'nobody publishes' in feed.status().detail, 5.0, 'no picture, no offer')
+        wait_for(lambda: 'nobody publishes' in feed.status().detail, 10.0, 'no picture, no offer')
         text.unregister()
 
     def test_late_killed_and_replaced(self):
         feed = self.feed('late')
-        wait_for(lambda: feed.status().problem, 5.0, 'the first look')
+        wait_for(lambda: feed.status().problem, 10.0, 'the first look')
         camera = self.begin(CameraProcess('/late/camera/image_raw/compressed', 'late_camera'))
         wait_for(feed.take, 20.0, 'a picture of the late camera')
         camera.send(signal.SIGKILL)
         killed_at = time.monotonic()
-        wait_for(lambda: feed.status().stale, 5.0, 'stale')
+        wait_for(lambda: feed.status().stale, 10.0, 'stale')
         measured('camera killed until its picture is stale', time.monotonic() - killed_at)
 
         # It is still registered: rospy would keep a thread for each subscription to it.
@@ -197,12 +198,12 @@ class CameraFeedTest(unittest.TestCase):
                             (good.data[:2000], 'truncated')):
             before = feed.status().bad
             camera.message = CompressedImage(format='jpeg', data=data)
-            status = wait_for(lambda: words in feed.status().problem and feed.status(), 5.0, words)
+            status = wait_for(lambda: words in feed.status().problem and feed.status(), 10.0, words)
             self.assertGreater(status.bad, before)
-            wait_for(lambda: feed.status().stale, 2.0, 'stale')
+            wait_for(lambda: feed.status().stale, 10.0, 'stale')
             camera.message = good
-            wait_for(lambda: not feed.status().stale, 5.0, 'good again')
-            self.assertIsNotNone(wait_for(feed.take, 5.0))
+            wait_for(lambda: not feed.status().stale, 10.0, 'good again')
+            self.assertIsNotNone(wait_for(feed.take, 10.0))
 
     def test_size_and_rate_and_newest_only(self):
         self.begin(Camera('/small/camera/image_raw/compressed', jpeg()))
@@ -212,20 +213,21 @@ class CameraFeedTest(unittest.TestCase):
         frames, ages = [], []
         begun = time.monotonic()
         while len(frames) < 11:
-            frames.append(wait_for(feed.take, 2.0, 'the next'))
+            frames.append(wait_for(feed.take, 10.0, 'the next'))
             ages.append(time.monotonic() - frames[-1].received_s)
         rate_hz = 10 / (time.monotonic() - begun)
         print('MEASURED asked for 5 Hz of 30: {:.2f} Hz, oldest picture {:.0f} ms'.format(
             rate_hz, max(ages) * 1e3))
         self.assertEqual({frame.rgb.shape for frame in frames}, {(60, 80, 3)})
         self.assertTrue(4.0 < rate_hz < 6.0, rate_hz)
-        self.assertLess(max(ages), 0.15)
+        # One that kept what it was not asked for would fall behind by 0.2 s with each.
+        self.assertLess(max(ages), 0.5)
         status = feed.status()
         self.assertTrue(20.0 < status.rate_hz < 35.0, status)
         size = len(jpeg().data)
         self.assertTrue(0.7 < status.bits_per_s / (8 * size * status.rate_hz) < 1.3, status)
         feed.set_view(None, None, None)
-        wait_for(lambda: (feed.take() or frames[0]).rgb.shape == (240, 320, 3), 5.0, 'full size')
+        wait_for(lambda: (feed.take() or frames[0]).rgb.shape == (240, 320, 3), 10.0, 'full size')
 
     def test_one_picture_alone_is_shown_at_the_size_asked_for_later(self):
         publisher = rospy.Publisher('/still/camera/image_raw/compressed', CompressedImage,
@@ -235,7 +237,7 @@ class CameraFeedTest(unittest.TestCase):
         feed.set_view(80, 80, 2.0)
         self.assertEqual(wait_for(feed.take, 10.0, 'the picture').rgb.shape, (60, 80, 3))
         feed.set_view(320, 240)
-        self.assertEqual(wait_for(feed.take, 5.0, 'it, larger').rgb.shape, (240, 320, 3))
+        self.assertEqual(wait_for(feed.take, 10.0, 'it, larger').rgb.shape, (240, 320, 3))
         publisher.unregister()
 
     def test_beside_another_subscriber_of_this_program(self):
@@ -247,7 +249,7 @@ class CameraFeedTest(unittest.TestCase):
         wait_for(feed.take, 10.0, 'a picture')
         feed.close(5.0)
         count = len(heard)
-        wait_for(lambda: len(heard) > count + 5, 5.0, 'the other to go on')
+        wait_for(lambda: len(heard) > count + 5, 10.0, 'the other to go on')
         self.assertIsInstance(heard[-1], CompressedImage)
         other.unregister()
 
@@ -261,11 +263,11 @@ class CameraFeedTest(unittest.TestCase):
         measured('close() on the calling thread', time.monotonic() - begun)
         self.assertIsNone(feed.take())
         self.assertEqual(feed.status().rate_hz, 0.0)
-        wait_for(lambda: camera.publisher.get_num_connections() == 0, 5.0, 'no connection')
+        wait_for(lambda: camera.publisher.get_num_connections() == 0, 10.0, 'no connection')
         measured('close() until the camera has no listener', time.monotonic() - begun)
-        wait_for(lambda: threading.active_count() <= threads, 5.0, 'no thread left')
+        wait_for(lambda: threading.active_count() <= threads, 10.0, 'no thread left')
 
-    def test_opened_and_closed_a_thousand_times(self):
+    def test_opened_and_closed_again_and_again(self):
         self.begin(CameraProcess('/toggled/camera/image_raw/compressed', 'toggled_camera'))
         feed = self.feed('toggled')
         wait_for(feed.take, 20.0, 'a picture')
@@ -279,7 +281,7 @@ class CameraFeedTest(unittest.TestCase):
             return wait_for(lambda: threading.active_count() <= threads and figures(), 10.0,
                             'the threads to end')
 
-        wait_for(lambda: feed._finder is None, 5.0)
+        wait_for(lambda: feed._finder is None, 10.0)
         threads = threading.active_count()
         gc.collect()
         gc.disable()  # what only the collector of cycles closes is left behind, for a long time

@@ -20,6 +20,8 @@ from support.surgery import BlackHole, Clinic, wrong  # noqa: E402
 
 TWIST, ODOMETRY, BOOL = 'geometry_msgs/Twist', 'nav_msgs/Odometry', 'std_msgs/Bool'
 ROBOT = ('--odometry', 'odom', '--subscribe', 'cmd_vel', TWIST)
+# An examination that took longer had no time for everything, on a busy computer [s].
+SHORT_S = 2.0
 
 
 class DoctorTest(unittest.TestCase):
@@ -37,8 +39,12 @@ class DoctorTest(unittest.TestCase):
 
     def found(self, *checks, about=None, remedy=None, robots=(), **options):
         """Examine; exactly these checks are wrong; the first is about this, with this remedy."""
-        status, report = self.clinic.examine(*robots, **options)
-        findings = wrong(report)
+        for _ in range(8):
+            status, report = self.clinic.examine(*robots, **options)
+            findings = wrong(report)
+            if set(findings) == set(checks) or report['took_s'] < SHORT_S:
+                break
+            print('again: {:.2f} s, {}'.format(report['took_s'], sorted(findings)))
         self.assertEqual(set(findings), set(checks), findings)
         self.assertEqual(status, 1)
         for item in findings.values():
@@ -245,7 +251,7 @@ class DoctorTest(unittest.TestCase):
     def test_gates_that_refuse_somebody(self):
         self.clinic.patient('/rogue', '--select', 'bot1')
         self.clinic.patient('/other', '--select', 'bot2')
-        wait_for(lambda: 'gates_refused' in wrong(self.clinic.examine()[1]), 60.0, 'the refusal')
+        wait_for(lambda: 'gates_refused' in wrong(self.clinic.examine()[1]), 180.0, 'the refusal')
         found = self.found('gates_refused', 'panel_several', remedy='rosnode info /')
         self.assertRegex(found['gates_refused']['problem'], '/(rogue|other): robot_select, ')
 

@@ -19,7 +19,7 @@ from mhri.msg import ControlMode, PanelRequest, RobotSelect
 HERE = os.path.dirname(os.path.abspath(__file__))
 PS3_UP = (0.0, -1.0)
 # Buttons of resource/pads/ps3.yaml and xbox.yaml that are tried here.
-PS3_BUTTONS = {'stop_all': 1, 'next': 5, 'previous': 3, 'select_all': 2}
+PS3_BUTTONS = {'stop_all': 1, 'next': 5, 'previous': 3, 'select_all': 2, 'mark': 8}
 DEAD_MAN = 4
 
 
@@ -186,14 +186,14 @@ class Handover(unittest.TestCase):
         wait_until(lambda: rospy.get_param('/mux/stop_all', False), 'the stop is not remembered')
         self.mode.publish(source='ps3joy')
         self.modes.wait(lambda value: value == 'ps3joy')
-        for action in ('next', 'previous', 'select_all'):
+        for action in ('next', 'previous', 'select_all', 'mark'):
             self.pad.hold(NEUTRAL, held())
             begun = self.pad.hold(NEUTRAL, held(PS3_BUTTONS[action]))
             self.requests.wait(lambda value: value == action, begun)
         self.pad.hold(NEUTRAL, held())
         self.twists.wait_silence(0.7)
         self.assertEqual([item.value for item in self.requests.since(0.0)],
-                         ['next', 'previous', 'select_all'])
+                         ['next', 'previous', 'select_all', 'mark'])
 
     def test_a_touched_device_takes_over_while_everything_stands(self):
         self.mux('_automatic_switching:=true')

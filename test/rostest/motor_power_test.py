@@ -29,8 +29,8 @@ from mhri.ros.resources import robot_types  # noqa: E402
 from mhri.ros.robots.hardware_stop import HardwareStop  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
-# A call that waits for nothing takes far less [s].
-AT_ONCE_S = 0.02
+# A call that waits for nothing takes far less; one that waits for a robot, 3 s.
+AT_ONCE_S = 1.0
 
 
 class Base:

@@ -294,7 +294,7 @@ class MuxEnd(unittest.TestCase):
             begun = mux.send(signal.SIGTERM)
             first = self.twists.wait(rests, begun)
             self.assertLess(measured('SIGTERM, terminal blocked', first.at - begun), 0.05)
-            self.assertEqual(mux.wait(20.0), 0)
+            self.assertEqual(mux.wait(60.0), 0)
         finally:
             os.close(reading)
             os.close(writing)

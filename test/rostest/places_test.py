@@ -26,6 +26,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 from mhri.msg import ControlMode, Place, Places, RunTaskAction, RunTaskGoal, TaskState  # noqa: E402
 from mhri.srv import FitPlace, SetFence, SetMark, SetPlace  # noqa: E402
 from support.fake_mux import FakeOperator, StateEar  # noqa: E402
+from support.ros_system import processes_with  # noqa: E402
 
 PATIENCE_S = 60.0
 BOT1, BOT2, BOT3 = (3.0, 1.0, 0.0), (2.0, 2.0, 1.0), (1.5, 3.2, 0.4)
@@ -195,9 +196,7 @@ class WherePlaced(unittest.TestCase):
         # Written by another thread.
         wait_until(lambda: rospy.get_param('/mhri_tasks/kept', {}).get('fence')
                    and 'bot5' in rospy.get_param('/mhri_tasks/kept')['hand'], 'not kept', 30.0)
-        killed = [process for process in psutil.process_iter(['cmdline'])
-                  if '__name:=mhri_tasks' in (process.info['cmdline'] or ())
-                  and os.environ['ROS_MASTER_URI'] == process.environ().get('ROS_MASTER_URI')]
+        killed = processes_with('__name:=mhri_tasks')
         for process in killed:
             process.kill()
         psutil.wait_procs(killed, 30.0)
@@ -230,7 +229,8 @@ class WherePlaced(unittest.TestCase):
                 (self.fit_place('bot3', 'x' * 5000), 'bot3 has to be placed')):
             self.refused(answer, words) if words != 'bot3 has to be placed' else \
                 self.assertFalse(answer.success)
-        self.assertEqual((self.places.last().marks, self.places.last().fence), ([], []))
+        wait_until(lambda: (self.places.last().marks, self.places.last().fence) == ([], []),
+                   'something is left', PATIENCE_S)
 
     def test_a_robot_on_a_task_is_not_placed(self):
         self.put('bot3', *BOT3)

@@ -19,7 +19,7 @@ import roslib.packages
 import rospy
 from sensor_msgs.msg import Joy
 
-PATIENCE_S = 10.0
+PATIENCE_S = 60.0
 FORWARD = (0.0, 1.0)
 NEUTRAL = (0.0, 0.0)
 

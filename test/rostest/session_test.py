@@ -23,7 +23,7 @@ from mhri.core.session.folder import (  # noqa: E402
     bags_of, marks_of, read_events, read_info, robots_of)
 from mhri.msg import (  # noqa: E402
     Places, RobotSelect, SeenPicture, SessionEvent, SessionState)
-from mhri.srv import AddNote, MarkSession  # noqa: E402
+from mhri.srv import AddNote, MarkSession, SetFault  # noqa: E402
 from sensor_msgs.msg import CompressedImage  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
@@ -114,6 +114,11 @@ class SessionTest(unittest.TestCase):
         wait_for(lambda: any(event.kind == 'selection' for event in self.events(folder)),
                  PATIENCE_S, 'the selection among the events')
         wait_for(self.are_placed, PATIENCE_S, 'both robots on the map')
+        fail = rospy.ServiceProxy('/bot2/base/set_fault', SetFault)
+        for told, duration_s in (('fault: left', 0.0), ('fault over: left', -1.0)):
+            fail('wheel_slow', 40.0, duration_s)
+            wait_for(lambda: any(event.kind == 'fault' and told in event.text
+                                 for event in self.events(folder)), PATIENCE_S, told)
         marked = self.service['mark']('')
         self.assertTrue(marked.success, marked.message)
         self.assertEqual(marked.id, 'm1')

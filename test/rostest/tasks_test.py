@@ -15,7 +15,6 @@ import unittest
 
 import actionlib
 from geometry_msgs.msg import PoseStamped, Twist
-import psutil
 import roslib.packages
 import rospkg
 import rospy
@@ -30,6 +29,7 @@ from mhri.msg import (  # noqa: E402
     ControlMode, RunTaskAction, RunTaskGoal, TaskList, TaskState)
 from mhri.ros.resources import read_text  # noqa: E402
 from support.fake_mux import FakeOperator, StateEar  # noqa: E402
+from support.ros_system import processes_with  # noqa: E402
 
 PATIENCE_S = 120.0
 # Where bot2 begins.
@@ -95,6 +95,18 @@ class Tasks(unittest.TestCase):
                    PATIENCE_S)
         return [(robot.state, robot.text) for robot in goal.get_result().robots]
 
+    def done(self, robot, task, parameters):
+        """Do a task to its end, which has to be a good one.
+
+        Again where something came too late: on a busy machine that says nothing of the task.
+        """
+        for _ in range(5):
+            ended = self.ends(self.start(robot, task, parameters))
+            if ended[0][0] != TaskState.LOST:
+                break
+            print('again: {}'.format(ended))
+        self.assertEqual(ended[0][0], TaskState.DONE, ended)
+
     def on_its_way(self, robot='bot1', parameters='{x: 9.0, y: 2.0}'):
         """Start a robot on a long way and wait until it moves; return (goal, since when).
 
@@ -125,15 +137,12 @@ class Tasks(unittest.TestCase):
     def test_a_goal_is_reached_within_02_m(self):
         x, y = self.places['bot1'].last()
         goal = (x + (1.5 if x < 6.0 else -1.5), 2.2 if y < 1.8 else 1.2)
-        words = '{{x: {}, y: {}, heading: 1.0}}'.format(*goal)
-        ended = self.ends(self.start('bot1', 'goto', words))
-        self.assertEqual(ended[0][0], TaskState.DONE, ended)
+        self.done('bot1', 'goto', '{{x: {}, y: {}, heading: 1.0}}'.format(*goal))
         self.assertLess(math.dist(self.places['bot1'].last(), goal), 0.2)
 
     def test_the_terminal_drives_a_square_and_says_its_corners(self):
         # Away from everything.
-        there = self.ends(self.start('bot1', 'goto', '{x: 5.0, y: 2.0, heading: 0.0, speed: 0.4}'))
-        self.assertEqual(there[0][0], TaskState.DONE, there)
+        self.done('bot1', 'goto', '{x: 5.0, y: 2.0, heading: 0.0, speed: 0.4}')
         tool = task_tool('bot1', 'square', '0.4')
         self.addCleanup(tool.end)
         self.assertEqual(tool.wait(PATIENCE_S), 0, tool.said())
@@ -169,18 +178,16 @@ class Tasks(unittest.TestCase):
     def test_a_follower_keeps_its_distance_and_returns(self):
         following = self.start('bot2', 'follow', '{leader: bot1, distance: 1.0}')
         x = self.places['bot1'].last()[0]
-        leading = self.start('bot1', 'goto', '{{x: {}, y: 2.0, speed: 0.2}}'.format(
+        self.done('bot1', 'goto', '{{x: {}, y: 2.0, speed: 0.2}}'.format(
             5.0 if x < 3.5 else 2.5))
-        self.assertEqual(self.ends(leading)[0][0], TaskState.DONE)
         wait_until(lambda: math.dist(self.places['bot1'].last(), self.places['bot2'].last()) < 1.25,
                    'bot2 is left behind', PATIENCE_S)
         self.assertGreater(math.dist(self.places['bot1'].last(), self.places['bot2'].last()), 0.6)
-        self.assertIn('bot2', [robot.robot for run in self.lists.last().runs
-                               for robot in run.robots])
+        wait_until(lambda: 'bot2' in [robot.robot for run in self.lists.last().runs
+                                      for robot in run.robots], 'bot2 is not listed', 30.0)
         following.cancel()
         self.assertEqual(self.ends(following), [(TaskState.STOPPED, 'it was cancelled')])
-        back = self.ends(self.start('bot2', 'return', ''))
-        self.assertEqual(back[0][0], TaskState.DONE, back)
+        self.done('bot2', 'return', '')
         self.assertLess(math.dist(self.places['bot2'].last(), BOT2), 0.4)
 
     def test_stop_all_ends_every_task_and_nothing_resumes(self):
@@ -193,7 +200,7 @@ class Tasks(unittest.TestCase):
         self.commands['bot1'].wait_silence(1.2, 30.0)
         self.assertEqual([item for item in self.commands['bot1'].since(stopped + 0.5)
                           if moves(item.value)], [])
-        self.assertEqual(self.lists.last().runs, [])
+        wait_until(lambda: not self.lists.last().runs, 'the list has it still', 30.0)
 
     def test_checking_a_robot_takes_it_over(self):
         goal, _ = self.on_its_way()
@@ -224,10 +231,9 @@ class Tasks(unittest.TestCase):
 
     def test_killed_it_leaves_zeros_and_comes_back_with_nothing_to_do(self):
         self.on_its_way()
-        process = [process for process in psutil.process_iter(['cmdline'])
-                   if '__name:=mhri_tasks' in (process.info['cmdline'] or ())]
+        processes = processes_with('__name:=mhri_tasks')
         killed = time.monotonic()
-        for one in process:
+        for one in processes:
             one.kill()
         took = measured('mhri_tasks killed, first zero', self.rests_for_good('bot1', killed))
         self.assertLess(took, 2.0)

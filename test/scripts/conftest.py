@@ -81,7 +81,7 @@ class Checkout:
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
             preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
 
-    def run(self, *arguments, limit_s=60, **keywords):
+    def run(self, *arguments, limit_s=300, **keywords):
         """Return (exit status, all output) of the script."""
         process = self.start(*arguments, **keywords)
         try:

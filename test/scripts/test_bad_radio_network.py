@@ -63,7 +63,7 @@ def link(places):
         assert answers.stdout.readline() == 'ready\n'
         yield Link(radio, near)
         answers.kill()
-        answers.wait(20)
+        answers.wait(60)
         answers.stdout.close()
 
 

@@ -69,29 +69,29 @@ BAD = suite(PASS, FAIL)
 
 @pytest.mark.parametrize('names, targets', [
     ([], ''),
-    (['pytest-gui-test_a'], 'gui_test_a'),
-    (['MISSING-pytest-gui-test_a'], 'gui_test_a'),
+    (['pytest-gui_calm-test_a'], 'gui_calm_test_a'),
+    (['MISSING-pytest-gui_calm-test_a'], 'gui_calm_test_a'),
     (['pytest-scripts_calm-test_a', 'pytest-faults_timed-test_b'],
      'faults_timed_test_b scripts_calm_test_a'),
     (['rosunit-x', 'rostest-test_rostest_x'], 'rostest_test_rostest_x.test'),
     (['pytest-bench-test_benchmarks'], 'bench_test_benchmarks'),
     (['pytest-unit-ros', 'pytest-oldest-widgets'], 'oldest_widgets unit_ros'),
     # What does not depend on the computer is not asked twice.
-    (['pytest-unit-unit', 'pytest-gui-test_a'], ''),
+    (['pytest-unit-unit', 'pytest-gui_calm-test_a'], ''),
     (['pytest-lint-test_lint'], ''),
     (['pytest-oldest-unit', 'pytest-unit-ros'], ''),
     # So many failures are no accident.
-    (['pytest-gui-test_{}'.format(number) for number in range(5)], '')])
+    (['pytest-gui_calm-test_{}'.format(number) for number in range(5)], '')])
 def test_set_aside(tmp_path, names, targets):
     results = tmp_path / 'results'
     results.mkdir()
-    (results / 'pytest-gui-test_good.xml').write_text(suite(PASS))
+    (results / 'pytest-gui_calm-test_good.xml').write_text(suite(PASS))
     for name in names:
         (results / (name + '.xml')).write_text(BAD)
     done = subprocess.run([sys.executable, str(PROGRAM), '--set-aside', str(results)],
                           stdout=subprocess.PIPE, universal_newlines=True)
     assert done.stdout.split() == targets.split() and done.returncode == 0
-    left = {path.stem for path in results.iterdir()} - {'pytest-gui-test_good'}
+    left = {path.stem for path in results.iterdir()} - {'pytest-gui_calm-test_good'}
     assert left == (set() if targets else set(names))
     counted = subprocess.run([sys.executable, str(PROGRAM), str(results)],
                              stdout=subprocess.PIPE, universal_newlines=True).stdout

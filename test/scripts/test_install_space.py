@@ -92,6 +92,6 @@ def test_it_runs_from_there(prefix, system, executable, arguments, node):
         command = file.read()
     assert str(prefix) in command and str(REPO) not in command
     process.terminate()
-    assert process.wait(20) in (0, -15, 143)
+    assert process.wait(60) in (0, -15, 143)
     with open(process.log) as log:
         assert 'Traceback' not in log.read()

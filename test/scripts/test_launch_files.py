@@ -116,10 +116,11 @@ def test_simulated_robots_of_given_types_and_names():
 
 
 def test_a_link_for_each_robot_with_a_master_of_its_own():
-    config = load(MHRI, 'links:=bot1=tcp/10.0.0.1:7447 bot2', 'router:=10.0.0.2:7447')
+    config = load(MHRI, 'links:=bot1=tcp/10.0.0.1:7447 bot2', 'router:=10.0.0.2:7447',
+                  'keep:=pictures')
     links = [node for node in config.nodes if node.type == 'mhri_link']
     assert sorted(node.namespace for node in links) == ['/bot1/', '/bot2/']
-    assert all('--side host' in node.args for node in links)
+    assert all('--side host' in node.args and '--keep pictures' in node.args for node in links)
     by_name = {node.namespace: node.args for node in links}
     assert "--connect 'tcp/10.0.0.1:7447' --router ''" in by_name['/bot1/']
     assert "--connect '' --router '10.0.0.2:7447'" in by_name['/bot2/']
@@ -136,7 +137,7 @@ def test_a_robot_with_a_master_of_its_own_has_link_and_guard(more, namespaces):
     args = next(node.args for node in config.nodes if node.type == 'mhri_link')
     assert '--side robot' in args
     assert "--listen '{}'".format('' if 'router' in ''.join(more) else '0.0.0.0:7447') in args
-    assert "--keys 'auto'" in args
+    assert "--keys 'auto'" in args and '--keep-mb 500' in args
 
 
 def test_test_nodes_have_names_of_their_own():

@@ -84,7 +84,7 @@ def write_tests(package, tests):
 
 def run_tests(package, *arguments):
     """Return (exit status, output) of mhri_test.sh."""
-    return package.run(*arguments, script=package.script.with_name('mhri_test.sh'), limit_s=240)
+    return package.run(*arguments, script=package.script.with_name('mhri_test.sh'), limit_s=900)
 
 
 def test_good_tests(package):
@@ -101,8 +101,8 @@ def test_bad_tests_are_all_counted(package):
     assert status == 1
     failed = [line for line in output.splitlines() if line.startswith('FAILED')
               and '.xml: ' in line]
-    for name in ('test_bad', 'MISSING-pytest-gui-test_crash', 'faults_timed-test_import',
-                 'pytest-faults_timed-test_none.xml: no test ran', 'rosunit-bad',
+    for name in ('test_bad', 'MISSING-pytest-gui_calm-test_crash', 'faults_calm-test_import',
+                 'pytest-faults_calm-test_none.xml: no test ran', 'rosunit-bad',
                  'rosunit-crash.xml: is not a complete result file'):
         assert [line for line in failed if name in line], (name, output)
     assert output.splitlines()[-1] == '7 passed, 6 failed, 1 skipped', output
@@ -159,18 +159,17 @@ def test_meeting():
 '''
 
 
-@pytest.mark.parametrize('group, jobs, together', [
-    ('scripts', '2', True), ('scripts', '1', False), ('gui', '2', False)])
-def test_files_that_measure_no_times_run_together(package, group, jobs, together):
+@pytest.mark.parametrize('names, jobs, together', [
+    ('one two', '2', True), ('one two', '1', False), ('killed key_held', '2', False)])
+def test_files_that_measure_no_times_run_together(package, names, jobs, together):
     for folder in ('scripts', 'gui'):
         shutil.rmtree(str(package.root / 'test' / folder), ignore_errors=True)
-    write_tests(package, {group + '/test_one.py': MEETING, group + '/test_two.py': MEETING,
-                          group + '/test_doctor_network.py': 'def test_alone():\n    pass\n'})
+    write_tests(package, {'gui/test_{}.py'.format(name): MEETING for name in names.split()})
     status, output = package.run(
-        '--only', group, '--jobs', jobs, '--once', script=package.script.with_name('mhri_test.sh'),
-        limit_s=240, MEETING_S='60' if together else '0.5')
-    assert output.splitlines()[-1] == ('3 passed, 0 failed' if together else '2 passed, 1 failed')
-    assert re.search(r'^mhri: times: {}\w* \d+ s'.format(group), output, re.M), output
+        '--only', 'gui', '--jobs', jobs, '--once', script=package.script.with_name('mhri_test.sh'),
+        limit_s=900, MEETING_S='60' if together else '0.5')
+    assert output.splitlines()[-1] == ('2 passed, 0 failed' if together else '1 passed, 1 failed')
+    assert re.search(r'^mhri: times: gui\w* \d+ s', output, re.M), output
 
 
 @pytest.fixture
@@ -207,9 +206,9 @@ def test_interrupted_run_leaves_nothing(package):
         if line.strip().endswith('up'):
             break
     process.send_signal(signal.SIGINT)
-    process.communicate(timeout=20)
+    process.communicate(timeout=60)
     assert process.returncode == 130
-    end = time.monotonic() + 5.0
+    end = time.monotonic() + 60.0
     while children_with(str(package.calls_file)):
         assert time.monotonic() < end
         time.sleep(0.02)

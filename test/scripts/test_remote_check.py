@@ -274,7 +274,7 @@ def test_wrong_things_are_one_line_and_status_1(master):
     master.nodes['/rosout'] = 'http://no-such-host.invalid:4711/'
     done = subprocess.run([sys.executable, str(PATH), 'host', HOST, str(master.port), HOST, 'bot1'],
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                          universal_newlines=True, timeout=60)
+                          universal_newlines=True, timeout=300)
     assert done.returncode == 1
     assert done.stdout.startswith('mhri: the host calls itself') and done.stdout.count('\n') == 1
 
@@ -286,7 +286,7 @@ def test_wrong_things_are_one_line_and_status_1(master):
     ['watch', HOST, 'port', 'bot1', 'me'], ['release', '\x1b[2J' * 10000, '1', 'bot1', 'me']])
 def test_wrong_command_lines_are_one_line_and_status_1(arguments):
     done = subprocess.run([sys.executable, str(PATH)] + arguments, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, universal_newlines=True, timeout=60)
+                          stderr=subprocess.STDOUT, universal_newlines=True, timeout=300)
     assert done.returncode == 1 and done.stdout.startswith('mhri: '), done.stdout
     assert done.stdout[:-1].isprintable() and len(done.stdout) <= 600
 
@@ -296,7 +296,7 @@ def test_what_a_master_says_is_shown_safely(master, listener):
     master.nodes[node] = 'http://{}:{}/'.format(HOST, listener)
     done = subprocess.run([sys.executable, str(PATH), 'host', HOST, str(master.port), HOST, 'bot1'],
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                          universal_newlines=True, timeout=60)
+                          universal_newlines=True, timeout=300)
     assert done.returncode == 1 and 'bot1 already runs' in done.stdout
     assert done.stdout[:-1].isprintable() and len(done.stdout) <= 600
 

@@ -33,7 +33,7 @@ pytestmark = pytest.mark.skipif(PYTHON2 is None, reason='there is no Python 2.7 
 
 def python2(*arguments):
     """Return (exit status, all output)."""
-    done = subprocess.run([PYTHON2] + [str(argument) for argument in arguments], timeout=60,
+    done = subprocess.run([PYTHON2] + [str(argument) for argument in arguments], timeout=300,
                           env={'PATH': os.environ['PATH']}, stdin=subprocess.DEVNULL,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                           universal_newlines=True)

@@ -207,7 +207,7 @@ def test_a_name_that_is_taken_is_refused_and_a_leftover_is_not(remote, master):
     assert first.poll() is None and publishers(master, '/bot1/odom')
     for pid in remote.running():
         os.kill(pid, signal.SIGKILL)
-    first.wait(timeout=20)
+    first.wait(timeout=60)
     assert publishers(master, '/bot1/odom'), 'the leftover that this test is about'
     again = remote.start('bot1', '--type', 'turtlebot2', '--no-camera')
     wait_for(lambda: 'the name bot1 is free' in again.output(), START_S, 'the check', poll_s=0.1)

@@ -30,6 +30,8 @@ import pytest
     (['--link', 'bot1=http/192.168.0.7:80'], 'is not NAME=ADDRESS'),
     (['--link', 'bot1', '--router', 'somewhere'], "--router: 'somewhere' is not an endpoint"),
     (['--router', '192.0.2.1:7447'], '--router: name the robots behind it'),
+    (['--keep', 'states'], '--keep goes with --link'),
+    (['--link', 'bot1=192.168.0.7', '--keep', 'all'], "--keep: 'all' is none of session, states"),
     (['--ip'], '--ip needs a value'),
     (['--ip', '300.1.1.1'], "'300.1.1.1' is not an IPv4 address"),
     (['--ip', '1.2.3'], "'1.2.3'"),
@@ -158,7 +160,7 @@ def test_links_become_endpoints(checkout):
     assert status == 0, output
     assert checkout.called('roslaunch') == [
         'roslaunch mhri mhri.launch sim:=0 links:=bot1=192.168.0.7:7447 '
-        'bot2=udp/192.168.0.8:7448 bot3 keys:=auto router:=tls/192.0.2.1:7447']
+        'bot2=udp/192.168.0.8:7448 bot3 keys:=auto keep:=session router:=tls/192.0.2.1:7447']
 
 
 def test_a_labs_own_source_can_be_the_enabling_one(checkout, tmp_path):

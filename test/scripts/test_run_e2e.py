@@ -26,7 +26,7 @@ def has_own_network():
     return subprocess.run(NO_NETWORK + ['true'], stderr=subprocess.DEVNULL).returncode == 0
 
 
-def wait_for(truth, what, limit_s=60.0):
+def wait_for(truth, what, limit_s=180.0):
     """Wait until something becomes true."""
     end = time.monotonic() + limit_s
     while not truth():
@@ -66,7 +66,7 @@ class Run:
         """End it, whatever it does, for a test that failed."""
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
-            self.process.wait(timeout=40)
+            self.process.wait(timeout=120)
 
 
 @pytest.fixture
@@ -113,7 +113,7 @@ def test_demo_drives_robots_and_sends_them_to_work_without_hands(start, tmp_path
     settings.parent.mkdir(parents=True)
     settings.write_text('{"state": {"mode": "joy"}}\n')
     run = start('--demo', '--screenshot', 'drive.png', before=before)
-    status = run.wait(400)
+    status = run.wait(1200)
     print('\n' + '\n'.join(line for line in run.output.splitlines() if 'bot' in line))
     assert status == 0, run.output
     for robot in ('bot1', 'bot2', 'bot3', 'bot4'):
@@ -139,7 +139,7 @@ def test_new_checkout_builds_and_runs(start, tmp_path, name, arguments, space):
     shutil.copytree(str(REPO), str(tmp_path / name),
                     ignore=shutil.ignore_patterns('build', '.git', '__pycache__'))
     run = start('--demo', *arguments, script=tmp_path / name / 'utils' / 'host' / 'mhri_run.sh')
-    assert run.wait(400) == 0, run.output
+    assert run.wait(1200) == 0, run.output
     workspace = tmp_path / name / 'build' / '.ws'
     place = tmp_path / name if space == 'devel' else workspace / space / 'share' / 'mhri'
     assert '{}/launch/mhri.launch'.format(place) in run.output
@@ -167,7 +167,7 @@ def test_ctrl_c_takes_everything_down(start, master):
     wait_for(lambda: publishers(proxy, '/bot1/odom'), 'the robot')
     assert 'there is no display: the panel runs under Xvfb' in run.output
     run.process.send_signal(signal.SIGINT)
-    assert run.wait(30) == 130, run.output
+    assert run.wait(120) == 130, run.output
     assert 'leftover process' not in run.output
 
 
@@ -177,7 +177,7 @@ def test_end_of_the_panel_ends_everything(start, master):
     wait_for(lambda: node_uri(proxy, '/mhri_panel'), 'the panel')
     panel = xmlrpc.client.ServerProxy(node_uri(proxy, '/mhri_panel'))
     os.kill(panel.getPid('/test')[2], signal.SIGTERM)
-    assert run.wait(30) == 0, run.output
+    assert run.wait(120) == 0, run.output
     assert 'died' not in run.output, 'a panel that is closed is no fault'
 
 
@@ -187,7 +187,7 @@ def test_panel_that_fails_ends_everything_and_is_told(start, master):
     wait_for(lambda: node_uri(proxy, '/mhri_panel'), 'the panel')
     panel = xmlrpc.client.ServerProxy(node_uri(proxy, '/mhri_panel'))
     os.kill(panel.getPid('/test')[2], signal.SIGKILL)
-    assert run.wait(30) == 1, run.output
+    assert run.wait(120) == 1, run.output
     assert 'REQUIRED process' in run.output and 'the panel failed' in run.output
 
 
@@ -198,7 +198,7 @@ def test_simulated_robots_need_no_network(start, tmp_path):
     assert 'installing missing' not in run.output
     [pid] = [pid for pid in children_with(run.mark) if is_script(pid)]
     os.kill(pid, signal.SIGINT)
-    assert run.wait(30) == 130, run.output
+    assert run.wait(120) == 130, run.output
 
 
 def is_script(pid):
@@ -212,7 +212,7 @@ def test_second_host_on_one_master_is_refused(start, master):
     wait_for(lambda: publishers(proxy, '/robot_controller/twist'), 'the first mux')
     first = node_uri(proxy, '/mux')
     second = start('--sim', '1', '--master', uri)
-    assert second.wait(60) == 1, second.output
+    assert second.wait(120) == 1, second.output
     assert 'mhri already runs at {}: /mux on this computer'.format(uri) in second.output
     assert node_uri(proxy, '/mux') == first
     assert publishers(proxy, '/bot1/odom') == []
@@ -244,4 +244,4 @@ def test_mux_that_was_killed_comes_back(start, master):
     wait_for(lambda: node_uri(proxy, '/mux'), 'the mux')
     first = node_uri(proxy, '/mux')
     os.kill(xmlrpc.client.ServerProxy(first).getPid('/test')[2], signal.SIGKILL)
-    wait_for(lambda: node_uri(proxy, '/mux') not in (None, first), 'the mux to come back', 15.0)
+    wait_for(lambda: node_uri(proxy, '/mux') not in (None, first), 'the mux to come back')

@@ -38,7 +38,7 @@ def start(tmp_path, required, *command):
 
 def finish(process, tmp_path):
     try:
-        said = process.communicate(timeout=10)[0].split('\n')
+        said = process.communicate(timeout=60)[0].split('\n')
     finally:
         process.kill()
     return [line for line in said if line and not line.isdigit()], \
@@ -76,8 +76,8 @@ def test_script_that_is_killed_closes_the_panel(tmp_path):
     child = int(process.stdout.readline())
     assert process.stdout.readline() == '0\n'
     os.kill(child, signal.SIGKILL)
-    process.communicate(timeout=10)
-    end = time.monotonic() + 10.0
+    process.communicate(timeout=60)
+    end = time.monotonic() + 60.0
     while not closed.exists():
         assert time.monotonic() < end
         time.sleep(0.02)

@@ -88,7 +88,7 @@ class StateEar:
     def _hear(self, message):
         self.message, self.at = message, time.monotonic()
 
-    def wait(self, good, what, timeout_s=10.0):
+    def wait(self, good, what, timeout_s=60.0):
         """Wait until the state is good; return it."""
         return wait_for(lambda: self.message is not None and good(self.message) and self.message,
                         timeout_s, what)
@@ -98,7 +98,7 @@ class StateEar:
         return next((robot for robot in (self.message.robots if self.message else ())
                      if robot.name == name), None)
 
-    def wait_robot(self, name, good, what, timeout_s=10.0):
+    def wait_robot(self, name, good, what, timeout_s=60.0):
         """Wait until what is said of one robot is good; return it."""
         return wait_for(lambda: self.robot(name) and good(self.robot(name)) and self.robot(name),
                         timeout_s, what)

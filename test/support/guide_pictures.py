@@ -4,7 +4,7 @@
 """Draws the guide's pictures that need no running system: ``guide_pictures.py <folder>``.
 
 ``one.png`` is the screen with one robot and the drawer closed, ``doctor.png`` the doctor's page,
-``faults.png`` its list of faults, ``drill.svg`` the way through a drill.
+``faults.png`` its list of faults, ``drill_<name>.svg`` the way through each drill.
 """
 import os
 import re
@@ -29,7 +29,7 @@ from mhri.gui.session.record_button import RecordButton  # noqa: E402
 from mhri.ros.resources import resource_path  # noqa: E402
 from mhri.sim.rehearsal import Rehearsal  # noqa: E402
 from support import doctor_world, layout_pictures  # noqa: E402
-from support.drills import drill  # noqa: E402
+from support.drills import drill, NAMES  # noqa: E402
 
 DOCTOR_SIZE, FAULTS_SIZE, ONE_SIZE = (760, 420), (440, 720), (1280, 720)
 
@@ -67,9 +67,9 @@ def draw_faults(path):
     page.grab().save(path)
 
 
-def draw_drill(path):
-    """Draw the way of the scripted operator through the search, with a slow link."""
-    scenario, plan, bodies = drill('search')
+def draw_drill(name, path):
+    """Draw the way of the scripted operator through a drill, with a slow link."""
+    scenario, plan, bodies = drill(name)
     result = Rehearsal(scenario, plan, bodies, delay_s=0.2).run()
     picture = re.search('<svg.*</svg>', page_of(result, plan.walls.tolist(), scenario.targets))
     with open(path, 'w', encoding='utf-8') as file:
@@ -91,7 +91,8 @@ def main(folder):
     application = QApplication([sys.argv[0], '-style', 'Fusion'])
     draw_doctor(os.path.join(folder, 'doctor.png'))
     draw_faults(os.path.join(folder, 'faults.png'))
-    draw_drill(os.path.join(folder, 'drill.svg'))
+    for name in NAMES:
+        draw_drill(name, os.path.join(folder, 'drill_{}.svg'.format(name)))
     draw_one(application, os.path.join(folder, 'one.png'))
 
 

@@ -75,11 +75,11 @@ class Linked:
         self.host.node('gates')
         self.link_of_host = self.start_host_side()
 
-    def start_host_side(self):
+    def start_host_side(self, *more):
         """Start the host's side; it is one process, so that it can be killed."""
         self.link_of_host = self.host.node('mhri_link', '--side', 'host', '--name', 'bot1',
                                            '--connect', self._called, '--keys', self._host_keys,
-                                           '--host', 'host:lab', '__ns:=/bot1')
+                                           '--host', 'host:lab', '__ns:=/bot1', *more)
         return self.link_of_host
 
     def node_of_robot(self):

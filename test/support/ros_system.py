@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """A ROS system of a test's own: its master, its nodes, its screen; it ends what it started."""
+import contextlib
 import os
 import shutil
 import signal
@@ -17,12 +18,21 @@ import psutil
 from support.xvfb import start_xvfb
 
 
-def wait_for(condition, timeout_s=10.0, what='the condition', poll_s=0.002):
+# How long a computer that is busy with other things may take for what is done in a moment [s].
+PATIENCE_S = 60.0
+# Who waits for less asks whether it is quick [s].
+QUICK_S = 10.0
+
+
+def wait_for(condition, timeout_s=PATIENCE_S, what='the condition', poll_s=0.002):
     """Return the first true value of a condition.
 
+    :param timeout_s: from QUICK_S on it is patience, of which there is never less than PATIENCE_S
     :param what: what is waited for, or a function that says so at the end
     :raises AssertionError: it did not come true in time
     """
+    if timeout_s >= QUICK_S:
+        timeout_s = max(timeout_s, PATIENCE_S)
     deadline = time.monotonic() + timeout_s
     while True:
         value = condition()
@@ -46,6 +56,25 @@ def answers(port):
     with socket.socket() as probe:
         probe.settimeout(0.2)
         return probe.connect_ex(('127.0.0.1', port)) == 0
+
+
+def processes_with(*words, master=None):
+    """Return the processes of a master whose command line has words; one that ends is not there.
+
+    Other tests run at the same time, with masters of their own.
+
+    :param words: arguments, or the ends of them
+    :param master: its URI; None: of this process
+    """
+    master = master or os.environ['ROS_MASTER_URI']
+    found = []
+    for process in psutil.process_iter(['cmdline']):
+        said = process.info['cmdline'] or ()
+        if all(any(one.endswith(word) for one in said) for word in words):
+            with contextlib.suppress(psutil.Error):
+                if process.environ().get('ROS_MASTER_URI') == master:
+                    found.append(process)
+    return found
 
 
 class System:

@@ -15,6 +15,7 @@ from mhri.core.driving.brake import Scan
 from mhri.core.driving.stick_brake import StickBrake
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
+from mhri.core.robots.pose_track import PoseTrack
 from mhri.core.tasks.base import ENDS, RUNNING, Step, Task, way, wrapped
 from mhri.core.tasks.rows import BY_KEY
 from mhri.core.tasks.run import RobotRun
@@ -23,6 +24,8 @@ from support.task_world import DT_S, KIND, LIMITS, Robot, room, wall_distance, W
 
 # Moved by less than this the robot stands [m, rad].
 STANDS_M, STANDS_RAD = 0.005, 0.01
+# What a robot's clock says when the world begins [s].
+BEGAN_S = 1.8e9
 
 
 @dataclass(frozen=True)
@@ -34,6 +37,7 @@ class Rough:
     :param lost: share of the scans that never come
     :param delay: from a command to the moment at which the body has it
     :param place_m: standard deviation of what motion capture says
+    :param stamped: whether scans are stamped; else they count from their receipt
     """
 
     name: str
@@ -45,6 +49,7 @@ class Rough:
     noise_m: float = 0.01
     delay: int = 1
     place_m: float = 0.002
+    stamped: bool = True
 
 
 ROUGH = (
@@ -53,6 +58,7 @@ ROUGH = (
     Rough('half a turn', half=True, late=1),
     Rough('half, not near', scan_min_m=0.45, half=True, late=1),
     Rough('late', late=3, delay=2, scan_min_m=0.45),
+    Rough('late, no stamps', late=3, delay=2, scan_min_m=0.45, stamped=False),
     Rough('lost', lost=0.4, late=1, noise_m=0.03, scan_min_m=0.45),
     Rough('noisy places', place_m=0.02, noise_m=0.02))
 
@@ -67,6 +73,7 @@ class RoughRobot(Robot):
         self.laser.NOISE_M = rough.noise_m
         self._chance = random.Random(seed)
         self._under_way = []
+        self._track = PoseTrack()
         self.eye = None
         self.closest_m = math.inf
 
@@ -76,15 +83,18 @@ class RoughRobot(Robot):
         if tick % rough.every == 0 and self._chance.random() >= rough.lost:
             ranges = self.laser.scan(self.body.x, self.body.y, self.body.yaw,
                                      self._world.seen_by(self.name))
-            self._under_way.append((tick + rough.late, self._scan(ranges)))
+            self._under_way.append((tick + rough.late, self._scan(ranges),
+                                    BEGAN_S + now_s if rough.stamped else 0.0))
+        # Each tick has its odometry, which is heard at once.
+        self._track.add(BEGAN_S + now_s, self.odometry(), now_s)
         while self._under_way and self._under_way[0][0] <= tick:
-            scan = self._under_way.pop(0)[1]
-            # Where the robot was at the time of the scan nobody knows.
-            self.seen.see(scan, self.odometry())
-            self.scan_at = now_s
+            _, scan, stamp_s = self._under_way.pop(0)
+            at_s, pose = self._track.moment(stamp_s, now_s)
+            self.seen.see(scan, pose or self.odometry(), at_s)
+            self.scan_at = at_s
             if self.eye is not None:
                 self.eye.move(self.odometry())
-                self.eye.see(scan, now_s)
+                self.eye.see(scan, at_s, pose)
 
     def _scan(self, ranges):
         scan = self._world.scan_of(self, ranges)

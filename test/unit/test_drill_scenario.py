@@ -10,7 +10,7 @@ import pytest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
 from mhri.core.config import ConfigError  # noqa: E402
-from mhri.core.drill.scenario import parse_scenario  # noqa: E402
+from mhri.core.drill.scenario import on_links, parse_scenario  # noqa: E402
 from support.drills import drill, NAMES  # noqa: E402
 
 GOOD = """
@@ -32,6 +32,15 @@ def test_the_shipped_drills():
                      'two_corridors']
     assert len(drill('search')[0].targets) == 8
     assert len(drill('two_corridors')[0].robots) == 2
+
+
+def test_delays_add_to_that_of_the_link_and_give_way_to_it():
+    faults = drill('lost_link')[0].faults
+    assert on_links(faults, 0.0) == list(faults)
+    slow, own, lost, _ = on_links(faults, 0.4)
+    assert (slow.value, slow.at_s, slow.for_s) == (pytest.approx(0.7), 3.0, 4.0)
+    assert (own.value, own.at_s, own.for_s) == (0.4, 7.0, 0.0)
+    assert lost == faults[1]
 
 
 @pytest.mark.parametrize('name', NAMES)

@@ -109,25 +109,59 @@ def test_its_figures_are_those_of_the_host():
         assert GUARD[name] == getattr(brake, name)
 
 
+# One laser; one before the middle; two that see half a turn each, as robots have them at corners.
+MOUNTS = (((0.0, 0.0, 0.0),), ((-0.06, 0.0, 0.0),), ((0.2, 0.1, 0.4), (-0.2, -0.1, -2.9)))
+
+
 @pytest.mark.parametrize('step', [2 * math.pi / 360, -2 * math.pi / 360])
-@pytest.mark.parametrize('seed', range(20))
+@pytest.mark.parametrize('seed', range(21))
 def test_it_sees_and_remembers_what_the_host_does(seed, step):
     """Random scans from random places; what the brake then allows hardly differs."""
-    dice = random.Random(seed)
-    laser_x_m = (0.0, -0.06, 0.2)[seed % 3]
-    mine, host = GUARD['Sight'](0.2, laser_x_m), brake.Surroundings()
-    for number in range(5):
+    dice, mounts = random.Random(seed), MOUNTS[seed % 3]
+    mine, host = GUARD['Sight'](0.2, mounts), brake.Surroundings()
+    for number in range(8):
+        # Now and then one of them says nothing for so long that its place is taken.
+        at_s, laser = 0.2 * number, dice.randrange(len(mounts))
         pose = dice.uniform(-0.2, 0.2), dice.uniform(-0.2, 0.2), dice.uniform(-3.0, 3.0)
         ranges = [dice.choice((float('nan'), 0.0, dice.uniform(0.3, 3.0))) for _ in range(240)]
         first = dice.uniform(-3.0, 0.0)
-        mine.move(pose, number)
-        mine.see(ranges, first, step, 0.45, 10.0, number)
+        mine.move(pose, at_s)
+        mine.see(ranges, first, step, 0.45, 10.0, at_s, laser)
         seen = np.array([far if 0.45 <= far <= 10.0 else math.nan for far in ranges])
         begin = first if step > 0.0 else first + 239 * step
         host.see(brake.Scan(seen if step > 0.0 else seen[::-1], begin, abs(step), 0.45, 10.0,
-                            Pose(laser_x_m, 0.0, 0.0)), Pose(*pose))
+                            Pose(*mounts[laser])), Pose(*pose), at_s, str(laser))
         wanted = dice.uniform(-0.6, 0.6), dice.uniform(-1.0, 1.0)
         expected = brake.braked(Velocity(*wanted), host.around(Pose(*pose)), 0.2, 0.0,
                                 host.looks(Pose(*pose)))
-        assert mine.allow(wanted, number) == pytest.approx(
+        assert mine.allow(wanted, at_s) == pytest.approx(
             (expected.linear_mps, expected.angular_rad_s), abs=0.03)
+
+
+def test_where_one_laser_does_not_look_another_does():
+    """Two of half a turn each: with one of them it crawls back, with both it drives."""
+    one, both = (GUARD['Sight'](0.2, mounts) for mounts in (
+        ((0.1, 0.0, 0.0),), ((0.1, 0.0, 0.0), (-0.1, 0.0, math.pi))))
+    for sight, lasers in ((one, 1), (both, 2)):
+        sight.move((0.0, 0.0, 0.0), 0.0)
+        for laser in range(lasers):
+            sight.see([9.0] * 181, -math.pi / 2, math.pi / 180, 0.1, 10.0, 0.0, laser)
+    assert one.allow((-0.3, 0.0), 0.0) == (-brake.CRAWL_MPS, 0.0)
+    assert one.words(0.0) == 'brake:unseen'
+    assert both.allow((-0.3, 0.0), 0.0) == (-0.3, 0.0) and both.words(0.0) == 'brake:on'
+
+
+@pytest.mark.parametrize('value, found', [
+    ('scan', [('scan', (0.1, 0.0, 0.0))]),
+    ('front@0.2 /bot1/rear@-0.2,0,180', [('front', (0.2, 0.0, 0.0)),
+                                         ('/bot1/rear', (-0.2, 0.0, math.pi))]),
+    ('a b@1,-2.5', [('a', (0.1, 0.0, 0.0)), ('b', (1.0, -2.5, 0.0))]),
+    ('', None), ('a,b', None), ('a@', None), ('a@1,2,3,4', None), ('a@1.2.3', None), (7, None),
+    (' '.join('abcdefghi'), None)])
+def test_its_lasers_are_read(monkeypatch, value, found):
+    monkeypatch.setattr(GUARD['rospy'], 'get_param', lambda name, default: value, raising=False)
+    if found is None:
+        with pytest.raises(ValueError, match='give a topic, or up to 8'):
+            GUARD['lasers'](0.1)
+    else:
+        assert GUARD['lasers'](0.1) == [(name, pytest.approx(where)) for name, where in found]

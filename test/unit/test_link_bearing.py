@@ -1,28 +1,23 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a radio bears, who gets how much of it, and pictures made small and cut in pieces."""
+"""What a radio bears, and who gets how much of it."""
 import math
 import os
 import random
-import struct
 import sys
 
-import cv2
-import numpy as np
 import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from mhri.core.link.bearing import (  # noqa: E402
-    AROUND_BYTES, Bearing, CUT, LEAST_BYTES_PER_S, Meter, SETTLE_S)
+    AROUND_BYTES, Bearing, CUT, DRAIN_S, FIRST_CUT, LEAST_BYTES_PER_S, Meter)
 from mhri.core.link.carried import (  # noqa: E402
     COMMAND, GUARD_ECHO, Pace, PICTURE, STATE, Stream)
 from mhri.core.link.figures import (  # noqa: E402
     figures_words, picture_words, RadioFigures, read_figures, thinned_words)
-from mhri.core.link.frames import Frame, FrameError, Heard  # noqa: E402
-from mhri.core.link.pieces import Gathered, MOST_PIECES, PIECE_BYTES, split  # noqa: E402
+from mhri.core.link.frames import Frame, Heard  # noqa: E402
 from mhri.core.link.shares import Flow, shares, SMALL_BYTES  # noqa: E402
-from mhri.core.link.smaller import Smaller  # noqa: E402
 from mhri.core.robots.link_quality import link_warning  # noqa: E402
 from mhri.core.screen.views import LinkFigures  # noqa: E402
 from support.radio import Channel, read_table, Table  # noqa: E402
@@ -62,8 +57,18 @@ def bound(heard=FULL):
     for now in (0.8, 1.0, 1.2):
         assert not bearing.bound
         bearing.on_heard(heard, DEMAND, now)
-    assert bearing.bound
+    assert bearing.bound and bearing.drains
+    assert bearing.bytes_per_s == pytest.approx(FIRST_CUT * 5e4, rel=0.1)
     return bearing
+
+
+def drained(heard=FULL):
+    """Return a bearing whose radio has drained since; when."""
+    bearing = bound(heard)
+    now = 1.2 + DRAIN_S
+    bearing.on_heard(Heard(5e4, 0.0, heard.loss), DEMAND, now)
+    assert not bearing.drains
+    return bearing, now
 
 
 def test_once_is_no_radio_that_is_full():
@@ -75,35 +80,74 @@ def test_once_is_no_radio_that_is_full():
 
 @pytest.mark.parametrize('heard', [FULL, LOSSY])
 def test_what_came_is_what_a_full_radio_bears(heard):
-    assert bound(heard).bytes_per_s == pytest.approx(CUT * 5e4)
+    assert drained(heard)[0].bytes_per_s == pytest.approx(CUT * 5e4, rel=0.1)
+
+
+def test_half_of_everything_lost_is_no_computer_that_hung():
+    bearing = Bearing()
+    bearing.on_heard(Heard(1e4, 0.0, 0.6), DEMAND, 1.0)
+    assert bearing.bound
 
 
 @pytest.mark.parametrize('heard, later_s, change', [
-    (CALM, 0.2, 0), (CALM, SETTLE_S + 0.2, 1), (FULL, 0.2, 0), (FULL, SETTLE_S + 0.2, -1),
-    (LOSSY, SETTLE_S + 0.2, 1), (Heard(5e4, 0.06, 0.0), SETTLE_S + 0.2, 0),
-    (Heard(2e4, 0.0, 0.6), SETTLE_S + 0.2, -1), (Heard(0.0, 0.15, 0.0), SETTLE_S + 0.2, -1)])
+    (CALM, 0.2, 1), (FULL, 0.2, -1), (LOSSY, 0.2, 1), (Heard(5e4, 0.05, 0.0), 0.2, 0),
+    # What was lost before the cut says nothing.
+    (Heard(5e4, 0.0, 0.6), 0.2, 1), (Heard(2e4, 0.0, 0.6), 3.0, -1),
+    (Heard(0.0, 0.15, 0.0), 0.2, -1)])
 def test_more_while_nothing_waits_and_less_while_much_does(heard, later_s, change):
-    bearing = bound()
+    bearing, now = drained()
     before = bearing.bytes_per_s
-    bearing.on_heard(heard, DEMAND, 1.2 + later_s)
+    bearing.on_heard(heard, DEMAND, now + later_s)
     assert (bearing.bytes_per_s > before) - (bearing.bytes_per_s < before) == change
     assert bearing.bytes_per_s >= LEAST_BYTES_PER_S
 
 
 def test_all_is_sent_again_where_there_is_little_to_send():
-    bearing = bound()
-    bearing.on_heard(CALM, 1e4, 10.0)
+    bearing, now = drained()
+    bearing.on_heard(CALM, 1e4, now + 1.0)
     assert not bearing.bound
-    lossy = bound()
-    lossy.on_heard(LOSSY, 1e4, 10.0)
+    lossy, now = drained()
+    lossy.on_heard(LOSSY, 1e4, now + 1.0)
     assert lossy.bound
 
 
+def test_what_is_not_used_is_no_reason_for_more():
+    bearing, now = drained()
+    for number in range(500):
+        bearing.on_heard(LOSSY, DEMAND, now + 0.2 * number)
+    assert bearing.bytes_per_s < 2.6 * 5e4
+
+
+@pytest.mark.parametrize('count', [0, 1, 2])
+def test_one_cut_is_given_time_while_what_waits_gets_less(count):
+    bearing, now = drained()
+    bearing.on_heard(FULL, DEMAND, now + 0.2)
+    before = bearing.bytes_per_s
+    for number in range(count):
+        bearing.on_heard(Heard(5e4, 0.14 - 0.01 * number, 0.0), DEMAND, now + 1.3 + 0.2 * number)
+        assert bearing.bytes_per_s == before
+
+
+def test_who_has_much_gives_way_first():
+    waits = Heard(5e4, 0.075, 0.0)
+    for rate, less in ((8e4, True), (1.5e4, False)):
+        bearing, now = drained()
+        bearing.bytes_per_s = rate
+        bearing.on_heard(waits, DEMAND, now + 0.2)
+        assert (bearing.bytes_per_s < rate) is less
+
+
 def test_a_way_that_became_longer_is_not_a_full_one():
-    bearing, longer = bound(), Heard(5e4, 0.2, 0.0)
+    longer = Heard(5e4, 0.2, 0.0)
+    for bearing, now in ((bound(), 1.4), drained()):
+        becomes_longer(bearing, longer, now)
+
+
+def becomes_longer(bearing, longer, since):
+    """See that it does not give way for ever."""
     rates = []
-    for number in range(40):
-        bearing.on_heard(longer, DEMAND, 2.0 + 0.2 * number)
+    for number in range(50):
+        bearing.on_heard(longer, DEMAND, since + 0.2 * number)
         rates.append(bearing.bytes_per_s)
     assert rates[-1] > 2.0 * min(rates)
 
@@ -150,9 +194,10 @@ def simulate(row, count, offered, seconds):
 def test_a_radio_that_has_become_good_is_used_soon():
     lossy = Heard(5e4, 0.15, 0.2)
     for heard, bears in ((CALM, True), (LOSSY, False)):
-        bearing = bound(lossy)
-        for number in range(50):
-            bearing.on_heard(heard, DEMAND, 2.0 + 0.2 * number)
+        bearing, now = drained(lossy)
+        for number in range(60):
+            came = Heard(min(bearing.bytes_per_s, DEMAND), heard.queue_s, heard.loss)
+            bearing.on_heard(came, DEMAND, now + 0.2 * number)
         assert (not bearing.bound) is bears
 
 
@@ -212,10 +257,22 @@ def test_no_more_is_shared_out_than_there_is(bytes_per_s):
 
 def test_a_picture_is_first_rarer_then_smaller():
     some = shares(lot(), 3e5, 0.0, 10.0)['camera']
-    assert math.isinf(some.size) and 5.0 <= some.hz < 30.0 and some.times == 1
+    assert math.isinf(some.size) and 5.0 <= some.hz < 30.0 and some.group == 0
     few = shares(lot(), 3e4, 0.0, 10.0)['camera']
     assert few.size == SMALL_BYTES and 0.5 < few.hz <= 5.0
-    assert shares(lot(), 3e4, 0.2, 10.0)['camera'].times == 2
+    assert [shares(lot(), 3e4, loss, 10.0)['camera'].group for loss in (0.05, 0.2)] == [6, 3]
+
+
+def test_no_picture_goes_while_the_radio_drains():
+    found = shares(lot(), 1e4, 0.0, 10.0, drains=True)
+    assert found['camera'].hz == 0.0 and found['odom'].hz > shares(lot(), 1e4, 0.0, 10.0)['odom'].hz
+
+
+def test_the_pose_has_its_part_whatever_is_left():
+    flows = lot()
+    flows[1] = flow('odom', STATE, 50, 300, least_hz=8.0)
+    found = shares(flows, 8e3, 0.2, 10.0)
+    assert found['odom'].hz == 8.0 and found['imu'].hz < 2.0
 
 
 def test_states_get_all_where_nobody_looks():
@@ -239,92 +296,6 @@ def test_a_pace_changes():
     assert all(pace.lets(1.0) for _ in range(5))
     pace.change(10.0)
     assert abs(sum(pace.lets(2.0 + 0.01 * number) for number in range(100)) - 10) <= 2
-
-
-# --- pieces
-
-BODY = bytes(range(256)) * 40
-
-
-def test_a_picture_comes_together_of_its_pieces_in_any_order():
-    pieces = split(7, 12.5, BODY)
-    assert max(map(len, pieces)) < PIECE_BYTES + 50
-    random.Random(1).shuffle(pieces)
-    gathered = Gathered()
-    found = [gathered.add(piece) for piece in pieces + pieces]
-    whole = found.pop(len(pieces) - 1)
-    assert (whole.stamp_s, whole.body) == (12.5, BODY) and set(found) == {None}
-
-
-def test_a_picture_that_lost_a_piece_gives_way_to_the_next():
-    gathered = Gathered()
-    for piece in split(1, 1.0, BODY)[:-1]:
-        assert gathered.add(piece) is None
-    assert [whole.stamp_s for whole in map(gathered.add, split(2, 2.0, BODY)) if whole] == [2.0]
-
-
-def test_a_picture_that_is_too_large_is_not_cut():
-    assert split(1, 1.0, bytes(PIECE_BYTES * MOST_PIECES + 1)) == []
-
-
-@pytest.mark.parametrize('data', [
-    b'', bytes(16), struct.pack('>IHHd', 1, 5, 5, 0.0) + b'x', struct.pack('>IHHd', 1, 0, 0, 0.0)
-    + b'x', struct.pack('>IHHd', 1, 0, 65535, 0.0) + b'x'])
-def test_a_piece_that_is_none(data):
-    with pytest.raises(FrameError):
-        Gathered().add(data)
-
-
-def test_pieces_that_do_not_fit_each_other():
-    gathered = Gathered()
-    gathered.add(split(1, 1.0, BODY)[0])
-    with pytest.raises(FrameError):
-        gathered.add(split(1, 1.0, BODY[:3000])[1])
-
-
-# --- smaller pictures
-
-def picture(data):
-    """Return a sensor_msgs/CompressedImage as bytes."""
-    texts = b''.join(struct.pack('<I', len(text)) + text for text in (b'camera', b'jpeg', data))
-    return struct.pack('<III', 7, 11, 22) + texts
-
-
-def jpeg(width=640, height=480):
-    """Return a jpeg of a picture with many edges."""
-    pixels = np.random.RandomState(1).randint(0, 255, (height // 8, width // 8, 3), np.uint8)
-    pixels = cv2.resize(pixels, (width, height), interpolation=cv2.INTER_LINEAR)
-    return cv2.imencode('.jpg', pixels, [cv2.IMWRITE_JPEG_QUALITY, 90])[1].tobytes()
-
-
-@pytest.mark.parametrize('most', [20000, 8000, 4000])
-def test_a_picture_is_made_as_small_as_it_must_be(most):
-    data = picture(jpeg())
-    found = Smaller().fit(data, most)
-    assert 0.2 * most < len(found) <= most < len(data)
-    begin = data.index(b'jpeg') + 8
-    assert found[:begin - 4] == data[:begin - 4]
-    assert struct.unpack_from('<I', found, begin - 4)[0] == len(found) - begin
-    pixels = cv2.imdecode(np.frombuffer(found[begin:], np.uint8), cv2.IMREAD_COLOR)
-    assert pixels.shape[1] * 3 == pixels.shape[0] * 4
-
-
-@pytest.mark.parametrize('data', [picture(b'no picture' * 99), b'', b'short', picture(b'')])
-def test_what_is_no_picture_stays_as_it_is(data):
-    assert Smaller().fit(data, 1) == data
-
-
-def test_a_picture_that_fits_is_not_touched():
-    data = picture(jpeg(64, 48))
-    assert Smaller().fit(data, math.inf) is data
-
-
-def test_it_grows_again_when_there_is_room():
-    smaller, data = Smaller(), picture(jpeg())
-    small = len(smaller.fit(data, 4000))
-    for _ in range(12):
-        large = smaller.fit(data, 30000)
-    assert len(large) > 3 * small
 
 
 # --- what is told of it

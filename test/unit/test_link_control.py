@@ -182,3 +182,17 @@ def test_what_is_no_twist_counts_as_moving():
     (GALLERY, False, LAB, '', 'this computer may only watch', '')])
 def test_what_a_screen_shows(own, may, holder, asking, note, button):
     assert shown(own, may, holder, asking) == (note, button)
+
+
+def test_of_two_of_one_name_one_has_control_and_both_can_tell():
+    one, other = 'host:lab.x0c5e21a9', 'host:lab.x77aa0011'
+    made = Control(may_drive)
+    assert made.passes(one, False, True, 10.0)
+    assert not made.passes(other, False, True, 10.1)
+    assert made.ask(other, 10.2).startswith('lab (0c5e) has control and is told that you ask')
+    assert made.events == ['lab has control', 'lab (77aa) may not drive: lab (0c5e) has control',
+                           'lab (77aa) asks for control, which lab (0c5e) has']
+    assert shown(other, True, one, '') == ('lab (0c5e) has control', ASK_FOR)
+    assert shown(one, True, one, other) == ('lab (77aa) asks for control', '')
+    # The same computer again, killed and started within SILENT_S, goes on.
+    assert made.passes(one, False, True, 11.0)

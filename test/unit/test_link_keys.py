@@ -4,8 +4,8 @@
 import pytest
 
 from mhri.core.link.keys import (
-    access, access_of_router, called, check_own, endpoint, host_of, Keys, KeysError, may_drive,
-    partners, read_lists, split)
+    access, access_of_router, called, check_own, endpoint, host_of, Keys, KeysError, marked,
+    may_drive, partners, read_lists, split)
 
 PEERS = frozenset((
     'host:lab', 'host:desk.2', 'watch:gallery', 'robot:bot1', 'robot:bot2', 'watched:bot3'))
@@ -19,7 +19,9 @@ SIGNED = '''Certificate Revocation List (CRL):
 @pytest.mark.parametrize('owner, role, name', [
     ('host:lab', 'host', 'lab'), ('robot:bot1.12', 'robot', 'bot1'), ('watch:a-b', 'watch', 'a-b'),
     ('watched:bot1', 'watched', 'bot1'), ('admin:lab', '', ''), ('host:', '', ''), ('', '', ''),
-    ('host:lab/../x', '', ''), ('host:lab\n', '', ''), ('host:*', '', ''), ('host:lab.x', '', '')])
+    ('host:lab/../x', '', ''), ('host:lab\n', '', ''), ('host:*', '', ''), ('host:lab.x', '', ''),
+    ('host:lab.x0c5e21a9', 'host', 'lab'), ('host:lab.x0c5e21', '', ''),
+    ('host:lab.0c5e21a9', '', '')])
 def test_names(owner, role, name):
     assert split(owner) == (role, name)
 
@@ -29,6 +31,16 @@ def test_words_and_rights():
     assert [may_drive(owner) for owner in sorted(PEERS)] == [True, True, False, False, False, False]
     assert host_of('lab-pc2.local') == 'host:lab-pc2' and host_of('') == 'host:unknown'
     assert host_of('a b$') == 'host:a_b_'
+
+
+def test_two_computers_of_one_name_are_told_apart():
+    one, other = (marked('host:lab', ['id', uri]) for uri in ('http://a:1', 'http://b:1'))
+    assert one != other and one == marked('host:lab', ['id', 'http://a:1'])
+    assert split(one) == ('host', 'lab') and may_drive(one)
+    assert called(one) == called(one, one, 'host:desk', '') == 'lab'
+    assert called(one, other) == 'lab ({})'.format(one.partition('.x')[2][:4])
+    # Of a key there is one; so what somebody was called by hand stays.
+    assert marked('host:lab.2', ['id']) == 'host:lab.2' and called('host:lab.2', one) == 'lab'
 
 
 @pytest.mark.parametrize('side, robot, let_in', [

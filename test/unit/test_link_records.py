@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Fetching what a robot kept during an outage, over a radio that loses things."""
+import json
 import random
 
 import pytest
@@ -121,7 +122,8 @@ def test_a_name_says_what_a_piece_is():
 
 @pytest.mark.parametrize('body', [
     b'', b'{}', b'[1]', b'[true,[],0,0]', b'[true,[],0,-1,1]', b'[true,[],0,0,9999]',
-    b'[true,["a"],0,0,1]', b'[1,[],0,0,1]', b'[true,[],0.5,0,1]', b'\xff'])
+    b'[true,["a"],0,0,1]', b'[1,[],0,0,1]',
+    b'[true,[],0,0,1,""]', b'[true,[],0,0,1,1]', b'[true,[],0,0,1,true,true]', b'[true,[],0.5,0,1]', b'\xff'])
 def test_what_is_no_ask_is_refused(body):
     with pytest.raises(FrameError):
         unpack_ask(body)
@@ -139,5 +141,14 @@ def test_what_is_no_part_is_refused():
 
 
 def test_an_ask_comes_back_as_it_was():
-    ask = Ask(True, (1, 2), 3, 4, 5)
-    assert unpack_ask(pack_ask(ask)) == ask
+    for ask in (Ask(True, (1, 2), 3, 4, 5), Ask(True, (), -1, 0, 0, pictures=True)):
+        assert unpack_ask(pack_ask(ask)) == ask
+    assert json.loads(pack_ask(Ask(True)).decode()) == [True, [], -1, 0, 0], 'as it always was'
+
+
+def test_pictures_are_asked_for_with_all_else():
+    fetch = Fetch()
+    fetch.keep = fetch.pictures = True
+    assert fetch.ask(0.0) == Ask(True, pictures=True)
+    fetch.on_offer(pieces())
+    assert fetch.ask(10.0) == Ask(True, (), 3, 0, 1, True)

@@ -10,6 +10,7 @@ from mhri.core.map import gesture
 from mhri.core.map.canvas import (
     Canvas, known_corners, LEAST_PX_PER_M, length_words, MOST_PX_PER_M, place_words, scale_bar)
 from mhri.core.map.grid import Grid
+from mhri.core.map.met import Met, OLD_SCAN_S
 from mhri.core.map.scene import (
     goals_of, in_frame, map_robot, MapMark, MapRobot, own_pose, Placing, Scene, UnderWay)
 from mhri.core.map.spread import has_room, spread, SPACING_RADII
@@ -18,6 +19,18 @@ from mhri.core.map.trail import GOOD, link_grade, LOST, SLOW, Trail
 from mhri.core.robots.mocap import Pose
 from mhri.core.screen.task_views import TaskView
 from mhri.core.screen.views import GONE, LinkFigures, LIVE, RobotView
+
+
+def test_the_scans_of_all_lasers_are_drawn_until_they_are_old():
+    met = Met()
+    assert met.points(0.0) is None
+    met.see(0, np.array([[1.0, 0.0]]), 0.0)
+    met.see(1, np.array([[2.0, 0.0], [3.0, 0.0]]), 0.5)
+    assert met.points(0.5).tolist() == [[1.0, 0.0], [2.0, 0.0], [3.0, 0.0]]
+    met.see(1, np.array([[4.0, 0.0]]), 0.6)
+    assert met.points(OLD_SCAN_S).tolist() == [[1.0, 0.0], [4.0, 0.0]]
+    assert met.points(OLD_SCAN_S + 0.1).tolist() == [[4.0, 0.0]]
+    assert met.points(OLD_SCAN_S + 0.7) is None
 
 
 def near(one, other):

@@ -78,13 +78,13 @@ def test_left_stick_drives_forward_and_left(name):
 def test_buttons_are_those_that_the_comment_of_the_file_names():
     for name, path, text in FILES:
         drawn = dict(re.findall(
-            r'\b(\d+) (circle|B|R1|RB|L1|LB|triangle|Y|square|X)\b', text))
+            r'\b(\d+) (circle|B|R1|RB|L1|LB|triangle|Y|square|X|select|share|create|back)\b', text))
         for key, number, label in re.findall(
                 r'^(\w+)_button: +(\d+) +# (\w+)(?:, held)?$', text, re.M):
             assert drawn.get(number) == label, '{}: {}'.format(path, key)
         actions = {action for _, action in BY_NAME[name].actions}
         assert actions == (set() if name in ('generic', 'virtual') else {
-            'stop_all', 'next_robot', 'previous_robot', 'select_all'}), name
+            'stop_all', 'next_robot', 'previous_robot', 'select_all', 'mark'}), name
 
 
 def test_ps3_drives_at_full_speed_with_no_more_than_the_dead_man_button():

@@ -76,6 +76,8 @@ def test_the_entry_of_a_robot_names_what_is_published():
     assert entry['topics'] == {
         'odometry': '/abs/odom', 'imu': '/bot1/imu', 'battery': '/bot1/battery',
         'rgb': '/bot1/camera/image_raw/compressed', 'command': '/bot1/cmd_vel'}
+    raw = {'/bot1/camera/image_raw', '/bot1/battery'}
+    assert robot_entry('bot1', 3, KIND, {}, raw)['topics']['rgb'] == entry['topics']['rgb']
     assert (entry['number'], entry['type'], entry['model']) == (3, 'x', None)
     assert entry['parameters'] == {'a': {'b': [1, "b'x'"]}}
 
@@ -116,6 +118,20 @@ def test_silence_is_told_once_and_so_is_its_end():
         ('lost', 'warning', 'a'), ('lost', 'error', 'b')]
     assert watch.silence({'a': (3.0, 1.0)}, 13.0) == []
     assert watch.silence({'a': (0.0, 1.0)}, 15.0) == [('link', 'info', 'a', 'back after 5 s')]
+
+
+def test_faults_on_request_are_told_with_their_end():
+    watch, slow, silent = GraphWatch(), 'delay each way 0.4 s', 'laser silent'
+    assert watch.faults('a', '') == []
+    assert watch.faults('a', slow) == [('fault', 'warning', 'a', 'simulated fault: ' + slow)]
+    assert watch.faults('a', slow) == watch.faults('b', '') == []
+    assert [line[1:] for line in watch.faults('a', silent)] == [
+        ('warning', 'a', 'simulated fault: ' + silent),
+        ('info', 'a', 'simulated fault over: ' + slow)]
+    assert [line[3] for line in watch.faults('b', silent)] == ['simulated fault: ' + silent]
+    assert [line[1:] for line in watch.faults('a', '')] == [
+        ('info', 'a', 'simulated fault over: ' + silent)]
+    assert len(watch.faults('c', 'x\x1b' * 99 + '\n' + 'many\n' * 99)) == 20
 
 
 def test_a_screen_says_how_the_session_does():

@@ -38,6 +38,9 @@ the robot's password unless ssh has a key for it.
                        with turtle_remote.sh, and give mhri_run.sh --link here
   --listen ENDPOINT    with --link: where the robot is called (default 0.0.0.0:7447)
   --router ENDPOINT    with --link: robot and host call this router instead, e.g. 192.0.2.1:7447
+  --keep-mb MB         with --link: of what this computer misses the robot keeps so much (500)
+  --keep WHAT          with --link, not passed on: what the robot records for later while it is out
+                       of reach, see 'mhri_run.sh --help'
 
 Exit status: 2 wrong option, 255 ssh could not connect or lost the robot, else that of
 turtle_remote.sh: 1 could not start or the robot's launch ended, 129, 130 or 143 ended from here.
@@ -67,6 +70,8 @@ BACK_AFTER=
 LINK=false
 LISTEN=
 ROUTER=
+KEEP=
+KEEP_MB=
 PASSED_ON=()
 LINK_PID=
 
@@ -88,12 +93,15 @@ parse_arguments() {
       --host-ip) HOST_IP=$(value "$@"); shift ;;
       --ssh-port) SSH_PORT=$(value "$@"); shift ;;
       --to) FOLDER=$(value "$@"); shift ;;
-      --type | --model | --launch | --setup | --ip | --port | --listen | --router)
+      --type | --model | --launch | --setup | --ip | --port | --listen | --router | \
+        --keep-mb)
         text=$(value "$@")
         option=${1#--}
+        option=${option/-/_}
         printf -v "${option^^}" %s "$text"
         PASSED_ON+=("$1" "$text")
         shift ;;
+      --keep) KEEP=$(value "$@"); shift ;;
       --back-after) BACK_AFTER=$(value "$@"); PASSED_ON+=("$1" "$BACK_AFTER"); shift ;;
       --link) LINK=true PASSED_ON+=("$1") ;;
       --no-guard) GUARD=false PASSED_ON+=("$1") ;;
@@ -123,6 +131,9 @@ check_arguments() {
   check_robot
   check_guard
   check_link_options
+  [ -z "$KEEP" ] || "$LINK" || usage_error "--keep goes with --link"
+  [[ $KEEP =~ ^(session|states|pictures|)$ ]] ||
+    usage_error "--keep: '$KEEP' is none of session, states, pictures"
   for text in "${PASSED_ON[@]}"; do
     [[ $text =~ ^[A-Za-z0-9_./~+:-]+$ ]] || usage_error "'$text' cannot be passed on to the robot"
   done
@@ -159,7 +170,7 @@ link_here() {
   make_scratch
   ROS_MASTER_URI="http://$master:$PORT" ROS_IP=$master ROS_HOSTNAME=$master MHRI_RUN_ID=$RUN_ID \
     setsid setpriv --pdeathsig TERM roslaunch mhri link.launch side:=host "name:=$NAME" "$address" \
-    </dev/null >"$SCRATCH/link.log" 2>&1 &
+    "keep:=${KEEP:-session}" </dev/null >"$SCRATCH/link.log" 2>&1 &
   LINK_PID=$!
 }
 

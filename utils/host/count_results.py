@@ -60,7 +60,7 @@ def target_of(path):
     name = os.path.basename(path)[:-len('.xml')]
     if name.startswith('MISSING-'):
         name = name[len('MISSING-'):]
-    found = re.match('pytest-((?:scripts|faults)_(?:calm|timed)|gui|bench)-(test_.+)$', name)
+    found = re.match('pytest-((?:scripts|faults|gui)_(?:calm|paired|timed)|bench)-(test_.+)$', name)
     # Of what runs beside the rules: processes and windows.
     found = found or re.match('pytest-(unit)-(ros)$|pytest-(oldest)-(widgets)$', name)
     if found:

@@ -45,6 +45,10 @@ Robots
   --router ENDPOINT    a router, such as 192.0.2.1:7447, behind which those robots of --link are
                        that it gives no address for: --link "bot1 bot2=192.168.0.8"
 
+  --keep WHAT          what the robots of --link record for later while they are out of reach: session
+                       (all but pictures, while a session is recorded; the default), states (the
+                       same, always), or pictures (always, and the cameras, too)
+
   --replay PATH        show a session again: the folder of one that was recorded, a folder of bags,
                        or a bag of any program whose topics are those of a robot type. Uses a master
                        of its own, with nothing on it that drives, so it does not disturb a running
@@ -89,6 +93,7 @@ SIM_TYPES=
 LINKS=()
 ROUTER=
 KEYS=
+KEEP=
 IP=
 MASTER=
 DEMO=false
@@ -111,6 +116,7 @@ parse_arguments() {
         if [[ ${2:-} =~ ^[a-z] && $2 != *:=* ]]; then SIM_TYPES=$2; shift; fi ;;
       --sim-types) SIM_TYPES=$(value "$@"); shift ;;
       --keys) KEYS=$(value "$@"); shift ;;
+      --keep) KEEP=$(value "$@"); shift ;;
       --link) links=$(value "$@"); read -r -a LINKS <<<"$links"; shift ;;
       --router) ROUTER=$(value "$@"); shift ;;
       --ip) IP=$(value "$@"); shift ;;
@@ -139,6 +145,9 @@ check_arguments() {
     usage_error "--sim-types lists the types for the robots of --sim N: give --sim as well"
   check_links
   [ -z "$KEYS" ] || [ "${#LINKS[@]}" != 0 ] || usage_error "--keys goes with --link"
+  [ -z "$KEEP" ] || [ "${#LINKS[@]}" != 0 ] || usage_error "--keep goes with --link"
+  [[ $KEEP =~ ^(session|states|pictures|)$ ]] ||
+    usage_error "--keep: '$KEEP' is none of session, states, pictures"
   check_replay
   check_drill
   [ -z "$IP" ] || check_ip --ip "$IP" 192.168.0.103
@@ -379,7 +388,8 @@ stop() {
 launch() {
   local status=0 file=mhri.launch args=("sim:=${SIM:-0}" "${LAUNCH_ARGS[@]}")
   [ -z "$SIM_TYPES" ] || args+=("sim_types:=$SIM_TYPES")
-  [ "${#LINKS[@]}" = 0 ] || args+=("links:=${LINKS[*]}" "keys:=${KEYS:-auto}")
+  [ "${#LINKS[@]}" = 0 ] || args+=("links:=${LINKS[*]}" "keys:=${KEYS:-auto}"
+    "keep:=${KEEP:-session}")
   [ -z "$ROUTER" ] || args+=("router:=$ROUTER")
   if "$DEMO"; then
     args+=("demo:=true" "screenshot:=$PICTURE" "demo_result:=$SCRATCH/demo_result")

@@ -7,10 +7,11 @@ set -euo pipefail
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 GROUPS_IN_ORDER=(lint unit oldest scripts rostest gui faults bench)
-# Targets whose files may run at the same time (the longest first), and those that measure time or
-# share a screen, which run alone.
-CALM=(scripts_calm rostest_calm faults_calm oldest unit lint)
-TIMED=(rostest_timed scripts_timed faults_timed gui bench)
+# Targets whose files may run at the same time (the longest first), those of which two may, and those
+# that measure time, which run alone.
+CALM=(scripts_calm rostest_calm faults_calm oldest unit lint gui_calm)
+PAIRED=(scripts_paired rostest_paired gui_paired faults_paired)
+TIMED=(rostest_timed scripts_timed faults_timed gui_timed bench)
 
 help_text() {
   cat <<'HELP'
@@ -22,8 +23,8 @@ and nothing failed.
 
   --only GROUP   run one group only (may be repeated): lint, unit, oldest, scripts, rostest,
                  gui, faults, bench, or fast
-  --jobs N       run N files at once; those that measure time run alone (default: the number of
-                 processors, at most 4); 1: one after another
+  --jobs N       run N files at once, those that drive robots two at a time if N is above 2, those
+                 that measure time alone (default: one more than there are processors, at most 4)
   --bench        run the benchmarks (test/bench) in full instead of their short form
   --once         do not run a second time what failed (see below)
   -h, --help     this text
@@ -71,7 +72,7 @@ parse_arguments() {
     shift
   done
   [ "${#ONLY[@]}" -gt 0 ] || ONLY=("${GROUPS_IN_ORDER[@]}")
-  if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 4 ? $(nproc) : 4)); fi
+  if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 4 ? $(nproc) + 1 : 4)); fi
 }
 
 # Installs in the workspace, at fixed versions, the tools that Debian and Ubuntu do not package.
@@ -90,11 +91,12 @@ install_tools() {
   fi
 }
 
-# Keeps the operator's master, screen and ~/.ros out of the tests.
+# Keeps the operator's master, screen and ~/.ros out of the tests. Files of test/gui that run at the
+# same time share no screen: two windows cannot both have the keyboard.
 isolate() {
   unset ROS_HOSTNAME ROS_NAMESPACE WAYLAND_DISPLAY
   export ROS_IP=127.0.0.1 ROS_MASTER_URI=http://127.0.0.1:9 ROS_HOME="$SCRATCH/ros"
-  export QT_QPA_PLATFORM=xcb MHRI_BENCH=$BENCH
+  export QT_QPA_PLATFORM=xcb MHRI_BENCH=$BENCH MHRI_OWN_SCREEN=1
   start_xvfb
 }
 
@@ -123,21 +125,22 @@ run() {
   end_leftovers
 }
 
+# run_wanted JOBS TARGET...: runs those of the chosen groups, JOBS files at a time.
+run_wanted() {
+  local jobs=$1 target targets=()
+  shift
+  for target in "$@"; do
+    if wanted "${target%_*}"; then targets+=("$target"); fi
+  done
+  if [ "${#targets[@]}" -gt 0 ]; then run "$jobs" "${targets[@]}"; fi
+}
+
 # run_all: runs the chosen groups.
 run_all() {
-  local target calm=() timed=()
-  for target in "${CALM[@]}"; do
-    if wanted "${target%_*}"; then calm+=("$target"); fi
-  done
-  for target in "${TIMED[@]}"; do
-    if wanted "${target%_*}"; then timed+=("$target"); fi
-  done
-  if [ "$JOBS" = 1 ]; then
-    timed=("${calm[@]}" "${timed[@]}")
-  elif [ "${#calm[@]}" -gt 0 ]; then
-    run "$JOBS" "${calm[@]}"
-  fi
-  for target in "${timed[@]}"; do run 1 "$target"; done
+  local target
+  run_wanted "$JOBS" "${CALM[@]}"
+  run_wanted "$((JOBS > 2 ? 2 : 1))" "${PAIRED[@]}"
+  for target in "${TIMED[@]}"; do run_wanted 1 "$target"; done
 }
 
 # run_again: runs what failed once more.

@@ -51,6 +51,7 @@ start_master() {
 start_link() {
   local where=(--listen "$LISTEN")
   [ -z "$ROUTER" ] || where=(--router "$ROUTER")
+  [ -z "$KEEP_MB" ] || where+=(--keep-mb "$KEEP_MB")
   # Beside these files is where mhri_keys.sh puts them.
   [ ! -e "$HERE/keys/own.pem" ] || where+=(--keys "$HERE/keys")
   held env "${LINK_ENV[@]}" "$GUARD_PYTHON" "$LINK_PLACE/scripts/mhri_link" --side robot \

@@ -40,8 +40,8 @@ Robot
   --no-guard           do not start mhri_guard, which drops late commands, stops the robot when none
                        arrive, and holds a stop-all on the robot when the network is lost
   --brake              mhri_guard slows down for what the laser meets in the way, to a stop before
-                       it; without laser data there is no way forward. One laser, and no depth
-                       camera: those the brake on the screen takes
+                       it; without laser data there is no way forward. No depth camera: that is
+                       for the brake on the screen
   --back-after SECONDS once mhri was not heard for so long (1 to 3600), mhri_guard drives the robot
                        back along its trail, slowly and braking, until it is heard again, 5 m at
                        most. Only where a robot may drive while nobody looks
@@ -62,6 +62,8 @@ A bad radio
   --router ENDPOINT    with --link: instead call a router that the host calls, too, such as
                        192.0.2.1:7447
                        With a key in place (mhri_keys.sh put), the link is by keys alone
+  --keep-mb MB         with --link: of what the host missed while it was out of reach this robot
+                       keeps so much on its disk, the newest (default 500)
 
 Other
   --setup FILE         the setup.bash of the robot's workspace. Default: what this shell has already
@@ -94,6 +96,7 @@ BACK_AFTER=
 LINK=false
 LISTEN=
 ROUTER=
+KEEP_MB=
 IP=
 PORT=11311
 SETUP=
@@ -126,6 +129,7 @@ parse_arguments() {
       --link) LINK=true ;;
       --listen) LISTEN=$(value "$@"); shift ;;
       --router) ROUTER=$(value "$@"); shift ;;
+      --keep-mb) KEEP_MB=$(value "$@"); shift ;;
       --ip) IP=$(value "$@"); shift ;;
       --port) PORT=$(value "$@"); shift ;;
       --setup) SETUP=$(value "$@"); shift ;;

@@ -17,6 +17,7 @@ from mhri.core.config import ConfigError, short
 from mhri.core.drill.page import page_of
 from mhri.core.drill.referee import ALL_FOUND, Referee, TruePose
 from mhri.core.drill.results import compared, lines_of, result_of
+from mhri.core.drill.scenario import on_links
 from mhri.core.robots.robot_types import resolve_robot_type
 from mhri.nodes.sim_robot import body_type, building_key
 from mhri.ros.drill.files import folder_of, names, result_in, scenario_named, write
@@ -103,7 +104,7 @@ class Run:
         self._referee = drill.referee()
         self._watch = OperatorWatch()
         self._faults = FaultCaller(drill.scenario.robots)
-        self._due = sorted(drill.scenario.faults, key=lambda fault: fault.at_s)
+        self._due = on_links(drill.scenario.faults, delay_s)
         self._world = world_path(building_key(drill.plan))
         self._wall_s = None
 
@@ -153,7 +154,8 @@ class Run:
     def _begin_faults(self):
         while self._due and self._due[0].at_s <= self._referee.elapsed_s:
             due = self._due.pop(0)
-            self._referee.on_fault(due.robot, due.fault.words(due.value))
+            if due.for_s:
+                self._referee.on_fault(due.robot, due.fault.words(due.value))
             self._faults.begin(due.robot, due.fault.key, due.value, due.for_s)
 
 

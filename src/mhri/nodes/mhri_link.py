@@ -26,14 +26,17 @@ import sys
 import rospy
 
 from mhri.core.link.carried import SHARED_FRAMES, split_frames
-from mhri.core.link.keys import endpoint, host_of, is_host, KeysError
+from mhri.core.link.keys import endpoint, host_of, is_host, KeysError, marked
+from mhri.core.link.records import IN_SESSIONS, KEEPS
 from mhri.core.robots.names import name_problem, tidy_name
 from mhri.ros.diagnostics import publish_diagnostics
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.link.carrier import Carrier, CarrierError, LibraryMissing, load_library
+from mhri.ros.link.computer import facts
 from mhri.ros.link.host_side import HostSide
+from mhri.ros.link.keeper import keeper_of, MOST_MB
 from mhri.ros.link.key_folder import AUTO, find_folder, KeyFolder, watch_keys
 from mhri.ros.link.note import Note
 from mhri.ros.link.knocks import tell_knocks
@@ -49,6 +52,17 @@ def robot_name(text):
     if problem:
         raise argparse.ArgumentTypeError('{!r}: {}'.format(text[:40], problem))
     return text
+
+
+def megabytes(text):
+    """Return a number of MB from 10 to 1,000,000.
+
+    :raises argparse.ArgumentTypeError: it is none
+    """
+    if not (text.isdigit() and len(text) < 8 and 10 <= int(text) <= 1000000):
+        raise argparse.ArgumentTypeError('{!r} is no number of MB from 10 to 1000000'.format(
+            text[:40]))
+    return int(text)
 
 
 def parse(words):
@@ -72,7 +86,15 @@ def parse(words):
                         help='where the keys are, or off; by default where mhri_keys.sh puts '
                         'them, and without any: off')
     parser.add_argument('--host', default=host_of(socket.gethostname()), metavar='NAME',
-                        help='on a host without keys: its name on the link (default: %(default)s)')
+                        help='on a host without keys: its name on the link (default: %(default)s); '
+                        'a mark of the computer is added')
+    parser.add_argument('--keep', choices=KEEPS, default=IN_SESSIONS,
+                        help='on the host: the robot records what is missed here while a session '
+                        'is recorded (session), always (states), or always and with pictures; '
+                        'default: %(default)s')
+    parser.add_argument('--keep-mb', type=megabytes, default=MOST_MB, metavar='MB',
+                        help='on the robot: so much of what hosts missed is kept, the newest '
+                        '(default: %(default)s)')
     options = parser.parse_args(words)
     if not is_host(options.host):
         parser.error('--host: {!r} is no name such as host:lab'.format(options.host[:60]))
@@ -110,6 +132,22 @@ def call(options):
             for words in (options.listen, options.connect or options.router)]
     place = 'router' if options.side == 'router' else 'routed' if options.router else 'peer'
     return keys, Carrier(*ends, secrets=secrets, place=place)
+
+
+def robot_side(options, carrier, own):
+    """Return what lets hosts in on the robot.
+
+    :param own: the name in the robot's key, None without keys
+    """
+    # Packs pictures with OpenCV, 28 MB that the host's side, one for each robot, does without.
+    from mhri.ros.link.reception import Reception
+    keeper_of(options.name).most_mb = options.keep_mb
+    types, errors = robot_types()
+    for error in errors:
+        rospy.logwarn('robot type left out: %s', error)
+    namespace = tidy_name(options.namespace if options.namespace is not None else options.name)
+    return Reception(options.name, carrier, own, '/' + namespace if namespace else '', types,
+                     split_frames(options.shared_frames))
 
 
 def route(options):
@@ -161,21 +199,13 @@ def main():
     watch = MasterWatch().start()
     own = keys.keys.own if keys else None
     if options.side == 'host':
-        host = own or options.host
+        host = own or marked(options.host, facts())
         side = HostSide(options.name, carrier.between(options.name, host), watch.set_parameter,
-                        host, bool(keys))
+                        host, bool(keys), options.keep)
         publish_diagnostics({'link to ' + options.name: side.fill})
         note.follow(side, watch, bool(keys))
     else:
-        # Packs pictures with OpenCV, 28 MB that the host's side, one for each robot, does without.
-        from mhri.ros.link.reception import Reception
-        types, errors = robot_types()
-        for error in errors:
-            rospy.logwarn('robot type left out: %s', error)
-        namespace = tidy_name(options.namespace if options.namespace is not None
-                              else options.name)
-        side = Reception(options.name, carrier, own, '/' + namespace if namespace else '', types,
-                         split_frames(options.shared_frames))
+        side = robot_side(options, carrier, own)
         publish_diagnostics({'link to the host': side.fill})
     rospy.on_shutdown(side.close)
     side.start()

@@ -45,28 +45,35 @@ def make(options):
             raise NotASession('{}: a report is not written into its session; --output takes '
                               'another folder'.format(folder))
         teller = Teller(session)
-        report = teller.read()
+        report = teller.read(Progress('report', 's'))
         told(write_report(report, teller.grid, session.path, folder), began)
         if options.film:
             began = time.monotonic()
-            told([Film(session, teller, report).write(folder, options.fps, Progress())], began)
+            told([Film(session, teller, report).write(
+                folder, options.fps, Progress('film', 'frames'))], began)
 
 
 class Progress:
-    """Shows how far the film is: on a terminal in place, else a line for every tenth."""
+    """Shows how far something is: on a terminal in place, else a line for every tenth.
 
-    def __init__(self, stream=sys.stderr):
-        self._stream = stream
+    :param what: the word before it
+    :param unit: of what it counts
+    """
+
+    def __init__(self, what, unit, stream=None):
+        self._what, self._unit = what, unit
+        self._stream = stream or sys.stderr
         self._there = -1
 
     def __call__(self, done, count):
-        """Take in how many frames are done."""
+        """Take in how many are done, of how many."""
         step = 1 if self._stream.isatty() else 10
-        percent = 100 * done // count // step * step
+        percent = 100 * min(done, count) // count // step * step
         if percent != self._there:
             self._there = percent
             end = '\r' if step == 1 and done < count else '\n'
-            self._stream.write('film: {} %, {} of {} frames{}'.format(percent, done, count, end))
+            self._stream.write('{}: {} %, {} of {} {}{}'.format(
+                self._what, percent, done, count, self._unit, end))
             self._stream.flush()
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from python_qt_binding.QtCore import QObject, QTimer
 
 from mhri.core.events.events import CALM, KINDS
+from mhri.core.map.met import Met
 from mhri.core.map.places import composed
 from mhri.core.map.scene import goals_of, in_frame, map_robot, own_pose, Scene
 from mhri.core.map.spread import has_room, spread
@@ -29,8 +30,6 @@ from mhri.ros.map.map_feed import MapFeed, MapScans
 from mhri.ros.map.places_client import PlacesClient
 
 DRAW_MS = 100
-# A scan that is older than this is not drawn [s].
-OLD_SCAN_S = 1.0
 NO_TASKS = 'the task service is not there'
 _RADIUS_M = 0.25
 
@@ -57,7 +56,7 @@ class MapHost(QObject):
         self._guard = DrawGuard(self.pane)
         self._view = PanelView()
         self._trails = {}
-        self._points = {}
+        self._met = {}
         self._tracks = {}
         self._answers = queue.Queue()
         self._map = MapFeed()
@@ -122,7 +121,7 @@ class MapHost(QObject):
             self._operator.do(self._open if watched else self._map.close)
         if not watched:
             self._scans.want({})
-            self._points.clear()
+            self._met.clear()
             self._tracks.clear()
             return
         now = self._clock()
@@ -165,26 +164,23 @@ class MapHost(QObject):
         if view.link == LIVE:
             trail.add(robot.pose, link_grade(view.figures, True), now)
         return map_robot(view, places.robots.get(view.name), robot.radius_m, robot.looked_at,
-                         trail, self._met(view.name, robot.pose,
-                                          places.robots[view.name].origin, now))
+                         trail, self._points(view.name, robot.pose,
+                                             places.robots[view.name].origin, now))
 
-    def _met(self, name, pose, origin, now):
-        """Return what a robot's laser has met (n, 2) [m], from where it was then.
+    def _points(self, name, pose, origin, now):
+        """Return what a robot's lasers have met (n, 2) [m], from where it was then.
 
         :param pose: where it is now, like ``origin`` of its odometry in the frame
         """
         feeds = self._operator.feeds(name)
-        news = self._scans.take(name, feeds.base if feeds is not None else '')
-        if news is not None:
-            scan, age_s, (mount, turned_over) = news
+        met, track = self._met.setdefault(name, Met()), self._tracks.get(name)
+        for laser, (scan, age_s, (mount, turned_over)) in self._scans.take(
+                name, feeds.base if feeds is not None else '').items():
             ahead, left, _ = scan_points(*scan[:3])
             seen = in_frame(mount, np.column_stack((ahead, -left if turned_over else left)))
-            track = self._tracks.get(name)
             then = track.at(now - age_s) if track is not None else None
-            self._points[name] = now, in_frame(
-                pose if then is None else composed(origin, then), seen)
-        at, points = self._points.get(name, (-math.inf, None))
-        return points if now - at <= OLD_SCAN_S else None
+            met.see(laser, in_frame(pose if then is None else composed(origin, then), seen), now)
+        return met.points(now)
 
     # What is done.
 

@@ -143,7 +143,8 @@ def make_replay(argv, path):
 
     :raises NotASession: its events cannot be read
     """
-    host = ReplayHost(ReplayBackend(argv), read_lines(path))
+    lines = read_lines(path)
+    host = ReplayHost(ReplayBackend(argv, lines), lines)
     program = Standalone(argv, remember=False, host=host)
     program.window.takeCentralWidget()
     program.window.setCentralWidget(host.widget())

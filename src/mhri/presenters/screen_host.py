@@ -25,6 +25,7 @@ from mhri.gui.screen.screen import ScreenWidget
 from mhri.presenters.pad_host import PadHost
 from mhri.presenters.requests_host import RequestsHost
 from mhri.presenters.session_host import SessionHost
+from mhri.presenters.shelf_host import ShelfHost
 from mhri.presenters.stop_watch import StopWatch
 from mhri.presenters.task_host import TaskHost
 from mhri.presenters.tiles_host import TilesHost
@@ -69,6 +70,7 @@ class ScreenHost(QObject):
         self.tasks = TaskHost(operator, self.screen, self._select, self._note_task)
         self.map = MapHost(operator, self.screen, self.tasks)
         self.faults = FaultHost(self.doctor.page, FaultsClient())
+        self.shelf = ShelfHost(self.screen)
         self._connect()
 
     @property
@@ -163,17 +165,19 @@ class ScreenHost(QObject):
         for _ in range(min(len(self._to_add), ADD_AT_ONCE if few else ADD_OUT_OF_SIGHT)):
             self.operator.add(*self._to_add.pop(0))
         view = self._why.tell(self.tasks.tell(self.operator.view()), self.screen.stick(),
-                              time.monotonic())
+                              self.operator.clock())
         self._mode = view.mode or self._mode
         self.screen.show_view(view)
         self._feel_losses(view)
         self.tiles.show_view(view, [name for name, _ in self._to_add])
         self.events.show(view)
         self.session.show_view(view)
+        self.tiles.show_session(self.session.recorded_s)
         self._tell_budget()
         self.pad.show_view(view)
         self.map.show_view(view)
         self.faults.show_view(view)
+        self.shelf.show()
         for kind, value in self.operator.take_events():
             if kind == 'found':
                 self._show_found(value)
@@ -342,3 +346,4 @@ class ScreenHost(QObject):
         self.tasks.close(forget)
         self.map.close(forget)
         self.faults.close()
+        self.shelf.close()

@@ -60,6 +60,12 @@ class SessionHost:
         """Whether the session is recorded now."""
         return self._client.view().on
 
+    @property
+    def recorded_s(self):
+        """For how long it has been recorded [s], None while it is not."""
+        view = self._client.view()
+        return view.lasts_s if view.on else None
+
     def toggle(self):
         """Record the session, or end it."""
         self._client.record(not self._client.view().on)

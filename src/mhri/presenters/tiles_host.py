@@ -61,7 +61,7 @@ class TilesHost(QObject):
         self._to_tear = set()
         self._due = []
         self._robots = self._coming = ()
-        self._unplaced = False
+        self._unplaced, self._placed = False, None
         self._missing = ''
         self._drawn_at = {}
         self._stopped = False
@@ -97,13 +97,20 @@ class TilesHost(QObject):
         self._cameras.settle(wish for robot in self._due
                              for wish in self.hosts[robot.name].wishes(robot.selected))
 
+    def show_session(self, lasts_s):
+        """Say in every tile for how long the session has been recorded, None where it is not."""
+        for tile in self.windows.values():
+            tile.header.show_session(lasts_s)
+
     def _show_tiles(self):
-        """Let the stage have the tiles, and know of those that come next."""
-        self._stage.show_tiles(
-            {robot.name: self.windows[robot.name] for robot in self._robots
-             if robot.name in self.windows},
-            [*(robot.name for robot in self._robots if robot.type_label),
-             *self._coming][:MOST_TILES])
+        """Let the stage have the tiles, and know of those that come next; return if that is new."""
+        placed = ({robot.name: self.windows[robot.name] for robot in self._robots
+                   if robot.name in self.windows},
+                  [*(robot.name for robot in self._robots if robot.type_label),
+                   *self._coming][:MOST_TILES])
+        new, self._placed = placed != self._placed, placed
+        self._stage.show_tiles(*placed)
+        return new
 
     @property
     def budget_note(self):
@@ -122,8 +129,9 @@ class TilesHost(QObject):
         """
         if self._unplaced:
             self._unplaced = False
-            self._show_tiles()
-            return True
+            # On a busy computer there is no second turn before the next view.
+            if self._show_tiles():
+                return True
         if self._missing not in ('', *self.windows):
             self.make(self._missing)
             self._unplaced = True

@@ -3,7 +3,8 @@
 """The faults of a simulated robot on ROS: the service that asks for them, and what they keep back.
 
 ``/<robot>/base/set_fault`` (``mhri/SetFault``); the table is :mod:`mhri.core.drill.faults`. A robot
-that has no such fault, e.g. no battery to fall, refuses it.
+that has no such fault, e.g. no battery to fall, refuses it. ``/<robot>/base/faults``
+(``std_msgs/String``, latched, on change) says what fails now, a phrase a line, and never fails.
 """
 import copy
 import functools
@@ -15,6 +16,7 @@ import threading
 import time
 
 import rospy
+from std_msgs.msg import String
 
 from mhri.core.config import short
 from mhri.core.drill.delay_line import DelayLine
@@ -92,9 +94,11 @@ class Failing:
         self._lock = threading.Lock()
         self._out, self._in = DelayLine(random.random), DelayLine(random.random)
         self._person = None
+        self._told, self._publisher = None, None
 
     def serve(self):
-        """Offer the service; call it after ``rospy.init_node``."""
+        """Offer service and topic; call it after ``rospy.init_node``."""
+        self._publisher = rospy.Publisher('~faults', String, queue_size=10, latch=True)
         answer_late(self._wait_for_link)
         rospy.Service('~set_fault', SetFault, self._on_call)
 
@@ -220,6 +224,10 @@ class Failing:
             commands = self._in.take(now)
             if self._person is not None:
                 self._care_for_person(now)
+            fails = self._book.phrases(now)
+        if fails != self._told:
+            self._told = fails
+            self._publisher.publish('\n'.join(fails))
         for linear, angular in commands:
             body.command(linear, angular, now)
         slow = self._book.value('wheel_slow', now)

@@ -42,10 +42,9 @@ class _Robot:
 
     def link(self, now, base_s):
         """Return delay [s] and loss [0 to 1] each way."""
-        delay_s = self.faults.value('delay', now)
+        delay_s = base_s + (self.faults.value('delay', now) or 0.0)
         frozen = any(self.faults.has(key, now) for key in ('computer_frozen', 'node_dead'))
-        return (base_s if delay_s is None else delay_s,
-                1.0 if frozen else (self.faults.value('loss', now) or 0.0) / 100.0)
+        return (delay_s, 1.0 if frozen else (self.faults.value('loss', now) or 0.0) / 100.0)
 
     def step(self, now, base_s, tick):
         """Move, and send what is due."""

@@ -134,6 +134,11 @@ class FaultBook:
         """Tell whether the robot has a fault now."""
         return self.value(key, now) is not None
 
+    def phrases(self, now: float) -> Tuple[str, ...]:
+        """Return what fails now, e.g. "delay each way 0.4 s"; cheap while nothing does."""
+        return tuple(ROWS[key].words(has.value) for key, has in self._has.items()
+                     if now < has.until)
+
     def words(self, now: float) -> List[str]:
         """Return what fails now, a phrase each, e.g. "delay each way 0.4 s, 7 s left"."""
         return ['{}{}'.format(ROWS[key].words(has.value), '' if math.isinf(has.until) else

@@ -12,9 +12,8 @@ Terms and formulas are after the literature, not certified by anybody:
   Interaction Schemes in Multitasking Environments", IEEE Trans. SMC-A 35 (4), 2005.
 - *Fan-out* is the activity of all robots over the interaction time: Olsen and Wood, "Fan-out:
   Measuring Human Control of Multiple Robots", CHI 2004.
-- Lanes, mazes, searching for targets and counting contacts are after the standard test methods
-  for response robots of NIST and ASTM E54.09 (figure of eight and maneuvering as in ASTM E2826 to
-  E2829, search as in ASTM E2853).
+- The tasks are after the standard test methods for response robots of NIST and the subcommittee
+  ASTM E54.09: maneuvering as in ASTM E2829 (sustained speed), searching a maze as in ASTM E2853.
 """
 from dataclasses import dataclass, field
 import math

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """A drill as its file describes it: place, robots, what to find, faults at their times, the end."""
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 import re
-from typing import Dict, Optional, Tuple
+from typing import Dict, Iterable, List, Optional, Tuple
 
 from mhri.core.config import parse_yaml, Section
 from mhri.core.drill.faults import (
@@ -35,7 +35,10 @@ class Target:
 
 @dataclass(frozen=True)
 class TimedFault:
-    """A fault of one robot, so many seconds after the drill has begun; see ``SetFault.srv``."""
+    """A fault of one robot, so many seconds after the drill has begun; see ``SetFault.srv``.
+
+    ``for_s`` is 0 for a delay that the link has anyway, and that nobody is to react to.
+    """
 
     robot: str
     fault: Fault
@@ -68,6 +71,20 @@ class Scenario:
     def robots(self) -> Tuple[str, ...]:
         """The names of its robots."""
         return tuple('bot{}'.format(number + 1) for number in range(len(self.types)))
+
+
+def on_links(faults: Iterable[TimedFault], delay_s: float) -> List[TimedFault]:
+    """Return faults in order of time, for links that have a delay of their own [s, each way].
+
+    A delay adds to it, and gives way to it when it ends.
+    """
+    found: List[TimedFault] = []
+    for fault in faults:
+        if delay_s and fault.fault.key == 'delay':
+            found.append(replace(fault, value=delay_s, at_s=fault.at_s + fault.for_s, for_s=0.0))
+            fault = replace(fault, value=min(fault.value + delay_s, fault.fault.high))
+        found.append(fault)
+    return sorted(found, key=lambda each: each.at_s)
 
 
 def _robot(section: Section, robots: Tuple[str, ...], default: Optional[str] = None) -> str:

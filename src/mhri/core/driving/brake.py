@@ -189,6 +189,12 @@ def _into(frame: Pose, points: np.ndarray) -> np.ndarray:
     return found
 
 
+def within_reach(points: np.ndarray, reach_m: float) -> np.ndarray:
+    """Return those of some points (n, 2) that are no further from the middle than this [m]."""
+    found: np.ndarray = points[np.einsum('ij,ij->i', points, points) <= reach_m * reach_m]
+    return found
+
+
 def free_way(points: np.ndarray, radius_m: float, velocity: Velocity) -> float:
     """Return how far a disc gets along the arc of a velocity before it touches a point [m].
 
@@ -278,6 +284,9 @@ def braked(velocity: Velocity, points: np.ndarray, radius_m: float,
     if age_s is None or age_s > SCAN_OLD_S:
         return Velocity(min(0.0, max(wanted, -CRAWL_MPS)), turn)
     wanted = seen_speed(velocity, radius_m + MARGIN_M, REACTION_S + age_s, looks)
+    # What is further than this cannot limit it.
+    points = within_reach(points, radius_m + MARGIN_M + abs(wanted) * (
+        REACTION_S + age_s + abs(wanted) / (2.0 * BRAKES_MPS2)))
     # Slower with the same turn is another arc: looked at once more.
     for _ in range(2):
         way_m = free_way(points, radius_m + MARGIN_M, Velocity(wanted, turn))

@@ -64,18 +64,19 @@ class StickBrake:
             self._seen, self._scan_at = Surroundings(), None
         self._pose = pose
 
-    def see(self, scan: Scan, now: float, pose: Optional[Pose] = None, laser: str = '') -> None:
-        """Take in a scan that is heard now.
+    def see(self, scan: Scan, at_s: float, pose: Optional[Pose] = None, laser: str = '') -> None:
+        """Take in a scan, see :class:`mhri.core.robots.pose_track.PoseTrack`.
 
+        :param at_s: when it was made
+        :param pose: where the robot was then; None: where it was heard last
         :param laser: which one made it, on a robot that has several
-        :param pose: where the robot was when it was made; None: where it was heard last
         """
         pose = (pose or self._pose) if self._pose is not None else None
         if pose is None:
             # Without odometry nothing can be remembered: it would move along with the robot.
             self._seen = Surroundings()
-        self._seen.see(scan, pose or _HERE, now, laser)
-        self._scan_at = now
+        self._seen.see(scan, pose or _HERE, at_s, laser)
+        self._scan_at = at_s if self._scan_at is None else max(at_s, self._scan_at)
 
     def allow(self, velocity: Velocity, now: float) -> Velocity:
         """Return what is left of a command; turning on the spot always is."""

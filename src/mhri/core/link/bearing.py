@@ -25,20 +25,31 @@ QUEUE_MOST_S, QUEUE_CALM_S = 0.07, 0.03
 # Of the messages; the first makes the link careful, with the second it goes down, with the third
 # nothing is lost any more.
 LOSSY, LOSS_MOST, LOSSLESS = 0.08, 0.5, 0.01
-# So much of what came is sent from then on; then by such a part more each second: up to near what
-# was too much, around that, and beyond it, where the part grows each second. What came before the
-# first cut was whole pictures, or rather was not: up to the second it is made up for quickly.
-CUT, GROWTH, AROUND_GROWTH, BEYOND_GROWTH, FIRST_GROWTH = 0.85, 0.05, 0.015, 0.01, 1.0
+# So much of what is carried is sent from then on; half of it the first time, when the queues are
+# full and nobody knows how long the way is without them. Then by such a part more each second: up to
+# near what was too much, around that, and beyond it, where the part grows each second. What came
+# before the first cut was whole pictures, or rather was not, and another radio bears nobody knows
+# what: that is found out quickly.
+CUT, FIRST_CUT = 0.85, 0.5
+GROWTH, AROUND_GROWTH, BEYOND_GROWTH = 0.03, 0.015, 0.01
+FIRST_GROWTH, NEW_GROWTH = 0.15, 0.5
 NEAR, BEYOND = 0.85, 1.15
+# Never by less than this: who has little gains on who has much, so that robots that share a radio
+# come to the same [bytes/s^2].
+_LEAST_GROWTH, _LEAST_FIRST = 1300.0, 3000.0
+_MIDDLE = 30000.0
+# What is not used says nothing about the radio: no more than this times what came.
+_USED = 2.0
+# What came in half a second varies: a cut believes no less than this part of what was sent.
+_SURELY = 0.7
 # What was sent before a cut is still on its way [s].
-SETTLE_S = 1.0
-# What does not wait for less after two cuts does not wait because of what is sent: the way has
-# become longer, or others fill it [s].
+SETTLE_S, DRAIN_S = 1.0, 1.5
+# What does not wait for less after two cuts, or the first, does not wait because of what is sent:
+# the way has become longer, or others fill it [s].
 _FALLS_S = 0.03
 # So many reports in a row say that the radio does not bear all.
 BAD = 3
 LEAST_BYTES_PER_S = 8000.0
-_LEAST_GROWTH = 1000.0
 
 
 class Meter:
@@ -49,7 +60,7 @@ class Meter:
         self._came: Deque[Tuple[float, int, float]] = deque()
         self._counts: Deque[Tuple[float, int]] = deque()
         self._lost = 0
-        self._numbers: Dict[str, int] = {}
+        self._numbers: Dict[str, Tuple[int, float]] = {}
         self._bases: Deque[List[float]] = deque(maxlen=_BASES)
 
     def note(self, topic: str, frame: Frame, size: int, now: float) -> None:
@@ -67,10 +78,11 @@ class Meter:
             self._bases.append([now, delay_s])
         self._bases[-1][1] = min(self._bases[-1][1], delay_s)
         self._came.append((now, size + AROUND_BYTES, delay_s))
-        gap = frame.number - self._numbers.get(topic, frame.number - 1) - 1
-        self._numbers[topic] = frame.number
-        # The numbers begin again some day.
-        gap = gap if 0 <= gap < 1000 else 0
+        last, last_at = self._numbers.get(topic, (frame.number - 1, now))
+        self._numbers[topic] = frame.number, now
+        gap = frame.number - last - 1
+        # The numbers begin again some day; what a stream lost long ago is no news.
+        gap = gap if 0 <= gap < 1000 and now - last_at < LOSS_WINDOW_S else 0
         self._counts.append((now, gap))
         self._lost += gap
         self._forget(now)
@@ -102,14 +114,15 @@ class Bearing:
     def __init__(self) -> None:
         self.bytes_per_s = math.inf
         self.loss = 0.0
-        self._cut_at = -math.inf
-        self._top = self._cut_loss = 0.0
+        self._cut_at = self._full_at = -math.inf
+        self._top = self._cut_loss = self._own_loss = 0.0
         self._heard_at = -math.inf
         self._bad = 0
-        self._first = False
+        # Draining after the first cut; then growing by such a part each second, 0 for slowly.
+        self.drains, self._fast = False, 0.0
         # Of a row of cuts that did not help: how many, and what was sent before.
         self._vain, self._before = 0, math.inf
-        self._waited_s = self._longer_s = 0.0
+        self._waited_s = self._longer_s = self._last_s = 0.0
 
     @property
     def bound(self) -> bool:
@@ -125,18 +138,53 @@ class Bearing:
         self._heard_at, self.loss = now, heard.loss
         self._longer_s = min(self._longer_s, heard.queue_s)
         queue_s = heard.queue_s - self._longer_s
-        full = queue_s > QUEUE_MOST_S or heard.loss > LOSS_MOST
+        # What was lost before a cut counts no more.
+        most_s, calm_s = self._limits_s()
+        full = queue_s > most_s or (
+            heard.loss > LOSS_MOST and now - self._cut_at > LOSS_WINDOW_S + 2.0 * SETTLE_S)
+        if full:
+            self._full_at = now
+        elif now - self._full_at > LOSS_WINDOW_S + SETTLE_S:
+            # Nothing of it was lost in a full queue.
+            self._own_loss += 0.1 * (heard.loss - self._own_loss)
         if not self.bound:
-            # For a moment it may be the computer.
-            self._bad = self._bad + 1 if full or heard.loss > LOSSY else 0
-            if self._bad >= BAD:
-                self._cut(heard, now)
-                self._first = True
+            self._begin(heard, full, now)
+        elif self.drains:
+            self._top = max(self._top, self._carried(heard))
+            if now - self._cut_at >= DRAIN_S:
+                self._drained(heard)
         elif full:
-            if now - self._cut_at >= SETTLE_S:
+            # On a long way it takes a while until what waits gets less.
+            falls = queue_s < self._last_s and now - self._cut_at < 2.0 * SETTLE_S
+            if now - self._cut_at >= SETTLE_S and not falls:
                 self._again(heard, queue_s, now)
-        elif queue_s < QUEUE_CALM_S and now - self._cut_at > SETTLE_S:
-            self._grow(step_s, demand, now)
+        elif queue_s < calm_s and now - self._cut_at > SETTLE_S:
+            self._grow(heard, step_s, demand, now)
+        self._last_s = queue_s
+
+    def _limits_s(self) -> Tuple[float, float]:
+        """Return what is too long to wait, and what is short [s]: for who has much, sooner."""
+        scale = min(2.0, max(0.8, math.sqrt(_MIDDLE / self.bytes_per_s)))
+        return QUEUE_MOST_S * scale, QUEUE_CALM_S * scale
+
+    def _carried(self, heard: Heard) -> float:
+        """Return what the radio carries, with what it loses itself [bytes/s]."""
+        return heard.bytes_per_s / (1.0 - min(LOSS_MOST, self._own_loss))
+
+    def _begin(self, heard: Heard, full: bool, now: float) -> None:
+        """Look whether the radio bears everything still."""
+        # For a moment it may be the computer, which loses nothing.
+        self._bad = self._bad + 1 if full or heard.loss > LOSSY else 0
+        if self._bad >= BAD or heard.loss > LOSS_MOST:
+            self._cut(heard, now, FIRST_CUT)
+            self.drains = True
+
+    def _drained(self, heard: Heard) -> None:
+        """Take what things still wait for as the length of the way."""
+        if heard.queue_s > QUEUE_CALM_S:
+            self._longer_s = heard.queue_s
+        self.bytes_per_s = max(self.bytes_per_s, CUT * self._top)
+        self.drains, self._fast = False, FIRST_GROWTH
 
     def _again(self, heard: Heard, queue_s: float, now: float) -> None:
         """Cut once more, or see that it does not help."""
@@ -144,35 +192,37 @@ class Bearing:
         self._vain = 0 if falls else self._vain + 1
         if not self._vain:
             self._before = self.bytes_per_s
-        self._waited_s, self._first = queue_s, False
-        if self._vain < 2 or queue_s <= QUEUE_MOST_S:
-            self._cut(heard, now)
+        self._waited_s, self._fast = queue_s, 0.0
+        if self._vain < 2 or queue_s <= self._limits_s()[0]:
+            self._cut(heard, now, CUT)
         else:
             self._longer_s, self._vain = heard.queue_s, 0
-            self.bytes_per_s, self._first = self._before, True
+            self.bytes_per_s, self._fast = self._before, FIRST_GROWTH
 
-    def _cut(self, heard: Heard, now: float) -> None:
+    def _cut(self, heard: Heard, now: float, part: float) -> None:
+        carried = self._carried(heard)
         if now - self._cut_at > 2.0 * SETTLE_S:
             # At first it is unknown what was sent.
-            self._top = self.bytes_per_s if self.bound else heard.bytes_per_s
-        self.bytes_per_s = max(LEAST_BYTES_PER_S,
-                               CUT * min(heard.bytes_per_s, self.bytes_per_s))
+            self._top = self.bytes_per_s if self.bound else carried
+        if self.bound:
+            carried = max(carried, _SURELY * self.bytes_per_s)
+        self.bytes_per_s = max(LEAST_BYTES_PER_S, part * min(carried, self.bytes_per_s))
         self._cut_at, self._bad, self._cut_loss = now, 0, heard.loss
 
-    def _grow(self, step_s: float, demand: float, now: float) -> None:
+    def _grow(self, heard: Heard, step_s: float, demand: float, now: float) -> None:
         if self._cut_loss > LOSSY and self.loss < LOSSLESS:
             # Another radio: nobody knows what it bears.
-            self._cut_loss, self._first = 0.0, True
+            self._cut_loss, self._fast = 0.0, NEW_GROWTH
         calm_s = now - self._cut_at - SETTLE_S
-        if self._first:
-            share = FIRST_GROWTH
+        if self._fast:
+            share = self._fast
         elif self.bytes_per_s < NEAR * self._top:
             share = GROWTH
         else:
             beyond = self.bytes_per_s > BEYOND * self._top
             share = min(1.0, BEYOND_GROWTH * calm_s) if beyond else AROUND_GROWTH
-        grown = self.bytes_per_s + step_s * max(share * self.bytes_per_s, _LEAST_GROWTH)
-        # Nobody knows what a radio bears beyond what it was given.
-        self.bytes_per_s = max(self.bytes_per_s, min(grown, 2.0 * demand))
-        if self.bytes_per_s >= 1.5 * demand and self.loss < 0.5 * LOSSY:
+        least = _LEAST_FIRST if self._fast else _LEAST_GROWTH
+        grown = self.bytes_per_s + step_s * max(share * self.bytes_per_s, least)
+        self.bytes_per_s = max(self.bytes_per_s, min(grown, _USED * self._carried(heard)))
+        if self.bytes_per_s >= 1.2 * demand and self.loss < 0.5 * LOSSY:
             self.bytes_per_s = math.inf

@@ -97,11 +97,12 @@ class Control:
         self._stopping.pop(host, None)
         if self._stopping:
             return self._refuse(host, moving, now, '{} has stopped it'.format(
-                ', '.join(map(called, self._stopping))))
+                ', '.join(called(other, host) for other in self._stopping)))
         if not self.holder and moving:
             self._give(host)
         if self.holder and host != self.holder:
-            return self._refuse(host, moving, now, '{} has control'.format(called(self.holder)))
+            return self._refuse(host, moving, now, '{} has control'.format(
+                called(self.holder, host)))
         self._neutral = self._neutral or not moving and host == self.holder
         return self._neutral or not moving
 
@@ -122,9 +123,9 @@ class Control:
         if host != self.asking:
             self.asking, self._asked_at = host, now
             self._tell('{} asks for control, which {} has'.format(
-                called(host), called(self.holder)))
+                called(host, self.holder), called(self.holder, host)))
         return '{} has control and is told that you ask: ask again to take it'.format(
-            called(self.holder))
+            called(self.holder, host))
 
     def _give(self, host: str) -> None:
         self.asking = ''
@@ -134,12 +135,12 @@ class Control:
         # The guard and the gates see to it that who was away begins at neutral.
         self._neutral = self._neutral and self._last in ('', host)
         self._last = host
-        self._tell('{} has taken control from {}'.format(called(host), called(before))
+        self._tell('{} has taken control from {}'.format(called(host, before), called(before, host))
                    if before else '{} has control'.format(called(host)))
 
     def _refuse(self, host: str, moving: bool, now: float, why: str) -> bool:
         if moving and now - self._refused_at.get(host, -math.inf) > REFUSED_S:
-            self._tell('{} may not drive: {}'.format(called(host), why))
+            self._tell('{} may not drive: {}'.format(called(host, self.holder), why))
         if moving:
             self._refused_at[host] = now
         return False
@@ -164,10 +165,10 @@ def shown(own: str, may: bool, holder: str, asking: str) -> Tuple[str, str]:
     if not may:
         return 'this computer may only watch', ''
     if holder in ('', own):
-        return ('{} asks for control'.format(called(asking)) if asking else ''), ''
+        return ('{} asks for control'.format(called(asking, own)) if asking else ''), ''
     if asking == own:
-        return '{} is told that you ask'.format(called(holder)), TAKE_IT
-    return '{} has control'.format(called(holder)), ASK_FOR
+        return '{} is told that you ask'.format(called(holder, own)), TAKE_IT
+    return '{} has control'.format(called(holder, own)), ASK_FOR
 
 
 @dataclass(frozen=True)

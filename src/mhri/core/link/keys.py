@@ -4,15 +4,17 @@
 
 A name is ``host:lab`` (may drive), ``watch:lab`` (may only watch), ``robot:bot1`` or
 ``watched:bot1`` (nobody drives it), with a number where others were withdrawn (``robot:bot1.2``).
-``utils/host/mhri_keys.sh`` makes them. The same names say who speaks on a link without keys.
+``utils/host/mhri_keys.sh`` makes them. The same names say who speaks on a link without keys, with
+a mark of the computer where nothing else tells two of one name apart (``host:lab.x0c5e21a9``).
 """
 from dataclasses import dataclass
+import hashlib
 import re
 from typing import Dict, FrozenSet, Iterable, List, Sequence, Tuple
 
 DRIVES, WATCHES, ROBOT, WATCHED = 'host', 'watch', 'robot', 'watched'
 ROUTER = 'router'
-_NAME = re.compile(r'(host|watch|robot|watched|router):([A-Za-z0-9_-]{1,64})(\.[0-9]{1,6})?\Z')
+_NAME = re.compile(r'(host|watch|robot|watched|router):([A-Za-z0-9_-]{1,64})(\.[0-9]{1,6}|\.x[0-9a-f]{8})?\Z')
 _ODD = re.compile(r'[^A-Za-z0-9_-]')
 _SERIAL = re.compile(r'^\s*Serial Number:\s*([0-9A-Fa-f]+)\s*$', re.MULTILINE)
 ALONE, TLS = ('tcp', 'udp'), ('tls', 'quic')
@@ -42,9 +44,18 @@ def split(owner: str) -> Tuple[str, str]:
     return (found.group(1), found.group(2)) if found else ('', '')
 
 
-def called(owner: str) -> str:
-    """Return what people call it: "lab" of ``host:lab.2``."""
-    return split(owner)[1] or owner
+def called(owner: str, *beside: str) -> str:
+    """Return what people call it: "lab" of ``host:lab.2``.
+
+    :param beside: who else is talked about: where another one is called the same, the mark is told,
+        too, such as "lab (0c5e)"
+    """
+    name = split(owner)[1]
+    if not name:
+        return owner
+    alike = any(other != owner and split(other)[1] == name for other in beside)
+    mark = owner.partition('.x')[2][:4]
+    return '{} ({})'.format(name, mark) if alike and mark else name
 
 
 def is_host(owner: str) -> bool:
@@ -60,6 +71,17 @@ def may_drive(owner: str) -> bool:
 def host_of(computer: str) -> str:
     """Return the name of a host without a key, from that of its computer."""
     return '{}:{}'.format(DRIVES, _ODD.sub('_', computer.partition('.')[0])[:40] or 'unknown')
+
+
+def marked(host: str, facts: Iterable[str]) -> str:
+    """Return the name of a host without a key, with a mark; as it is if it has one.
+
+    :param facts: of its computer, such as no other one has
+    """
+    if '.' in host:
+        return host
+    text = '\n'.join(facts).encode('utf-8', 'replace')
+    return '{}.x{}'.format(host, hashlib.sha256(text).hexdigest()[:8])
 
 
 def read_lists(own: str, peers: str, withdrawn: str, signed: str) -> Keys:

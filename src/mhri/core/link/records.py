@@ -16,6 +16,8 @@ import zlib
 from mhri.core.link.frames import FrameError, read_rows
 
 RECORD = 'record'
+# What a host has kept for it on the robot: in a session alone, always, always and with pictures.
+IN_SESSIONS, STATES, PICTURES = KEEPS = 'session', 'states', 'pictures'
 # Where the host's side says how far it is, and how that begins.
 FETCHING, FETCHING_WORD = 'mhri_link/fetching', 'fetching'
 # Streams of the link: what the host asks; what there is; a part of it.
@@ -83,6 +85,7 @@ class Ask:
     :param number: of the piece that is wanted, -1 for none
     :param offset: from which byte on
     :param count: how many parts
+    :param pictures: keep pictures, too
     """
 
     keep: bool = False
@@ -90,11 +93,14 @@ class Ask:
     number: int = -1
     offset: int = 0
     count: int = 0
+    pictures: bool = False
 
 
 def pack_ask(ask: Ask) -> bytes:
     """Return the bytes of an :class:`Ask`."""
-    return json.dumps([ask.keep, ask.have, ask.number, ask.offset, ask.count]).encode('ascii')
+    row = [ask.keep, ask.have, ask.number, ask.offset, ask.count]
+    # An older mhri on the robot knows five.
+    return json.dumps(row + [True] * ask.pictures).encode('ascii')
 
 
 def unpack_ask(body: bytes) -> Ask:
@@ -103,11 +109,13 @@ def unpack_ask(body: bytes) -> Ask:
     :raises FrameError: they are none
     """
     found = read_rows(body)
-    if (len(found) != 5 or type(found[0]) is not bool or not isinstance(found[1], list)
-            or not all(type(part) is int for part in found[1] + found[2:])
+    more = found[5:]
+    if (len(found) < 5 or [type(part) for part in more] not in ([], [bool])
+            or type(found[0]) is not bool or not isinstance(found[1], list)
+            or not all(type(part) is int for part in found[1] + found[2:5])
             or found[3] < 0 or not 0 <= found[4] <= MOST_PARTS):
         raise FrameError('no request for a recording')
-    return Ask(found[0], tuple(found[1]), *found[2:])
+    return Ask(found[0], tuple(found[1]), *found[2:5], pictures=True in more)
 
 
 def pack_offer(pieces: Collection[Piece]) -> bytes:
@@ -156,7 +164,7 @@ class Fetch:
 
     def __init__(self, got: Optional[Dict[int, int]] = None, window: int = 1,
                  done: Collection[Piece] = ()) -> None:
-        self.keep = False
+        self.keep = self.pictures = False
         self._got = dict(got or {})
         self._told = False
         self._offered: Dict[int, Piece] = {}
@@ -202,7 +210,8 @@ class Fetch:
     def ask(self, now: float) -> Optional[Ask]:
         """Return what to ask now, None for nothing."""
         piece = self.wanted()
-        base = Ask(self.keep, tuple(sorted(set(self._done) & set(self._offered))))
+        base = Ask(self.keep, tuple(sorted(set(self._done) & set(self._offered))),
+                   pictures=self.pictures)
         since_s = now - self._asked_at
         if piece is None:
             if since_s < IDLE_S:

@@ -14,11 +14,12 @@ ECHO_HZ = 12.0
 # then, unless that is more than the second part [bytes/s].
 TO_PICTURES, SOME_BYTES_PER_S, MOST_TO_PICTURES = 0.4, 4500.0, 0.65
 # States are never less frequent than that, times their weight [Hz].
-LEAST_HZ = 2.0
-# First fewer pictures, down to this, then smaller ones, down to this, then fewer again [Hz, bytes].
+LEAST_HZ = 1.0
+# First fewer pictures, down to this, then smaller ones, down to this; then once more [Hz, bytes].
 FEW_HZ, SMALL_BYTES = 5.0, 3000.0
-# From this loss on each piece of a picture is sent twice.
-TWICE_LOSS = 0.05
+RARE_HZ, LEAST_BYTES = 1.5, 1500.0
+# (from this loss on, so many pieces of a picture have a spare one), see pieces.py.
+SPARE = ((0.08, 3), (0.01, 6))
 # Time constant of the means [s].
 _MEAN_S = 1.0
 
@@ -63,22 +64,24 @@ class Share:
 
     :param hz: messages in a second
     :param size: the most bytes of a picture; infinite to leave it as it is
-    :param times: how often each piece of a picture is sent
+    :param group: so many pieces of a picture have a spare one, see :mod:`mhri.core.link.pieces`
     :param bytes_per_s: what its pictures may take
     :param pace: bytes a second at which their pieces go, those of one stream after another's
     """
 
     hz: float
     size: float = math.inf
-    times: int = 1
+    group: int = 0
     bytes_per_s: float = math.inf
     pace: float = math.inf
 
 
-def shares(flows: List[Flow], bytes_per_s: float, loss: float, now: float) -> Dict[str, Share]:
+def shares(flows: List[Flow], bytes_per_s: float, loss: float, now: float,
+           drains: bool = False) -> Dict[str, Share]:
     """Return {topic: its :class:`Share`} of what a radio bears.
 
     :param loss: the share of packets that it loses, from 0 to 1
+    :param drains: no pictures, since the radio is full of them still
     """
     by_class: Dict[str, List[Flow]] = {COMMAND: [], STATE: [], PICTURE: []}
     for flow in flows:
@@ -87,17 +90,22 @@ def shares(flows: List[Flow], bytes_per_s: float, loss: float, now: float) -> Di
              for flow in by_class[COMMAND]}
     left = bytes_per_s - sum(found[flow.stream.topic].hz * flow.size for flow in by_class[COMMAND])
     left = max(left, 0.3 * bytes_per_s)
-    looked_at = [flow for flow in by_class[PICTURE] if flow.hz(now) > 0.01]
+    looked_at = [flow for flow in by_class[PICTURE] if flow.hz(now) > 0.01 and not drains]
     kept = max(TO_PICTURES * left, min(SOME_BYTES_PER_S, MOST_TO_PICTURES * left))
     level = _level(by_class[STATE], left - (kept if looked_at else 0.0), now)
     for flow in by_class[STATE]:
-        hz = level * flow.stream.weight
+        hz = _hz(flow, level)
         found[flow.stream.topic] = Share(hz)
         left -= min(hz, flow.hz(now)) * flow.size
     left = max(left, 0.1 * bytes_per_s)
     for flow in by_class[PICTURE]:
-        found[flow.stream.topic] = _of_picture(flow, left, max(1, len(looked_at)), loss)
+        found[flow.stream.topic] = Share(0.0) if drains else _of_picture(
+            flow, left, max(1, len(looked_at)), loss)
     return found
+
+
+def _hz(flow: Flow, level: float) -> float:
+    return max(level * flow.stream.weight, flow.stream.least_hz)
 
 
 def _level(flows: List[Flow], budget: float, now: float) -> float:
@@ -105,16 +113,16 @@ def _level(flows: List[Flow], budget: float, now: float) -> float:
     low, high = LEAST_HZ, 200.0
     for _ in range(12):
         level = 0.5 * (low + high)
-        used = sum(min(level * flow.stream.weight, flow.hz(now)) * flow.size for flow in flows)
+        used = sum(min(_hz(flow, level), flow.hz(now)) * flow.size for flow in flows)
         low, high = (level, high) if used <= budget else (low, level)
     return low
 
 
 def _of_picture(flow: Flow, bytes_per_s: float, count: int, loss: float) -> Share:
-    times = 2 if loss >= TWICE_LOSS else 1
-    usable = bytes_per_s / count / times
+    group = next((group for least, group in SPARE if loss >= least), 0)
+    usable = bytes_per_s / count / (1.0 + (1.0 / group if group else 0.0))
     size = flow.size
     if usable < FEW_HZ * size:
-        size = min(size, max(usable / FEW_HZ, SMALL_BYTES))
+        size = min(size, max(usable / FEW_HZ, min(SMALL_BYTES, usable / RARE_HZ), LEAST_BYTES))
     return Share(min(usable / size, flow.stream.rate_hz or math.inf),
-                 math.inf if size == flow.size else size, times, bytes_per_s / count, bytes_per_s)
+                 math.inf if size == flow.size else size, group, bytes_per_s / count, bytes_per_s)

@@ -83,6 +83,16 @@ class LinkQuality:
             loss=self._lost / (self._lost + len(self._counts)) if self._counts else None)
 
 
+class RecordedQuality(LinkQuality):
+    """The link of a robot that is replayed: its round trip, which was recorded.
+
+    How a player's own messages come says nothing about the link of then.
+    """
+
+    def on_message(self, seq: int, delay_s: Optional[float], now: float) -> None:
+        """Leave it out."""
+
+
 def link_warning(figures: LinkFigures, dropped: bool = False) -> str:
     """Return what is wrong with a live link; '' if all is well.
 

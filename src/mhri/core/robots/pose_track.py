@@ -1,40 +1,75 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where a robot was a moment ago, by the stamps of its odometry."""
+"""When a robot's scan was made, and where the robot was then: the one rule, for stick and tasks.
+
+A scan counts from its stamp, where that is by the clock which stamps the robot's odometry; else
+from its receipt, where the robot was heard last. Our clock need not agree with the robot's.
+"""
 from collections import deque
 import math
-from typing import Deque, Optional, Tuple
+from typing import Deque, NamedTuple, Optional, Tuple
 
 from mhri.core.robots.mocap import Pose
+from mhri.core.robots.stamp_age import StampAge
 
-# What was measured longer before the newest odometry has another clock, or is late beyond use [s].
+# What was measured longer before the newest odometry is late beyond use [s].
 KEPT_S = 0.5
+# A stamp that is further from that of the newest odometry is none, or by another clock [s].
+SAME_CLOCK_S = 2.0
 _MOST = 100
 
 
+class Moment(NamedTuple):
+    """When a scan was made [s, of our clock], and where the robot was, None: where it is now."""
+
+    at_s: float
+    pose: Optional[Pose]
+
+
 class PoseTrack:
-    """The last poses of a robot, each with its stamp [s]: of one clock, whichever it is."""
+    """The last poses of a robot, each with its stamp [s]: of one clock, whichever it is.
+
+    Poses come from one thread; another may ask.
+    """
 
     def __init__(self) -> None:
         self._poses: Deque[Tuple[float, Pose]] = deque(maxlen=_MOST)
+        self._age = StampAge()
 
-    def add(self, stamp_s: float, pose: Pose) -> None:
-        """Take in a pose; a stamp that goes back begins anew."""
+    def add(self, stamp_s: float, pose: Pose, heard_s: float) -> None:
+        """Take in a pose; a stamp that goes back begins anew.
+
+        :param heard_s: when, of our clock, which never goes back [s]
+        """
+        self._age.late_s(stamp_s, heard_s)
         if self._poses and stamp_s <= self._poses[-1][0]:
             self._poses.clear()
         self._poses.append((stamp_s, pose))
         while self._poses[-1][0] - self._poses[0][0] > KEPT_S and len(self._poses) > 2:
             self._poses.popleft()
 
-    def at(self, stamp_s: float) -> Optional[Pose]:
-        """Return where the robot was then, None where these poses do not tell."""
-        if not self._poses or self._poses[-1][0] - stamp_s > KEPT_S:
-            return None
-        for (before_s, before), (after_s, after) in zip(self._poses, list(self._poses)[1:]):
-            if before_s <= stamp_s <= after_s:
-                share = (stamp_s - before_s) / (after_s - before_s)
-                turned = math.remainder(after.heading_rad - before.heading_rad, 2.0 * math.pi)
-                return Pose(before.x_m + share * (after.x_m - before.x_m),
-                            before.y_m + share * (after.y_m - before.y_m),
-                            before.heading_rad + share * turned)
-        return None
+    def moment(self, stamp_s: float, heard_s: float) -> Moment:
+        """Return when and where a scan was made that was heard at a time.
+
+        :raises ValueError: it is late beyond use, or two clocks of the robot are apart
+        """
+        poses = tuple(self._poses)
+        if not poses or abs(stamp_s - poses[-1][0]) > SAME_CLOCK_S:
+            return Moment(heard_s, None)
+        behind_s = poses[-1][0] - stamp_s
+        if behind_s > KEPT_S:
+            raise ValueError('stamped {:.1f} s before the odometry: it comes too late, or the '
+                             'clocks of the robot\'s computers are apart'.format(behind_s))
+        return Moment(heard_s - self._age.since_s(stamp_s, heard_s), _at(stamp_s, poses))
+
+
+def _at(stamp_s: float, poses: Tuple[Tuple[float, Pose], ...]) -> Optional[Pose]:
+    """Return where the robot was then, None where these poses do not tell."""
+    for (before_s, before), (after_s, after) in zip(poses, poses[1:]):
+        if before_s <= stamp_s <= after_s:
+            share = (stamp_s - before_s) / (after_s - before_s)
+            turned = math.remainder(after.heading_rad - before.heading_rad, 2.0 * math.pi)
+            return Pose(before.x_m + share * (after.x_m - before.x_m),
+                        before.y_m + share * (after.y_m - before.y_m),
+                        before.heading_rad + share * turned)
+    return None

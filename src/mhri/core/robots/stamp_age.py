@@ -50,3 +50,12 @@ class StampAge:
             self._least_s = min(delay_s, self._least_s + LEAK * (now - self._now))
         self._stamp_s, self._now = stamp_s, now
         return delay_s - self._least_s if now >= self._settled_at else None
+
+    def since_s(self, stamp_s: float, now: float) -> float:
+        """Return how long ago something was stamped by that clock, less the quickest journey [s].
+
+        :returns: 0 where that is not known, as in simulated time
+        """
+        if self._stamp_s is None or stamp_s < SET_SINCE_S:
+            return 0.0
+        return max(0.0, now - stamp_s - self._least_s)

@@ -9,7 +9,8 @@ control. Without a screen a robot's silence is seen here, too.
 from typing import Dict, Iterable, List, Mapping, Optional, Tuple
 
 from mhri.core.events.events import ALARM, ATTENTION, CALM
-from mhri.core.session.folder import ERROR, INFO, WARNING
+from mhri.core.screen.text import tidy_text
+from mhri.core.session.folder import ERROR, INFO, SessionEvent, WARNING
 
 # (kind, severity, robot, text)
 Line = Tuple[str, str, str, str]
@@ -22,6 +23,8 @@ _KINDS = {'link': 'link', 'quality': 'link', 'battery': 'battery', 'proof': 'sto
           'guard': 'fault', 'mux': 'fault', 'gates': 'fault', 'master': 'fault',
           'source': 'fault', 'recording': 'record'}
 _STOP_SEEN_HERE = ('stop.engaged', 'stop.released')
+# No simulated robot has more faults at once, nor longer words for one.
+_MOST_FAULTS, _LONGEST_FAULT = 20, 80
 _LOST = ('link.silent', 'link.gone', 'link.lost')
 
 
@@ -38,6 +41,19 @@ def line_of_screen(kind: str, severity: str, robot: str, text: str) -> Optional[
     return name, _SEVERITIES.get(severity, INFO), robot, text
 
 
+def link_notes(events: Iterable[SessionEvent]) -> Dict[str, List[Tuple[float, str]]]:
+    """Return what the lines of a session say of bad links: {robot: [(ROS time [s], words)]}.
+
+    The words are '' from when the link was good again, or the robot lost.
+    """
+    found: Dict[str, List[Tuple[float, str]]] = {}
+    for event in events:
+        if event.robot and event.kind in ('link', 'lost'):
+            bad = event.kind == 'link' and event.severity == WARNING
+            found.setdefault(event.robot, []).append((event.ros, event.text if bad else ''))
+    return found
+
+
 class GraphWatch:
     """What the graph says about who drives what, as lines; the first word of each is no change."""
 
@@ -47,6 +63,7 @@ class GraphWatch:
         self._selected: Optional[Tuple[str, ...]] = None
         self._operator: Optional[str] = None
         self._lost: Dict[str, float] = {}
+        self._faults: Dict[str, Tuple[str, ...]] = {}
 
     @property
     def operator(self) -> str:
@@ -87,6 +104,16 @@ class GraphWatch:
         return [('control', INFO, '', '{} on {} is in control'.format(
             operator.lstrip('/'), computer or 'an unknown computer') if operator
             else 'nobody is in control')]
+
+    def faults(self, robot: str, said: str) -> List[Line]:
+        """Take in what fails of a simulated robot by request, a phrase a line."""
+        before = self._faults.get(robot, ())
+        now = self._faults[robot] = tuple(
+            tidy_text(phrase, _LONGEST_FAULT) for phrase in said.splitlines()[:_MOST_FAULTS])
+        return [('fault', WARNING, robot, 'simulated fault: ' + phrase)
+                for phrase in now if phrase not in before] + [
+                    ('fault', INFO, robot, 'simulated fault over: ' + phrase)
+                    for phrase in before if phrase not in now]
 
     def silence(self, ages_s: Mapping[str, Tuple[float, float]], now_s: float) -> List[Line]:
         """Take in how long each robot has been silent; return those that are lost or back.

@@ -3,6 +3,8 @@
 """What of the graph belongs to a session."""
 from typing import Any, Container, Dict, Iterable, Mapping, Tuple
 
+from mhri.core.link.figures import FIGURES
+from mhri.core.link.records import FETCHING
 from mhri.core.recording.recording import GUARD_COMMAND
 from mhri.core.robots.names import topic_of
 from mhri.core.robots.robot_types import RobotType
@@ -13,11 +15,14 @@ EVENTS, PANEL_EVENTS = '/mhri_session/events', '/panel/events'
 PICTURES = '/panel/pictures'
 #: what the host says, whoever drives
 HOST_TOPICS = (
-    '/mux_in/mode_select', '/mux/mode', '/robot_controller/twist', '/robot_controller/task_twist',
+    '/mux_in/mode_select', '/mux/mode', '/mux/waits_for', '/mux/pushed', '/mux/advice',
+    '/mux/dead_man', '/mux/speed_limit', '/robot_controller/twist', '/robot_controller/task_twist',
     '/robot_controller/stop_all', '/robot_controller/robot_select', '/gates/state',
-    '/gates_in/group_speed', '/mhri_tasks/list', '/mhri_tasks/places', '/tf', '/tf_static', '/map',
-    EVENTS)
+    '/gates_in/group_speed', '/mhri_tasks/list', '/mhri_tasks/places', '/mhri_tasks/run/feedback',
+    '/mhri_tasks/run/result', '/mhri_voice/heard', '/tf', '/tf_static', '/map', EVENTS)
 _MOCAP = '/vrpn_client_node/{}/pose'
+# What a robot's row says of its link and its guard, beside its own sensors.
+_TOLD = ('mhri_guard/dropped', 'mhri_link/state', FIGURES, FETCHING)
 # Kinds of a robot's sensors, as keys of a RobotType and of session.yaml.
 _SENSORS = ('odometry', 'imu', 'scan', 'battery')
 _CAMERAS = (('rgb', '/compressed'), ('depth', '/compressedDepth'))
@@ -30,8 +35,15 @@ def robot_topics(robot: str, kind: RobotType) -> Tuple[str, ...]:
     listens to commands changes nothing.
     """
     names = [name for key in _SENSORS for name in getattr(kind, key)]
-    topics = [topic_of(robot, name) for name in (*names, *kind.command, GUARD_COMMAND)]
+    switch = (kind.hardware_stop.name,) if kind.hardware_stop else ()
+    topics = [topic_of(robot, name) for name in (*names, *kind.command, GUARD_COMMAND, *_TOLD,
+                                                 *switch)]
     return tuple(dict.fromkeys((*topics, _MOCAP.format(robot))))
+
+
+def fault_topic(robot: str) -> str:
+    """Return where a simulated robot says what it was asked to let fail, absolute."""
+    return '/{}/base/faults'.format(robot)
 
 
 def camera_topics(robot: str, kind: RobotType) -> Tuple[str, ...]:
@@ -45,15 +57,20 @@ def robot_entry(robot: str, number: int, kind: RobotType, parameters: Mapping[st
     """Return what ``session.yaml`` says of a robot.
 
     :param parameters: those of its namespace
-    :param published: absolute names; of several candidates the first that is published counts, of
-        none the first
+    :param published: absolute names; of several candidates the first that is published counts, be
+        it raw (a screen compresses it), of none the first
     """
     topics: Dict[str, str] = {}
     suffixes = dict(_CAMERAS)
     for key in (*_SENSORS, 'rgb', 'depth', 'command'):
-        names = [topic_of(robot, name) + suffixes.get(key, '') for name in getattr(kind, key)]
-        if names:
-            topics[key] = next((name for name in names if name in published), names[0])
+        suffix = suffixes.get(key, '')
+        names = [topic_of(robot, name) for name in getattr(kind, key)]
+        for name in names:
+            if name + suffix in published or name in published:
+                topics[key] = name + suffix
+                break
+        else:
+            topics.update({key: name + suffix for name in names[:1]})
     return {'number': number, 'type': kind.name, 'model': kind.model,
             'parameters': _plain(parameters), 'topics': topics}
 

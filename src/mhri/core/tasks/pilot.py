@@ -6,6 +6,7 @@ from typing import Optional
 
 import numpy as np
 
+from mhri.core.driving.brake import within_reach
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
 from mhri.core.tasks.base import Body, Senses, turn_to, way, wrapped
@@ -65,13 +66,14 @@ class Pilot:
 
     def _free_heading(self, points: np.ndarray, bearing: float, left_m: float) -> Optional[float]:
         """Return the free heading nearest to a bearing [rad]; None where there is none."""
-        headings = bearing + _OFFSETS
-        free = free_ways(points, headings, self._body.radius_m + CLEARANCE_M)
-        good = free >= min(left_m, LOOK_M)
-        middle = len(_OFFSETS) // 2
-        if good[middle]:
+        room_m, reach_m = self._body.radius_m + CLEARANCE_M, min(left_m, LOOK_M)
+        # What is further off is in nobody's way; and mostly the straight heading is free.
+        points = within_reach(points, reach_m + room_m)
+        if free_ways(points, np.array([bearing]), room_m)[0] >= reach_m:
             self._side = 0.0
             return bearing
+        headings = bearing + _OFFSETS
+        good = free_ways(points, headings, room_m) >= reach_m
         if not good.any():
             return None
         costs = np.abs(_OFFSETS) + _KEEP_SIDE_RAD * (np.sign(_OFFSETS) == -self._side)

@@ -155,7 +155,8 @@ class RobotRun:
         if self.phase == JOINING and facts.now_s - self._phase_s > JOIN_S:
             return FAILED, 'its task does not reach it: is the enabling pedal pressed?'
         if self.phase == UNDER_WAY and facts.obeys != TASK:
-            return LOST, 'its task did not reach it any more: start it again'
+            return LOST, 'its task did not reach it any more (a busy computer, or a released ' \
+                'pedal): continue it'
         return None
 
     def _get_ready(self, facts: Facts) -> None:

@@ -12,7 +12,7 @@ from mhri.gui.screen import theme, words
 from mhri.gui.screen.labels import BatteryLine, Pill, Sign, TextLine
 
 VIEWS, VIEWS_IN_SHORT = 'Views', '…'
-REPLAY = 'REPLAY'
+REPLAY, REC = 'REPLAY', 'REC'
 TEAR_OFF, PUT_BACK = 'Tear off', 'Put back'
 TYPE, AGE, LINK, PILL, BATTERY = 'type', 'age', 'link', 'pill', 'battery'
 GAPS, SIGN = 'gaps', 'sign'
@@ -89,6 +89,9 @@ class TileHeader(QWidget):
         self._view = None
         self._with_age = True
         self._replay = False
+        # For how long the session and this robot by itself have been recorded [s].
+        self._session_s = self._own_s = None
+        self._with_both = True
         self._build(name, type_label)
 
     def _build(self, name, type_label):
@@ -145,7 +148,6 @@ class TileHeader(QWidget):
                            (self.pill, base)):
             part.setFont(font)
         self.battery_label.fix_width('100 %')
-        self.rec_label.fix_width('REC 00:00')
         for button in (self.views_button, self.tear_button, self.carry_on_button):
             button.setMinimumHeight(theme.touch_size(self))
         for place in range(self._row.count()):
@@ -184,6 +186,9 @@ class TileHeader(QWidget):
             2 if self.large and GAPS not in parts else 4))
         self.link_label.fix_width('waiting 000 ms' if self._with_age else 'waiting')
         self._show_link()
+        self._with_both = TYPE not in parts
+        self.rec_label.fix_width(REPLAY if self._replay else self._rec_text('0'))
+        self._show_rec()
         self.views_button.setText(VIEWS if VIEWS not in parts else VIEWS_IN_SHORT)
         self.views_button.setFixedWidth(
             theme.touch_size(self) + theme.text_width(self.views_button.font(),
@@ -256,14 +261,39 @@ class TileHeader(QWidget):
             self.fit()
 
     def show_recording(self, status):
-        """Show how long a recording has been running, None where none is."""
+        """Show how long a recording of this robot has been running, None where none is."""
+        self._show_recorded(self._session_s, status.duration_s if status else None)
+
+    def show_session(self, lasts_s):
+        """Show how long the session has been recorded, None where it is not."""
+        self._show_recorded(lasts_s, self._own_s)
+
+    def _show_recorded(self, session_s, own_s):
         if self._replay:
             return
-        if self.rec_label.isHidden() != (status is None):
-            self.rec_label.setVisible(status is not None)
+        before = self._rec_text('0')
+        self._session_s, self._own_s = session_s, own_s
+        if self._rec_text('0') != before:
+            self.rec_label.setVisible(bool(self._rec_text()))
             self.fit()
-        if status is not None:
-            self.rec_label.show_text('REC ' + clock_text(status.duration_s))
+        self._show_rec()
+
+    def _rec_text(self, digit=''):
+        """Return what is said of recordings, '' while there is none.
+
+        Small tiles have no time, others that of the session and of a recording of the robot alone.
+
+        :param digit: stands for each digit, to see how wide the text is
+        """
+        times = [clock_text(lasts_s) for lasts_s in (self._session_s, self._own_s)
+                 if lasts_s is not None]
+        text = ' '.join([REC, ' + '.join(times[:2 if self._with_both else 1])]) if times else ''
+        text = text if self.large or not times else REC
+        return ''.join(digit if sign.isdigit() else sign for sign in text) if digit else text
+
+    def _show_rec(self):
+        if not self._replay:
+            self.rec_label.show_text(self._rec_text())
 
     def paintEvent(self, event):  # noqa: N802
         """Paint the ground."""

@@ -12,9 +12,11 @@ from mhri.core.driving.brake import NARROW_M
 from mhri.core.driving.stick_brake import StickBrake
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.names import topic_of
+from mhri.core.robots.pose_track import PoseTrack
+from mhri.ros.convert import header_of
 from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.robots.robot_link import ODOMETRY_READERS
-from mhri.ros.sensors.beams import read_beams
+from mhri.ros.sensors.beams import made_s, read_beams
 from mhri.ros.sensors.depth_scans import DepthScans
 from mhri.ros.sensors.mounts import Mounts
 from mhri.ros.sensors.refusals import Refusals
@@ -49,7 +51,9 @@ class BrakeEye:
             self._odometry = getattr(importlib.import_module(module), class_name)
         except ImportError:
             self._odometry = None
-        self._refusals = Refusals(', '.join(self._topics), clock)
+        self._refusals = Refusals(', '.join(self._topics or [
+            topic_of(name, topic) for topic in robot_type.depth]), clock)
+        self._track = PoseTrack()
         self._subscribers = []
         self._settling = threading.Lock()
         self._seeing = threading.Lock()
@@ -89,7 +93,11 @@ class BrakeEye:
         motion = None if message is None else self._read(message)
         if motion is not None and motion.is_possible():
             self._mounts.see_odometry(message)
-            self.brake.move(Pose(motion.x_m, motion.y_m, motion.heading_rad))
+            pose = Pose(motion.x_m, motion.y_m, motion.heading_rad)
+            header = header_of(message, type(message))
+            if header is not None:
+                self._track.add(header[1], pose, now)
+            self.brake.move(pose)
 
     def _on_scan(self, message, topic):
         now = self._clock()
@@ -97,15 +105,26 @@ class BrakeEye:
         if message is None:
             return
         try:
-            # Each laser has a thread of its own.
-            with self._seeing:
-                self.brake.see(read_beams(message, self._mounts), now, laser=topic)
+            self._see(read_beams(message, self._mounts), now, made_s(message), topic)
         except ValueError as error:
             self._refusals.note(error)
 
-    def _on_depth(self, scan, received_s, _):
-        if self.brake.asked:
-            self.brake.see(scan, received_s)
+    def _on_depth(self, scan, received_s, stamp_s):
+        try:
+            self._see(scan, received_s, stamp_s)
+        except ValueError as error:
+            self._refusals.note(error)
+
+    def _see(self, scan, heard_s, stamp_s, laser=''):
+        """Take in a scan where the robot was when it was made.
+
+        :raises ValueError: it is too late for that
+        """
+        at_s, pose = self._track.moment(stamp_s, heard_s)
+        # Each laser has a thread of its own.
+        with self._seeing:
+            if self.brake.asked:
+                self.brake.see(scan, at_s, pose, laser)
 
     def close(self):
         """Stop looking (blocking: it asks the master)."""

@@ -14,12 +14,11 @@ from std_srvs.srv import SetBool, SetBoolResponse
 
 from mhri.core.link.carried import FRAME_NAMES, GUARD_COMMAND, TF, TF_STATIC
 from mhri.core.link.records import (
-    ASK, crc_of, Fetch, FETCHING, OFFER, pack_ask, PART, piece_of, RECORD, unpack_offer,
-    unpack_part)
+    ASK, crc_of, Fetch, FETCHING, IN_SESSIONS, OFFER, pack_ask, PART, PICTURES, piece_of, RECORD,
+    unpack_offer, unpack_part)
 from mhri.core.link.renaming import renamer, rewritten, Transforms
 from mhri.core.recording.recording import ros_home
 from mhri.msg import SessionState
-from mhri.ros import parameters
 from mhri.ros.link.keeper import folder_of
 
 WAIT_S = 0.1
@@ -42,7 +41,8 @@ def join(robot, paths, target, topics):
             with rosbag.Bag(path) as piece:
                 for name, raw, when in piece.read_messages(raw=True):
                     kind, data, md5, _, message_class = raw
-                    key = name, data
+                    # Not the message: with pictures that many take gigabytes.
+                    key = name, len(data), hash(data)
                     if key in recent:
                         continue
                     recent[key] = None
@@ -86,11 +86,10 @@ class HostRecord:
 
     :param side: of the link
     :param topics: function that returns what is carried of the robot
-
-    The parameter ``~keep`` (false) says whether it does from the start.
+    :param keep: when it does, and what, from the start: see :mod:`mhri.core.link.records`
     """
 
-    def __init__(self, side, topics):
+    def __init__(self, side, topics, keep=IN_SESSIONS):
         self._side = side
         self._topics = topics
         self._folder = folder_of(side.name, 'fetched')
@@ -98,7 +97,7 @@ class HostRecord:
         self._came = collections.deque()
         self._work = threading.Event()
         self._fetch = None
-        self._keep = parameters.flag('~keep', False)
+        self._keep, self._pictures = keep != IN_SESSIONS, keep == PICTURES
         self._said = None
         self.text = ''
         self._session = None
@@ -148,6 +147,7 @@ class HostRecord:
             self._fetch = Fetch(done=[piece for piece in map(piece_of, os.listdir(self._folder))
                                       if piece is not None])
         fetch = self._fetch
+        fetch.pictures = self._pictures
         fetch.keep = self._keep or self._session is not None and self._session.recording
         while self._came:
             topic, body = self._came.popleft()

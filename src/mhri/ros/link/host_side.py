@@ -15,6 +15,7 @@ from mhri.core.link.figures import FIGURES, figures_words, RadioFigures
 from mhri.core.link.frames import About, Thinned, unpack_about
 from mhri.core.link.keys import called
 from mhri.core.link.peer import held_s
+from mhri.core.link.records import IN_SESSIONS
 from mhri.core.link.renaming import stamp_of
 from mhri.ros.graph.master_api import MasterError
 from mhri.ros.link.host_record import HostRecord
@@ -40,9 +41,10 @@ class HostSide(Side):
     :param set_parameter: called with (name, value), blocking
     :param host: what this computer is called on the link
     :param secret: with keys
+    :param keep: what the robot keeps of what is missed here, see :mod:`mhri.core.link.records`
     """
 
-    def __init__(self, name, carrier, set_parameter, host, secret, **options):
+    def __init__(self, name, carrier, set_parameter, host, secret, keep=IN_SESSIONS, **options):
         super().__init__(name, carrier, 'down', **options)
         self._control = HostControl(
             name, host, secret, lambda body: self.send(CONTROL, COMMAND, body))
@@ -56,7 +58,7 @@ class HostSide(Side):
         self._publishers = {}
         self._unusable = set()
         self._down = []
-        self._record = HostRecord(self, lambda: dict(self._about.topics))
+        self._record = HostRecord(self, lambda: dict(self._about.topics), keep)
 
     def start(self):
         """Begin, and fetch what was missed."""

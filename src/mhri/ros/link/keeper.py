@@ -15,6 +15,8 @@ from mhri.core.recording.recording import ACTIVE, MB, RECORDING, ros_home
 from mhri.ros.recording.recorder import Recorder
 
 MOST_MB = 500
+# No piece takes more than this share of that: of what there is room for the newest is kept.
+PIECE_SHARE = 0.1
 # A host is missed this much later than it has gone [s].
 LATE_S = 2.5
 
@@ -35,15 +37,18 @@ class Keeper:
 
     What is open when this program is killed is saved the next time.
 
-    :param folder: of the pieces; they take :data:`MOST_MB` at most, the oldest go first
+    :param make: makes a recorder of (robot, topics, path)
+    :param folder: of the pieces; they take :attr:`most_mb` at most, the oldest go first
     """
 
-    def __init__(self, robot, folder, clock=time.time):
+    def __init__(self, robot, folder, clock=time.time, make=Recorder):
         self._robot = robot
         self._folder = folder
+        self.most_mb = MOST_MB
         self._clock = clock
+        self._make = make
         self._lock, self._turn = threading.Lock(), threading.Lock()
-        # {who: (whether it wants what it misses, whether it is there)}
+        # {who: (whether it wants what it misses, whether it is there, whether pictures, too)}
         self._hosts = {}
         self._pieces = None
         self._now = None      # (recorder, when it began)
@@ -52,10 +57,15 @@ class Keeper:
         self._missed_at = -1e18
         self._number = 0
 
-    def want(self, who, keep, heard):
+    def want(self, who, keep, heard, pictures=False):
         """Take in what a host wants, and whether it is there."""
         with self._lock:
-            self._hosts[who] = keep, heard
+            self._hosts[who] = keep, heard, pictures
+
+    def pictures_too(self):
+        """Tell whether a host wants what it misses of the cameras, too."""
+        with self._lock:
+            return any(keep and pictures for keep, _, pictures in self._hosts.values())
 
     def pieces(self):
         """Return the pieces that were kept."""
@@ -94,8 +104,8 @@ class Keeper:
     def _tick(self, topics, now):
         with self._lock:
             hosts = list(self._hosts.values())
-        wanted = any(keep for keep, _ in hosts)
-        missed = any(keep and not heard for keep, heard in hosts)
+        wanted = any(keep for keep, _, _ in hosts)
+        missed = any(keep and not heard for keep, heard, _ in hosts)
         if self._pieces is None:
             self._find()
         was, self._missed_at = self._missed_at, now if missed else self._missed_at
@@ -103,7 +113,8 @@ class Keeper:
             begun = self._now[1]
             # Who is back gets what was open at once.
             back = not missed and begun < was > now - LATE_S
-            if not wanted or back or now - begun >= PIECE_S:
+            full = self._now[0].status().bytes >= PIECE_SHARE * self.most_mb * MB
+            if not wanted or back or full or now - begun >= PIECE_S:
                 self._end(now)
         if wanted and self._now is None and topics:
             self._begin(topics, now)
@@ -112,7 +123,7 @@ class Keeper:
     def _begin(self, topics, now):
         folder = os.path.join(self._folder, 'open')
         os.makedirs(folder, exist_ok=True)
-        recorder = Recorder(self._robot, topics, os.path.join(folder, 'open.bag'))
+        recorder = self._make(self._robot, topics, os.path.join(folder, 'open.bag'))
         recorder.start()
         self._now = recorder, now
 
@@ -152,10 +163,10 @@ class Keeper:
         except OSError as error:
             rospy.logwarn('%s: what was recorded is lost: %s', self._robot, error)
         with self._lock:
-            gone = too_many(self._pieces.values(), MOST_MB * MB)
+            gone = too_many(self._pieces.values(), self.most_mb * MB)
         if gone:
             rospy.logwarn('%s: no room for more than %d MB of what the host missed: the oldest '
-                          '%d s are lost', self._robot, MOST_MB,
+                          '%d s are lost', self._robot, self.most_mb,
                           sum(piece.lasts_ms for piece in gone) // 1000)
             self.drop([piece.number for piece in gone])
 

@@ -61,12 +61,15 @@ class Pictures:
     def _take(self, now):
         """Return (picture, its share) that is due first, None if none is."""
         with self._lock:
-            due = [topic for topic in self._waiting if self._due.get(topic, 0.0) <= now]
+            due = [topic for topic in self._waiting if self._due.get(topic, 0.0) <= now
+                   and self._share(topic).hz]
             if not due:
                 return None
             topic = min(due, key=lambda topic: self._due.get(topic, 0.0))
-            share = self._shares.get(topic, Share(1.0))
-            return self._waiting.pop(topic), share
+            return self._waiting.pop(topic), self._share(topic)
+
+    def _share(self, topic):
+        return self._shares.get(topic, Share(1.0))
 
     def _run(self):
         while not rospy.is_shutdown():
@@ -88,10 +91,11 @@ class Pictures:
             smaller = self._smaller.setdefault(stream.topic, Smaller())
             data = smaller.fit(data, share.size)
         self._number += 1
-        pieces = split(self._number, taken_at, self._rename(data, names, self._number))
+        pieces = split(self._number, taken_at, self._rename(data, names, self._number),
+                       share.group)
         begun, sent = self._clock(), 0
         self._count(stream, begun)
-        for piece in pieces * share.times:
+        for piece in pieces:
             if not self._send(stream, piece):
                 return
             sent += len(piece)

@@ -135,7 +135,8 @@ class Reception:
                 side = RobotSide(self._name, self._carrier.between(self._name, host), *self._rest,
                                  desk)
                 self._sides[host] = side, desk
-                rospy.loginfo('%s: linked with %s, which may %s', self._name, called(host),
+                rospy.loginfo('%s: linked with %s, which may %s', self._name,
+                              called(host, *self._sides),
                               'drive' if self._control.may_drive(host) else 'only watch')
                 side.start()
         with self._lock:

@@ -21,7 +21,8 @@ class RobotRecord:
     """Answers, and tells the keeper what this host wants, on a thread of its own: the disk waits.
 
     :param side: of the link with the host
-    :param topics: function that returns what to record, absolute names
+    :param topics: function that returns what to record, absolute names: with pictures if it is
+        called with True
     """
 
     def __init__(self, side, topics):
@@ -29,7 +30,7 @@ class RobotRecord:
         self._topics = topics
         self._keeper = keeper_of(side.name)
         self._ask = None
-        self._keep = False
+        self._keep = self._pictures = False
         self._asked = threading.Event()
 
     def start(self):
@@ -54,8 +55,8 @@ class RobotRecord:
                 now = self._side.clock()
                 if now - ticked_at >= TICK_S:
                     ticked_at = now
-                    self._keeper.want(self, self._keep, self._side.peer.heard(now))
-                    self._keeper.tick(self._topics())
+                    self._keeper.want(self, self._keep, self._side.peer.heard(now), self._pictures)
+                    self._keeper.tick(self._topics(self._keeper.pictures_too()))
             except Exception as error:  # the disk, a master that is gone: the link goes on
                 if not rospy.is_shutdown():
                     rospy.logwarn_throttle(10.0, '{}: cannot record: {!r}'.format(
@@ -65,7 +66,7 @@ class RobotRecord:
         ask, self._ask = self._ask, None
         if ask is None:
             return
-        self._keep = ask.keep
+        self._keep, self._pictures = ask.keep, ask.pictures
         self._keeper.drop(ask.have)
         pieces = self._keeper.pieces()
         if ask.number < 0 or ask.have or all(piece.number != ask.number for piece in pieces):

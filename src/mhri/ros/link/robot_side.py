@@ -138,10 +138,10 @@ class RobotSide(Side):
         self._record.start()
         return super().start()
 
-    def _recorded(self):
-        """Return what is recorded: all but pictures."""
+    def _recorded(self, pictures):
+        """Return what is recorded."""
         topics = [stream.topic for stream in list(self._streams.values())
-                  if stream.urgency != PICTURE]
+                  if pictures or stream.urgency != PICTURE]
         return sorted(full_topic(self._namespace, topic) for topic in topics + [GUARD_COMMAND]) \
             if topics else []
 
@@ -174,7 +174,8 @@ class RobotSide(Side):
         bearing.on_heard(heard, sum(flow.demand(now) for flow in flows), now)
         if not (was_bound or bearing.bound):
             return
-        found = shares(flows, bearing.bytes_per_s, bearing.loss, now) if bearing.bound else {}
+        found = shares(flows, bearing.bytes_per_s, bearing.loss, now, bearing.drains) \
+            if bearing.bound else {}
         for carried in opened:
             carried.thin(found.get(carried.stream.topic))
         self._pictures.share(found)

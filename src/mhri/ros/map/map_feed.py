@@ -101,33 +101,37 @@ class MapScans:
         wanted = self._wanted
         if wanted:
             self._frames.open()
-        for name, (kind, feed) in list(self._open.items()):
+        for name, (kind, feeds) in list(self._open.items()):
             if wanted.get(name) != kind:
                 del self._open[name]
-                feed.close()
+                for feed in feeds:
+                    feed.close()
         for name, kind in wanted.items():
             if name not in self._open:
-                feed = ScanFeed(name, kind.scan)
-                feed.open()
-                self._open[name] = kind, feed
+                feeds = [ScanFeed(name, [topic]) for topic in kind.scan]
+                for feed in feeds:
+                    feed.open()
+                self._open[name] = kind, feeds
 
     def names(self):
         """Return the robots whose lasers are listened to now."""
         return tuple(self._open)
 
     def take(self, name, base):
-        """Return (a robot's scan as :meth:`ScanFeed.take` does, its age [s], its mount), or None.
+        """Return the new scans of a robot: {number of its laser: (scan, its age [s], its mount)}.
 
         :param base: the robot's own frame, '' where it is not known
-        :returns: its mount as :meth:`Mounts.laser` does
+        :returns: scans as :meth:`ScanFeed.take` has them, mounts as :meth:`Mounts.laser` does
         """
-        kind, feed = self._open.get(name, (None, None))
-        scan = feed.take() if feed else None
-        if scan is None:
-            return None
-        mounts = Mounts(kind, self._frames)
-        mounts.base = base
-        return scan, feed.age_s() or 0.0, mounts.laser(feed.frame)
+        kind, feeds = self._open.get(name, (None, ()))
+        found = {}
+        for laser, feed in enumerate(feeds):
+            scan = feed.take()
+            if scan is not None:
+                mounts = Mounts(kind, self._frames)
+                mounts.base = base
+                found[laser] = scan, feed.age_s() or 0.0, mounts.laser(feed.frame)
+        return found
 
     def close(self):
         """Stop listening (blocking: it asks the master)."""

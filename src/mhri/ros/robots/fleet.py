@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import rospy
 
+from mhri.core.robots.link_quality import LinkQuality
 from mhri.core.robots.robot_types import resolve_robot_type, Seen
 from mhri.core.screen.views import GONE, RobotView, WAITING
 from mhri.ros.robots.bot_feeds import BotFeeds
@@ -39,6 +40,8 @@ class Fleet:
         self._problems = {}
         self._seen = {}
         self._stopped = False
+        #: makes what measures a robot's link
+        self.quality = LinkQuality
         #: who has control of robots that are linked
         self.controls = Controls(told or rospy.loginfo)
 
@@ -83,7 +86,7 @@ class Fleet:
         if old is not None:
             old.close()
         link = RobotLink(name, robot_type, self._gates, BotFeeds(name, robot_type, self._worker),
-                         self._clock, self._wall)
+                         self._clock, self._wall, self.quality)
         with self._lock:
             self._links[name] = link
             self.controls.watch(name)

@@ -106,9 +106,11 @@ class RobotLink:
     :param feeds: :class:`mhri.ros.robots.bot_feeds.BotFeeds` of its tile
     :param clock: function that returns seconds that never go back
     :param wall: function that returns the time of day [s since 1970]
+    :param quality: makes what measures its link
     """
 
-    def __init__(self, name, robot_type, gates, feeds, clock=time.monotonic, wall=time.time):
+    def __init__(self, name, robot_type, gates, feeds, clock=time.monotonic, wall=time.time,
+                 quality=LinkQuality):
         self.name = name
         self.robot_type = robot_type
         self._gates = gates
@@ -122,7 +124,7 @@ class RobotLink:
         self._heard_wall = ''
         self._pending = None
         self._motion = None
-        self._quality = LinkQuality()
+        self._quality = quality()
         self._ages = {}
         self._proof = None
         self._battery = None

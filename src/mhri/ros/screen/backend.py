@@ -54,7 +54,7 @@ class ScreenBackend:
     speaks = True
 
     def __init__(self, argv=(), seat=SEAT, clocks=(time.monotonic, time.time)):
-        self._seat = seat
+        self._seat, self.clock = seat, clocks[0]
         self._argv = list(argv)
         self._types, self._type_errors = robot_types()
         self.selection = Selection()
@@ -344,7 +344,7 @@ class ScreenBackend:
         selected = frozenset(self.selection.selected)
         asked = self._mux.asked() if self._mux else (0.0, 0.0)
         robots = self._asked.compare((self._robot_view(name, name in selected)
-                                      for name in self.selection.robots), asked, time.monotonic())
+                                      for name in self.selection.robots), asked, self.clock())
         answers = self._mux is None or self._gates.answers()
         gates = self._gates.state() if answers else None
         together, share = (gates.together, gates.share) if gates else (self._together, 1.0)

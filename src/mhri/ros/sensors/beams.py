@@ -7,7 +7,15 @@ from mhri.core.sensors.plausible import beams_problem, measured_ranges, thinned
 
 # A finer scan is thinned: its nearest beams count.
 MOST_BEAMS = 400
+# No laser takes longer for a turn [s]: a time between beams that says so is none.
+SWEEP_S = 0.25
 _MIDDLE = Pose(0.0, 0.0, 0.0)
+
+
+def made_s(message):
+    """Return when a ``sensor_msgs/LaserScan`` was complete [s]: it is stamped as its first beam."""
+    sweep_s = (len(message.ranges) - 1) * message.time_increment
+    return message.header.stamp.to_sec() + (sweep_s if 0.0 < sweep_s <= SWEEP_S else 0.0)
 
 
 def read_beams(message, mounts=None):

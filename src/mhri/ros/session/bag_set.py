@@ -4,14 +4,18 @@
 
 Read by ``rosbag.Bag``. Beneath its public interface are used, here alone: its connections, its
 indexes (for the newest message before a time it offers nothing but reading all) and the reading of
-one message.
+one message. A bag that was never closed is indexed in memory; nothing is ever written.
 """
 from bisect import bisect_right
 from collections import OrderedDict
 import heapq
+import io
+import itertools
 import os
+import struct
 from typing import NamedTuple
 
+import numpy as np
 import rosbag
 from rosbag.bag import ROSBagException
 
@@ -23,6 +27,10 @@ from mhri.core.session.folder import (
 MOST_OPEN = 6
 # A seek looks for what was last heard of a topic in so many earlier bags at most.
 MOST_LOOKED_INTO = 3
+_NS = 10 ** 9
+# Of an index record: lengths, the field with the number of its connection, and what it consists of.
+_LENGTH, _CONN = struct.Struct('<I'), b'conn='
+_ENTRY = np.dtype([('s', '<u4'), ('n', '<u4'), ('offset', '<u4')])
 
 
 class Connection(NamedTuple):
@@ -44,19 +52,19 @@ class Recorded(NamedTuple):
 
 
 class _Place(NamedTuple):
-    """Where a message is."""
+    """Where a message is: the bag, its connection there, its chunk, and where in that."""
 
     time_ns: int
     bag: int
     number: int
-    entry: object
+    chunk: int
+    offset: int
 
 
 class BagSet:
     """Bags in the order of time; not thread-safe.
 
-    :param paths: files that were closed; they may overlap a little, as the next one begins with
-        what is latched
+    :param paths: files; they may overlap a little, as the next one begins with what is latched
     :raises NotASession: none of them can be read
     """
 
@@ -77,7 +85,10 @@ class BagSet:
     def _meet(self, path):
         """Take in what a bag holds, without its index."""
         try:
-            with rosbag.Bag(path, 'r', skip_index=True) as bag:
+            with _opened(path) as bag:
+                if path.endswith(ACTIVE):
+                    self.problems.append('{} was never closed: its last second may be missing'
+                                         .format(os.path.basename(path)))
                 if not bag._chunks:
                     return
                 self._starts.append(min(chunk.start_time.to_nsec() for chunk in bag._chunks))
@@ -105,20 +116,19 @@ class BagSet:
         return list(dict.fromkeys(kind for kinds in self._kinds for kind in kinds.values()))
 
     def _bag(self, index):
-        """Return a bag with its index, opened if it is not."""
+        """Return (a bag, {connection: its :class:`Entries`}), opened if it is not."""
         if index in self._open:
             self._open.move_to_end(index)
             return self._open[index]
-        bag = rosbag.Bag(self._paths[index], 'r', skip_index=True)
-        bag._get_indexes(None)
-        self._open[index] = bag
+        bag = _opened(self._paths[index])
+        self._open[index] = bag, index_of(bag)
         while len(self._open) > MOST_OPEN:
-            self._open.popitem(last=False)[1].close()
-        return bag
+            self._open.popitem(last=False)[1][0].close()
+        return self._open[index]
 
     def _read(self, place):
-        bag = self._bag(place.bag)
-        message = bag._read_message((place.entry.chunk_pos, place.entry.offset), raw=True)
+        bag, _ = self._bag(place.bag)
+        message = bag._read_message((place.chunk, place.offset), raw=True)
         return Recorded(place.time_ns, self._kinds[place.bag][place.number], message.message[1])
 
     def newest(self, time_ns, wanted=lambda connection: True):
@@ -143,13 +153,12 @@ class BagSet:
 
     def _newest_in(self, index, time_ns, wanted):
         """Return {topic: where its newest message in a bag is}."""
-        bag, found = self._bag(index), {}
+        (_, entries), found = self._bag(index), {}
         for number, kind in self._kinds[index].items():
-            entries = bag._connection_indexes.get(number, ()) if wanted(kind) else ()
-            place = _count_until(entries, time_ns)
-            if place:
-                entry = entries[place - 1]
-                at = _Place(entry.time.to_nsec(), index, number, entry)
+            row = entries.get(number) if wanted(kind) else None
+            last = row.until(time_ns) if row else 0
+            if last:
+                at, = self._places(index, number, row, last - 1, last)
                 if kind.topic not in found or found[kind.topic].time_ns <= at.time_ns:
                     found[kind.topic] = at
         return found
@@ -161,21 +170,103 @@ class BagSet:
         for index in range(max(0, first - 1), len(self._paths)):
             if self._ends[index] <= time_ns:
                 continue
-            bag = self._bag(index)
-            rows = [self._row(index, number, bag._connection_indexes.get(number, ()), time_ns)
-                    for number, kind in self._kinds[index].items() if wanted(kind)]
+            _, entries = self._bag(index)
+            rows = [self._row(index, number, entries[number], time_ns)
+                    for number, kind in self._kinds[index].items()
+                    if number in entries and wanted(kind)]
             for place in heapq.merge(*rows, key=lambda place: place.time_ns):
                 yield self._read(place)
 
+    def _row(self, index, number, entries, time_ns):
+        return self._places(index, number, entries, entries.until(time_ns), len(entries.times))
+
     @staticmethod
-    def _row(index, number, entries, time_ns):
-        for place in range(_count_until(entries, time_ns), len(entries)):
-            yield _Place(entries[place].time.to_nsec(), index, number, entries[place])
+    def _places(index, number, entries, begin, end):
+        """Yield the places of some entries of a connection."""
+        for time_ns, chunk, offset in zip(*(part[begin:end].tolist() for part in entries)):
+            yield _Place(time_ns, index, number, chunk, offset)
 
     def close(self):
         """Close every file."""
         while self._open:
-            self._open.popitem()[1].close()
+            self._open.popitem()[1][0].close()
+
+
+class Entries(NamedTuple):
+    """Where the messages of a connection are, in order of time: arrays of the same length."""
+
+    times: np.ndarray
+    chunks: np.ndarray
+    offsets: np.ndarray
+
+    def until(self, time_ns):
+        """Return how many are not after a time."""
+        return int(np.searchsorted(self.times, time_ns, 'right'))
+
+
+def index_of(bag):
+    """Return {connection: :class:`Entries`} of an open bag, of those with any message.
+
+    Its own reader makes an object of each message, which takes ten times as long.
+
+    :raises ROSBagException: the index is damaged
+    """
+    found = {}
+    try:
+        for number, chunk, rows in _told(bag) if any(bag._connection_indexes.values()) \
+                else _recorded(bag):
+            parts = found.setdefault(number, ([], [], []))
+            for part, values in zip(parts, (rows['s'].astype(np.int64) * _NS + rows['n'],
+                                            np.full(len(rows), chunk), rows['offset'])):
+                part.append(values)
+    except (struct.error, ValueError) as error:
+        raise ROSBagException('its index is damaged: {}'.format(error))
+    return {number: _in_order(*map(np.concatenate, parts)) for number, parts in found.items()}
+
+
+def _in_order(times, chunks, offsets):
+    order = np.argsort(times, kind='stable')
+    return Entries(times[order], chunks[order], offsets[order])
+
+
+def _recorded(bag):
+    """Yield (connection, chunk, its entries there) as the index records behind each chunk say."""
+    stream = bag._file
+    for chunk in bag._chunks:
+        header = bag._chunk_headers[chunk.pos]
+        stream.seek(header.data_pos + header.compressed_size)
+        for _ in chunk.connection_counts:
+            fields = stream.read(_LENGTH.unpack(stream.read(_LENGTH.size))[0])
+            rows = np.frombuffer(stream.read(_LENGTH.unpack(stream.read(_LENGTH.size))[0]), _ENTRY)
+            yield _LENGTH.unpack_from(fields, fields.index(_CONN) + len(_CONN))[0], chunk.pos, rows
+
+
+def _told(bag):
+    """Yield the same of a bag that was indexed in memory."""
+    for number, entries in bag._connection_indexes.items():
+        for chunk, of_chunk in itertools.groupby(entries, lambda entry: entry.chunk_pos):
+            yield number, chunk, np.array([(entry.time.secs, entry.time.nsecs, entry.offset)
+                                           for entry in of_chunk], _ENTRY)
+
+
+def _opened(path):
+    """Open a bag to read, without its index unless it was never closed.
+
+    :raises ROSBagException, OSError, ValueError, KeyError: it cannot be read
+    """
+    if not path.endswith(ACTIVE):
+        return rosbag.Bag(path, 'r', skip_index=True)
+    bag = rosbag.Bag(path, 'r', allow_unindexed=True, skip_index=True)
+    try:
+        for _ in bag.reindex():
+            pass
+    except io.UnsupportedOperation:
+        pass  # it would cut off what is not whole, and the file is open to read
+    whole = bag._chunk_headers
+    for number, entries in bag._connection_indexes.items():
+        bag._connection_indexes[number] = [
+            entry for entry in entries if entry.chunk_pos in whole]
+    return bag
 
 
 def _connection(found):
@@ -183,18 +274,6 @@ def _connection(found):
     latched = found.header.get('latching', b'0')
     return Connection(found.topic, found.datatype, found.md5sum, found.msg_def,
                       latched in (b'1', '1'))
-
-
-def _count_until(entries, time_ns):
-    """Return how many entries of an index, in order of time, are not after a time."""
-    low, high = 0, len(entries)
-    while low < high:
-        middle = (low + high) // 2
-        if entries[middle].time.to_nsec() <= time_ns:
-            low = middle + 1
-        else:
-            high = middle
-    return low
 
 
 class Kept(NamedTuple):
@@ -226,10 +305,7 @@ def open_session(path, foreign):
 def _open_folder(path, foreign):
     names = sorted(os.listdir(path))
     bags = bags_of(names) or [name for name in names if name.endswith('.bag')]
-    paths = [os.path.join(path, name) for name in bags if not name.endswith(ACTIVE)]
-    opened = BagSet(paths)
-    opened.problems += ['{} was never closed: rosbag reindex it, and take ".active" off its name'
-                        .format(name) for name in bags if name.endswith(ACTIVE)]
+    opened = BagSet([os.path.join(path, name) for name in bags])
     name = os.path.basename(path)
     info = os.path.join(path, SESSION_YAML)
     if not os.path.exists(info):

@@ -1,14 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Lines of a session from what the graph and the screens say."""
+import functools
 import time
 
 import genpy
 import rospy
-from std_msgs.msg import Bool
+from std_msgs.msg import Bool, String
 
 from mhri.core.session.lines import GraphWatch, line_of_screen
-from mhri.core.session.topics import PANEL_EVENTS
+from mhri.core.session.topics import fault_topic, PANEL_EVENTS
 from mhri.msg import ControlMode, GatesState, RobotSelect, SessionEvent
 from mhri.ros.session.moment import read
 from mhri.ros.worker import Worker
@@ -35,6 +36,16 @@ class GraphLines:
             SELECT: (RobotSelect, self._select),
             GATES: (GatesState, lambda said: self.watch.control(said.operator, said.computer))}
         self._caller = ''
+
+    def follow(self, robots):
+        """Read what fails of these simulated robots, too."""
+        for robot in robots:
+            topic = fault_topic(robot)
+            self._readers[topic] = String, functools.partial(self._fail, robot)
+            self.watched[topic] = self._hear
+
+    def _fail(self, robot, message):
+        return self.watch.faults(robot, message.data)
 
     def start(self):
         """Begin."""

@@ -3,7 +3,7 @@
 """What a session hears of the graph, and for how long it has heard nothing of a robot."""
 from mhri.core.robots.names import topic_of
 from mhri.core.session.topics import (
-    camera_topics, HOST_TOPICS, inputs_of, PANEL_EVENTS, PICTURES, robot_topics)
+    camera_topics, fault_topic, HOST_TOPICS, inputs_of, PANEL_EVENTS, PICTURES, robot_topics)
 
 _NS = 1e9
 
@@ -12,18 +12,26 @@ class Heard:
     """Tells a :class:`mhri.ros.session.tap.SessionTap` what to hear.
 
     :param robots: :class:`mhri.ros.session.graph_robots.GraphRobots`
+    :param follow_faults: called with the names of simulated robots before their faults are heard
     :param out_of_sight: connect to the cameras themselves, whether a screen shows them or not; else
         pictures come from screens, so that no camera has to send twice
     """
 
-    def __init__(self, tap, robots, out_of_sight):
+    def __init__(self, tap, robots, follow_faults, out_of_sight):
         self._tap = tap
         self._robots = robots
+        self._follow_faults = follow_faults
+        self._simulated = []
         self._out_of_sight = out_of_sight
 
     def want(self):
         """Hear what there is now."""
         topics = [*HOST_TOPICS, *inputs_of(self._robots.published), PANEL_EVENTS]
+        # One whose driver is dead for a while stays one.
+        self._simulated += [name for name in self._robots.kinds if name not in self._simulated
+                            and fault_topic(name) in self._robots.published]
+        self._follow_faults(self._simulated)
+        topics += [fault_topic(name) for name in self._simulated]
         cameras = []
         for name, kind in self._robots.kinds.items():
             topics += robot_topics(name, kind)

@@ -1,11 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The ROS side of a screen that shows a replay: it looks, and can ask nobody but the player."""
+from dataclasses import replace
 import time
 
 import rospy
 
-from mhri.core.screen.views import ControlView
+from mhri.core.robots.link_quality import RecordedQuality
+from mhri.core.screen.views import ControlView, LIVE
+from mhri.core.session.lines import link_notes
 from mhri.core.session.playing import ReplayClock
 from mhri.msg import ReplayState, RobotSelect
 from mhri.ros.graph.look import Found
@@ -33,13 +36,16 @@ class ReplayBackend(ScreenBackend):
     Everything that would ask the mux, the gates or a robot for something does nothing.
 
     :param argv: the node's command line (remappings)
+    :param lines: the :class:`mhri.core.session.folder.SessionEvent` values of the session
     """
 
     speaks = False
 
-    def __init__(self, argv=()):
-        self.clock = ReplayClock(time.monotonic)
-        super().__init__(argv, Seat(), (self.clock, self.clock.wall))
+    def __init__(self, argv=(), lines=()):
+        clock = ReplayClock(time.monotonic)
+        super().__init__(argv, Seat(), (clock, clock.wall))
+        self._fleet.quality = RecordedQuality
+        self._link_notes = link_notes(lines)
         self._selected = ()
         self._state = None
         self._topics = []
@@ -97,6 +103,14 @@ class ReplayBackend(ScreenBackend):
         """Return the :class:`PanelView` of this moment of the session."""
         self.selection.check(self._selected)
         return super().view()
+
+    def _robot_view(self, name, selected):
+        view = super()._robot_view(name, selected)
+        now = self.clock.wall()
+        words = [words for at_s, words in self._link_notes.get(name, ()) if at_s <= now][-1:]
+        if view.link == LIVE and not view.slow and any(words):
+            return replace(view, note=words[0], slow=True)
+        return view
 
     def _control(self):
         return ControlView()

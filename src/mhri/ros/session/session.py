@@ -94,7 +94,8 @@ class Session:
         self.tap = SessionTap(rospy.get_name() + '_recorder', options.limits, options.ring_s,
                               round(options.ring_mb * 1e6), self.lines.watched, self._clock_ns,
                               options.bag_s)
-        self._heard = Heard(self.tap, self.robots, options.out_of_sight)
+        self._heard = Heard(self.tap, self.robots, self.lines.follow,
+                            options.out_of_sight)
         self._moment = Moment(self.tap, self.robots)
         self._worker = Worker('session', self._look, LOOK_S)
         self._life = threading.RLock()

@@ -3,18 +3,14 @@
 """A session read for its report: nothing is ever written into its folder, and no master needed."""
 from contextlib import contextmanager
 import os
-import shutil
-import tempfile
 from typing import NamedTuple
 
 import genpy
-import rosbag
 from rosbag.bag import ROSBagException
 
 from mhri.core.config import ConfigError, short
 from mhri.core.drill.results import FILE as DRILL_FILE, read_result, rows_of
 from mhri.core.map.grid import GridError
-from mhri.core.recording.recording import ACTIVE
 from mhri.core.robots.mocap import Pose
 from mhri.core.session.folder import (
     bags_of, EVENTS_JSONL, NotASession, read_events, read_info, robots_of, SESSION_YAML)
@@ -75,26 +71,23 @@ class Session(NamedTuple):
 def opened(path):
     """Open a session for as long as the block lasts (blocking); yields a :class:`Session`.
 
-    Bags that were never closed are copied and indexed in a folder of their own.
-
     :raises NotASession: it is none; the text names the path, the reason and the remedy
     """
     path = os.path.abspath(os.path.expanduser(path))
-    with tempfile.TemporaryDirectory(prefix='mhri_report_') as copies:
-        try:
-            session = _open(path, copies)
-        except OSError as error:
-            raise NotASession('{}: {}'.format(path, error.strerror))
-        except NotASession as error:
-            raise NotASession('{}: {}'.format(path, error))
-        try:
-            yield session
-        finally:
-            if session.bags is not None:
-                session.bags.close()
+    try:
+        session = _open(path)
+    except OSError as error:
+        raise NotASession('{}: {}'.format(path, error.strerror))
+    except NotASession as error:
+        raise NotASession('{}: {}'.format(path, error))
+    try:
+        yield session
+    finally:
+        if session.bags is not None:
+            session.bags.close()
 
 
-def _open(path, copies):
+def _open(path):
     if not os.path.isdir(path):
         raise NotASession('a session is a folder' if os.path.exists(path)
                           else 'there is no such folder')
@@ -111,7 +104,7 @@ def _open(path, copies):
         problems.append('{} lines of {} make no sense'.format(strange, EVENTS_JSONL))
     bags = None
     try:
-        bags = ThinnedBags(_closed(path, copies, problems))
+        bags = ThinnedBags([os.path.join(path, name) for name in bags_of(sorted(os.listdir(path)))])
         problems += bags.problems
     except NotASession as error:
         problems.append('no bag can be read: {}'.format(error))
@@ -129,32 +122,6 @@ def _text(path, problems=None):
         return ''
     with open(path, encoding='utf-8', errors='replace') as stream:
         return stream.read()
-
-
-def _closed(path, copies, problems):
-    """Return the paths of bags that are closed: copies of those that are not."""
-    paths = []
-    for name in bags_of(sorted(os.listdir(path))):
-        bag = os.path.join(path, name)
-        if name.endswith(ACTIVE):
-            bag = _indexed(bag, os.path.join(copies, name[:-len(ACTIVE)]), problems)
-        paths += [bag] if bag else []
-    return paths
-
-
-def _indexed(path, copy, problems):
-    """Copy a bag that was never closed, and index the copy; return it, None where that fails."""
-    name = os.path.basename(path)
-    try:
-        shutil.copyfile(path, copy)
-        with rosbag.Bag(copy, 'a', allow_unindexed=True) as bag:
-            for _ in bag.reindex():
-                pass
-    except (ROSBagException, OSError, ValueError, KeyError) as error:
-        problems.append('{} was never closed, and cannot be read: {}'.format(name, error))
-        return None
-    problems.append('{} was never closed: its last second may be missing'.format(name))
-    return copy
 
 
 class Teller:
@@ -180,8 +147,11 @@ class Teller:
         self._odometry = {topic: name for name, topic in self._topics.items()}
         self.grid = None
 
-    def read(self):
-        """Read all bags (blocking: up to a minute for an hour); return the :class:`Report`."""
+    def read(self, progress=lambda done, count: None):
+        """Read all bags (blocking: up to a minute for an hour); return the :class:`Report`.
+
+        :param progress: called with how many seconds of how many are read
+        """
         session = self._session
         if session.bags is not None:
             session.bags.dense = [round((self.start + span.begin_s - 1.0) * _NS)
@@ -189,6 +159,8 @@ class Teller:
             try:
                 for recorded in session.bags.after(session.bags.start_ns - 1, self._wanted):
                     self._take(recorded)
+                    progress((recorded.time_ns - session.bags.start_ns) // _NS,
+                             max(1, round(self.line.length_s)))
             except (ROSBagException, OSError, ValueError, KeyError) as error:
                 session.problems.append('a bag is damaged, what follows is missing: {}'.format(
                     error))

@@ -34,7 +34,9 @@ def read_drive(path, topics):
             return _read(bag, path, topics)
     except rosbag.ROSBagUnindexedException:
         raise DriveError('{}: was not closed: rosbag reindex mends it'.format(path))
-    except (rosbag.ROSBagException, OSError, ValueError) as error:
+    except DriveError:
+        raise
+    except Exception as error:  # whatever the bytes of a damaged file may lead rosbag to
         raise DriveError('{}: cannot be read: {}'.format(
             path, getattr(error, 'strerror', None) or error))
 

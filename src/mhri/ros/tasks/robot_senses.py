@@ -19,14 +19,11 @@ from mhri.core.tasks.retrace import Trail
 from mhri.ros.convert import header_of
 from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.robots.robot_link import battery_fraction, ODOMETRY_READERS
-from mhri.ros.sensors.beams import read_beams
+from mhri.ros.sensors.beams import made_s, read_beams
 from mhri.ros.sensors.depth_scans import DepthScans
 from mhri.ros.sensors.mocap_feed import MocapFeed
 from mhri.ros.sensors.mounts import Mounts
 from mhri.ros.sensors.refusals import Refusals
-
-
-_NO_SCAN = (None, None, None)
 
 
 class _Newest:
@@ -93,6 +90,7 @@ class RobotSenses:
         self._scans = {}
         # (scan, when it was heard [s], its stamp [s]), newer than what was looked at.
         self._depth_scan = self._scan_at = None
+        self._depth_refusals = Refusals(', '.join(self._topics('depth')), clock)
         self._mounts = Mounts(robot_type, frames)
         self._track = PoseTrack()
         self._charge = None
@@ -166,7 +164,7 @@ class RobotSenses:
         self.pose = Pose(motion.x_m, motion.y_m, motion.heading_rad)
         header = header_of(message, type(message))
         if header is not None:
-            self._track.add(header[1], self.pose)
+            self._track.add(header[1], self.pose, self._odometry.heard_at)
             self._mounts.see_odometry(message)
             self.odometry_frame = frame_name(message.header.frame_id)
         self.odometry = Odometry(self.pose, self._odometry.heard_at, header and header[0])
@@ -174,24 +172,29 @@ class RobotSenses:
 
     def _see(self):
         """Take in what lasers or depth camera have measured, where the robot was at that time."""
-        found = [(topic, *self._read_laser(scan)) for topic, scan in self._scans.items()]
-        found.append(('', *(self._depth_scan or _NO_SCAN)))
-        self._depth_scan = None
-        for laser, scan, heard_at, stamp_s in found:
-            if scan is not None:
-                self._scan_at = heard_at
-                self._surroundings.see(scan, self._track.at(stamp_s) or self.pose, heard_at, laser)
+        for topic, newest in self._scans.items():
+            heard_at, message = newest.heard_at, newest.take()
+            if message is not None:
+                try:
+                    self._see_scan(read_beams(message, self._mounts), heard_at or self._clock(),
+                                   made_s(message), topic)
+                except ValueError as error:
+                    newest.note(error)
+        scan, self._depth_scan = self._depth_scan, None
+        if scan is not None:
+            try:
+                self._see_scan(*scan)
+            except ValueError as error:
+                self._depth_refusals.note(error)
 
-    def _read_laser(self, newest):
-        """Return (scan, when it was heard [s], its stamp [s]), or :data:`_NO_SCAN`."""
-        heard_at = newest.heard_at
-        message = newest.take()
-        try:
-            return (read_beams(message, self._mounts), heard_at or self._clock(),
-                    message.header.stamp.to_sec()) if message else _NO_SCAN
-        except ValueError as error:
-            newest.note(error)
-        return _NO_SCAN
+    def _see_scan(self, scan, heard_s, stamp_s, laser=''):
+        """Take in a scan.
+
+        :raises ValueError: it is too late for that
+        """
+        at_s, pose = self._track.moment(stamp_s, heard_s)
+        self._scan_at = at_s if self._scan_at is None else max(at_s, self._scan_at)
+        self._surroundings.see(scan, pose or self.pose, at_s, laser)
 
     def looks(self):
         """Return what tells where its laser or depth camera looks, as the brake has it."""

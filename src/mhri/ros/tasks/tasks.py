@@ -32,7 +32,8 @@ from mhri.core.tasks.base import DONE, FAILED, LOST, STOPPED, TAKEN_OVER
 from mhri.core.tasks.rows import BY_KEY
 from mhri.core.tasks.run import ENDED, Facts
 from mhri.msg import (
-    GatesState, RunTaskAction, RunTaskFeedback, RunTaskResult, TaskList, TaskRun, TeamTwist)
+    GatesState, RunTaskAction, RunTaskActionResult, RunTaskFeedback, RunTaskResult, TaskList,
+    TaskRun, TeamTwist)
 from mhri.ros.convert import to_twist
 from mhri.ros.driving.in_force import InForce, STOP_SERVICE, TAKE_SERVICE
 from mhri.ros.graph.master_api import MasterError
@@ -135,6 +136,10 @@ class Tasks:
         self._server = actionlib.ActionServer('/mhri_tasks/run', RunTaskAction, self._on_goal,
                                               self._on_cancel, auto_start=False)
         self._server.start()
+        # Whoever asked while this node was coming up may not be connected yet when a short task
+        # ends: its result waits for it.
+        self._result = rospy.Publisher('/mhri_tasks/run/result', RunTaskActionResult,
+                                       queue_size=50, latch=True)
         self._tell(0)
         threading.Thread(target=self._run, name='tasks', daemon=True).start()
         return self
@@ -238,10 +243,13 @@ class Tasks:
 
     def _begin(self, goal):
         """Open what the robots of a goal need, and begin their runs (on the worker)."""
-        self._map.look()
-        drives, problem = self._starter.prepare(goal.key, goal.values, goal.team,
-                                                list(self._gates))
-        goal.team = tuple(self._starter.in_order(goal))
+        try:
+            self._map.look()
+            drives, problem = self._starter.prepare(goal.key, goal.values, goal.team,
+                                                    list(self._gates))
+            goal.team = tuple(self._starter.in_order(goal))
+        except Exception as error:  # a task may be a lab's own, a bag anybody's
+            drives, problem = {}, 'its task cannot be begun: {!r}'.format(error)[:200]
         goal.order = goal.values.team or goal.team
         with self._lock:
             now = self._clock()

@@ -1,0 +1,158 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The list of recorded sessions: read from a disk that is not kind, replayed, reported on."""
+import os
+import stat
+import sys
+
+import pytest
+from python_qt_binding.QtCore import Qt
+from python_qt_binding.QtTest import QTest
+from python_qt_binding.QtWidgets import QApplication
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from mhri.gui.screen.screen import ScreenWidget  # noqa: E402
+from mhri.presenters.shelf_host import ShelfHost  # noqa: E402
+from mhri.ros.resources import resource_path  # noqa: E402
+from mhri.ros.session.session_shelf import SessionShelf  # noqa: E402
+from support import made_session  # noqa: E402
+from support.ros_system import wait_for  # noqa: E402
+
+PATIENCE_S = 120.0
+GOOD, KILLED = '2026-03-01-14-03-22', '2026-02-28-10-00-00'
+
+
+class Desk:
+    """A screen without a master, with a page of sessions."""
+
+    def __init__(self, home, command):
+        self.app = QApplication.instance() or QApplication(['panel'])
+        self.home = home / 'mhri' / 'sessions'
+        self.home.mkdir(parents=True)
+        self.screen = ScreenWidget(resource_path())
+        self.screen.resize(1280, 800)
+        self.shelf = SessionShelf(dict(os.environ, ROS_HOME=str(home)), command)
+        self.host = ShelfHost(self.screen, self.shelf)
+        self.page = self.host.page
+        self.screen.show()
+
+    def open(self):
+        """Open the page as an operator does, and wait until it is read."""
+        tabs = self.screen.tabs
+        place = next(index for index in range(tabs.count())
+                     if tabs.tabText(index) == 'Sessions')
+        self.screen.drawer_button.setChecked(True)
+        QTest.mouseClick(tabs, Qt.LeftButton, Qt.NoModifier, tabs.tabRect(place).center())
+        self.until(lambda: self.page.isVisible() and self.page.note.text() != 'reading ...',
+                   'the list')
+        return self
+
+    def until(self, condition, what):
+        """Let Qt work until a condition comes true."""
+        def turn():
+            self.app.processEvents()
+            self.host.show()
+            return condition()
+        wait_for(turn, PATIENCE_S, what)
+
+    def choose(self, name):
+        """Click on a row."""
+        self.until(lambda: self.page.model.place_of(name).isValid(), 'the row')
+        rect = self.page.list.visualRect(self.page.model.place_of(name))
+        QTest.mouseClick(self.page.list.viewport(), Qt.LeftButton, Qt.NoModifier, rect.center())
+        assert self.page.chosen == name
+
+    def press(self, button):
+        """Click on a button."""
+        QTest.mouseClick(button, Qt.LeftButton)
+
+    def rows(self):
+        """Return what is read on each row."""
+        model = self.page.model
+        return [model.index(place).data() for place in range(model.rowCount())]
+
+    def close(self):
+        """End it."""
+        self.host.close()
+        self.screen.close()
+        self.screen.deleteLater()
+        self.app.processEvents()
+
+
+@pytest.fixture
+def desk(tmp_path):
+    told = tmp_path / 'told'
+    script = tmp_path / 'replay.sh'
+    script.write_text('#!/bin/sh\necho "$@" > {}\necho could not start >&2\nexit 1\n'.format(told))
+    script.chmod(stat.S_IRWXU)
+    desk = Desk(tmp_path, lambda path: [str(script), path])
+    desk.told = told
+    yield desk
+    desk.close()
+
+
+def hostile(home):
+    """Write folders of every way of being wrong."""
+    for name, text in (('2026-01-01-00-00-00', None), ('2026-01-01-00-00-01', 'format: 99'),
+                       ('2026-01-01-00-00-02', '[' * 3000), ('2026-01-01-00-00-03', '\x00\xff'),
+                       ('2026-01-01-00-00-04', 'format: 1\nstarted: {seconds: 1.0e+300}'),
+                       ('2026-01-01-00-00-05', 'format: 1\nstarted: {seconds: .nan}'),
+                       ('2026-01-01-00-00-06', 'format: 1\nstarted: {seconds: 1}\n'
+                                               'robots: {"a\u202eb\\n": {}, 3: {}}')):
+        folder = home / name
+        folder.mkdir()
+        if text is not None:
+            (folder / 'session.yaml').write_text(text, encoding='utf-8')
+    os.mkfifo(str(home / '2026-01-01-00-00-00' / 'events.jsonl'))
+    (home / '2026-01-01-00-00-01' / 'events.jsonl').write_text('[' * 100000)
+    (home / '2026-01-01-00-00-02' / 'loop').symlink_to(home)
+    (home / '2026-01-01-00-00-07').write_text('a file')
+    (home / '2026-01-01-00-00-08').symlink_to(home / 'nowhere')
+    (home / 'not a session').mkdir()
+
+
+def test_each_session_is_a_row_the_newest_first(desk):
+    made_session.write_session(desk.home / GOOD)
+    folder = made_session.write_session(desk.home / KILLED)
+    (folder / 'events.jsonl').write_text('{"wall": 17')
+    hostile(desk.home)
+    desk.open()
+    desk.until(lambda: desk.page.model.rowCount() == 9, 'all rows')
+    rows = desk.rows()
+    assert rows[0].endswith('bot1, bot2   2 marks'), rows[0]
+    assert rows[1].endswith('bot1, bot2'), rows[1]
+    for row in rows[2:]:
+        assert 'session.yaml' in row or 'nothing was recorded' in row, row
+    assert desk.page.chosen == GOOD, 'the newest is chosen'
+    desk.choose('2026-01-01-00-00-01')
+    assert not desk.page.replay_button.isEnabled() and not desk.page.report_button.isEnabled()
+
+
+def test_without_any_it_says_how_to_record_one(desk):
+    desk.open()
+    assert desk.page.note.text() == 'nothing recorded yet: R records a session'
+    assert not desk.page.replay_button.isEnabled()
+
+
+def test_a_session_is_replayed_by_a_program_of_its_own_and_reported_on(desk, tmp_path):
+    made_session.write_session(desk.home / GOOD)
+    desk.open()
+    desk.choose(GOOD)
+    desk.press(desk.page.replay_button)
+    desk.until(lambda: desk.page.note.text() == 'the replay failed: could not start', 'the reason')
+    assert desk.told.read_text().strip() == str(desk.home / GOOD)
+
+
+    # A report is cancelled at once, then made.
+    desk.press(desk.page.report_button)
+    assert desk.page.progress.isVisible() and desk.page.cancel_button.isVisible()
+    desk.press(desk.page.cancel_button)
+    desk.until(lambda: not desk.page.progress.isVisible(), 'its end')
+    assert desk.page.note.text() == 'report cancelled'
+    assert not list(tmp_path.glob('mhri/reports/*/*'))
+    desk.press(desk.page.report_button)
+    desk.until(lambda: not desk.page.progress.isVisible(), 'the report')
+    page = tmp_path / 'mhri' / 'reports' / GOOD / 'report.html'
+    assert desk.page.note.text() == 'the report is {}'.format(page)
+    assert page.stat().st_size > 1000
