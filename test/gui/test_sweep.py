@@ -6,6 +6,7 @@ import os
 import sys
 
 import pytest
+from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtWidgets import (
     QAbstractButton, QAbstractSlider, QAbstractSpinBox, QComboBox, QLabel, QLineEdit, QPushButton,
     QScrollBar, QTabBar)
@@ -26,6 +27,7 @@ from mhri.gui.session.note_bar import NoteBar  # noqa: E402
 from mhri.gui.session.record_button import RecordButton  # noqa: E402
 from mhri.gui.session.time_line import TimeLineBar  # noqa: E402
 from mhri.gui.tasks.tasks_page import TasksPage  # noqa: E402
+from support.scenes import pixels_of  # noqa: E402
 
 TARGETS = (QAbstractButton, QAbstractSlider, QAbstractSpinBox, QComboBox, QLineEdit, QTabBar)
 WORDS = (QAbstractButton, QAbstractSpinBox, QComboBox, QLabel, QLineEdit, QTabBar)
@@ -118,6 +120,30 @@ def test_every_page_is_fit_for_eyes_and_fingers(whole_screen, size, font):
     found['drawer closed'] = flaws(made.screen)
     assert {'Tasks', 'Events', 'Doctor', 'Faults', 'Pad', 'Screen', 'Robots'} <= set(found)
     assert {page: flaw for page, flaw in found.items() if flaw} == {}
+
+
+def test_where_the_keyboard_is_can_be_seen(whole_screen, application):
+    made = whole_screen((1366, 768), 1.0)
+    made.view = replace(made.view, control=ControlView())
+    screen = made.show()
+    application.setActiveWindow(screen)
+    # As the first Tab does: some styles show the keyboard from then on.
+    screen.window().setAttribute(Qt.WA_KeyboardFocusChange)
+    unseen, looked_at = [], set()
+    for place in range(screen.tabs.count()):
+        screen.tabs.setCurrentIndex(place)
+        made.show()
+        for widget in on_show(screen, TARGETS):
+            if widget not in looked_at and widget.isEnabled() \
+                    and widget.focusPolicy() & Qt.TabFocus:
+                screen.stage.setFocus(Qt.TabFocusReason)
+                without = pixels_of(widget)
+                widget.setFocus(Qt.TabFocusReason)
+                looked_at.add(widget)
+                assert widget.hasFocus(), widget.objectName()
+                if (pixels_of(widget) == without).all():
+                    unseen.append((screen.tabs.tabText(place), widget.objectName()))
+    assert unseen == [] and len(looked_at) > 20
 
 
 @pytest.mark.parametrize('width', [1024, 1920])

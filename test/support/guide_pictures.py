@@ -25,6 +25,7 @@ from mhri.core.drill.page import page_of  # noqa: E402
 from mhri.gui.doctor.doctor_page import DoctorPage  # noqa: E402
 from mhri.gui.drill.faults_page import FaultsPage, TITLE  # noqa: E402
 from mhri.gui.screen import theme  # noqa: E402
+from mhri.gui.session.record_button import RecordButton  # noqa: E402
 from mhri.ros.resources import resource_path  # noqa: E402
 from mhri.sim.rehearsal import Rehearsal  # noqa: E402
 from support import doctor_world, layout_pictures  # noqa: E402
@@ -81,6 +82,7 @@ def draw_one(application, path):
     layout_pictures.Scene.frames = layout_pictures.frames()
     scene = layout_pictures.Scene(application, resource_path(), ONE_SIZE, 1)
     scene.screen.drawer_button.setChecked(False)
+    scene.screen.small_row.insertWidget(1, RecordButton(scene.screen.foot))
     scene.show().grab().save(path)
 
 

@@ -61,7 +61,7 @@ def frames():
     found = {}
     for number in range(1, max(COUNTS) + 1):
         rgb = camera.rgb(camera.look(1.0 + 0.75 * number, 1.4, 0.5 * number - 0.6, nobody))
-        found[number] = Frame('rgb', np.ascontiguousarray(rgb[..., ::-1]), full_size=(640, 480))
+        found[number] = Frame('rgb', np.ascontiguousarray(rgb), full_size=(640, 480))
     return found
 
 
