@@ -30,7 +30,8 @@ def test_copies_of_one_disk_differ_by_their_cards(tmp_path):
 
 
 def test_of_a_computer_without_a_wire_the_others_count(tmp_path):
-    assert computer(tmp_path / 'radio', 'm', {'wlan0': ('02:aa', 'device phy80211')})[2:] == ['02:aa']
+    radio = {'wlan0': ('02:aa', 'device phy80211')}
+    assert computer(tmp_path / 'radio', 'm', radio)[2:] == ['02:aa']
     assert computer(tmp_path / 'box', 'm', {'eth0': ('02:bb', '')})[2:] == ['02:bb']
 
 

@@ -123,7 +123,8 @@ def test_a_name_says_what_a_piece_is():
 @pytest.mark.parametrize('body', [
     b'', b'{}', b'[1]', b'[true,[],0,0]', b'[true,[],0,-1,1]', b'[true,[],0,0,9999]',
     b'[true,["a"],0,0,1]', b'[1,[],0,0,1]',
-    b'[true,[],0,0,1,""]', b'[true,[],0,0,1,1]', b'[true,[],0,0,1,true,true]', b'[true,[],0.5,0,1]', b'\xff'])
+    b'[true,[],0,0,1,""]', b'[true,[],0,0,1,1]', b'[true,[],0,0,1,true,true]',
+    b'[true,[],0.5,0,1]', b'\xff'])
 def test_what_is_no_ask_is_refused(body):
     with pytest.raises(FrameError):
         unpack_ask(body)

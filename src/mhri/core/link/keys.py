@@ -14,7 +14,8 @@ from typing import Dict, FrozenSet, Iterable, List, Sequence, Tuple
 
 DRIVES, WATCHES, ROBOT, WATCHED = 'host', 'watch', 'robot', 'watched'
 ROUTER = 'router'
-_NAME = re.compile(r'(host|watch|robot|watched|router):([A-Za-z0-9_-]{1,64})(\.[0-9]{1,6}|\.x[0-9a-f]{8})?\Z')
+_NAME = re.compile(r'(host|watch|robot|watched|router):([A-Za-z0-9_-]{1,64})'
+                   r'(\.[0-9]{1,6}|\.x[0-9a-f]{8})?\Z')
 _ODD = re.compile(r'[^A-Za-z0-9_-]')
 _SERIAL = re.compile(r'^\s*Serial Number:\s*([0-9A-Fa-f]+)\s*$', re.MULTILINE)
 ALONE, TLS = ('tcp', 'udp'), ('tls', 'quic')

@@ -115,7 +115,7 @@ def unpack_ask(body: bytes) -> Ask:
             or not all(type(part) is int for part in found[1] + found[2:5])
             or found[3] < 0 or not 0 <= found[4] <= MOST_PARTS):
         raise FrameError('no request for a recording')
-    return Ask(found[0], tuple(found[1]), *found[2:5], pictures=True in more)
+    return Ask(found[0], tuple(found[1]), found[2], found[3], found[4], True in more)
 
 
 def pack_offer(pieces: Collection[Piece]) -> bytes:

@@ -9,7 +9,6 @@ import os
 import queue
 import signal
 import subprocess
-import sys
 import tempfile
 import threading
 
@@ -18,6 +17,7 @@ import rospkg
 from mhri.core.screen.text import tidy_text
 from mhri.core.session.catalogue import newest, progress_of, row_of, SessionRow
 from mhri.core.session.folder import EVENTS_JSONL, is_folder_name, SESSION_YAML, sessions_home
+from mhri.inputs import child
 from mhri.ros.session.report_files import folder_for, PAGE
 from mhri.ros.worker import Worker
 
@@ -25,7 +25,6 @@ from mhri.ros.worker import Worker
 _LARGEST_INFO, _LARGEST_EVENTS, _MOST_FILES = 10 ** 6, 5 * 10 ** 6, 5000
 # A replay that ends sooner has failed, and says why [s].
 _SOON_S = 60.0
-_REPORT = 'from mhri.nodes.mhri_report import main; main()'
 
 
 def replay_command(path):
@@ -119,10 +118,10 @@ class SessionShelf:
             try:
                 self._report = subprocess.Popen(
                     # Whoever drives meanwhile comes first.
-                    ['nice', sys.executable, '-c', _REPORT, os.path.join(self.home, name)],
-                    env=self._env,
-                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                    start_new_session=True)
+                    ['nice'] + child.command('mhri.nodes.mhri_report',
+                                             os.path.join(self.home, name)),
+                    env=self._env, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                    stderr=subprocess.PIPE, start_new_session=True)
             except OSError as error:
                 self.news.put(('told', 'no report: {}'.format(error.strerror)))
                 self.news.put(('report', ''))
