@@ -197,13 +197,7 @@ def test_the_map_lies_where_its_world_file_says(report):
 
 
 def counted(path):
-    """Return (frames, seconds) of a film, by ffprobe where there is one."""
-    if shutil.which('ffprobe') is None:
-        video = cv2.VideoCapture(str(path))
-        frames = 0
-        while video.grab():
-            frames += 1
-        return frames, frames / video.get(cv2.CAP_PROP_FPS)
+    """Return (frames, seconds) of a film."""
     said = json.loads(subprocess.run(
         ['ffprobe', '-v', 'error', '-count_frames', '-select_streams', 'v', '-show_entries',
          'stream=nb_read_frames,duration', '-of', 'json', str(path)],

@@ -37,7 +37,7 @@ DEBIAN_RUN=(
 DEBIAN_TEST=(
   librostest-dev python3-rostest python3-roslib topic-tools python3-pytest python3-flake8
   python3-flake8-docstrings python3-mccabe python3-pip python3-psutil catkin-lint shellcheck
-  xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server iproute2 nftables
+  xdotool imagemagick x11-utils git procps espeak-ng sox ffmpeg openssh-server iproute2 nftables
 )
 # Only for the fast group of tests; Ubuntu uses the same names.
 FAST=(
@@ -51,7 +51,7 @@ UBUNTU_RUN=(
 )
 UBUNTU_TEST=(
   python3-pytest python3-flake8 python3-mccabe python3-pip python3-psutil python3-catkin-lint
-  shellcheck xdotool imagemagick x11-utils git procps espeak-ng sox openssh-server iproute2
+  shellcheck xdotool imagemagick x11-utils git procps espeak-ng sox ffmpeg openssh-server iproute2
   nftables
 )
 
