@@ -67,9 +67,7 @@ def test_gates_that_are_killed_are_replaced_by_those_that_stood_by(state):
 
 @pytest.mark.parametrize('name', ['/mhri_gates', '/mux'])
 def test_who_hangs_is_replaced_within_3_s(state, name):
-    # Long enough for each to have learnt which process the other one is.
     state.wait(lambda message: message.mux_heard, 'both to be heard', 20.0)
-    time.sleep(2.5)
     hung = wait_for(lambda: process_of(name), 10.0, 'the node')
     os.kill(hung, signal.SIGSTOP)
     since = time.monotonic()

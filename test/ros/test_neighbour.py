@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Which process may be ended: the very one that was seen, of this computer, and no other."""
+import contextlib
 import os
-import socket
+import signal
 import subprocess
 import sys
-import threading
+import time
 from types import SimpleNamespace
-from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
@@ -71,54 +71,53 @@ def test_what_a_launcher_started_comes_back_through_a_shell_as_well(tmp_path, sh
         parent.stdout.close()
 
 
+NODE = """
+import os, socket, time
+listening = socket.create_server(('127.0.0.1', 0))
+if not os.fork():
+    time.sleep(600)
+print(listening.getsockname()[1], flush=True)
+time.sleep(600)
+"""
+
+
 @pytest.fixture(name='node')
 def _node():
-    """Answer getPid as a node does; ``server.pid`` is what it says."""
-    server = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False)
-    server.pid = os.getpid()
-    server.register_function(lambda caller: (1, '', server.pid), 'getPid')
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    yield server
-    server.shutdown()
-    server.server_close()
+    """Return a process that listens, as a node does, and its address; its child listens, too."""
+    node = subprocess.Popen([sys.executable, '-c', NODE], stdout=subprocess.PIPE,
+                            start_new_session=True)
+    yield node, 'http://127.0.0.1:{}/'.format(int(node.stdout.readline()))
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(node.pid, signal.SIGKILL)
+    node.wait(60.0)
+    node.stdout.close()
 
 
-def _uri(node):
-    return 'http://127.0.0.1:{}/'.format(node.server_address[1])
+def test_a_node_is_known_by_its_port_even_where_it_hangs(node):
+    process, uri = node
+    assert process_of(uri).pid == process.pid
+    process.send_signal(signal.SIGSTOP)
+    assert process_of(uri).pid == process.pid
 
 
-def test_a_node_is_known_by_its_number_and_its_port(node, child):
-    assert process_of(_uri(node), '/test').pid == os.getpid()
-    node.pid = child.pid
-    assert process_of(_uri(node), '/test') is None, 'another one has the port: a container'
-
-
-@pytest.mark.parametrize('answer', ['12', None, -1])
-def test_a_number_that_is_none_names_no_process(node, answer):
-    node.pid = answer
-    try:
-        assert process_of(_uri(node), '/test') is None
-    except OSError:
-        pass
+def test_nobody_is_known_where_nobody_listens(node):
+    process, uri = node
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait(60.0)
+    deadline = time.monotonic() + 60.0
+    while process_of(uri) is not None:
+        assert time.monotonic() < deadline, 'its child is there still'
 
 
 def test_a_node_of_another_computer_names_no_process():
-    assert process_of('http://192.0.2.1:11311/', '/test') is None
-
-
-def test_a_node_that_does_not_answer_is_said():
-    with socket.socket() as deaf:
-        deaf.bind(('127.0.0.1', 0))
-        deaf.listen(1)
-        with pytest.raises(OSError, match='does not answer'):
-            process_of('http://127.0.0.1:{}/'.format(deaf.getsockname()[1]), '/test', 0.2)
+    assert process_of('http://192.0.2.1:11311/') is None
 
 
 def test_a_node_that_was_replaced_is_learnt_even_where_the_first_question_fails(child, monkeypatch):
     """It is just starting when it is asked: the next look asks again."""
     answers = [Process(child.pid), OSError('it does not answer yet'), Process(os.getpid())]
 
-    def ask(uri, caller_id):
+    def ask(uri):
         """Answer as the node of that moment does."""
         answer = answers.pop(0)
         if isinstance(answer, OSError):
@@ -135,3 +134,20 @@ def test_a_node_that_was_replaced_is_learnt_even_where_the_first_question_fails(
     for now in (2.0, 4.0):
         watched._learn('/mhri_gates', now, now)
     assert not answers, 'it was asked once, and never again'
+
+
+@pytest.mark.parametrize('silent_s, ended', [(2.0, True), (60.0, False)])
+def test_one_that_hung_before_it_was_known_is_ended(node, monkeypatch, silent_s, ended):
+    """But not one that began after the last word that was heard."""
+    process, uri = node
+    monkeypatch.setattr(neighbour, 'MasterApi', lambda *_, **__: SimpleNamespace(
+        node_uri=lambda name: uri))
+    monkeypatch.setattr(Process, 'comes_back', lambda self: True)
+    monkeypatch.setattr(Process, 'begun_s', time.clock_gettime(time.CLOCK_BOOTTIME) - 10.0)
+    watched = neighbour.Neighbour('the gates')
+    watched.beat('/mhri_gates')
+    watched._look(time.monotonic() + silent_s)
+    assert watched.silent and watched.ended == ended
+    if ended:
+        process.wait(60.0)
+    assert (process.poll() is not None) == ended

@@ -12,11 +12,10 @@ import socket
 import threading
 import time
 from urllib.parse import urlsplit
-import xmlrpc.client
 
 import rospy
 
-from mhri.ros.graph.master_api import ERRORS, MasterApi, MasterError, TimedTransport
+from mhri.ros.graph.master_api import MasterApi, MasterError
 
 SILENT_S = 0.9
 END_S = 1.8
@@ -47,18 +46,13 @@ class Process:
             fields = stream.read().rpartition(')')[2].split()
         return int(fields[19]), int(fields[1])
 
-    def listens_at(self, port):
-        """Tell whether it has the listening socket of a TCP port.
+    @property
+    def begun_s(self):
+        """When it began [s since the start of the computer]."""
+        return self._begun / os.sysconf('SC_CLK_TCK')
 
-        :raises OSError: it is another user's
-        """
-        sockets = set()
-        for name in ('/proc/net/tcp', '/proc/net/tcp6'):
-            if os.path.exists(name):
-                with open(name, encoding='ascii') as stream:
-                    rows = [line.split() for line in stream.readlines()[1:]]
-                sockets.update('socket:[{}]'.format(row[9]) for row in rows
-                               if row[3] == '0A' and int(row[1].rpartition(':')[2], 16) == port)
+    def has_any(self, sockets):
+        """Tell whether it has one of some open sockets, as /proc names them."""
         folder = '/proc/{}/fd'.format(self.pid)
         for name in os.listdir(folder):
             try:
@@ -100,10 +94,10 @@ class Process:
         return True
 
 
-def process_of(uri, caller_id, timeout_s=0.5):
-    """Return the :class:`Process` behind a node's address, None if it is on another computer.
+def process_of(uri):
+    """Return the :class:`Process` behind a node's address, None if it cannot be seen here.
 
-    :raises OSError: the node does not answer, or its process cannot be looked at
+    The system knows who listens there; a node that hangs could not be asked.
     """
     parts = urlsplit(uri)
     with socket.socket() as probe:
@@ -111,14 +105,28 @@ def process_of(uri, caller_id, timeout_s=0.5):
             probe.bind((parts.hostname, 0))
         except OSError:
             return None
-    try:
-        proxy = xmlrpc.client.ServerProxy(uri, transport=TimedTransport(timeout_s))
-        code, _, pid = proxy.getPid(caller_id)
-    except ERRORS as error:
-        raise OSError('{} does not answer: {}'.format(uri, error))
-    # In its own container it may share the address but not the process number.
-    process = Process(pid) if code == 1 and isinstance(pid, int) else None
-    return process if process and process.listens_at(parts.port) else None
+    sockets, found = _listening(parts.port), []
+    for name in os.listdir('/proc') if sockets else ():
+        try:
+            process = Process(int(name))
+            if process.has_any(sockets):
+                found.append(process)
+        except (OSError, ValueError):
+            continue  # it has gone, is another user's, or no process
+    # Its children may hold its socket, too.
+    return min(found, key=lambda process: process.begun_s, default=None)
+
+
+def _listening(port):
+    """Return the sockets that listen at a TCP port of this computer."""
+    sockets = set()
+    for name in ('/proc/net/tcp', '/proc/net/tcp6'):
+        if os.path.exists(name):
+            with open(name, encoding='ascii') as stream:
+                rows = [line.split() for line in stream.readlines()[1:]]
+            sockets.update('socket:[{}]'.format(row[9]) for row in rows
+                           if row[3] == '0A' and int(row[1].rpartition(':')[2], 16) == port)
+    return sockets
 
 
 class Neighbour:
@@ -192,9 +200,9 @@ class Neighbour:
             self._remedy = ''
             self._on_back()
             rospy.loginfo('%s (%s): heard again', self._label, caller)
-        if not self.silent:
+        if not self.silent or self._process is None:
             self._learn(caller, beat_at, now)
-        elif now - beat_at > END_S:
+        if self.silent and now - beat_at > END_S:
             self._end(caller)
 
     def _learn(self, caller, beat_at, now):
@@ -202,20 +210,27 @@ class Neighbour:
         if now < self._learn_at:
             return
         self._learn_at = now + _LEARN_AGAIN_S
-        if self._known == caller and (self._process is None or self._process.is_there()):
+        known = self._process.is_there() if self._process else not self.silent
+        if known and self._known == caller:
             return
+        # Ask again where it is not found, even if it was known before: it may just be starting.
+        self._process = self._known = None
+        heard_s = time.clock_gettime(time.CLOCK_BOOTTIME) - (now - beat_at)
         try:
             uri = MasterApi(rospy.get_name(), timeout_s=0.5).node_uri(caller)
-            self._process = process_of(uri, rospy.get_name()) if uri else None
+            if not uri:
+                return
+            process = process_of(uri)
         except (MasterError, OSError, ValueError) as error:
-            # Ask again, even if it was known before: it may just be starting.
-            self._process = self._known = None
             rospy.logdebug('%s: %s', caller, error)
             return
-        self._known = caller
-        # Asking may have taken long: that does not count as silence.
-        with self._lock:
-            self._looked_at = self._clock()
+        finally:
+            # Asking may have taken long: that does not count as silence.
+            with self._lock:
+                self._looked_at = self._clock()
+        if process is None or process.begun_s <= heard_s:
+            self._process, self._known = process, caller
+        # Else it is the next one, which has said nothing yet.
 
     def _end(self, caller):
         """Kill a process that hangs, once, if it will be restarted."""
