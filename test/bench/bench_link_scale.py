@@ -30,8 +30,8 @@ PATIENCE_S = 300.0
 # With less than this share of the messages the computer no longer carries all of it.
 CARRIED = 0.9
 TICK_S = 0.01
-# What this computer is called on the link.
-HOST = 'host:bench'
+# What this computer is called on the link, with a number: without keys a bare name gets a mark.
+HOST = 'host:bench.1'
 # Topic, type, sent at every so many ticks.
 STREAMS = (('odom', 'nav_msgs/Odometry', 2), ('imu', 'sensor_msgs/Imu', 1),
            ('scan', 'sensor_msgs/LaserScan', 10),

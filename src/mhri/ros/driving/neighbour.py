@@ -20,7 +20,7 @@ from mhri.ros.graph.master_api import MasterApi, MasterError
 SILENT_S = 0.9
 END_S = 1.8
 _LOOK_S = 0.1
-_LEARN_AGAIN_S = 1.0
+_LEARN_AGAIN_S = 0.5
 # A watch that runs this late was stopped itself, and knows nothing about the other node.
 _OWN_SLEEP_S = 0.5
 # Between it and roslaunch there may be a shell that restarts it, the command that the shell runs,
@@ -206,7 +206,7 @@ class Neighbour:
             self._end(caller)
 
     def _learn(self, caller, beat_at, now):
-        """Find out which process it is, and check once a second that it still is."""
+        """Find out which process it is, and check now and then that it still is."""
         if now < self._learn_at:
             return
         self._learn_at = now + _LEARN_AGAIN_S
