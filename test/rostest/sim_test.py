@@ -165,18 +165,16 @@ class SimTest(unittest.TestCase):
         return heard
 
     def test_topics_are_exactly_those_of_the_template(self):
-        """Beside them only what says which faults it was asked for."""
         publishers, subscribers, types = graph()
         for name, (robot_type, _, _, imu, commands, more) in ROBOTS.items():
             prefix, node = '/' + name + '/', '/' + name + '/base'
             wanted = {'/tf': 'tf2_msgs/TFMessage', '/tf_static': 'tf2_msgs/TFMessage',
                       prefix + 'odom': 'nav_msgs/Odometry',
                       prefix + imu: 'sensor_msgs/Imu', prefix + 'scan': 'sensor_msgs/LaserScan',
-                      node + '/faults': 'std_msgs/String'}
-            wanted.update({prefix + topic: 'sensor_msgs/BatteryState' for topic in more})
-            wanted.update(cameras(prefix, name == 'bot1'))
-            if name == 'bot1':
-                wanted['/map'] = 'nav_msgs/OccupancyGrid'
+                      node + '/faults': 'std_msgs/String',
+                      **{prefix + topic: 'sensor_msgs/BatteryState' for topic in more}}
+            wanted.update(cameras(prefix, name == 'bot1'),
+                          **({'/map': 'nav_msgs/OccupancyGrid'} if name == 'bot1' else {}))
             self.assertEqual({topic: types[topic] for topic in of_node(node, publishers)}, wanted)
             wanted = {prefix + topic: 'geometry_msgs/Twist' for topic in commands}
             wanted[prefix + POWER[robot_type][0]] = POWER[robot_type][1]._type
