@@ -69,6 +69,18 @@ def test_a_warning_never_replaces_the_speed_and_what_is_old_is_dimmed(robots, op
     assert row.trouble.isVisible() and row.trouble.width() > 60
 
 
+def test_a_narrow_row_keeps_the_figure_of_a_stop(robots, operator):
+    """The tick says that it stands."""
+    stopped = ProofView(views.PROOF_STOPPED, 'stopped in 180 ms')
+    robots.show_robots([replace(LIVE, proof=stopped)])
+    said = set()
+    for width in range(560, 250, -2):
+        robots.resize(width, 300)
+        operator.settle()
+        said.add(robots.row('bot1').trouble.shown_text())
+    assert said <= {'stopped in 180 ms', 'in 180 ms', '180 ms'} and len(said) > 1
+
+
 def test_a_narrow_row_says_the_turn_without_its_unit(robots, operator):
     for width, shown in ((560, 'right 0.20 rad/s'), (420, 'right 0.20')):
         robots.resize(width, 300)

@@ -275,7 +275,9 @@ class RobotRow(QWidget):
             self.pill.say(MOVING if view.moving and not view.on_task else '', theme.ATTENTION,
                           filled=False)
         if view.proof is not None:
-            self._show_trouble(theme.PROOF_SIGNS[view.proof.state], view.proof.text,
+            shorter = words.endings(view.proof.text) \
+                if view.proof.state == views.PROOF_STOPPED else ()
+            self._show_trouble(theme.PROOF_SIGNS[view.proof.state], view.proof.text, *shorter,
                                loud=view.proof.state == views.PROOF_NOT_CONFIRMED)
         elif view.link != views.LIVE:
             self._show_trouble(None, view.note or words.LINK_WORDS[view.link])

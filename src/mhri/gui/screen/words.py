@@ -162,6 +162,12 @@ def beginnings(text, marks=('; ', ': ', ' after '), most=0):
     return tuple(found)
 
 
+def endings(text):
+    """Return the ends of a phrase whose figure comes last: "stopped in 38 ms", "in 38 ms", ..."""
+    parts = text.split()
+    return tuple(' '.join(parts[first:]) for first in range(1, len(parts) - 1))
+
+
 def type_text(view):
     """Return a robot's type, and whether a guard stands on it, e.g. "guarded TurtleBot2".
 
