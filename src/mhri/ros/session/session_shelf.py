@@ -111,6 +111,9 @@ class SessionShelf:
 
     def report(self, name):
         """Make the report of a session; one at a time."""
+        threading.Thread(target=self._make, args=(name,), name='report', daemon=True).start()
+
+    def _make(self, name):
         with self._lock:
             if self._report is not None:
                 return
@@ -127,11 +130,10 @@ class SessionShelf:
                 self.news.put(('report', ''))
                 return
             process = self._report
-        threading.Thread(target=self._follow, args=(process, name), name='report',
-                         daemon=True).start()
+        self._follow(process, name)
 
     def _follow(self, process, name):
-        """Pass on how far a report is, and what has become of it (on a thread of its own)."""
+        """Pass on how far a report is, and what has become of it."""
         said = ''
         for line in process.stderr:
             said = line.decode('utf-8', 'replace').strip() or said
