@@ -64,7 +64,7 @@ class BotWindow(QWidget):
         self._trouble = None
         self._link = None
         self._looked_at = False
-        self._wanted = set()
+        self._wanted = self._arranged = set()
         self._offered = frozenset()
         self._views = {}
         self._numbers = Pace(NUMBERS_PERIOD_S)
@@ -225,7 +225,7 @@ class BotWindow(QWidget):
 
     def _arrange(self):
         """Lay out the views that are chosen; without any there is the picture of the motion."""
-        shown = self.shown()
+        shown = self._arranged = self.shown()
         kind = next(iter(shown & PICTURES), None)
         visible = {id(self.view(key)) for key in shown}
         for widget in self._views.values():
@@ -359,7 +359,10 @@ class BotWindow(QWidget):
     def resizeEvent(self, event):  # noqa: N802
         """Keep header and numbers where they belong."""
         super().resizeEvent(event)
-        self._arrange()
+        if self.shown() == self._arranged:
+            self._layers.place()
+        else:
+            self._arrange()
 
     def event(self, event):
         """Keep the numbers over the picture when the layout has moved it."""
