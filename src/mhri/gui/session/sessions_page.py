@@ -193,8 +193,9 @@ class SessionsPage(QWidget):
         self._show_buttons()
 
     def show_note(self, text):
-        """Say what has come of something."""
+        """Say what has come of something; where there is nothing to say, no line is kept for it."""
         self.note.show_text(text, theme.MUTED)
+        self.note.setVisible(bool(text))
 
     def show_progress(self, percent):
         """Show how far a report is, None while none is made."""
