@@ -58,7 +58,7 @@ class ScreenHost(QObject):
         self._over_budget = False
         self._why = WhyStill()
         self._mode = None
-        self._closed = False
+        self._closed = self._made = False
         self._build()
         self.requests = RequestsHost(operator, self.screen.show_look_result, self._select,
                                      self.tiles.recording_wish, lambda: self.session.mark())
@@ -143,7 +143,7 @@ class ScreenHost(QObject):
         # What is loaded by now stays: searching it takes the garbage collector 60 ms, during which
         # no thread runs.
         gc.freeze()
-        self._draw_timer.start()
+        self._draw_timer.start(REST_MS)
         self._stick_timer.start()
         self._lease_timer.start()
         if self.operator.speaks:
@@ -152,11 +152,16 @@ class ScreenHost(QObject):
         self.draw()
 
     def _draw_in_turn(self):
-        """Draw, and say when it is time again."""
+        """Draw or, every other time, make a tile that is missing; say when it is time again.
+
+        A click would have to wait for both at once.
+        """
         begun = time.monotonic()
-        self._guard.run(self.draw)
+        self._made = self.tiles.lacks_one and not self._made
+        self._guard.run(self.tiles.make_missing if self._made else self.draw)
         took_ms = round(1000 * (time.monotonic() - begun))
-        self._draw_timer.setInterval(max(REST_MS, DRAW_MS - took_ms))
+        self._draw_timer.setInterval(
+            REST_MS if self.tiles.lacks_one or self._made else max(REST_MS, DRAW_MS - took_ms))
 
     def draw(self):
         """Take the newest values and hand them to the widgets."""
