@@ -109,7 +109,7 @@ def test_a_drill_is_told_as_it_went(replay):
     line = replay.host.screen.drill_line
     for position_s, words in ((8.0, 'Drill Short: Find the can.'),
                               (20.0, 'Drill Short: 0 of 1 found, 0:5'),
-                              (30.0, 'Drill Short: all found after 0:14, 1 of 1 found')):
+                              (30.0, 'Drill Short: found after 0:14')):
         replay.pause_at(position_s)
         replay.until(lambda: line.isVisible() and line.text().startswith(words), words)
     replay.pause_at(3.0)

@@ -143,11 +143,11 @@ def test_6_a_drill_is_on_the_screen_while_it_runs(session):
         session.until(shown, words)
     say('Drill Maze: Find the plant. The clock', left=['plant'])
     say('Drill Maze: 0 of 1 found, 4:17 left', left=['plant'], phase=1, elapsed_s=43.0)
-    say('Drill Maze: all found after 1:03, 1 of 1 found; result in /a/drill.html',
+    say('Drill Maze: found after 1:03; page: /a/drill.html',
         found=['plant'], phase=2, elapsed_s=63.0, ended='all found', page='/a/drill.html')
     session.until(lambda: [event.text for event in session.events() if 'Maze' in event.text] == [
-        'drill Maze: begun', 'drill Maze: plant found',
-        'drill Maze: all found after 1:03, 1 of 1 found; result in /a/drill.html'], 'the events')
+        'drill Maze: Find the plant.', 'drill Maze: begun', 'drill Maze: plant found',
+        'drill Maze: found after 1:03; page: /a/drill.html'], 'the events')
     referee.publish(DrillState(title='Maze'))
     session.until(lambda: not line.isVisible(), 'what was said long ago to go')
     referee.unregister()

@@ -17,7 +17,6 @@ ENDS = replace(RUNS, phase=ENDED, found=('red', 'blue'), left=(), elapsed_s=104.
 
 
 @pytest.mark.parametrize('drill, age_s, first, last', (
-    (None, 0.0, '', ''),
     (BEGINS, 0.0, 'Drill Search: Find the cans. The clock starts when you drive.',
      'Drill Search: drive to start'),
     (RUNS, 0.5, 'Drill Search: 1 of 2 found, 5:21 left', '1 of 2 found, 5:21 left'),
@@ -25,8 +24,11 @@ ENDS = replace(RUNS, phase=ENDED, found=('red', 'blue'), left=(), elapsed_s=104.
      '1 of 2 found, 5:21 left'),
     (RUNS, SILENT_S + 1.0, 'Drill Search: its referee has stopped', 'Drill Search: stopped'),
     (ENDS, SILENT_S + 1.0,
-     'Drill Search: all found after 1:44, 2 of 2 found; result in /here/drill.html',
-     'Drill Search: all found after 1:44, 2 of 2 found'),
+     'Drill Search: all 2 found after 1:44; page: /here/drill.html',
+     'Drill Search: all 2 found after 1:44'),
+    (replace(RUNS, phase=ENDED, ended='time is up', elapsed_s=480.1), 0.0,
+     'Drill Search: time is up after 8:00, 1 of 2 found',
+     'Drill Search: time is up after 8:00, 1 of 2 found'),
     (RUNS, STAYS_S, '', ''), (ENDS, STAYS_S, '', ''),
     # A replay has jumped to before it.
     (RUNS, -5.0, '', '')))
@@ -36,14 +38,14 @@ def test_the_line(drill, age_s, first, last):
 
 
 @pytest.mark.parametrize('old, new, kinds', (
-    (None, BEGINS, []), (None, RUNS, []), (None, ENDS, []),
+    (None, BEGINS, ['drill.waits']), (None, RUNS, []), (None, ENDS, []),
     (BEGINS, BEGINS, []),
     (BEGINS, RUNS, ['drill.begun', 'drill.found']),
     (RUNS, RUNS, []),
     (RUNS, ENDS, ['drill.found', 'drill.ended']),
     (ENDS, ENDS, []),
     # The next run, of the same drill or of another.
-    (ENDS, BEGINS, []), (RUNS, BEGINS, []), (BEGINS, replace(RUNS, title='Maze'), [])))
+    (ENDS, BEGINS, ['drill.waits']), (RUNS, BEGINS, ['drill.waits']), (BEGINS, replace(RUNS, title='Maze'), [])))
 def test_the_events(old, new, kinds):
     told = drill_changes(old, new)
     assert [kind for kind, _ in told] == kinds
@@ -54,4 +56,4 @@ def test_the_events(old, new, kinds):
 def test_words_of_the_events():
     assert [text for _, text in drill_changes(RUNS, ENDS)] == [
         'drill Search: blue found',
-        'drill Search: all found after 1:44, 2 of 2 found; result in /here/drill.html']
+        'drill Search: all 2 found after 1:44; page: /here/drill.html']

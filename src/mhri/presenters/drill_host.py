@@ -26,9 +26,11 @@ class DrillHost:
         if not self._started and view.ros == ROS_CONNECTED:
             self._started = True
             self._do(self._client.start)
-        drill = self._client.view()
-        self._line.show_drill(drill_texts(drill, self._wall()), drill.about if drill else '')
-        for kind, text in drill_changes(self._seen, drill) if drill else ():
+        drill, now = self._client.view(), self._wall()
+        if drill is None:
+            return
+        self._line.show_drill(drill_texts(drill, now), drill.about, drill.silent(now))
+        for kind, text in drill_changes(self._seen, drill):
             self._note(kind, text)
         self._seen = drill
 

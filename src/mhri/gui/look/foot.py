@@ -70,7 +70,7 @@ class Foot:
         for bar in (screen.control_bar, screen.leave_bar):
             bar.show_narrow(place == COLUMN)
         screen.status_line.show_wrapped(narrow)
-        screen.drill_line.set_wrapped(narrow)
+        screen.drill_line.show_wrapped(narrow)
         screen.screen_layout.setDirection(
             QBoxLayout.RightToLeft if place == COLUMN else QBoxLayout.TopToBottom)
         (screen.side_column if place == IN_DRAWER else screen.screen_layout).addWidget(screen.foot)
