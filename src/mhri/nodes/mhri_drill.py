@@ -21,7 +21,8 @@ from mhri.core.drill.scenario import on_links
 from mhri.core.robots.robot_types import resolve_robot_type
 from mhri.msg import DrillState
 from mhri.nodes.sim_robot import body_type, building_key
-from mhri.ros.drill.files import folder_of, names, result_in, scenario_named, write
+from mhri.ros.drill.files import (
+    earlier, folder_of, names, result_in, scenario_named, write)
 from mhri.ros.drill.scripted_hands import ScriptedHands
 from mhri.ros.drill.state import DrillTeller
 from mhri.ros.drill.watch import FaultCaller, OperatorWatch
@@ -174,10 +175,11 @@ class Run:
 
 def keep(drill, result, rehearsed=False):
     """Print a result, write it, and say where; return the path of its page, '' without one."""
-    print('\n'.join(lines_of(result)), flush=True)
+    before = earlier(drill.scenario)
+    print('\n'.join(lines_of(result, before)), flush=True)
     try:
         path = write(folder_of(drill.scenario, rehearsed), result,
-                     page_of(result, drill.plan.walls.tolist(), drill.scenario.targets))
+                     page_of(result, drill.plan.walls.tolist(), drill.scenario.targets, before))
         print('written: {}'.format(path), flush=True)
         return str(path)
     except OSError as error:
