@@ -18,6 +18,7 @@ from mhri.core.screen.views import GONE, SILENT
 from mhri.core.screen.why import WhyStill
 from mhri.presenters.doctor_host import DoctorHost
 from mhri.presenters.draw_guard import DrawGuard
+from mhri.presenters.drill_host import DrillHost
 from mhri.presenters.event_host import EventHost
 from mhri.presenters.fault_host import FaultHost
 from mhri.presenters.map_host import MapHost
@@ -30,6 +31,7 @@ from mhri.presenters.task_host import TaskHost
 from mhri.presenters.tiles_host import TilesHost
 from mhri.ros.devices.device_client import choose_device
 from mhri.ros.drill.faults_client import FaultsClient
+from mhri.ros.drill.state import DrillClient
 from mhri.ros.resources import resource_path
 
 DRAW_MS = 50
@@ -69,6 +71,8 @@ class ScreenHost(QObject):
         self.tasks = TaskHost(operator, self.screen, self._select, self._note_task)
         self.map = MapHost(operator, self.screen, self.tasks)
         self.faults = FaultHost(self.doctor.page, FaultsClient())
+        self.drill = DrillHost(self.screen, self.events.note, DrillClient(), operator.do,
+                               operator.wall)
         self.shelf = ShelfHost(self.screen)
         self._connect()
 
@@ -181,6 +185,7 @@ class ScreenHost(QObject):
         self.pad.show_view(view)
         self.map.show_view(view)
         self.faults.show_view(view)
+        self.drill.show_view(view)
         self.shelf.show()
         for kind, value in self.operator.take_events():
             if kind == 'found':
@@ -350,4 +355,5 @@ class ScreenHost(QObject):
         self.tasks.close(forget)
         self.map.close(forget)
         self.faults.close()
+        self.drill.close()
         self.shelf.close()
