@@ -12,7 +12,8 @@ Where neither reaches the other, both call a router that both reach, with ``--ro
 router --listen 0.0.0.0:7447``, which needs no ROS master.
 
 With keys (``utils/host/mhri_keys.sh``) the endpoints are ``tls/`` or ``quic/``, and who has none,
-or one that was withdrawn, is not let in. Keys that are replaced take effect within seconds.
+or one that was withdrawn, is not let in. Keys that are replaced take effect within seconds. By
+``tls/`` what is said goes as sealed datagrams where those pass, to the UDP port of that number.
 
 It is called ``/<name>/mhri_link`` on both masters.
 """

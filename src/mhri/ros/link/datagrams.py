@@ -6,16 +6,15 @@ It has the number of the port of TLS, on the end that is called there. Where dat
 as a firewall lets none through, everything goes over TLS.
 """
 import collections
+import logging
 import os
 import selectors
 import socket
 import threading
 
-import rospy
-
 from mhri.core.link.frames import FrameError
 from mhri.core.link.sealed import Lane, MOST_BYTES, OFFER, REPLAYED, run_of, SealError, STRANGER
-from mhri.ros.link.side import boot_clock
+from mhri.ros.link.clock import boot_clock
 
 # Each end shows so often that datagrams pass, when it has nothing to say [s].
 SHOW_S = 0.25
@@ -32,6 +31,8 @@ PASS_NOT = 'do not pass: all goes over TLS'
 _LARGEST = 65536
 # Of one port so many are read before others are served.
 _AT_ONCE = 64
+# That of rospy, which need not be there.
+_LOG = logging.getLogger('rosout')
 # What an honest end may do: it is counted, and no line.
 _QUIET = (REPLAYED, STRANGER)
 
@@ -49,8 +50,8 @@ def open_port(listen, connect):
         from cryptography.exceptions import InvalidTag
         from cryptography.hazmat.primitives.ciphers.aead import AESGCM
     except ImportError as error:
-        rospy.logwarn('no sealed datagrams, so all goes over TLS, which does not drive on a bad '
-                      'radio: install python3-cryptography (%s)', error)
+        _LOG.warning('no sealed datagrams, so all goes over TLS, which does not drive on a bad '
+                     'radio: install python3-cryptography (%s)', error)
         return None
     return Datagrams(*ends, lambda: Lane(AESGCM, os.urandom, InvalidTag)).start()
 
@@ -91,8 +92,8 @@ class Datagrams:
         except OSError as error:
             if bound is not None:
                 bound.close()
-            rospy.logwarn('no datagrams on UDP port %d: %s; all goes over TLS, which does not '
-                          'drive on a bad radio', port, error)
+            _LOG.warning('no datagrams on UDP port %d: %s; all goes over TLS, which does not '
+                         'drive on a bad radio', port, error)
             return
         self._add(bound)
 
@@ -165,7 +166,7 @@ class Datagrams:
             for way in list(self._ways):
                 way.tick(now)
         except Exception as error:  # without this thread no datagram would come any more
-            rospy.logerr_throttle(TOLD_S, 'the datagrams failed: {!r}'.format(error))
+            self.tell('the datagrams failed', error)
 
     def _read(self, source):
         for _ in range(_AT_ONCE):
@@ -178,7 +179,7 @@ class Datagrams:
             except SealError as error:
                 self._refuse(str(error), address)
             except Exception as error:  # as above
-                rospy.logerr_throttle(TOLD_S, 'a datagram failed: {!r}'.format(error))
+                self.tell('a datagram failed', error)
 
     def _hear(self, packet, source, address):
         run = run_of(packet)
@@ -189,10 +190,15 @@ class Datagrams:
 
     def _refuse(self, why, address):
         self.refused[why] += 1
+        if why not in _QUIET:
+            self.tell('dropped from {}'.format(address[0]), why)
+
+    def tell(self, what, why):
+        """Write a line into the log, of each reason once in a while."""
         now = self._clock()
-        if why not in _QUIET and now - self._told_at.get(why, -TOLD_S) >= TOLD_S:
-            self._told_at[why] = now
-            rospy.logwarn('dropped from {}: {}'.format(address[0], why))
+        if now - self._told_at.get(str(why), -TOLD_S) >= TOLD_S:
+            self._told_at[str(why)] = now
+            _LOG.warning('%s: %s', what, why)
 
 
 class _Call:
@@ -273,7 +279,7 @@ class Way:
             with self._lock:
                 news = self.lane.on_offer(data, self._port.now())
         except FrameError as error:
-            rospy.logwarn_throttle(TOLD_S, 'refused: {}'.format(error))
+            self._port.tell('{}: refused'.format(self.name), error)
             return
         if news:
             self._tell(self._port.now())
@@ -295,7 +301,7 @@ class Way:
         if now - self._sent_at >= (OFFER_S if gone else SHOW_S):
             self._go('', b'', now)
         if used != self._used:
-            rospy.loginfo('%s: sealed datagrams %s', self.name, PASS if used else PASS_NOT)
+            _LOG.info('%s: sealed datagrams %s', self.name, PASS if used else PASS_NOT)
         self._used = used
 
     def forget(self):
