@@ -132,6 +132,10 @@ class ReplayHost(ScreenHost):
             self.bar.show_state(state.position_s, state.speed, state.playing)
             self.events.show_until(self._line.events_until(state.position_s))
 
+    def asks_before_closing(self):
+        """Ask nothing: what drove or recorded did so then."""
+        return ''
+
     def close(self, forget=False):
         """Close everything."""
         QApplication.instance().removeEventFilter(self._keys)
