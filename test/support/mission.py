@@ -6,9 +6,10 @@
 time; ``mission.py replay FOLDER --times N --seed S`` replays it, goes to random times and prints
 how the screens differ. Two processes: a node has one master in its life.
 
-A busy computer makes screen and recorder late, each in its own way. So a moment counts where the
-screen showed the same for a second before and after, and neither was late; one that is asked for
-elsewhere is moved to the next such, and how many were is printed. No moment is left out.
+A busy computer makes screen and recorder late, each in its own way: the screen draws seldom, the
+recorder receives things long after they were stamped. A moment at which one of them was, or a word
+was just about to change, is moved to the next other one, and how many were is printed. None is left
+out.
 """
 import argparse
 import glob
@@ -29,21 +30,27 @@ from python_qt_binding.QtWidgets import QApplication  # noqa: E402
 
 from mhri.core.screen.views import LIVE, PROOF_STOPPED  # noqa: E402
 from mhri.gui.driving.hands import Grip  # noqa: E402
+from mhri.ros.convert import motion_from_odometry  # noqa: E402
 from support.panel_session import PanelSession  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 from support.screen_words import (  # noqa: E402
-    differences, event_differences, events_of, framed, told_events, words_of)
+    differences, event_differences, events_of, framed, told_events, words_of, words_of_motion)
 
 ROBOTS = ['bot1', 'bot2', 'bot3', 'bot4']
 PATIENCE_S = 180.0
-# So often what the screen shows is kept, and so seldom it is too busy to be believed [s].
-KEEP_S, MOST_BETWEEN_S = 0.2, 0.7
+# So often what the screen shows is kept; one that draws so seldom is late [s].
+KEEP_S, MOST_BETWEEN_S = 0.1, 0.7
 # What was heard so long after it was sent was late [s].
 LATE_S = 0.4
-# It shows the same for so long before a moment and after it [s].
-STILL_S = 1.0
-# So long a state is held at most if the screen does not come to rest by itself [s].
-HOLD_S = 8.0
+# Recorder and screen hear the same at other times: at each place a replay has to show what was
+# there within so many seconds of the moment. Where nothing changed, that is the same.
+NEAR_S = 1.0
+# No words change for so long before and after a moment [s].
+STILL_S = 0.5
+# Within so long every part of a screen that is in time has had its turn [s].
+TURN_S = 4.0
+# So long each state is held.
+HOLD_S = 2.5
 # A replay that shows something else is asked again so often: a screen may hear a jump late.
 TRIES = 3
 SIZE = 1500, 1050
@@ -54,7 +61,7 @@ class Mission(PanelSession):
     """The live screen, and a log of what it shows."""
 
     def __init__(self, log):
-        self._log, self._kept_s, self._words, self._since_s = log, 0.0, None, 0.0
+        self._log, self._kept_s = log, 0.0
         super().__init__([('sim.launch', 'n:=4')], ROBOTS)
 
     def bring(self):
@@ -62,34 +69,28 @@ class Mission(PanelSession):
         self.system.node('tasks', '__name:=mhri_tasks')
         self.system.node('mhri_session', '__name:=mhri_session')
 
-    def until(self, condition, timeout_s=PATIENCE_S, what='the condition'):
-        """Let Qt work until a condition comes true, and keep what is shown meanwhile."""
-        def told():
-            # Each turn draws one part of the screen, and a look at all of it takes a while.
-            for _ in range(10):
-                self.app.processEvents()
-            self._keep()
-            return condition()
-        return super().until(told, timeout_s, what)
+    def watch(self):
+        """Keep what every drawing shows from now on, as often as it changes all the time."""
+        draw = self.host.draw
 
-    def _keep(self):
-        now = time.time()
-        if self.host is None or now - self._kept_s < KEEP_S:
-            return
-        words = words_of(self.host)
-        age_s = max((robot.age_s or 0.0 for robot in self.host.tasks.view.robots
-                     if robot.link == LIVE), default=0.0)
-        self._log.write(json.dumps([now, words, age_s]) + '\n')
-        frame = framed(words)
-        if frame != self._words:
-            self._words, self._since_s = frame, now
-        self._kept_s = time.time()
+        def drawn():
+            draw()
+            now = time.time()
+            if now - self._kept_s >= KEEP_S:
+                self._kept_s = now
+                age_s = max((robot.age_s or 0.0 for robot in self.host.tasks.view.robots
+                             if robot.link == LIVE), default=0.0)
+                self._log.write(json.dumps([now, words_of(self.host), age_s]) + '\n')
+        self.host.draw = drawn
+
+    def until(self, condition, timeout_s=PATIENCE_S, what='the condition'):
+        """Let Qt work until a condition comes true; patiently."""
+        return super().until(condition, timeout_s, what)
 
     def hold(self):
-        """Show a state until the screen has been still; a while where it never is."""
-        begun = time.time()
-        self.until(lambda: time.time() - max(begun, self._since_s) > 2 * STILL_S + 3 * KEEP_S
-                   or time.time() - begun > HOLD_S, what='a while')
+        """Let time pass: the screen is to show a state for a while."""
+        begun = time.monotonic()
+        self.until(lambda: time.monotonic() - begun > HOLD_S, what='a while')
 
     def robot(self, name):
         """Return the view of a robot as it is shown."""
@@ -161,47 +162,51 @@ class Mission(PanelSession):
         self.until(lambda: not self.operator.view().stop_all, what='the release')
 
 
-def still_times(looks, late):
-    """Return [(begin, end)]: when the screen showed the same for a second before and after.
+def sound_times(looks, late):
+    """Return [(begin, end)]: when screen and recorder were in time, and no words about to change.
+
+    A state that lasts a moment may never have been drawn.
+
 
     :param looks: rows of (time [s since 1970], words, how old the newest word of a robot was [s])
     :param late: times [s since 1970] at which the recorder heard something late
     """
-    found, begun, before = [], None, None
+    found, begun, before_s, before = [], None, None, None
     for at_s, words, age_s in looks:
-        frame = framed(words)
-        if before is None or frame != before[1] or at_s - before[0] > MOST_BETWEEN_S \
-                or age_s > LATE_S or any(before[0] <= one <= at_s for one in late):
+        words = framed(words)
+        if before_s is None or at_s - before_s > MOST_BETWEEN_S or age_s > LATE_S \
+                or words != before or any(before_s <= one <= at_s for one in late):
             begun = at_s
-        elif before[0] - begun >= 2 * STILL_S:
+        elif at_s - begun >= 2 * STILL_S:
             if found and found[-1][0] == begun + STILL_S:
                 found.pop()
-            found.append((begun + STILL_S, before[0] - STILL_S))
-        before = at_s, frame
+            found.append((begun + STILL_S, at_s - STILL_S))
+        before_s, before = at_s, words
     return found
 
 
-def moments(still, begin_s, end_s, count, chance):
-    """Return [(asked, taken)]: random times, each moved to the next at which the screen was still.
+def moments(sound, begin_s, end_s, count, chance):
+    """Return [(asked, taken)]: random times, each moved to the next sound one.
 
-    After the last such time comes the first.
+    After the last of these comes the first.
     """
     found = []
     for _ in range(count):
         asked = chance.uniform(begin_s, end_s)
-        taken = next((max(asked, first) for first, last in still if last >= asked), still[0][0])
+        taken = next((max(asked, first) for first, last in sound if last >= asked), sound[0][0])
         found.append((asked, taken))
     return found
 
 
-def late_times(folder):
-    """Return when the recorder heard odometry long after it was measured [s since 1970]."""
+def carried(folder):
+    """Return the odometry of a session: rows of (time heard, how late it was [s], robot, motion)."""
     found = []
     for path in sorted(glob.glob(os.path.join(folder, '*.bag'))):
         with rosbag.Bag(path) as bag:
-            found += [heard.to_sec() for _, message, heard in bag.read_messages(
-                ['/{}/odom'.format(name) for name in ROBOTS])
-                if (heard - message.header.stamp).to_sec() > LATE_S]
+            found += [(heard.to_sec(), (heard - message.header.stamp).to_sec(),
+                       topic.split('/')[1], motion_from_odometry(message))
+                      for topic, message, heard in bag.read_messages(
+                          ['/{}/odom'.format(name) for name in ROBOTS])]
     return found
 
 
@@ -212,6 +217,7 @@ def live(folder, seconds):
         mission = Mission(log)
         try:
             mission.host.screen.resize(*SIZE)
+            mission.watch()
             mission.record()
             begun = time.monotonic()
             while True:
@@ -266,19 +272,19 @@ class Replayed:
         self.host.operator.control('seek', wall_s - self.begin_s)
         self.until(lambda: self.state().settled and self.state().jumps > jumps, 'the jump')
 
-    def differs(self, wall_s, then, told):
+    def differs(self, wall_s, seen, told):
         """Go to a time; return how the screen differs from what was seen, once it shows the same.
 
-        :param then: what the live screen showed around that time
+        :param seen: what the live screen showed before, around and after that time
         :param told: its events until then
         """
         self.go(wall_s)
         words, since_s = None, time.monotonic()
-        while time.monotonic() - since_s < STILL_S:
+        while time.monotonic() - since_s < NEAR_S:
             drawn_s = time.monotonic() + KEEP_S
             self.until(lambda: time.monotonic() > drawn_s, 'a drawing')
             now = words_of(self.host)
-            found = differences(then, now) + event_differences(told, events_of(self.host))
+            found = differences(*seen, now) + event_differences(told, events_of(self.host))
             if not found:
                 break
             if now != words:
@@ -309,18 +315,20 @@ def replay(folder, times, seed):
     try:
         begin_s, length_s = again.begin_s, again.state().length_s
         looks = [look for look in looks if 0.0 <= look[0] - begin_s <= length_s]
-        late = late_times(os.path.join(folder, SESSION))
-        still = still_times(looks, late)
-        assert still, 'the live screen never showed the same for {} s'.format(2 * STILL_S)
-        asked = moments(still, begin_s, begin_s + length_s, times, random.Random(seed))
-        print('{:.0f} s with {} looks; still for {:.0f} s in {} stretches; late {} times; seed {}'
-              .format(length_s, len(looks), sum(last - first for first, last in still),
-                      len(still), len(late), seed), flush=True)
+        motions = carried(os.path.join(folder, SESSION))
+        late = [at_s for at_s, late_s, _, _ in motions if late_s > LATE_S]
+        sound = sound_times(looks, late)
+        assert sound, 'screen or recorder were late all the time'
+        asked = moments(sound, begin_s, begin_s + length_s, times, random.Random(seed))
+        print('{:.0f} s, {} looks, in time and still for {:.0f} s; the recorder was late for {} '
+              'messages; seed {}'.format(length_s, len(looks), sum(last - first for first, last in sound),
+                               len(late), seed), flush=True)
         found = []
         for number, (wanted_s, taken_s) in enumerate(asked, 1):
             found += compare(again, '{} of {}: at {:.2f} s{}'.format(
                 number, times, taken_s - begin_s, '' if wanted_s == taken_s else
-                ' for {:.2f} s'.format(wanted_s - begin_s)), taken_s, looks, told)
+                ' for {:.2f} s'.format(wanted_s - begin_s)), taken_s, told,
+                around(looks, motions, taken_s))
         print('{} asked for, {} moved, {} compared, {} differences'.format(
             times, sum(wanted != taken for wanted, taken in asked), len(asked), len(found)))
         return found
@@ -328,16 +336,31 @@ def replay(folder, times, seed):
         again.close()
 
 
-def compare(again, name, at_s, looks, told):
+def around(looks, motions, at_s):
+    """Return the words shown before a time, near it and after it, and those of motions near it."""
+    moved = {}
+    for when_s, _, name, motion in motions:
+        if abs(when_s - at_s) <= NEAR_S:
+            for place, word in words_of_motion(name, motion).items():
+                moved.setdefault(place, []).append(word)
+    return (*([words for when_s, words, _ in looks if begin_s <= when_s - at_s < end_s]
+              for begin_s, end_s in ((-TURN_S, -NEAR_S), (-NEAR_S, NEAR_S), (NEAR_S, TURN_S))),
+            moved)
+
+
+def compare(again, name, at_s, told, seen):
     """Compare one moment and print it; return how it differs."""
-    then = [words for when_s, words, _ in looks if abs(when_s - at_s) <= STILL_S]
-    so_far = [row for row in told if again.begin_s <= row[0] <= at_s - STILL_S]
+    then = seen[1]
+    so_far = [row for row in told if again.begin_s <= row[0] <= at_s - NEAR_S]
     for tried in range(TRIES):
-        differ = again.differs(at_s, then, so_far)
+        differ = again.differs(at_s, seen, so_far)
         if not differ:
             break
-    print('{}: {}{}'.format(name, 'differs' if differ else 'the same', ' (asked {} times)'.format(
-        tried + 1) if tried else ''), flush=True)
+    same = [place for place in then[0] if all(
+        framed(words).get(place) == framed(then[0])[place] for words in then)]
+    print('{}: {}{}; {} places, {} of them as they were all the time'.format(
+        name, 'differs' if differ else 'the same', ' (asked {} times)'.format(tried + 1)
+        if tried else '', len(set().union(*then)), len(same)), flush=True)
     for text in differ:
         print('    ' + text, flush=True)
     if differ and os.environ.get('MISSION_GRAB'):

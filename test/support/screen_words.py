@@ -11,7 +11,10 @@ from python_qt_binding.QtWidgets import QAbstractButton, QComboBox, QLabel
 
 from mhri.core.session.lines import line_of_screen
 from mhri.gui.events.event_list import ROBOT, WHAT
+from mhri.core.screen.views import RobotView
+from mhri.gui.look.hud import hud_lines
 from mhri.gui.screen.labels import Pill, Sign
+from mhri.gui.screen.words import linear_text, turn_text
 
 #: {words that are not compared: why}
 BY_NATURE = {
@@ -22,13 +25,22 @@ BY_NATURE = {
     'row.ask_button': 'asks another host, and a replay asks nobody',
     'row.carry_on_button': 'starts a task, and a replay starts nothing',
     'header.carry_on_button': 'the same',
+    'foot._note_line': 'says what to do about a stop: nothing, in a replay',
+    'foot.power_button': 'nothing can be switched',
     'foot.release_button': 'nothing can be released',
     'foot.confirm_button': 'nothing can be released',
     'foot.cancel_button': 'nothing can be released',
 }
+#: words that a header leaves out where it has no room for them: REPLAY takes some
+ROOM = ('header.link_label', 'header.type_label', 'header.battery_label', 'header.link_sign')
 # Words within others that are not compared: ages, and how long a message took.
-_LIVE_WORDS = re.compile(r'(\d+ ms|\d+(\.\d)? s ago)')
-_NUMBER = re.compile(r'\d+(?:\.\d+)?')
+_LIVE_WORDS = re.compile(r'((?<!stopped in )\b\d+ ms|\d+(\.\d)? s ago)')
+_NUMBER = re.compile(r'[+-]?\d+(?:\.\d+)?')
+# A reading of a scan that turns with its robot, and where in it the nearest thing is.
+_DIRECTION = re.compile(r'(?<=to the nearest thing, )[a-z ]+')
+# Numbers with a sign are told without: "left 0.10 rad/s", "back 0.10 m/s".
+_SIGNED = re.compile(r'\b(left|right|back) (?=\d)')
+_SIGNS = {'left': '+', 'right': '-', 'back': '-'}
 
 
 def _word(widget, part):
@@ -69,14 +81,28 @@ def words_of(host):
         parts = [('row', screen.robot_list.row(name))]
         if tile.isVisible():
             parts.append(('header', tile.header))
-            found[name + ' hud'] = '\n'.join(tile.hud.lines)
+            found.update(('{} hud {}'.format(name, number), line)
+                         for number, line in enumerate(tile.hud.lines))
             found[name + ' sentence'] = tile.hud.sentence
             found[name + ' sentence sign'] = ' '.join(tile.hud.sign or ())
         for kind, part in parts:
             if part is not None:
                 found.update(('{} {}'.format(name, place), word)
                              for place, word in _words(kind, part))
-    return {place: _LIVE_WORDS.sub('...', word) for place, word in found.items()}
+    return {place: _signed(_LIVE_WORDS.sub('...', word)) for place, word in found.items()}
+
+
+def _signed(word):
+    return _SIGNED.sub(lambda match: _SIGNS[match.group(1)], word)
+
+
+def words_of_motion(name, motion):
+    """Return {place: what can be read there} of a :class:`Motion`, wherever its numbers are."""
+    view = RobotView(name, linear_mps=motion.linear_mps, angular_rad_s=motion.angular_rad_s,
+                     heading_rad=motion.heading_rad)
+    lines = (*hud_lines(view), linear_text(view.linear_mps), turn_text(view.angular_rad_s))
+    return {name + place: _signed(line) for place, line in zip(
+        (' hud 0', ' hud 1', ' row.linear', ' row.turn'), lines)}
 
 
 def told_events(host):
@@ -105,37 +131,64 @@ def event_differences(told, shown):
 
 def framed(words):
     """Return words without their numbers."""
-    return {place: _NUMBER.sub('#', word) for place, word in words.items()}
+    return {place: _frame(word) for place, word in words.items()}
 
 
-def differences(then, now):
+def _frame(word):
+    return _NUMBER.sub('#', _DIRECTION.sub('#', word))
+
+
+def differences(before, then, after, carried, now):
     """Return sentences on what a replay shows and the live screen did not.
 
-    :param then: what :func:`words_of` returned a few times around the moment, not empty
+    Each part of a busy screen shows new numbers when its turn comes: they may lie between what it
+    showed last before the moment and first after it.
+
+    :param before: what :func:`words_of` returned some times before the moment
+    :param then: the same around it, not empty
+    :param after: the same after it
+    :param carried: {place: words} of what came of each robot's motion around the moment
     :param now: the same of the replay
     """
     found = []
     for place in sorted({*now, *(place for words in then for place in words)}):
         shown, seen = now.get(place, ''), [words.get(place, '') for words in then]
-        if not _matches(seen, shown):
+        left_out = place.endswith(ROOM) and (not shown or not any(seen))
+        beside = [next((words[place] for words in looks if words.get(place, '') not in (
+            '', near.get(place))), shown) for looks, near in (
+                (before[::-1], then[0]), (after, then[-1]))] + carried.get(place, [])
+        if not left_out and not _matches(seen, shown, beside):
             found.append('{}: {!r}, it was {}'.format(place, shown, ' or '.join(
                 map(repr, dict.fromkeys(seen)))))
     return found
 
 
-def _matches(seen, shown):
-    """Tell whether words are those that were seen; numbers may be among those around it."""
+def _matches(seen, shown, beside):
+    """Tell whether words are those that were seen; numbers may be between those, and two beside."""
     if shown in seen:
         return True
-    frame = _NUMBER.sub('#', shown)
-    same = [_NUMBER.findall(words) for words in seen if _NUMBER.sub('#', words) == frame]
-    if not same or '#' not in frame:
+    same = [words for words in seen if _frame(words) == _frame(shown)]
+    if same:
+        same += [words for words in beside if _frame(words) == _frame(shown) and words != shown]
+    if not same or '#' not in _frame(shown):
         return False
-    return all(min(map(float, column)) - _step(number) <= float(number)
-               <= max(map(float, column)) + _step(number)
-               for number, *column in zip(_NUMBER.findall(shown), *same))
+    directions = {match for words in same for match in _DIRECTION.findall(words)}
+    if len(directions) == 1 and set(_DIRECTION.findall(shown)) != directions:
+        return False
+    columns = zip(*(_NUMBER.findall(_DIRECTION.sub('', words)) for words in same))
+    numbers = _NUMBER.findall(_DIRECTION.sub('', shown))
+    return all(_between(number, column, 'heading ' + number in shown)
+               for number, column in zip(numbers, columns))
 
 
-def _step(number):
-    """Return what the last digit of a number counts, twice."""
-    return 2.0 * 10.0 ** -len(number.partition('.')[2])
+def _between(number, seen, turns):
+    """Tell whether a number is between the least and the greatest seen, give or take two steps.
+
+    And half of what lies between those: not every reading that varies is drawn.
+
+    :param turns: whether 359 is beside 0
+    """
+    value, seen = float(number), [float(one) for one in seen]
+    step = 2.0 * 10.0 ** -len(number.partition('.')[2]) + 0.5 * (max(seen) - min(seen))
+    return min(seen) - step <= value <= max(seen) + step or turns and any(
+        abs((value - one + 180.0) % 360.0 - 180.0) <= step for one in seen)

@@ -1,0 +1,36 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The tasks of a session that is replayed: as they are heard, and as its lines recall them."""
+from mhri.core.screen.task_book import Goal
+from mhri.ros.tasks.tasks_client import TasksClient
+
+
+class ReplayTasks(TasksClient):
+    """A :class:`TasksClient` to which a session may jump.
+
+    :param recalled: :class:`mhri.core.session.recalled.Recalled`
+    :param wall: function that returns the time of day of the session [s since 1970]
+    """
+
+    def __init__(self, recalled, wall):
+        super().__init__()
+        self._recalled = recalled
+        self._wall = wall
+
+    def take_news(self):
+        """Return nothing: the session's own lines tell what happened."""
+        super().take_news()
+        return []
+
+    def left(self, robot):
+        """Return the :class:`Goal` that a robot could continue then, None for none."""
+        label = self._recalled.interrupted(robot, self._wall())
+        key = next((kind.key for kind in self.view().kinds if kind.label.lower() == label), None)
+        return Goal(key, (robot,), '') if key else None
+
+    def send(self, goal):
+        """Send nothing."""
+
+    def cancel(self, robots):
+        """End nothing."""
+        return False
