@@ -34,7 +34,8 @@ from mhri.ros.convert import motion_from_odometry  # noqa: E402
 from support.panel_session import PanelSession  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 from support.screen_words import (  # noqa: E402
-    differences, event_differences, events_of, framed, told_events, words_of, words_of_motion)
+    differences, event_differences, events_of, framed, told_events, words_of,
+    words_of_motion)
 
 ROBOTS = ['bot1', 'bot2', 'bot3', 'bot4']
 PATIENCE_S = 180.0
@@ -50,7 +51,7 @@ STILL_S = 0.5
 # Within so long every part of a screen that is in time has had its turn [s].
 TURN_S = 4.0
 # So long each state is held.
-HOLD_S = 2.5
+HOLD_S = 4.0
 # A replay that shows something else is asked again so often: a screen may hear a jump late.
 TRIES = 3
 SIZE = 1500, 1050
@@ -199,7 +200,7 @@ def moments(sound, begin_s, end_s, count, chance):
 
 
 def carried(folder):
-    """Return the odometry of a session: rows of (time heard, how late it was [s], robot, motion)."""
+    """Return the odometry of a session: (time heard, how late it was [s], robot, motion)."""
     found = []
     for path in sorted(glob.glob(os.path.join(folder, '*.bag'))):
         with rosbag.Bag(path) as bag:
@@ -321,8 +322,9 @@ def replay(folder, times, seed):
         assert sound, 'screen or recorder were late all the time'
         asked = moments(sound, begin_s, begin_s + length_s, times, random.Random(seed))
         print('{:.0f} s, {} looks, in time and still for {:.0f} s; the recorder was late for {} '
-              'messages; seed {}'.format(length_s, len(looks), sum(last - first for first, last in sound),
-                               len(late), seed), flush=True)
+              'messages; seed {}'.format(
+                  length_s, len(looks), sum(last - first for first, last in sound), len(late),
+                  seed), flush=True)
         found = []
         for number, (wanted_s, taken_s) in enumerate(asked, 1):
             found += compare(again, '{} of {}: at {:.2f} s{}'.format(
