@@ -46,8 +46,10 @@ LATE_S = 0.4
 # Recorder and screen hear the same at other times: at each place a replay has to show what was
 # there within so many seconds of the moment. Where nothing changed, that is the same.
 NEAR_S = 1.0
-# No words change for so long before and after a moment [s].
-STILL_S = 0.5
+# No words change for so long before and after a moment [s]: each tile has its turn.
+STILL_S = 1.0
+# A replay shows what it has gone to once its words stay the same for so long [s].
+STAYS_S = 0.7
 # Within so long every part of a screen that is in time has had its turn [s].
 TURN_S = 4.0
 # So long each state is held.
@@ -281,16 +283,13 @@ class Replayed:
         """
         self.go(wall_s)
         words, since_s = None, time.monotonic()
-        while time.monotonic() - since_s < NEAR_S:
+        while time.monotonic() - since_s < STAYS_S:
             drawn_s = time.monotonic() + KEEP_S
             self.until(lambda: time.monotonic() > drawn_s, 'a drawing')
             now = words_of(self.host)
-            found = differences(*seen, now) + event_differences(told, events_of(self.host))
-            if not found:
-                break
             if now != words:
                 words, since_s = now, time.monotonic()
-        return found
+        return differences(*seen, words) + event_differences(told, events_of(self.host))
 
     def close(self):
         """End everything."""

@@ -14,8 +14,21 @@ class ReplayTasks(TasksClient):
 
     def __init__(self, recalled, wall):
         super().__init__()
+        self._listed = None
         self._recalled = recalled
         self._wall = wall
+
+    def forget(self):
+        """Begin anew: what was heard before counts no more."""
+        self._listed = None
+        super().forget()
+
+    def _hear_list(self, message):
+        """Take in a list; the same again, in a pause, is older than the feedback since."""
+        listed = [run.id for run in message.runs], message.marks, len(message.tasks)
+        if listed != self._listed:
+            self._listed = listed
+            super()._hear_list(message)
 
     def take_news(self):
         """Return nothing: the session's own lines tell what happened."""
