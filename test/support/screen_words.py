@@ -9,9 +9,9 @@ import re
 from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtWidgets import QAbstractButton, QComboBox, QLabel
 
+from mhri.core.screen.views import RobotView
 from mhri.core.session.lines import line_of_screen
 from mhri.gui.events.event_list import ROBOT, WHAT
-from mhri.core.screen.views import RobotView
 from mhri.gui.look.hud import hud_lines
 from mhri.gui.screen.labels import Pill, Sign
 from mhri.gui.screen.words import linear_text, turn_text
@@ -36,7 +36,7 @@ ROOM = ('header.link_label', 'header.type_label', 'header.battery_label', 'heade
 # Words within others that are not compared: ages, and how long a message took.
 _LIVE_WORDS = re.compile(r'((?<!stopped in )\b\d+ ms|\d+(\.\d)? s ago)')
 _NUMBER = re.compile(r'[+-]?\d+(?:\.\d+)?')
-# A reading of a scan that turns with its robot, and where in it the nearest thing is.
+# Of two things that are as near as each other, noise decides which is told.
 _DIRECTION = re.compile(r'(?<=to the nearest thing, )[a-z ]+')
 # Numbers with a sign are told without: "left 0.10 rad/s", "back 0.10 m/s".
 _SIGNED = re.compile(r'\b(left|right|back) (?=\d)')
@@ -171,9 +171,6 @@ def _matches(seen, shown, beside):
     if same:
         same += [words for words in beside if _frame(words) == _frame(shown) and words != shown]
     if not same or '#' not in _frame(shown):
-        return False
-    directions = {match for words in same for match in _DIRECTION.findall(words)}
-    if len(directions) == 1 and set(_DIRECTION.findall(shown)) != directions:
         return False
     columns = zip(*(_NUMBER.findall(_DIRECTION.sub('', words)) for words in same))
     numbers = _NUMBER.findall(_DIRECTION.sub('', shown))
