@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+import xmlrpc.client
 
 import pytest
 import rosbag
@@ -187,6 +188,17 @@ def times_of(folder, topic):
     return found
 
 
+def records(node, topic):
+    """Tell whether a node has the recorder among those who hear a topic of it."""
+    import rosgraph
+    try:
+        rows = xmlrpc.client.ServerProxy(
+            rosgraph.Master('/test').lookupNode(node)).getBusInfo('/test')[2]
+    except (OSError, rosgraph.MasterException, xmlrpc.client.Error):
+        return False
+    return any(row[4] == topic and 'mhri_session' in row[1] and row[2] == 'o' for row in rows)
+
+
 def test_whoever_is_killed_it_goes_on_and_hears_who_comes_back(recorder, lab, system, tmp_path):
     """Mux, gates, tasks and the master, each at a random time: only their own silence is lost."""
     recorder.start('_folder:=' + str(tmp_path))
@@ -201,16 +213,17 @@ def test_whoever_is_killed_it_goes_on_and_hears_who_comes_back(recorder, lab, sy
     running = {topic: system.node(name, '__name:=' + node) for name, node, topic in OTHERS}
     gone = []
 
-    def bring(topic):
-        """Wait until somebody else has heard it, and the recorder for some time after."""
+    def bring(node, topic):
+        """Wait until it is heard here and by the recorder, and for some time after."""
         ears[topic].wait()
-        passed(chance.randint(5, 60))
+        wait_for(lambda: records(node, topic), PATIENCE_S, 'the recorder to hear ' + topic)
+        passed(chance.randint(20, 60))
 
     def passed(messages):
         before = recorder.state.messages
         wait_for(lambda: recorder.state.messages > before + messages, PATIENCE_S, 'messages')
-    for _, _, topic in OTHERS:
-        bring(topic)
+    for _, node, topic in OTHERS:
+        bring(node, topic)
     for other in kills:
         killed = time.time()
         if other is None:
@@ -222,7 +235,7 @@ def test_whoever_is_killed_it_goes_on_and_hears_who_comes_back(recorder, lab, sy
         system.kill(running[topic])
         ears[topic].forget()
         running[topic] = system.node(name, '__name:=' + node)
-        bring(topic)
+        bring(node, topic)
         gone.append((name, topic, killed, ears[topic].heard_s))
     recorder.end()
     for name, topic, killed, back in gone:
