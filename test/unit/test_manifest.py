@@ -12,7 +12,8 @@ import pytest
 REPO = Path(__file__).resolve().parents[2]
 ROOT = xml.etree.ElementTree.parse(str(REPO / 'package.xml')).getroot()
 # Modules whose package, or rosdep key, has another name.
-KEYS = {'catkin_pkg': 'python3-catkin-pkg', 'cv2': 'python3-opencv', 'evdev': 'python3-evdev',
+KEYS = {'catkin_pkg': 'python3-catkin-pkg', 'cryptography': 'python3-cryptography',
+        'cv2': 'python3-opencv', 'evdev': 'python3-evdev',
         'mccabe': 'python3-mccabe', 'netifaces': 'python3-netifaces', 'numpy': 'python3-numpy',
         'psutil': 'python3-psutil', 'pyaudio': 'python3-pyaudio', 'pygame': 'python3-pygame',
         'pyqtgraph': 'python3-pyqtgraph', 'pytest': 'python3-pytest',

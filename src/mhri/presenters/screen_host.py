@@ -159,10 +159,10 @@ class ScreenHost(QObject):
     def _draw_in_turn(self):
         """Draw or, every other time, make a tile that is missing; say when it is time again.
 
-        A click would have to wait for both at once.
+        A click would have to wait for both at once. Robots are in the list before their tiles come.
         """
         begun = time.monotonic()
-        self._made = self.tiles.lacks_one and not self._made
+        self._made = self.tiles.lacks_one and not (self._made or self._to_add)
         self._guard.run(self.tiles.make_missing if self._made else self.draw)
         took_ms = round(1000 * (time.monotonic() - begun))
         self._draw_timer.setInterval(
