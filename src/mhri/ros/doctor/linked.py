@@ -14,6 +14,7 @@ from mhri.core.doctor.facts import (
 # Through which the authority's own computer is known.
 _AUTHORITY = '~/.config/mhri/authority/authority.pem'
 _ASK_S = 0.8
+_IMPORTING = threading.Lock()
 # What OpenSSL says of another end's certificate (X509_V_ERR_...), and that end of the own one.
 _THEIRS = {9: EARLY, 10: RUN_OUT, 7: UNWELCOME, 19: UNWELCOME, 20: UNWELCOME, 21: UNWELCOME}
 _OURS = (('CERTIFICATE_EXPIRED', UNTIMELY), ('UNKNOWN_CA', UNWELCOME), ('DECRYPT_ERROR', UNWELCOME))
@@ -45,10 +46,12 @@ def taken(connection, folder):
     return ANSWERS
 
 
-def _folder():
-    # Slow to import: only where there are links.
-    from mhri.ros.link.key_folder import AUTO, find_folder
-    return find_folder(AUTO) or ''
+def _keys_there():
+    """Return (the module of the keys, the folder with those of this computer or '')."""
+    # Slow to import: only where there are links. Not by two threads at once: one might get half.
+    with _IMPORTING:
+        from mhri.ros.link import key_folder
+    return key_folder, key_folder.find_folder(key_folder.AUTO) or ''
 
 
 class LinkLook:
@@ -90,7 +93,7 @@ class LinkLook:
         try:
             with socket.create_connection((host.strip('[]'), int(port)), self._ask_s) as connection:
                 self._reach[endpoint] = ANSWERS
-                folder = _folder() if secret else None
+                folder = _keys_there()[1] if secret else None
                 if folder:
                     self._reach[endpoint] = taken(connection, folder)
         except ConnectionRefusedError:
@@ -101,13 +104,12 @@ class LinkLook:
             self._reach[endpoint] = SILENT
 
     def _look_at_keys(self):
-        from mhri.core.link.keys import KeysError
-        from mhri.ros.link.key_folder import KeyFolder
-        folder, problem = _folder(), ''
+        key_folder, folder = _keys_there()
+        problem = ''
         authority = os.path.exists(os.path.expanduser(_AUTHORITY)) and not folder
         if folder:
             try:
-                KeyFolder(folder, 'host', '').read()
-            except (KeysError, OSError) as error:
+                key_folder.KeyFolder(folder, 'host', '').read()
+            except (key_folder.KeysError, OSError) as error:
                 problem = str(error)
         self._keys = KeysSeen(folder, problem, authority)
