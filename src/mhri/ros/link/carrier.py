@@ -21,6 +21,8 @@ VERSION = '1.5.1'
 ENDPOINT = re.compile(r'(tcp|udp|tls|quic)/(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9.-]+):[0-9]{1,5}\Z')
 # A peer that says nothing for so long is gone; knocks at one that is not there yet [ms].
 _LEASE_MS, _KNOCK_MS, _KNOCK_MOST_MS, _OPEN_MS = 1500, 200, 1000, 1000
+# Beside datagrams TLS has the time for repeating what a bad radio loses: their keys need it.
+_LONG_LEASE_MS, _LONG_OPEN_MS = 5000, 4000
 
 
 class LibraryMissing(Exception):
@@ -94,9 +96,9 @@ class Carrier:
         # What to declare anew: {key: its publisher and its class}, [(keys, function, subscriber)].
         self._publishers = {}
         self._kept = []
-        self._open(secrets)
         self._own = own
         self._datagrams = open_port(listen, connect) if own and place == 'peer' else None
+        self._open(secrets)
 
     def _open(self, secrets):
         settings = {
@@ -110,7 +112,8 @@ class Carrier:
             'scouting/multicast/enabled': False,
             'scouting/gossip/enabled': self._place != 'peer',
             'scouting/gossip/autoconnect': {'router': [], 'peer': []},
-            'transport/unicast/open_timeout': _OPEN_MS, 'transport/link/tx/lease': _LEASE_MS,
+            'transport/unicast/open_timeout': _LONG_OPEN_MS if self._datagrams else _OPEN_MS,
+            'transport/link/tx/lease': _LONG_LEASE_MS if self._datagrams else _LEASE_MS,
             'transport/link/protocols': list(ALONE if secrets is None else TLS)}
         settings.update(secrets or {})
         config = self._zenoh.Config()
