@@ -38,6 +38,7 @@ class ScreenLayout(QObject):
         self._stick, self._stick_wanted = _IN_DRAWER, False
         self._busy = False
         self._begins_closed = self._drawer_chosen = False
+        self._fits_at = 0
         self._layout, self._theme = AUTO, theme.DARK
         self._build()
         self._connect()
@@ -227,11 +228,14 @@ class ScreenLayout(QObject):
 
     def _arrange(self):
         screen = self._screen
-        if self._begins_closed and screen.isVisible() and \
-                screen.splitter.sizes()[0] > _DRAWER_SHARE * screen.width():
-            screen.drawer_button.setChecked(False)
-            # Nobody has asked for it.
-            self._drawer_chosen = False
+        if self._begins_closed and screen.isVisible() and self._fits_at != screen.width():
+            if screen.splitter.sizes()[0] > _DRAWER_SHARE * screen.width():
+                screen.drawer_button.setChecked(False)
+                # Nobody has asked for it.
+                self._drawer_chosen = False
+            elif sum(screen.splitter.sizes()):
+                # What grows in it later, such as a question, does not close it under a hand.
+                self._fits_at = screen.width()
         is_open = self.drawer_open
         side = max(screen.drawer.minimumSizeHint().width(), screen.splitter.sizes()[0]) \
             if is_open else 0
