@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mhri.core.voice.sound import MODEL
+from mhri.core.voice.sound import MODEL, SOUNDS
 
 try:
     import pocketsphinx
@@ -199,7 +199,7 @@ class Dictionary:
                        for phone in way.split()})
 
 
-def _decoder(folder, rows, **settings):
+def _decoder(folder, model, rows, **settings):
     """Return a decoder with a dictionary of some rows (word, sounds)."""
     path = os.path.join(folder, 'words.dict')
     with open(path, 'w', encoding='utf-8') as stream:
@@ -209,7 +209,7 @@ def _decoder(folder, rows, **settings):
             number = '({})'.format(counts[word]) if counts[word] > 1 else ''
             stream.write('{}{} {}\n'.format(word, number, sounds))
     config = pocketsphinx.Decoder.default_config()
-    texts = {'-hmm': os.path.join(MODEL, 'en-us'), '-dict': path, '-logfn': os.devnull}
+    texts = {'-hmm': model, '-dict': path, '-logfn': os.devnull}
     texts.update({'-' + key: value for key, value in settings.items() if isinstance(value, str)})
     for key, value in texts.items():
         config.set_string(key, value)
@@ -226,7 +226,7 @@ def _decoder(folder, rows, **settings):
         return pocketsphinx.Decoder(config)
     except RuntimeError as error:
         raise RecogniserError('pocketsphinx does not take its model {}: {}; {}'.format(
-            MODEL, error, _REMEDY))
+            model, error, _REMEDY))
 
 
 class Recogniser:
@@ -237,12 +237,13 @@ class Recogniser:
     :raises RecogniserError: pocketsphinx or its model is missing
     """
 
-    def __init__(self, grammar, dictionary, tuning=Tuning()):
+    def __init__(self, grammar, dictionary, tuning=Tuning(), model=SOUNDS):
         if pocketsphinx is None:
             raise RecogniserError('pocketsphinx cannot be loaded ({}); {}'.format(
                 IMPORT_PROBLEM, _REMEDY))
         self._dictionary = dictionary
         self._tuning = tuning
+        self._model = model
         self._spotting = self._wake_spotted = False
         with tempfile.TemporaryDirectory(prefix='mhri_voice_') as folder:
             self._spotter = self._new_spotter(folder, grammar)
@@ -273,7 +274,7 @@ class Recogniser:
                 stream.writelines('{} /{:g}/\n'.format(phrase, threshold) for phrase in phrases)
         words = sorted({word for phrase in language.stop + language.wake_words
                         for word in phrase.split()})
-        return _decoder(folder, self._rows(words, language), kws=path, remove_noise=False,
+        return _decoder(folder, self._model, self._rows(words, language), kws=path, remove_noise=False,
                         beam=1e-100, pbeam=1e-100)
 
     def set_grammar(self, grammar):
@@ -289,7 +290,7 @@ class Recogniser:
             # compallsen: only so are the scores of two searches comparable. topn: more of the
             # model's densities than usual, which helps in noise. The beams: what was said must not
             # be lost early where the voice is unlike those of the model.
-            decoder = _decoder(folder, rows, compallsen=True, cmn='batch', topn=8, beam=1e-120,
+            decoder = _decoder(folder, self._model, rows, compallsen=True, cmn='batch', topn=8, beam=1e-120,
                                wbeam=1e-100, pbeam=1e-120)
         decoder.set_jsgf_string(_COMMAND, grammar.jsgf())
         decoder.set_jsgf_string(_FILLER, '#JSGF V1.0;\ngrammar filler;\npublic <any> = ({})+;\n'
