@@ -192,6 +192,18 @@ class Dictionary:
         self._read()
         return self._sounds.get(word, [])
 
+    def spoken(self, word, language):
+        """Return the ways in which a word is spoken: the language's own come first.
+
+        :raises RecogniserError: it has none
+        """
+        ways = list(language.pronunciations.get(word, ())) or self.sounds(word)
+        if not ways:
+            raise RecogniserError('the word "{}" of the voice language {} is not in the '
+                                  'dictionary: give its sounds below pronunciations'.format(
+                                      word, language.name))
+        return ways
+
     def phones(self):
         """Return every sound of the language, sorted."""
         self._read()
@@ -199,8 +211,12 @@ class Dictionary:
                        for phone in way.split()})
 
 
-def _decoder(folder, model, rows, **settings):
-    """Return a decoder with a dictionary of some rows (word, sounds)."""
+def new_decoder(folder, rows, **settings):
+    """Return a decoder of pocketsphinx with a dictionary of some rows (word, sounds).
+
+    :param folder: for its files, needed no longer than this takes
+    :param settings: options of pocketsphinx; an empty text counts as not given
+    """
     path = os.path.join(folder, 'words.dict')
     with open(path, 'w', encoding='utf-8') as stream:
         counts = {}
@@ -209,8 +225,9 @@ def _decoder(folder, model, rows, **settings):
             number = '({})'.format(counts[word]) if counts[word] > 1 else ''
             stream.write('{}{} {}\n'.format(word, number, sounds))
     config = pocketsphinx.Decoder.default_config()
-    texts = {'-hmm': model, '-dict': path, '-logfn': os.devnull}
-    texts.update({'-' + key: value for key, value in settings.items() if isinstance(value, str)})
+    texts = {'-hmm': SOUNDS, '-dict': path, '-logfn': os.devnull}
+    texts.update({'-' + key: value for key, value in settings.items()
+                  if isinstance(value, str) and value})
     for key, value in texts.items():
         config.set_string(key, value)
     # The endpointer has cut the sound already.
@@ -226,7 +243,7 @@ def _decoder(folder, model, rows, **settings):
         return pocketsphinx.Decoder(config)
     except RuntimeError as error:
         raise RecogniserError('pocketsphinx does not take its model {}: {}; {}'.format(
-            model, error, _REMEDY))
+            ' with '.join(filter(None, (SOUNDS, settings.get('mean')))), error, _REMEDY))
 
 
 class Recogniser:
@@ -234,16 +251,17 @@ class Recogniser:
 
     :param grammar: :class:`mhri.core.voice.grammar.Grammar`
     :param dictionary: :class:`Dictionary`
+    :param voice: path of a voice that was taught, see :mod:`mhri.inputs.teaching`; '': any voice
     :raises RecogniserError: pocketsphinx or its model is missing
     """
 
-    def __init__(self, grammar, dictionary, tuning=Tuning(), model=SOUNDS):
+    def __init__(self, grammar, dictionary, tuning=Tuning(), voice=''):
         if pocketsphinx is None:
             raise RecogniserError('pocketsphinx cannot be loaded ({}); {}'.format(
                 IMPORT_PROBLEM, _REMEDY))
         self._dictionary = dictionary
         self._tuning = tuning
-        self._model = model
+        self._voice = voice
         self._spotting = self._wake_spotted = False
         with tempfile.TemporaryDirectory(prefix='mhri_voice_') as folder:
             self._spotter = self._new_spotter(folder, grammar)
@@ -256,12 +274,7 @@ class Recogniser:
         """
         rows = []
         for word in words:
-            ways = list(language.pronunciations.get(word, ())) or self._dictionary.sounds(word)
-            if not ways:
-                raise RecogniserError('the word "{}" of the voice language {} is not in the '
-                                      'dictionary: give its sounds below pronunciations'.format(
-                                          word, language.name))
-            rows += [(word, sounds) for sounds in ways]
+            rows += [(word, sounds) for sounds in self._dictionary.spoken(word, language)]
         return rows
 
     def _new_spotter(self, folder, grammar):
@@ -274,8 +287,8 @@ class Recogniser:
                 stream.writelines('{} /{:g}/\n'.format(phrase, threshold) for phrase in phrases)
         words = sorted({word for phrase in language.stop + language.wake_words
                         for word in phrase.split()})
-        return _decoder(folder, self._model, self._rows(words, language), kws=path, remove_noise=False,
-                        beam=1e-100, pbeam=1e-100)
+        return new_decoder(folder, self._rows(words, language), kws=path, remove_noise=False,
+                           beam=1e-100, pbeam=1e-100, mean=self._voice)
 
     def set_grammar(self, grammar):
         """Listen for other robots from the next utterance on; takes about 0.2 s.
@@ -290,8 +303,8 @@ class Recogniser:
             # compallsen: only so are the scores of two searches comparable. topn: more of the
             # model's densities than usual, which helps in noise. The beams: what was said must not
             # be lost early where the voice is unlike those of the model.
-            decoder = _decoder(folder, self._model, rows, compallsen=True, cmn='batch', topn=8, beam=1e-120,
-                               wbeam=1e-100, pbeam=1e-120)
+            decoder = new_decoder(folder, rows, compallsen=True, cmn='batch', topn=8, beam=1e-120,
+                                  wbeam=1e-100, pbeam=1e-120, mean=self._voice)
         decoder.set_jsgf_string(_COMMAND, grammar.jsgf())
         decoder.set_jsgf_string(_FILLER, '#JSGF V1.0;\ngrammar filler;\npublic <any> = ({})+;\n'
                                 .format(loop))
