@@ -57,7 +57,11 @@ def read_gaussians(data: bytes, name: str) -> Array:
     count, = struct.unpack_from('<i', rest, at)
     if len(set(sizes)) != 1 or count != books * densities * sum(sizes):
         raise ModelError('{} has streams of several sizes'.format(name))
+    if len(rest) < at + 4 + 4 * count:
+        raise ModelError('{} is cut off'.format(name))
     values = np.frombuffer(rest, '<f4', count, at + 4)
+    if not np.isfinite(values).all():
+        raise ModelError('{} has numbers that are none'.format(name))
     return values.reshape(books, streams, densities, sizes[0]).astype(float)
 
 
@@ -77,6 +81,8 @@ def read_phones(data: bytes) -> Tuple[str, ...]:
     if data[:4] != b'BMDF':
         raise ModelError('mdef is not binary')
     length, = struct.unpack_from('<i', data, 8)
+    if len(data) < 52 + length:
+        raise ModelError('mdef is cut off')
     count, _, states, pdfs = struct.unpack_from('<4i', data, 12 + length)
     names = data[12 + length + 40:].split(b'\0', count)[:count]
     if states != _STATES or pdfs != _STATES * count:
