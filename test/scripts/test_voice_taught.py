@@ -28,7 +28,7 @@ TEACH = ('robot turn right and go left a little', 'robot deselect bot one and th
          'start recording and stop recording again', 'four hours of steady work faced us')
 CHECK = ('robot left a little', 'robot record')
 LATER = ('robot go right', 'robot deselect rover', 'robot turn left')
-PATIENCE_S = 300.0
+PATIENCE_S = 900.0
 
 
 def spoken(text, gain=1.0):

@@ -177,6 +177,23 @@ def test_orders_come_in_lines():
         orders.take()
 
 
+def test_another_voice_begins_anew(desk):
+    desk.reader.want_voice('ann')
+    with pytest.raises(DeviceLost):
+        desk.reader.read(0.0)
+
+
+def test_a_voice_that_nobody_taught_is_named_with_the_remedy(monkeypatch, tmp_path):
+    monkeypatch.setenv('ROS_HOME', str(tmp_path))
+    reader = VoiceReader(parse_language(PATH.read_text(), str(PATH)), str(PATH), None, None)
+    reader.want_voice('ann')
+    with pytest.raises(DeviceAbsent, match='rosrun mhri mhri_voice_teach ann'):
+        reader.open()
+    reader.want_voice('../ann')
+    with pytest.raises(DeviceAbsent, match='~voice: expected a name of letters'):
+        reader.open()
+
+
 def test_without_pocketsphinx_or_its_model(monkeypatch, tmp_path):
     """The message names the package."""
     assert listening.missing() == ''

@@ -142,8 +142,8 @@ def _keep(language, teacher, name, say):
     finally:
         if os.path.exists(part):
             os.remove(part)
-    say('Kept: {}\nUse it now:     rosparam set /mhri_voice/voice {}\nand always:     '
-        'roslaunch mhri mhri.launch voice:={}'.format(path, name, name))
+    say('Kept: {}\nUse it now:   rosparam set /mhri_voice/voice {}\nand always:   mhri_run.sh '
+        'voice:={}'.format(path, name, name))
 
 
 def main():
