@@ -6,8 +6,9 @@ Every voice speaks its sentences one after the other into one stream, with a sec
 between them, in a quiet room and over noise at 10 dB (RMS of the speech to RMS of the noise).
 ``test/support/utterances`` has a set that the recogniser was tuned on and one it never saw; the
 goals are for the second one, and for voices and speeds that it was not tuned on as well;
-``--held-out`` has more of these, by other programs as well (flite, festival). With ``--taught`` each
-voice is taught first, as ``mhri_voice_teach`` does, by sentences read at one speed in a quiet room.
+``--held-out`` has more of these, by other programs as well (flite, festival). With ``--taught``
+each voice is taught first, as ``mhri_voice_teach`` does, by sentences read at one speed in a quiet
+room.
 
 A command is right where exactly that command is accepted. A stop is right where it is spotted or
 recognised. "moved by talk" are sentences, commands to none, after which the stick was not neutral.

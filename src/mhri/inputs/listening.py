@@ -7,8 +7,8 @@ run, and the zero that ends a spoken motion must not wait for that. So it has a 
 which :class:`mhri.inputs.voice.VoiceReader` begins and ends.
 
 It reads orders and writes events, both as JSON, one a line. The first order is ``{"source": text,
-"language": path, "robots": [names], "voice": path or ""}``, later ones ``{"robots": [names]}``; where the orders end, so
-does the process. Events are ``{"kind": ...}`` with one of these kinds:
+"language": path, "robots": [names], "voice": path or ""}``, later ones ``{"robots": [names]}``;
+where the orders end, so does the process. Events are ``{"kind": ...}`` with one of these kinds:
 
 - ``open`` (``device``, ``notes``, ``robots``, ``words``), again after each change of the robots
 - ``absent`` or ``lost`` (``reason``): the process ends

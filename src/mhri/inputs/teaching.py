@@ -110,9 +110,9 @@ class Teacher:
             self._heard[text] = sound
         return problem
 
-    def taught(self):
-        """Return how many sentences there are to learn from."""
-        return sum(text in self._heard for text in self._language.teach)
+    def good(self, texts):
+        """Return how many of some sentences were taken in."""
+        return sum(text in self._heard for text in texts)
 
     def learn(self):
         """Return the file of the voice as bytes; takes some seconds."""

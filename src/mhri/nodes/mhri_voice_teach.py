@@ -17,13 +17,13 @@ from mhri.inputs.listening import missing
 from mhri.inputs.reader import DeviceAbsent, DeviceLost
 from mhri.ros.resources import read_text, resource_path
 
-# Read as often as that, a sentence that stays bad is left out.
+# Read so often, a sentence that stays bad is left out.
 _TRIES = 3
 # With fewer of the sentences a voice is not known [fraction].
 _ENOUGH = 0.6
-_HELP = ('Read each sentence aloud when it is shown, the way you talk to the robots: at an even '
-         'pace, the mouth a hand\'s width from the microphone. It takes about three minutes. Ctrl-C '
-         'ends it, and nothing is kept.')
+_HELP = ('Read each sentence aloud when it is shown, the way you talk to the robots: at an even\n'
+         'pace, the mouth a hand\'s width from the microphone. It takes about three minutes.\n'
+         'Ctrl-C ends it, and nothing is kept.')
 
 
 class Refused(Exception):
@@ -65,8 +65,10 @@ def teach(options, say=print):
         teacher = Teacher(language, Dictionary())
         if not language.teach or not language.teach_check:
             raise Refused('{} has no sentences: give some below teach and teach_check'.format(path))
-        hear = _recordings(options.recordings) if options.recordings else _live(options.source, say)
-        _read_all(language, teacher, hear, say)
+        if options.recordings:
+            _read_all(language, teacher, _recordings(options.recordings), say, tries=1)
+        else:
+            _read_all(language, teacher, _live(options.source, say), say)
         _keep(language, teacher, options.name, say)
     except RecogniserError as reason:
         raise Refused(str(reason))
@@ -86,7 +88,6 @@ def _recordings(folder):
             return next_sentence(source)
         finally:
             source.close()
-    hear.tries = 1
     return hear
 
 
@@ -98,11 +99,10 @@ def _live(text, say):
 
     def hear(_):
         return next_sentence(source)
-    hear.tries = _TRIES
     return hear
 
 
-def _read_all(language, teacher, hear, say):
+def _read_all(language, teacher, hear, say, tries=_TRIES):
     """Have every sentence read.
 
     :raises Refused: too few of them were good
@@ -110,14 +110,15 @@ def _read_all(language, teacher, hear, say):
     texts = language.teach + language.teach_check
     for number, text in enumerate(texts, 1):
         say('{} of {}:  {}'.format(number, len(texts), text))
-        for left in range(hear.tries - 1, -1, -1):
+        for left in reversed(range(tries)):
             problem = teacher.take(text, hear(text))
             if not problem:
                 break
             say('    {}{}'.format('again: ' if left else 'left out: ', problem))
-    if teacher.taught() < _ENOUGH * len(language.teach):
-        raise Refused('only {} of {} sentences could be used; nothing was kept. Read the reasons '
-                      'above, and try again'.format(teacher.taught(), len(language.teach)))
+    for kind in (language.teach, language.teach_check):
+        if teacher.good(kind) < _ENOUGH * len(kind):
+            raise Refused('only {} of {} sentences could be used; nothing was kept. Read the '
+                          'reasons above, and try again'.format(teacher.good(kind), len(kind)))
 
 
 def _keep(language, teacher, name, say):
@@ -134,7 +135,7 @@ def _keep(language, teacher, name, say):
             stream.write(teacher.learn())
         (before, wrong_before), (now, wrong) = teacher.understood(), teacher.understood(part)
         say('Of {} sentences that check it, {} were understood before, {} are now.'.format(
-            len(language.teach_check), before, now))
+            teacher.good(language.teach_check), before, now))
         if now - wrong < before - wrong_before:
             raise Refused('the voice was understood better before; nothing was kept. Read it again '
                           'in a quiet place, each word whole')

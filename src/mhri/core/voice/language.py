@@ -43,8 +43,8 @@ class Language:
     ``drive`` maps a direction to (verbs, words), ``manner`` a manner to its phrases, ``robots`` an
     action on robots to its phrases, ``requests`` a wish to the panel, ``sources`` a source of
     ``mux.yaml``. ``pronunciations`` maps a word to the sounds it is spoken with (CMU phones).
-    ``teach`` is what an operator reads so that the voice is known, ``teach_check`` what shows whether
-    it is.
+    ``teach`` is what an operator reads so that the voice is known, ``teach_check`` what shows
+    whether it is.
     """
 
     name: str
