@@ -68,7 +68,7 @@ def on_the_graph(names, again):
         middles = [statistics.median(each) for each in times]
         found = all(result['found'] == result['targets'] for each in runs for result in each)
         in_order = middles == sorted(set(middles))
-        print('{:18}{}  differ by {:.1f} %, {} contacts{}{}'.format(
+        print('{:18}{}  differ by {:.1f} %, {:.0f} contacts{}{}'.format(
             name, ''.join('{:>24}'.format(' '.join('{:.1f}'.format(time) for time in each) + ' s')
                           for each in times), 100.0 * spread,
             sum(result['contacts'] for each in runs for result in each),

@@ -24,6 +24,22 @@ rospy.init_node('asks', disable_signals=True)
 rospy.wait_for_service('/bot1/mhri_link/take_control', 20)
 print(rospy.ServiceProxy('/bot1/mhri_link/take_control', Trigger)().message)
 '''
+# Counts on another master how often the gates end on purpose.
+ENDINGS = '''
+import rospy
+from std_msgs.msg import String
+rospy.init_node('endings', disable_signals=True)
+rest = [None] * 3
+def hear(message):
+    if not message.data and rest:
+        rest.pop()
+ears = rospy.Subscriber('/bot1/mhri_guard/heard', String, hear)
+while not ears.get_num_connections():
+    rospy.rostime.wallsleep(0.05)
+print('listens', flush=True)
+while rest:
+    rospy.rostime.wallsleep(0.05)
+'''
 
 
 @pytest.fixture(scope='module')
@@ -76,6 +92,20 @@ def test_the_host_side_subscribes_commands_alone(lab):
     wait_for(lambda: heard() == {'/bot1/mhri_guard/command', '/bot1/mhri_guard/heard',
                                  '/mhri_session/state'}, LONG_S,
              lambda: 'its topics: {}'.format(heard()))
+
+
+def test_that_the_gates_end_on_purpose_is_said_again(lab):
+    """A radio may lose it, and a robot that goes back alone would go."""
+    import rospy
+    from std_msgs.msg import String
+    with subprocess.Popen([sys.executable, '-c', ENDINGS], env=lab.robot.env,
+                          stdout=subprocess.PIPE) as listener:
+        assert listener.stdout.readline() == b'listens\n'
+        gates = rospy.Publisher('/bot1/mhri_guard/heard', String, queue_size=1)
+        wait_for(gates.get_num_connections, LONG_S, 'the link')
+        gates.publish('')
+        wait_for(lambda: listener.poll() is not None, LONG_S, 'it to be heard three times')
+        gates.unregister()
 
 
 def test_it_is_driven_through_its_guard(lab):

@@ -11,6 +11,8 @@ from python_qt_binding.QtWidgets import QAbstractButton, QPushButton, QVBoxLayou
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
+from mhri.core.screen.views import GONE  # noqa: E402
+from mhri.gui.look.hud import Hud  # noqa: E402
 from mhri.gui.screen import theme  # noqa: E402
 from mhri.gui.screen.labels import TextLine  # noqa: E402
 from mhri.gui.screen.status_line import StatusLine  # noqa: E402
@@ -50,6 +52,20 @@ def test_numbers_over_a_narrow_picture_are_whole(scene, width):
     seen = pixels_of(hud)
     assert (seen[:, :width // 2] > 240).all(axis=2).any()
     assert not (seen[:, -6:] > 240).all(axis=2).any()
+
+
+def test_over_a_thumbnail_one_word_stands_for_a_sentence_that_has_no_room(operator):
+    hud = Hud()
+    operator.show(hud)
+    hud.show_large(False)
+    hud.resize(130, 60)
+    hud.show_sentence('gone', theme.LINK_SIGNS[GONE])
+    in_a_word = pixels_of(hud)
+    for text in ('nothing heard for 12 s: switched off', 'incomprehensibilities'):
+        hud.show_sentence(text, theme.LINK_SIGNS[GONE], ('gone',))
+        assert (pixels_of(hud) == in_a_word).all()
+    hud.show_sentence('held: look', theme.LINK_SIGNS[GONE], ('gone',))
+    assert (pixels_of(hud) != in_a_word).any()
 
 
 def test_a_narrow_bottom_line_says_what_happens(application, operator):

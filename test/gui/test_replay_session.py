@@ -105,6 +105,17 @@ def test_the_list_has_the_events_so_far(replay):
     replay.until(lambda: page.rowCount() == 1, 'the first event alone')
 
 
+def test_a_drill_is_told_as_it_went(replay):
+    line = replay.host.screen.drill_line
+    for position_s, words in ((8.0, 'Drill Short: Find the can.'),
+                              (20.0, 'Drill Short: 0 of 1 found, 0:5'),
+                              (30.0, 'Drill Short: found after 0:14')):
+        replay.pause_at(position_s)
+        replay.until(lambda: line.isVisible() and line.text().startswith(words), words)
+    replay.pause_at(3.0)
+    replay.until(lambda: not line.isVisible(), 'no drill')
+
+
 def test_keys_that_drive_do_nothing(replay):
     replay.pause_at(14.0)
     replay.until(lambda: replay.robot('bot1').selected, 'the selection')

@@ -262,6 +262,40 @@ class YawChart:
         return (high - low) / self._chart.view.height()
 
 
+@pytest.fixture
+def fault(session):
+    """Return a function that has bot1 fail, or mend."""
+    import rospy
+    from mhri.srv import SetFault
+    ask = rospy.ServiceProxy('/bot1/base/set_fault', SetFault)
+    ask.wait_for_service(60)
+    yield lambda key, value=0.0, duration_s=600.0: ask(key, value, duration_s)
+    ask('all', 0.0, -1.0)
+
+
+def test_a_camera_that_falls_silent_is_seen_in_its_picture(session, fault):
+    picture = session.picture(session.open('bot1'), 'rgb')
+    assert picture.warning == ''
+    fault('camera_silent')
+    session.until(lambda: picture.warning.startswith('OLD PICTURE'), what='the words across it')
+    fault('camera_silent', duration_s=-1.0)
+    session.until(lambda: picture.warning == '', what='a live picture')
+
+
+def test_a_person_in_the_way_and_a_silent_laser_are_seen_in_the_numbers(session, fault):
+    window = session.open('bot1')
+
+    def nearest():
+        return ' '.join(line for line in window.hud.lines if 'nearest' in line)
+    session.until(nearest, what='the nearest thing')
+    fault('person', 0.4)
+    session.until(lambda: nearest().startswith('0.') and nearest().endswith('ahead'), what=nearest)
+    fault('scan_silent')
+    session.until(lambda: not nearest(), what='the old number to go')
+    fault('scan_silent', duration_s=-1.0)
+    session.until(nearest, what='the nearest thing again')
+
+
 def test_the_graph_moves_when_the_robot_turns(session):
     from mhri.presenters.demo import Grip
     from support.robots import Witness

@@ -124,6 +124,35 @@ def test_6_events_of_the_screen_are_kept(session):
     assert kinds.count('selection') == 2, 'seen on the graph, and not told by the screen as well'
 
 
+def test_6_a_drill_is_on_the_screen_while_it_runs(session):
+    from mhri.msg import DrillState
+    import rospy
+    referee = rospy.Publisher('/mhri_drill/state', DrillState, queue_size=1, latch=True)
+    line = session.screen.drill_line
+    assert not line.isVisible(), 'without a drill nothing speaks of one'
+
+    def say(words, **fields):
+        """Let the referee say it, until it can be read."""
+        state = DrillState(title='Maze', about='Find the plant.', limit_s=300.0, **fields)
+
+        def shown():
+            state.header.stamp = rospy.Time.now()
+            referee.publish(state)
+            session.until(line.isVisible, 'the line')
+            return line.text().startswith(words)
+        session.until(shown, words)
+    say('Drill Maze: Find the plant. The clock', left=['plant'])
+    say('Drill Maze: 0 of 1 found, 4:17 left', left=['plant'], phase=1, elapsed_s=43.0)
+    say('Drill Maze: found after 1:03; page: /a/drill.html',
+        found=['plant'], phase=2, elapsed_s=63.0, ended='all found', page='/a/drill.html')
+    session.until(lambda: [event.text for event in session.events() if 'Maze' in event.text] == [
+        'drill Maze: Find the plant.', 'drill Maze: begun', 'drill Maze: plant found',
+        'drill Maze: found after 1:03; page: /a/drill.html'], 'the events')
+    referee.publish(DrillState(title='Maze'))
+    session.until(lambda: not line.isVisible(), 'what was said long ago to go')
+    referee.unregister()
+
+
 def test_7_a_recorder_that_is_killed_is_said(session):
     session.system.kill(session.recorder)
     session.until(lambda: session.button.text() == 'not recorded !', 'the button to say so')

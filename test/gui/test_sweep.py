@@ -103,7 +103,7 @@ def whole_screen(scene):
 
 
 @pytest.mark.parametrize('size, font', [
-    ((1024, 600), 1.0), ((1366, 768), 1.0), ((1920, 1080), 2.0)])
+    ((1024, 600), 1.0), ((1024, 600), 2.0), ((1366, 768), 1.0), ((1920, 1080), 2.0)])
 def test_every_page_is_fit_for_eyes_and_fingers(whole_screen, size, font):
     made = whole_screen(size, font)
     tabs, found = made.show().tabs, {}

@@ -192,6 +192,10 @@ class ApiTest(unittest.TestCase):
             except AssertionError:
                 self.assertEqual(running('/' + name), documented(name))
 
+    def test_drill(self):
+        self.system.node('mhri_drill', 'maze')
+        self.becomes('/mhri_drill', None, documented('mhri_drill'))
+
     def test_simulated_robots(self):
         pages = documented('Simulated robot')
         for robot, kind, node in (('bot1', 'turtlebot2', '/bot1/base'),

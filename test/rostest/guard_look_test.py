@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What the guard does by itself: it brakes, and goes back to where it was heard."""
+import math
 import os
 import signal
 import sys
@@ -9,6 +10,7 @@ import time
 
 import rospy
 import rostest
+from sensor_msgs.msg import LaserScan
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
@@ -22,6 +24,33 @@ from support.velocity import VelocityEnd  # noqa: E402
 GUARD = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', '..', 'utils', 'remote',
                      'mhri_guard')
 AFTER_S = 3.0
+CRAWL_MPS = 0.1
+
+
+class Halves:
+    """Two lasers made of the one that bot1 has: one looks ahead, one back."""
+
+    def __init__(self):
+        self.live = {'ahead': True, 'behind': True}
+        self._lasers = {half: rospy.Publisher('/bot1/' + half, LaserScan, queue_size=1,
+                                              tcp_nodelay=True) for half in self.live}
+        self._all = rospy.Subscriber('/bot1/scan', LaserScan, self._share, queue_size=1)
+
+    def _share(self, message):
+        ranges, turn = message.ranges, len(message.ranges) // 4
+        shift = int(round(message.angle_min / message.angle_increment))
+        ranges = ranges[-shift % len(ranges):] + ranges[:-shift % len(ranges)]
+        for half, begin, first in (('ahead', -turn, -math.pi / 2.0), ('behind', turn,
+                                                                      math.pi / 2.0)):
+            if self.live[half]:
+                message.ranges = (ranges + ranges)[begin % len(ranges):][:2 * turn + 1]
+                message.angle_min, message.angle_max = first, first + math.pi
+                self._lasers[half].publish(message)
+
+    def close(self):
+        self._all.unregister()
+        for laser in self._lasers.values():
+            laser.unregister()
 
 
 class GuardLook(GatesCase):
@@ -90,6 +119,33 @@ class GuardLook(GatesCase):
         self.drive_to(10.4, -0.25)
         group.publish(brake=False)
         self.state.wait(lambda state: not state.brake, 'the wish to be taken back')
+
+    def test_of_two_lasers_the_one_that_falls_silent_closes_its_side(self):
+        halves = Halves()
+        self.addCleanup(halves.close)
+        self.guarded('_brake:=true', '_scan:=ahead@-0.064 behind@-0.064')
+        self.state.wait_robot('bot1', lambda gate: gate.brake == RobotGate.BRAKE_ON, 'the brake',
+                              PATIENCE_S)
+
+        def told(since):
+            return [linear for _, linear, _ in self.end.after(since)]
+        for half, linear, least in (('behind', -0.2, CRAWL_MPS), ('ahead', 0.2, 0.0)):
+            begun = time.monotonic()
+            hand = self.hold(linear)
+            wait_for(lambda: linear in told(begun), PATIENCE_S, 'the way to be free')
+            silent, halves.live[half] = time.monotonic(), False
+            wait_for(lambda: told(silent) and abs(told(silent)[-1]) <= least + 1e-6, PATIENCE_S,
+                     'the side without a laser to be closed')
+            closed = time.monotonic()
+            measured('laser {} silent: at most {} m/s'.format(half, least), closed - silent)
+            wait_for(lambda: len(told(closed)) > 10, PATIENCE_S, 'more commands')
+            self.assertLessEqual(max(map(abs, told(closed))), least + 1e-6)
+            hand.let_go()
+            self.mux.say(0.0)
+            halves.live[half] = True
+            self.hall.rests()
+            self.centre('bot1', self.end)
+        self.drive_to(10.4, 0.2 if self.hall.places.last() < 10.4 else -0.2)
 
     def far_robot(self):
         """Drive away from where the robot begins; return where it is then [m], and the hand."""

@@ -20,8 +20,10 @@ from tf2_msgs.msg import TFMessage
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
+from mhri.gui.sensors.scan_view import scan_points  # noqa: E402
 from mhri.ros.map.map_feed import MapScans  # noqa: E402
 from mhri.ros.sensors.imu_feed import ImuFeed  # noqa: E402
+from mhri.ros.sensors.lasers import Lasers  # noqa: E402
 from mhri.ros.sensors.scan_feed import ScanFeed  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
@@ -173,6 +175,32 @@ class MotionFeedsTest(unittest.TestCase):
         self.assertTrue(turned_over)
         self.assertAlmostEqual(abs(pose.heading_rad), math.pi)
         wait_for(lambda: sits(0.5) and lasers == {0, 1}, 60, 'the scans of both lasers')
+
+    def test_a_tile_sees_with_all_lasers_of_its_robot(self):
+        """The one behind is turned about; what it saw goes when it falls silent."""
+        ahead, behind = (LaserScan(range_min=0.1, range_max=3.5, angle_increment=0.01,
+                                   ranges=[distance]) for distance in (2.0, 1.0))
+        behind.header.frame_id = 'twin/rear'
+        self.talk('/twin/scan', ahead)
+        rear = self.talk('/twin/rear_scan', behind)
+        mount = TransformStamped(child_frame_id='twin/rear')
+        mount.header.frame_id = 'twin/base'
+        mount.transform.rotation.z = 1.0
+        static = rospy.Publisher('/tf_static', TFMessage, queue_size=1, latch=True)
+        self.addCleanup(static.unregister)
+        static.publish([mount])
+        lasers, seen = self.feed(Lasers('twin', SimpleNamespace(
+            scan=('scan', 'rear_scan'), laser_x_m=0.0))), {}
+
+        def sees(*wanted):
+            found = lasers.take('twin/base')
+            if found is not None:
+                x, y, _ = scan_points(*found[:3])
+                seen['points'] = sorted(zip(np.round(x, 1), np.round(y, 1)))
+            return seen.get('points') == sorted(wanted)
+        wait_for(lambda: sees((2.0, 0.0), (-1.0, 0.0)), 60, lambda: 'both, seen {}'.format(seen))
+        rear.stop()
+        wait_for(lambda: sees((2.0, 0.0)), 60, lambda: 'one alone, seen {}'.format(seen))
 
     def test_toggled_again_and_again(self):
         self.talk('/toggle/imu', imu(), 200.0)

@@ -12,7 +12,7 @@ from geometry_msgs.msg import Twist
 import genpy
 from mhri.core.session.folder import (
     bag_name, event_line, info_text, SESSION_YAML, EVENTS_JSONL, SessionEvent, SessionInfo)
-from mhri.msg import ControlMode, GatesState, RobotGate, RobotSelect
+from mhri.msg import ControlMode, DrillState, GatesState, RobotGate, RobotSelect
 from nav_msgs.msg import Odometry
 import rosbag
 from sensor_msgs.msg import CompressedImage, Imu, LaserScan
@@ -28,6 +28,8 @@ STOPPED = ((0.0, False), (30.0, True), (36.0, False))
 # bot2 says nothing then.
 LOST_S = (40.0, 48.0)
 ASKED_MPS = 0.1
+# A drill is waited for, under way and over from these on; its target is found as it ends.
+DRILL_S = (6.0, 10.0, 24.0)
 MARKS = ((15.0, 'm1', 'a red bag below the stairs'), (45.0, 'm2', 'smoke'))
 
 
@@ -74,6 +76,18 @@ def stamp(time_s):
     return genpy.Time.from_sec(STARTED + time_s)
 
 
+def drill_state(time_s):
+    """Return what the referee of the drill said."""
+    phase = sum(time_s >= since for since in DRILL_S) - 1
+    targets, over = ['red can'], phase == DrillState.ENDED
+    state = DrillState(
+        title='Short', about='Find the can.', phase=phase, limit_s=60.0,
+        elapsed_s=max(0.0, time_s - DRILL_S[1]), found=targets if over else [],
+        left=[] if over else targets, ended='all found' if over else '')
+    state.header.stamp = stamp(time_s)
+    return state
+
+
 def rows_between(begin_s, end_s):
     """Yield (time [s], topic, message, latched) of a part of the session, in order."""
     found = []
@@ -85,6 +99,8 @@ def rows_between(begin_s, end_s):
                               (SELECTED, '/robot_controller/robot_select', RobotSelect)):
         for time_s in {begin_s, *(since for since, _ in rows if begin_s < since < end_s)}:
             latched(time_s, topic, kind(at(rows, time_s)))
+    for second in range(max(6, round(begin_s)), min(25, round(end_s))):
+        latched(float(second), '/mhri_drill/state', drill_state(float(second)))
     for step in range(round(10 * begin_s), round(10 * end_s)):
         time_s = 0.1 * step
         asked = Twist()

@@ -359,19 +359,18 @@ class ReferenceModel:
 
     def _reachable(self, name, now, slack_s):
         robot, link = self.parts['robot', name], self.parts['link', name]
-        guarded = self._is_guarded(name)
-        if not robot.well or now - robot.back_at < 0.5 + slack_s:
-            return False
-        if not guarded and not link.well:
+        guard = self.parts.get(('guard', name))
+        # One that was started while the link was cut finds its master when that is over.
+        orphan = guard is not None and link.since < guard.back_at < link.back_at
+        guarded = self._is_guarded(name) and not orphan
+        if not robot.well or now - robot.back_at < 0.5 + slack_s or not (guarded or link.well):
             return False
         late = now - link.back_at < 1.0 + 1.2 * link.lasted + slack_s
         if late and not (guarded and link.lasted > ANSWER_S + 0.3 + slack_s):
             return False
-        if self.guarded[name]:
-            # The word that makes the robot stand comes from the gates, which notice the loss first.
-            guard = self.parts['guard', name]
-            return now - (guard.back_at if guard.well else guard.since) > GUARD_LOST_S + slack_s
-        return True
+        # The word that makes the robot stand comes from the gates, which notice the loss first.
+        return guard is None or (
+            now - (guard.back_at if guard.well else guard.since) > GUARD_LOST_S + slack_s)
 
     def _blocked_until(self, name):
         """Return until when nobody may be there to bring a robot its zero."""

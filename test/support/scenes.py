@@ -32,7 +32,7 @@ def robots_of(count, long_names=False, group=False, stop=False):
             more.update(link=views.GONE,
                         note='nothing heard for 12 s: switched off, or out of reach')
         if number == 5:
-            more.update(battery=0.12, slow=True, note='battery at 12 %')
+            more.update(battery=0.12)
         if stop:
             more.update(driven=False,
                         proof=views.ProofView(views.PROOF_STOPPED, 'stopped in 20 ms'))

@@ -319,6 +319,23 @@ SCRIPTS = {
         40.00 move 0.5 0 180
         40.00 see inf
         40.01 tick = none''',
+    'what was said before the end and comes after it does not count': '''
+        with {"back": [10, 5.0, 0.1]}
+        0.00 echo a = -:0:*
+        0.00 move 0 0 0
+        0.01 heard a = none
+        0.02 heard = none
+        0.03 heard a = none
+        0.04 A:1:a 0 0 = 0 0
+        0.05 move 0.5 0 180
+        20.00 move 0.5 0 180
+        20.00 see inf
+        20.01 tick = none
+        20.02 echo b = A:1:*
+        20.03 heard b = none
+        40.00 move 0.5 0 180
+        40.00 see inf
+        40.01 tick = 0.1 0''',
     'no way back without a scan, nor through what is in it, nor further than was said': '''
         with {"back": [1, 0.3, 0.1]}
         0.00 echo a = -:0:*

@@ -145,11 +145,16 @@ def test_what_is_written_can_be_read_and_compared():
     game.referee.on_fault('bot1', 'delay each way 0.4 s')
     game.go(0.6, DRIVES)
     result = game.result()
+    # At noon it is the same day nearly everywhere.
+    result['begun'] = 1e9 + 36840.0
     read = read_result(as_yaml(result), 'drill.yaml')
     assert read['found'] == 1 and read['fan_out'] == result['fan_out']
     lines = compared([read, read], ['a', 'b'])
     assert lines[0].split() == ['a', 'b']
     assert 'targets found      1 of 1  1 of 1' in lines
+    heads, *rows = lines_of(result, [dict(read, time_s=61.0), dict(read, begun=0.0)])[1:]
+    assert heads.split()[:5] == ['this', 'run', '(person)', 'person', '2001-09-09']
+    assert heads.endswith('person rehearsed') and '61.0 s' in rows[0]
     told = '\n'.join(lines_of(result))
     assert 'can: found by bot1 after 0.2 s' in told
     assert 'bot1, delay each way 0.4 s at 0.1 s: no reaction' in told
@@ -172,7 +177,8 @@ def test_what_is_no_result_is_refused(text, words):
 def test_the_page_stands_alone():
     game = Game()
     game.go(0.6, DRIVES)
-    text = page_of(dict(game.result(), title='<Small>'), WALLS.tolist(), [AHEAD])
+    text = page_of(dict(game.result(), title='<Small>'), WALLS.tolist(), [AHEAD], [game.result()])
     assert '<h1>&lt;Small&gt;</h1>' in text and '<svg' in text and 'fill="#009e73"' in text
+    assert '<th>person 2001-09-0' in text
     assert 'src=' not in text and 'href=' not in text and 'http' not in text
     assert 'certified' in text

@@ -68,6 +68,11 @@ def gui_may(module):
             or top in {'python_qt_binding', 'pyqtgraph', 'numpy'})
 
 
+def forms_may(module):
+    """The loader of forms: python_qt_binding has none that reads a form once for all robots."""
+    return gui_may(module) or module == 'PyQt5'
+
+
 def sim_may(module):
     """Plain modules of the simulator; its nodes, sim/*node.py, may be on the graph as well."""
     return (in_rooms(module, 'core', 'sim') or module.split('.')[0] in {'numpy', 'cv2', 'yaml'}
@@ -81,7 +86,7 @@ def sim_node_may(module):
 # Files whose rule is not that of the folder they are in.
 LODGERS = {'sim/node.py': sim_node_may, 'sim/camera_node.py': sim_node_may,
            'sim/fault_node.py': sim_node_may,
-           'presenters/demo.py': gui_may}
+           'presenters/demo.py': gui_may, 'gui/screen/forms.py': forms_may}
 ROOMS = {'core': core_may, 'inputs': inputs_may, 'ros': ros_may, 'gui': gui_may, 'sim': sim_may}
 
 

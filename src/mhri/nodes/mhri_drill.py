@@ -19,9 +19,12 @@ from mhri.core.drill.referee import ALL_FOUND, Referee, TruePose
 from mhri.core.drill.results import compared, lines_of, result_of
 from mhri.core.drill.scenario import on_links
 from mhri.core.robots.robot_types import resolve_robot_type
+from mhri.msg import DrillState
 from mhri.nodes.sim_robot import body_type, building_key
-from mhri.ros.drill.files import folder_of, names, result_in, scenario_named, write
+from mhri.ros.drill.files import (
+    earlier, folder_of, names, result_in, scenario_named, write)
 from mhri.ros.drill.scripted_hands import ScriptedHands
+from mhri.ros.drill.state import DrillTeller
 from mhri.ros.drill.watch import FaultCaller, OperatorWatch
 from mhri.ros.resources import read_text, robot_types
 from mhri.sim.plan import parse_plan
@@ -31,6 +34,8 @@ from mhri.sim.world import look_in, world_path
 LOOK_HZ = 20.0
 # The robots start with the drill; on a slow machine that takes a while [s].
 START_S = 180.0
+# So long the last word has to leave.
+FLUSH_S = 0.2
 
 
 def parse(argv):
@@ -102,6 +107,7 @@ class Run:
         self._delay_s = delay_s
         self._operator = 'script' if scripted else 'person'
         self._referee = drill.referee()
+        self._teller = DrillTeller(drill.scenario, self._referee)
         self._watch = OperatorWatch()
         self._faults = FaultCaller(drill.scenario.robots)
         self._due = on_links(drill.scenario.faults, delay_s)
@@ -143,6 +149,8 @@ class Run:
                 if self._wall_s is not None:
                     self._referee.see(time.monotonic(), *self._look(), doing)
                     self._begin_faults()
+                self._teller.tell(DrillState.WAITING if self._wall_s is None
+                                  else DrillState.RUNNING)
                 rate.sleep()
         except rospy.ROSInterruptException:
             pass
@@ -150,6 +158,12 @@ class Run:
         if self._wall_s is None:
             return None
         return result_of(self._drill.scenario, self._referee, self._wall_s, self._operator)
+
+    def tell_end(self, result, page):
+        """Say how it ended, and where its page is ('' for nowhere)."""
+        if not rospy.is_shutdown():
+            self._teller.tell(DrillState.ENDED, result['ended'], page)
+            time.sleep(FLUSH_S)
 
     def _begin_faults(self):
         while self._due and self._due[0].at_s <= self._referee.elapsed_s:
@@ -160,15 +174,22 @@ class Run:
 
 
 def keep(drill, result, rehearsed=False):
-    """Print a result, write it, and say where; return the exit status."""
-    print('\n'.join(lines_of(result)), flush=True)
+    """Print a result, write it, and say where; return the path of its page, '' without one."""
+    before = earlier(drill.scenario)
+    print('\n'.join(lines_of(result, before)), flush=True)
     try:
         path = write(folder_of(drill.scenario, rehearsed), result,
-                     page_of(result, drill.plan.walls.tolist(), drill.scenario.targets))
+                     page_of(result, drill.plan.walls.tolist(), drill.scenario.targets, before))
         print('written: {}'.format(path), flush=True)
+        return str(path)
     except OSError as error:
         print('cannot be written: {}'.format(short(error)), file=sys.stderr)
-    return 0 if result['ended'] == ALL_FOUND else 1
+        return ''
+
+
+def status_of(result):
+    """Return the exit status of a run."""
+    return 0 if result is not None and result['ended'] == ALL_FOUND else 1
 
 
 def referee(drill, options):
@@ -186,7 +207,9 @@ def referee(drill, options):
     result = run.run()
     if hands:
         hands.stop()
-    return 1 if result is None else keep(drill, result)
+    if result is not None:
+        run.tell_end(result, keep(drill, result))
+    return status_of(result)
 
 
 def main():
@@ -204,6 +227,8 @@ def main():
     if options.arguments:
         print(len(drill.scenario.types), ' '.join(drill.scenario.types), drill.plan_path, sep='\n')
     elif options.rehearse:
-        sys.exit(keep(drill, drill.rehearse(options.delay), rehearsed=True))
+        result = drill.rehearse(options.delay)
+        keep(drill, result, rehearsed=True)
+        sys.exit(status_of(result))
     else:
         sys.exit(referee(drill, options))

@@ -18,6 +18,7 @@ from mhri.core.screen.views import GONE, SILENT
 from mhri.core.screen.why import WhyStill
 from mhri.presenters.doctor_host import DoctorHost
 from mhri.presenters.draw_guard import DrawGuard
+from mhri.presenters.drill_host import DrillHost
 from mhri.presenters.event_host import EventHost
 from mhri.presenters.fault_host import FaultHost
 from mhri.presenters.map_host import MapHost
@@ -30,6 +31,7 @@ from mhri.presenters.task_host import TaskHost
 from mhri.presenters.tiles_host import TilesHost
 from mhri.ros.devices.device_client import choose_device
 from mhri.ros.drill.faults_client import FaultsClient
+from mhri.ros.drill.state import DrillClient
 from mhri.ros.resources import resource_path
 
 DRAW_MS = 50
@@ -58,7 +60,7 @@ class ScreenHost(QObject):
         self._over_budget = False
         self._why = WhyStill()
         self._mode = None
-        self._closed = False
+        self._closed = self._made = False
         self._build()
         self.requests = RequestsHost(operator, self.screen.show_look_result, self._select,
                                      self.tiles.recording_wish, lambda: self.session.mark())
@@ -69,6 +71,8 @@ class ScreenHost(QObject):
         self.tasks = TaskHost(operator, self.screen, self._select, self._note_task)
         self.map = MapHost(operator, self.screen, self.tasks)
         self.faults = FaultHost(self.doctor.page, FaultsClient())
+        self.drill = DrillHost(self.screen, self.events.note, DrillClient(), operator.do,
+                               operator.wall)
         self.shelf = ShelfHost(self.screen)
         self._connect()
 
@@ -143,7 +147,7 @@ class ScreenHost(QObject):
         # What is loaded by now stays: searching it takes the garbage collector 60 ms, during which
         # no thread runs.
         gc.freeze()
-        self._draw_timer.start()
+        self._draw_timer.start(REST_MS)
         self._stick_timer.start()
         self._lease_timer.start()
         if self.operator.speaks:
@@ -152,11 +156,16 @@ class ScreenHost(QObject):
         self.draw()
 
     def _draw_in_turn(self):
-        """Draw, and say when it is time again."""
+        """Draw or, every other time, make a tile that is missing; say when it is time again.
+
+        A click would have to wait for both at once.
+        """
         begun = time.monotonic()
-        self._guard.run(self.draw)
+        self._made = self.tiles.lacks_one and not self._made
+        self._guard.run(self.tiles.make_missing if self._made else self.draw)
         took_ms = round(1000 * (time.monotonic() - begun))
-        self._draw_timer.setInterval(max(REST_MS, DRAW_MS - took_ms))
+        self._draw_timer.setInterval(
+            REST_MS if self.tiles.lacks_one or self._made else max(REST_MS, DRAW_MS - took_ms))
 
     def draw(self):
         """Take the newest values and hand them to the widgets."""
@@ -176,6 +185,7 @@ class ScreenHost(QObject):
         self.pad.show_view(view)
         self.map.show_view(view)
         self.faults.show_view(view)
+        self.drill.show_view(view)
         self.shelf.show()
         for kind, value in self.operator.take_events():
             if kind == 'found':
@@ -345,4 +355,5 @@ class ScreenHost(QObject):
         self.tasks.close(forget)
         self.map.close(forget)
         self.faults.close()
+        self.drill.close()
         self.shelf.close()

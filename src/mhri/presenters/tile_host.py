@@ -76,7 +76,9 @@ class TileHost:
         window.header.show_recording(status if status.state == RECORDING else None)
         for key in self._wanted():
             feed = feeds.get(key)
-            if feed is not None:
+            if key == SCAN and feed is not None:
+                self._draw_scan(feed, feeds.base)
+            elif feed is not None:
                 self._draw_view(key, feed)
         self._draw_state(view, feeds)
         window.hud.set_extra(self._extra_lines(feeds))
@@ -99,9 +101,6 @@ class TileHost:
 
     def _draw_view(self, key, feed):
         """Hand a view what its feed has."""
-        if key == SCAN:
-            self._draw_scan(feed)
-            return
         widget = self.window.view(key)
         if hasattr(feed, 'set_view'):
             self._draw_camera(widget, feed)
@@ -118,16 +117,16 @@ class TileHost:
             if status.thinned:
                 self._held_back = self._held_back or 'point cloud ' + status.thinned
 
-    def _draw_scan(self, feed):
+    def _draw_scan(self, lasers, base):
         """Take note of the nearest thing, and show the scan where its view is on show."""
-        scan = feed.take()
+        scan = lasers.take(base)
         if scan is not None:
             self._nearest = nearest(*scan[:3])
         if SCAN in self.window.wanted():
             widget = self.window.view(SCAN)
             if scan is not None:
                 widget.show_value(scan)
-            widget.show_age(feed.age_s())
+            widget.show_age(lasers.age_s())
 
     def _draw_state(self, view, feeds):
         """Show how old each stream is, and what motion capture says.

@@ -75,7 +75,7 @@ class TilesHost(QObject):
         QGuiApplication.instance().screenRemoved.connect(self._on_screen_removed)
 
     def show_view(self, view, coming=()):
-        """Follow a :class:`PanelView`: have a missing tile made, and all of them drawn, soon.
+        """Follow a :class:`PanelView`: see whose tile is missing, and have all drawn soon.
 
         :param coming: names of robots that are in the next views: their tiles have places already
         """
@@ -89,7 +89,6 @@ class TilesHost(QObject):
         now = time.monotonic()
         self._due = sorted((robot for robot in robots if robot.name in self.hosts),
                            key=lambda robot: self._pressing(robot.name, now))
-        # One with each view, and in a turn of its own: making a tile takes some time.
         self._missing = next((robot.name for robot in robots
                               if robot.name not in self.windows and robot.type_label), '')
         self._stopped = view.stop_all
@@ -122,8 +121,19 @@ class TilesHost(QObject):
         waited_s = now - self._drawn_at.get(name, -math.inf)
         return waited_s * (LARGE_FIRST if self.windows[name].header.large else 1.0)
 
+    @property
+    def lacks_one(self):
+        """Whether :meth:`make_missing` has a tile to make."""
+        return self._missing not in ('', *self.windows)
+
+    def make_missing(self):
+        """Make one tile, of the last view: it takes some time, and has a turn for itself."""
+        self.make(self._missing)
+        self._unplaced = True
+        self._timer.start()
+
     def draw_next(self):
-        """Place all tiles, or make or draw the most pressing; return whether there is more to do.
+        """Place all tiles, or draw the most pressing; return whether there is more to do.
 
         One of it with each turn of the event loop, so that a click never waits for all.
         """
@@ -132,10 +142,6 @@ class TilesHost(QObject):
             # On a busy computer there is no second turn before the next view.
             if self._show_tiles():
                 return True
-        if self._missing not in ('', *self.windows):
-            self.make(self._missing)
-            self._unplaced = True
-            return True
         if not self._due:
             self._timer.stop()
             return False

@@ -4,7 +4,7 @@
 from html import escape
 from typing import Any, List, Mapping, Sequence
 
-from mhri.core.drill.results import rows_of
+from mhri.core.drill.results import heads_of, rows_of
 from mhri.core.drill.scenario import Target
 
 # Okabe and Ito's palette, the dark ones.
@@ -62,11 +62,12 @@ def _picture(result: Mapping[str, Any], walls: Sequence[Sequence[float]],
 
 
 def page_of(result: Mapping[str, Any], walls: Sequence[Sequence[float]],
-            targets: Sequence[Target]) -> str:
+            targets: Sequence[Target], earlier: Sequence[Mapping[str, Any]] = ()) -> str:
     """Return the page of a run.
 
     :param result: from :func:`mhri.core.drill.results.result_of`
     :param walls: x1, y1, x2, y2 [m] of each wall of the building
+    :param earlier: runs of the same drill to stand beside it
     """
     robots: List[Sequence[str]] = [
         (name, robot['type'], '{:.1f} s'.format(robot['driven_s']),
@@ -83,7 +84,8 @@ def page_of(result: Mapping[str, Any], walls: Sequence[Sequence[float]],
         '<style>{}</style><h1>{}</h1>'.format(_STYLE, title),
         '<p>{} after {:.1f} s, driven by a {}.</p>'.format(
             escape(result['ended'].capitalize()), result['time_s'], escape(result['operator'])),
-        _table(('', ''), rows_of([result])), _picture(result, walls, targets),
+        _table(heads_of(result, earlier), rows_of([result, *earlier])),
+        _picture(result, walls, targets),
         '<p><small>From above; a name is where the robot began, a full circle a target '
         'that was found.</small></p>',
         _table(('robot', 'type', 'driven', 'neglected', 'distance', 'contacts'), robots),

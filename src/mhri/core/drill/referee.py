@@ -158,6 +158,11 @@ class Referee:
         """Seconds since the beginning."""
         return self._now - self._begun
 
+    @property
+    def left(self) -> Tuple[Target, ...]:
+        """The targets that are still to be found."""
+        return tuple(self._left)
+
     def tally(self, robot: str) -> RobotTally:
         """Return what was measured of a robot so far."""
         return self._robots[robot].tally

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What came of a drill: as a file, as a table, and several runs side by side."""
 from dataclasses import asdict
+from datetime import datetime
 import math
 import statistics
 from typing import Any, Dict, List, Mapping, Sequence, Tuple
@@ -112,10 +113,21 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> List[str]:
             for row in (head, *rows)]
 
 
-def lines_of(result: Mapping[str, Any]) -> List[str]:
-    """Return a run as lines to be printed."""
+def heads_of(result: Mapping[str, Any], earlier: Sequence[Mapping[str, Any]]) -> Tuple[str, ...]:
+    """Return the heads of a table of a run and of earlier ones: who drove, and when."""
+    return ('', 'this run ({})'.format(result['operator']), *('{} {}'.format(
+        each['operator'], '{:%Y-%m-%d %H:%M}'.format(datetime.fromtimestamp(each['begun']))
+        if each['begun'] else 'rehearsed') for each in earlier))
+
+
+def lines_of(result: Mapping[str, Any],
+             earlier: Sequence[Mapping[str, Any]] = ()) -> List[str]:
+    """Return a run as lines to be printed.
+
+    :param earlier: runs of the same drill to stand beside it
+    """
     lines = ['{}: {} after {:.1f} s'.format(result['title'], result['ended'], result['time_s'])]
-    lines += table(('', result['operator']), rows_of([result]))
+    lines += table(heads_of(result, earlier), rows_of([result, *earlier]))
     lines += ['{target}: found by {robot} after {at_s:.1f} s'.format(**found)
               for found in result['targets_found']]
     for each in result['reactions']:

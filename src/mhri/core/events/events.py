@@ -47,6 +47,8 @@ KINDS: Dict[str, Tuple[str, str]] = {
     'recording.failed': (ATTENTION, ATTENTION_TONE),
     'session.begun': (CALM, ''), 'session.ended': (CALM, ''), 'session.mark': (CALM, ''),
     'session.trouble': (ATTENTION, ATTENTION_TONE),
+    'drill.waits': (CALM, ''), 'drill.begun': (CALM, ''), 'drill.found': (CALM, CALM_TONE),
+    'drill.ended': (CALM, CALM_TONE),
     'mode.changed': (CALM, ''), 'limits.changed': (CALM, ''),
     'source.trouble': (ATTENTION, ATTENTION_TONE), 'source.fine': (CALM, ''),
     'control.taken': (CALM, ''), 'control.lost': (ATTENTION, ATTENTION_TONE),

@@ -17,6 +17,7 @@ TF, TF_STATIC = '/tf', '/tf_static'
 TF_TYPE = 'tf2_msgs/TFMessage'
 GUARD_COMMAND = 'mhri_guard/command'
 GUARD_ECHO = 'mhri_guard/echo'
+GUARD_HEARD = 'mhri_guard/heard'
 # A frame of this name is everybody's.
 SHARED_FRAMES = ('map', 'world', 'mhri_world')
 # At most so many messages of a kind go up in a second; 0 is all of them. The guard's are few.
@@ -62,7 +63,7 @@ class Stream:
 
 # From the host to the robot, with their ROS types.
 DOWN = ((Stream(GUARD_COMMAND, COMMAND), 'geometry_msgs/TwistStamped'),
-        (Stream('mhri_guard/heard', COMMAND), 'std_msgs/String'))
+        (Stream(GUARD_HEARD, COMMAND), 'std_msgs/String'))
 
 
 def up_streams(robot_type: RobotType) -> List[Stream]:

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import math
 from typing import List, Optional, Tuple
 
-import cv2
 import numpy as np
 
 from mhri.core.map.grid import Grid
@@ -138,6 +137,7 @@ class _Field:
         cells = cells[((cells >= 0) & (cells < size)).all(axis=1)].astype(int)
         if not len(cells):
             raise FitError('there is nothing on the map around it')
+        import cv2  # a start does not wait for it
         empty = np.ones((size, size), dtype=np.uint8)
         empty[cells[:, 1], cells[:, 0]] = 0
         self._far_m = cv2.distanceTransform(empty, cv2.DIST_L2, 5) * _CELL_M

@@ -42,7 +42,7 @@ VIEW_ROWS: Tuple[ViewRow, ...] = (
             'mhri.gui.camera.camera_view.CameraView', picture=True),
     ViewRow(CLOUD, 'Point cloud', 'mhri.ros.sensors.cloud_feed.CloudFeed',
             'mhri.gui.sensors.cloud_view.CloudView'),
-    ViewRow(SCAN, 'Laser scan', 'mhri.ros.sensors.scan_feed.ScanFeed',
+    ViewRow(SCAN, 'Laser scan', 'mhri.ros.sensors.lasers.Lasers',
             'mhri.gui.sensors.scan_view.ScanView'),
     ViewRow(IMU, 'IMU graph', 'mhri.ros.sensors.imu_feed.ImuFeed',
             'mhri.gui.sensors.imu_graph.ImuGraph'),

@@ -13,13 +13,15 @@ from mhri.core.robots.robot_types import RobotType
 INPUTS = '/mux_in/'
 EVENTS, PANEL_EVENTS = '/mhri_session/events', '/panel/events'
 PICTURES = '/panel/pictures'
+DRILL = '/mhri_drill/state'
 #: what the host says, whoever drives
 HOST_TOPICS = (
     '/mux_in/mode_select', '/mux/mode', '/mux/waits_for', '/mux/pushed', '/mux/advice',
     '/mux/dead_man', '/mux/speed_limit', '/robot_controller/twist', '/robot_controller/task_twist',
     '/robot_controller/stop_all', '/robot_controller/robot_select', '/gates/state',
     '/gates_in/group_speed', '/mhri_tasks/list', '/mhri_tasks/places', '/mhri_tasks/run/feedback',
-    '/mhri_tasks/run/result', '/mhri_voice/heard', '/tf', '/tf_static', '/map', EVENTS)
+    '/mhri_tasks/run/result', '/mhri_voice/heard', DRILL, '/tf', '/tf_static', '/map',
+    EVENTS)
 _MOCAP = '/vrpn_client_node/{}/pose'
 # What a robot's row says of its link and its guard, beside its own sensors.
 _TOLD = ('mhri_guard/dropped', 'mhri_link/state', FIGURES, FETCHING)

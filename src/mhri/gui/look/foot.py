@@ -16,8 +16,9 @@ _IN_DRAWER_UNITS = 13.0
 # Width of the column, the one that takes nothing from the pictures; the first is a drawer's.
 _COLUMN_UNITS = (22.0, 18.0, 15.0, 13.0)
 _TAKES_NOTHING = 0.985
-# Height that the column needs, and what a question over it and the virtual joystick add to it.
-_COLUMN_HIGH_UNITS, _BAR_UNITS, _STICK_UNITS = 24.0, 8.0, 9.0
+# Height that the column needs, and what a question over it, the virtual joystick and the line of a
+# drill add to it.
+_COLUMN_HIGH_UNITS, _BAR_UNITS, _STICK_UNITS, _DRILL_UNITS = 24.0, 8.0, 9.0, 3.5
 
 
 class Foot:
@@ -45,7 +46,8 @@ class Foot:
         below = screen.stage.picture_px(width - drawer_px, height - self._below_px)
         if drawer_px:
             other, taken = IN_DRAWER, drawer_px
-            needed = screen.drawer.minimumSizeHint().height() + self._px(_IN_DRAWER_UNITS)
+            needed = screen.drawer.minimumSizeHint().height() + self._px(
+                _IN_DRAWER_UNITS + self._drill_units())
         else:
             other, taken = COLUMN, self._px(_COLUMN_UNITS[-1])
             needed = self._column_high()
@@ -68,6 +70,7 @@ class Foot:
         for bar in (screen.control_bar, screen.leave_bar):
             bar.show_narrow(place == COLUMN)
         screen.status_line.show_wrapped(narrow)
+        screen.drill_line.show_wrapped(narrow)
         screen.screen_layout.setDirection(
             QBoxLayout.RightToLeft if place == COLUMN else QBoxLayout.TopToBottom)
         (screen.side_column if place == IN_DRAWER else screen.screen_layout).addWidget(screen.foot)
@@ -95,8 +98,12 @@ class Foot:
         """Return heights of a line in pixels."""
         return round(units * self._screen.fontMetrics().height())
 
+    def _drill_units(self):
+        """Return what the line of a drill needs beside the pictures."""
+        return 0.0 if self._screen.drill_line.isHidden() else _DRILL_UNITS
+
     def _column_high(self):
         """Return the height [px] that the column needs."""
         asking = sum(not bar.isHidden() for bar in (
             self._screen.control_bar, self._screen.leave_bar))
-        return self._px(_COLUMN_HIGH_UNITS + _BAR_UNITS * asking)
+        return self._px(_COLUMN_HIGH_UNITS + _BAR_UNITS * asking + self._drill_units())

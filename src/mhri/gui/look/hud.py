@@ -82,6 +82,11 @@ def _write(text, font, ink, ratio):
     return image
 
 
+def _holds(room, needed):
+    """Tell whether a room is as wide and high as it needs to be."""
+    return needed.width() <= room.width() and needed.height() <= room.height()
+
+
 class Hud(QWidget):
     """Words with a dark edge, readable on white and on black; clicks go through to the picture.
 
@@ -93,6 +98,7 @@ class Hud(QWidget):
         self._lines = ()
         self._extra = ()
         self._sentence = ''
+        self._shorter = ()
         self._sign = None
         self._old = False
         self._large = True
@@ -147,9 +153,12 @@ class Hud(QWidget):
         """Show the numbers of a :class:`RobotView`, and the further lines."""
         self._show(lines=(*hud_lines(view), *self._extra), old=view.link != views.LIVE)
 
-    def show_sentence(self, text, sign=None):
-        """Say why the robot stands, or what is wrong; '' for nothing."""
-        self._show(sentence=text, sign=sign)
+    def show_sentence(self, text, sign=None, shorter=()):
+        """Say why the robot stands, or what is wrong; '' for nothing.
+
+        :param shorter: what to say where not even the beginning of the text has room
+        """
+        self._show(sentence=text, sign=sign, shorter=tuple(shorter))
 
     def _show(self, **changes):
         """Renew the picture where anything changes."""
@@ -235,9 +244,10 @@ class Hud(QWidget):
             room = QRectF(left, 0, max(unit, self.width() - self._clear_px - left - unit),
                           max(unit, foot))
             texts = [words.kept_together(text) for text in (
-                self._sentence, *words.beginnings(self._sentence, most=4))]
-            text = next((text for text in texts if painter.boundingRect(
-                room, flags, text).height() <= room.height()), '')
+                self._sentence, *words.beginnings(self._sentence), *self._shorter,
+                *words.beginnings(self._sentence, (), most=4))]
+            text = next((text for text in texts if _holds(
+                room, painter.boundingRect(room, flags, text))), '')
             if text == texts[0]:
                 break
         # As the painter breaks it: metrics of whole pixels may break it elsewhere.

@@ -55,15 +55,20 @@ class LooksPage(QScrollArea):
         self.numbers_box.setObjectName('numbers_box')
         self.map_box = SwitchBox('Map (M)', self)
         self.map_box.setObjectName('map_box')
-        self.full_screen_button = QPushButton('Full screen (F11)', self)
+        self.full_screen_button = self._button('Full screen (F11)')
         self.full_screen_button.setObjectName('full_screen_button')
-        self.full_screen_button.setFocusPolicy(Qt.TabFocus)
-        self.full_screen_button.setMinimumHeight(theme.touch_size(self))
         column.addSpacing(self.fontMetrics().height() // 2)
         column.addWidget(self.numbers_box)
         column.addWidget(self.map_box)
         column.addWidget(self.full_screen_button, 0, Qt.AlignLeft)
         column.addStretch(1)
+
+    def _button(self, text):
+        """Make a button for fingers."""
+        button, touch = QPushButton(text, self), theme.touch_size(self)
+        button.setFocusPolicy(Qt.TabFocus)
+        button.setMinimumSize(theme.text_width(button.font(), text) + touch, touch)
+        return button
 
     def _choices(self, column, head, prefix, texts):
         """Place a heading and a radio button for each of some texts; return them by key."""
@@ -93,10 +98,8 @@ class LooksPage(QScrollArea):
 
     def add_part(self, title, part):
         """Give the page a further part, above the others; return the button that shows it."""
-        button = QPushButton(title, self)
+        button = self._button(title)
         button.setCheckable(True)
-        button.setFocusPolicy(Qt.TabFocus)
-        button.setMinimumHeight(theme.touch_size(self))
         column = self.widget().layout()
         column.insertWidget(0, button, 0, Qt.AlignLeft)
         column.insertWidget(1, part)

@@ -7,11 +7,11 @@ from python_qt_binding.QtWidgets import QLayout, QWidget
 
 from mhri.core.screen import views
 from mhri.core.screen.arrangement import USUAL_SHAPE
-from mhri.core.screen.task_words import interrupted_line, task_line
 from mhri.core.screen.view_rows import KEYS, load, PICTURES, RECORD, RGB, SCAN, VIEW_ROWS
 from mhri.gui.driving.drive_keys import mark_drive_area
 from mhri.gui.driving.stop_button import StopButton
 from mhri.gui.look.tile_layers import EDGE_PX, TileLayers, wants_inset
+from mhri.gui.look.tile_words import sentence_of
 from mhri.gui.recording.recording_row import RecordingRow
 from mhri.gui.screen import theme, words
 from mhri.gui.screen.forms import load_form
@@ -64,7 +64,7 @@ class BotWindow(QWidget):
         self._trouble = None
         self._link = None
         self._looked_at = False
-        self._wanted = set()
+        self._wanted = self._arranged = set()
         self._offered = frozenset()
         self._views = {}
         self._numbers = Pace(NUMBERS_PERIOD_S)
@@ -225,7 +225,7 @@ class BotWindow(QWidget):
 
     def _arrange(self):
         """Lay out the views that are chosen; without any there is the picture of the motion."""
-        shown = self.shown()
+        shown = self._arranged = self.shown()
         kind = next(iter(shown & PICTURES), None)
         visible = {id(self.view(key)) for key in shown}
         for widget in self._views.values():
@@ -294,25 +294,10 @@ class BotWindow(QWidget):
         self.update()
 
     def _show_sentence(self, view):
-        """Show the proof of a stop, why the robot stands, or what is worth saying of its link."""
-        if view.proof is not None:
-            sign = theme.PROOF_SIGNS[view.proof.state]
-            text = '; '.join(filter(None, (view.proof.text, view.why)))
-        elif view.why:
-            sign, text = (theme.TRIANGLE, theme.ATTENTION), view.why
-        elif view.note and (view.slow or view.link != views.LIVE):
-            sign = (theme.TRIANGLE, theme.ATTENTION) if view.link == views.LIVE \
-                else theme.LINK_SIGNS[view.link]
-            text = '; '.join((view.note, *([task_line(view.task)] if view.task else ())))
-        elif view.task is not None:
-            sign, text = theme.TASK_WAITS if view.task.waits else theme.ON_TASK, \
-                task_line(view.task)
-        elif view.carry_on and not view.note:
-            sign, text = None, interrupted_line(view.carry_on, 'C' if self._looked_at else '')
-        else:
-            sign, text = None, view.note
+        """Show the one sentence there is to say."""
+        text, sign, shorter = sentence_of(view, self.battery_label.level, self._looked_at)
         before = self.hud.sentence
-        self.hud.show_sentence(text, sign)
+        self.hud.show_sentence(text, sign, shorter)
         if bool(before) != bool(text):
             self._layers.place()
 
@@ -359,7 +344,10 @@ class BotWindow(QWidget):
     def resizeEvent(self, event):  # noqa: N802
         """Keep header and numbers where they belong."""
         super().resizeEvent(event)
-        self._arrange()
+        if self.shown() == self._arranged:
+            self._layers.place()
+        else:
+            self._arrange()
 
     def event(self, event):
         """Keep the numbers over the picture when the layout has moved it."""
@@ -385,6 +373,8 @@ class BotWindow(QWidget):
         if self._trouble and ink != theme.STOP:
             ink, width = self._trouble, EDGE_PX
         painter, palette = QPainter(self), self.header.palette()
+        if not self.has_room():
+            painter.fillRect(self.rect(), theme.PICTURE_GROUND)
         theme.paint_edge(painter, self.rect(), EDGE_PX, theme.PICTURE_GROUND)
         theme.paint_edge(painter, self.rect(), width, theme.colour(ink, palette))
         if self._looked_at:

@@ -7,6 +7,7 @@ from python_qt_binding.QtWidgets import QLayout
 from mhri.core.screen.arrangement import AUTO
 from mhri.gui.look.foot import COLUMN, Foot
 from mhri.gui.look.looks_page import LAYOUTS, LooksPage, TITLE
+from mhri.gui.look.scrolled_page import ScrolledPage
 from mhri.gui.screen import theme
 from mhri.gui.screen.stage import MAP_BESIDE, MAP_CLOSED, MAP_LARGE
 
@@ -63,6 +64,8 @@ class ScreenLayout(QObject):
         screen.drawer_button.setChecked(True)
         screen.drawer_button.setFocusPolicy(Qt.TabFocus)
         screen.drawer_button.setMinimumHeight(theme.touch_size(screen))
+        self._drive_scroll = ScrolledPage(screen)
+        screen.drive_page_column.addWidget(self._drive_scroll)
         self.foot = Foot(screen)
         self.looks = LooksPage(screen)
         self.add_page(TITLE, self.looks)
@@ -255,11 +258,11 @@ class ScreenLayout(QObject):
         self._tall = tall
         if tall:
             current = screen.tabs.currentIndex()
-            screen.robots_page_column.addWidget(screen.drive_side)
+            screen.robots_page_column.addWidget(self._drive_scroll.takeWidget())
             screen.tabs.removeTab(1)
             screen.tabs.setCurrentIndex(max(0, current - 1))
         else:
-            screen.drive_page_column.addWidget(screen.drive_side)
+            self._drive_scroll.setWidget(screen.drive_side)
             screen.tabs.insertTab(1, DRIVE)
         screen.drive_side.show()
         self._turn(screen.tabs.currentIndex())

@@ -47,8 +47,8 @@ def scan_points(ranges, angle_min, angle_increment):
 class ScanView(QWidget):
     """Points in metres around the sensor, rings with their radius, the robot's outline.
 
-    What is nearer than 0.5 m is orange and larger. The sensor is drawn in the robot's middle, as
-    if it were mounted there and looked ahead.
+    What is nearer than 0.5 m is orange and larger. A single sensor is drawn in the robot's middle,
+    as if it were mounted there.
     """
 
     def __init__(self, parent=None):
@@ -84,7 +84,7 @@ class ScanView(QWidget):
         return self._warning
 
     def show_value(self, scan):
-        """Show a scan as :meth:`ScanFeed.take` returns it: NaN is no point."""
+        """Show a scan as :meth:`Lasers.take` returns it: NaN is no point."""
         ranges, angle_min, angle_increment, _ = scan
         self._follow(reach_for(ranges))
         self._points = scan_points(ranges, angle_min, angle_increment)

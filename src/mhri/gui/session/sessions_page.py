@@ -135,7 +135,7 @@ class SessionsPage(QWidget):
             buttons.addWidget(button)
         buttons.addStretch(1)
         column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
+        column.setContentsMargins(0, 0, 0, self.fontMetrics().height() // 2)
         column.addWidget(self.list, 1)
         self.list.setMinimumHeight(9 * self.fontMetrics().height())
         column.addWidget(self.progress)
@@ -148,7 +148,8 @@ class SessionsPage(QWidget):
         button.setObjectName(name)
         button.setToolTip(tip)
         button.setFocusPolicy(Qt.TabFocus)
-        button.setMinimumHeight(theme.touch_size(self))
+        touch = theme.touch_size(self)
+        button.setMinimumSize(theme.text_width(button.font(), text) + touch, touch)
         return button
 
     def _connect(self):
@@ -193,8 +194,9 @@ class SessionsPage(QWidget):
         self._show_buttons()
 
     def show_note(self, text):
-        """Say what has come of something."""
+        """Say what has come of something; where there is nothing to say, no line is kept for it."""
         self.note.show_text(text, theme.MUTED)
+        self.note.setVisible(bool(text))
 
     def show_progress(self, percent):
         """Show how far a report is, None while none is made."""

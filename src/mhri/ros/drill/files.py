@@ -12,6 +12,8 @@ from mhri.core.recording.recording import ros_home
 from mhri.ros.resources import read_text, resource_path
 
 PAGE = 'drill.html'
+# So many earlier runs stand beside a new one; a result says early which drill it is of.
+MOST_EARLIER, _HEAD_BYTES = 3, 4096
 
 
 def names():
@@ -79,6 +81,24 @@ def write(folder, result, page):
     path = folder / PAGE.replace('.', more + '.')
     path.write_text(page, encoding='utf-8')
     return path
+
+
+def earlier(scenario):
+    """Return the results of the last runs of a drill, the newest first."""
+    home = Path(ros_home(os.environ)) / 'mhri'
+    pattern = FILE.replace('.', '*.')
+    paths = [*home.glob('drills/*/' + pattern), *home.glob('sessions/*/' + pattern)]
+    found = []
+    for path in sorted(paths, key=lambda path: path.stat().st_mtime, reverse=True):
+        try:
+            with open(path, encoding='utf-8', errors='replace') as file:
+                if '\ndrill: {}\n'.format(scenario.name) in file.read(_HEAD_BYTES):
+                    found.append(result_in(str(path)))
+        except (ConfigError, OSError):
+            continue
+        if len(found) == MOST_EARLIER:
+            break
+    return found
 
 
 def result_in(path):

@@ -17,7 +17,6 @@ from mhri.ros.convert import header_of
 from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.robots.robot_link import ODOMETRY_READERS
 from mhri.ros.sensors.beams import made_s, read_beams
-from mhri.ros.sensors.depth_scans import DepthScans
 from mhri.ros.sensors.mounts import Mounts
 from mhri.ros.sensors.refusals import Refusals
 
@@ -43,8 +42,12 @@ class BrakeEye:
         self._clock = clock
         self._frames = frames
         self._mounts = Mounts(robot_type, frames)
-        self._depth = None if robot_type.scan or not robot_type.depth else DepthScans(
-            name, robot_type.depth, self._mounts, self._on_depth, clock)
+        self._depth = None
+        if robot_type.depth and not robot_type.scan:
+            # Not before it is needed: it loads OpenCV, which gates that are started again in the
+            # middle of a drive would wait for.
+            from mhri.ros.sensors.depth_scans import DepthScans
+            self._depth = DepthScans(name, robot_type.depth, self._mounts, self._on_depth, clock)
         self._topics = [topic_of(name, topic) for topic in robot_type.scan]
         module, class_name, self._read = ODOMETRY_READERS[robot_type.odometry_type]
         try:

@@ -8,8 +8,8 @@ import rospy
 from std_msgs.msg import String
 
 from mhri.core.link.carried import (
-    COMMAND, DOWN, full_topic, GUARD_COMMAND, GUARD_ECHO, PARAMETERS, PICTURE, STATE, TF, TF_STATIC,
-    TF_TYPE)
+    COMMAND, DOWN, full_topic, GUARD_COMMAND, GUARD_ECHO, GUARD_HEARD, PARAMETERS, PICTURE, STATE,
+    TF, TF_STATIC, TF_TYPE)
 from mhri.core.link.control import unpack_standing
 from mhri.core.link.figures import FIGURES, figures_words, RadioFigures
 from mhri.core.link.frames import About, Thinned, unpack_about
@@ -28,6 +28,8 @@ QUEUE = 5
 TELL_S = 1.0
 PICTURE_TYPES = ('sensor_msgs/Image', 'sensor_msgs/CompressedImage', 'sensor_msgs/PointCloud2')
 LATCHED = (TF_STATIC, 'mhri_guard/state')
+# That the gates end on purpose is said once: a radio may lose it. So long it is said again [s].
+PARTING_S, PARTING = 1.5, bytes(4)
 
 
 class HostSide(Side):
@@ -58,6 +60,7 @@ class HostSide(Side):
         self._publishers = {}
         self._unusable = set()
         self._down = []
+        self._parting_until = 0.0
         self._record = HostRecord(self, lambda: dict(self._about.topics), keep)
 
     def start(self):
@@ -100,6 +103,8 @@ class HostSide(Side):
         """Tell the figures; open the topics that are new."""
         self._control.tick(self.peer.heard(now))
         self._tell(now)
+        if now < self._parting_until:
+            self.send(GUARD_HEARD, COMMAND, PARTING)
         news = self._news
         if news is None or news == self._about:
             return
@@ -147,6 +152,8 @@ class HostSide(Side):
         """Send down what the gates said, as old as it is: this node may have hung meanwhile."""
         held = held_s(stamp_of(data), time.time()) if stream.topic == GUARD_COMMAND else 0.0
         self.send(stream.topic, stream.urgency, data, held_s=held)
+        if stream.topic == GUARD_HEARD:
+            self._parting_until = self.clock() + PARTING_S if data == PARTING else 0.0
 
     def heard(self):
         """Tell whether the robot is heard now."""

@@ -13,9 +13,8 @@ from mhri.core.robots.mocap import Pose
 from mhri.ros.convert import yaw_of
 from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.map.tf_feed import TfFeed
-from mhri.ros.sensors.mounts import Mounts
+from mhri.ros.sensors.lasers import Lasers
 from mhri.ros.sensors.refusals import Refusals
-from mhri.ros.sensors.scan_feed import ScanFeed
 
 MAP_TOPIC = '/map'
 # Without numpy a map of a million cells takes rospy 0.1 s, in which no other thread runs.
@@ -101,37 +100,24 @@ class MapScans:
         wanted = self._wanted
         if wanted:
             self._frames.open()
-        for name, (kind, feeds) in list(self._open.items()):
+        for name, (kind, lasers) in list(self._open.items()):
             if wanted.get(name) != kind:
                 del self._open[name]
-                for feed in feeds:
-                    feed.close()
+                lasers.close()
         for name, kind in wanted.items():
             if name not in self._open:
-                feeds = [ScanFeed(name, [topic]) for topic in kind.scan]
-                for feed in feeds:
-                    feed.open()
-                self._open[name] = kind, feeds
+                lasers = Lasers(name, kind, self._frames)
+                lasers.open()
+                self._open[name] = kind, lasers
 
     def names(self):
         """Return the robots whose lasers are listened to now."""
         return tuple(self._open)
 
     def take(self, name, base):
-        """Return the new scans of a robot: {number of its laser: (scan, its age [s], its mount)}.
-
-        :param base: the robot's own frame, '' where it is not known
-        :returns: scans as :meth:`ScanFeed.take` has them, mounts as :meth:`Mounts.laser` does
-        """
-        kind, feeds = self._open.get(name, (None, ()))
-        found = {}
-        for laser, feed in enumerate(feeds):
-            scan = feed.take()
-            if scan is not None:
-                mounts = Mounts(kind, self._frames)
-                mounts.base = base
-                found[laser] = scan, feed.age_s() or 0.0, mounts.laser(feed.frame)
-        return found
+        """Return the new scans of a robot, as :meth:`Lasers.each` has them."""
+        _, lasers = self._open.get(name, (None, None))
+        return lasers.each(base) if lasers is not None else {}
 
     def close(self):
         """Stop listening (blocking: it asks the master)."""

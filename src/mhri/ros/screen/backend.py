@@ -54,7 +54,7 @@ class ScreenBackend:
     speaks = True
 
     def __init__(self, argv=(), seat=SEAT, clocks=(time.monotonic, time.time)):
-        self._seat, self.clock = seat, clocks[0]
+        self._seat, (self.clock, self.wall) = seat, clocks
         self._argv = list(argv)
         self._types, self._type_errors = robot_types()
         self.selection = Selection()

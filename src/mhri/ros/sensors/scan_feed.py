@@ -23,12 +23,6 @@ class ScanFeed:
     :param topics: relative to the namespace; if several speak, the newest message counts
     """
 
-    @classmethod
-    def of(cls, robot, kind, key):
-        """Return the feed of a robot, None for a type without a laser scanner."""
-        topics = getattr(kind, key)
-        return cls(robot, topics) if topics else None
-
     def __init__(self, robot, topics, clock=time.monotonic):
         self._topics = [topic_of(robot, topic) for topic in topics]
         self._clock = clock

@@ -20,7 +20,6 @@ from mhri.ros.convert import header_of
 from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.robots.robot_link import battery_fraction, ODOMETRY_READERS
 from mhri.ros.sensors.beams import made_s, read_beams
-from mhri.ros.sensors.depth_scans import DepthScans
 from mhri.ros.sensors.mocap_feed import MocapFeed
 from mhri.ros.sensors.mounts import Mounts
 from mhri.ros.sensors.refusals import Refusals
@@ -121,6 +120,8 @@ class RobotSenses:
             self._scans = {topic: _Newest([topic], LaserScan, self._clock, buff_size=1 << 20)
                            for topic in self._topics('scan')}
         if self._depth is None and self.has_eye and not self.has_laser:
+            # It loads OpenCV, which a start in the middle of a drive does not wait for.
+            from mhri.ros.sensors.depth_scans import DepthScans
             self._depth = DepthScans(self.name, self.robot_type.depth, self._mounts,
                                      self._on_depth, self._clock)
             self._depth.open()
