@@ -222,7 +222,7 @@ def test_a_voice_that_is_not_understood_is_told_what_to_do(desk):
     for _ in range(3):
         desk.ended('robot drive forward', 0.2)
     assert desk.heard[-1].reason.startswith('not understood 3 times: speak slower')
-    assert desk.heard[-1].reason.endswith('hold push-to-talk')
+    assert desk.heard[-1].reason.endswith('hold push-to-talk, or teach it your voice')
     desk.ended('robot drive forward')
     desk.ended('robot drive forward', 0.2)
     assert desk.heard[-1].reason == 'not sure enough', 'one that was understood begins anew'
@@ -232,4 +232,4 @@ def test_who_holds_push_to_talk_is_told_something_else(desk):
     for _ in range(3):
         desk.reader.push_to_talk(True)
         desk.ended('drive forward', 0.1)
-    assert desk.heard[-1].reason.endswith('or drive another way')
+    assert desk.heard[-1].reason.endswith('drive another way, or teach it your voice')
