@@ -13,7 +13,6 @@ from typing import List, NamedTuple, Sequence, Tuple
 
 import numpy as np
 
-Array = np.ndarray
 SILENCE = 'SIL'
 _NOT_SPOKEN = [SILENCE, '+NSN+', '+SPN+']
 # Chosen on one voice; whatever is near does as well. Frames of 10 ms.
@@ -38,12 +37,12 @@ class Sounds:
     """
 
     phones: Tuple[str, ...]
-    means: Array
-    variances: Array
-    weights: Array
+    means: np.ndarray
+    variances: np.ndarray
+    weights: np.ndarray
 
 
-def read_gaussians(data: bytes, name: str) -> Array:
+def read_gaussians(data: bytes, name: str) -> np.ndarray:
     """Return the numbers in a file ``means`` or ``variances``.
 
     :raises ModelError: it is none with three streams of the same size
@@ -65,12 +64,12 @@ def read_gaussians(data: bytes, name: str) -> Array:
     return values.reshape(books, streams, densities, sizes[0]).astype(float)
 
 
-def write_gaussians(values: Array) -> bytes:
+def write_gaussians(values: np.ndarray) -> bytes:
     """Return a file as :func:`read_gaussians` reads it."""
     books, streams, densities, size = values.shape
     head = struct.pack('<4i', 0x11223344, books, streams, densities)
     head += struct.pack('<{}i'.format(streams + 1), *[size] * streams, values.size)
-    return b's3\nversion 1.0\nendhdr\n' + head + values.astype('<f4').tobytes()
+    return b's3\nversion 1.0\nendhdr\n' + head + bytes(values.astype('<f4').tobytes())
 
 
 def read_phones(data: bytes) -> Tuple[str, ...]:
@@ -90,7 +89,7 @@ def read_phones(data: bytes) -> Tuple[str, ...]:
     return tuple(name.decode() for name in names)
 
 
-def read_weights(data: bytes, phones: int) -> Array:
+def read_weights(data: bytes, phones: int) -> np.ndarray:
     """Return the weights of the densities in a file ``sendump``, for sounds in no context.
 
     :raises ModelError: its weights are clustered
@@ -113,14 +112,14 @@ def read_weights(data: bytes, phones: int) -> Array:
     return weights.transpose(2, 3, 0, 1) + _LEAST_WEIGHT
 
 
-def features(cepstra: Array) -> Array:
+def features(cepstra: np.ndarray) -> np.ndarray:
     """Return [frame, stream, dimension] of cepstra [frame, dimension]: without their mean, and
     their first and second differences, as pocketsphinx takes them.
     """
     whole = np.pad(cepstra - cepstra.mean(axis=0), ((3, 3), (0, 0)), 'edge')
     count = len(cepstra)
 
-    def at(shift: int) -> Array:
+    def at(shift: int) -> np.ndarray:
         return whole[3 + shift:3 + shift + count]
     return np.stack([at(0), at(2) - at(-2), at(3) - at(-1) - (at(1) - at(-3))], axis=1)
 
@@ -132,9 +131,9 @@ class Network(NamedTuple):
     first; ``first`` and ``last``: places where it may begin and end.
     """
 
-    sound: Array
-    state: Array
-    before: Array
+    sound: np.ndarray
+    state: np.ndarray
+    before: np.ndarray
     first: List[int]
     last: List[int]
 
@@ -167,7 +166,7 @@ def network(words: Sequence[Sequence[Sequence[int]]], silence: int) -> Network:
     return Network(np.array(sound), np.array(state), np.array(rows), first, ends)
 
 
-def densities(sounds: Sounds, frames: Array, phone: int) -> Array:
+def densities(sounds: Sounds, frames: np.ndarray, phone: int) -> np.ndarray:
     """Return the logarithm of each density of a sound [frame, stream, density]."""
     means, variances = sounds.means[phone], np.maximum(sounds.variances[phone], _LEAST_VARIANCE)
     over = 1.0 / variances
@@ -179,7 +178,7 @@ def densities(sounds: Sounds, frames: Array, phone: int) -> Array:
     return np.asarray(logs.transpose(1, 0, 2))
 
 
-def path(sounds: Sounds, frames: Array, net: Network) -> Tuple[Array, float]:
+def path(sounds: Sounds, frames: np.ndarray, net: Network) -> Tuple[np.ndarray, float]:
     """Return the place of each frame on the likeliest way through a network, and its score."""
     scores = np.zeros((len(frames), len(net.sound)))
     for phone in set(net.sound.tolist()):
@@ -211,11 +210,11 @@ def path(sounds: Sounds, frames: Array, net: Network) -> Tuple[Array, float]:
 class Counts:
     """What was heard of each density: how much of it [sound, stream, density], and the sum."""
 
-    amount: Array
-    total: Array
+    amount: np.ndarray
+    total: np.ndarray
 
 
-def count(sounds: Sounds, said: Sequence[Tuple[Array, Network]]) -> Counts:
+def count(sounds: Sounds, said: Sequence[Tuple[np.ndarray, Network]]) -> Counts:
     """Return what was heard in sentences, given as frames and network."""
     amount = np.zeros(sounds.means.shape[:3])
     total = np.zeros(sounds.means.shape)
@@ -266,7 +265,7 @@ def drawn(sounds: Sounds, counts: Counts) -> Sounds:
     return replace(sounds, means=(_INERTIA * sounds.means + counts.total) / (_INERTIA + amount))
 
 
-def adapted(sounds: Sounds, said: Sequence[Tuple[Array, Network]]) -> Sounds:
+def adapted(sounds: Sounds, said: Sequence[Tuple[np.ndarray, Network]]) -> Sounds:
     """Return the sounds moved towards the voice that has said sentences.
 
     :param said: :func:`features` and :func:`network` of each
