@@ -68,7 +68,7 @@ if [ "$KIND" = unit ]; then
 elif [ "$KIND" = link ]; then
   # mhri_test.sh has installed it there; its one build is for Python 3.8 and all later ones.
   [ -d build/.ws/link/zenoh ] || skip 'the library zenoh is not in build/.ws/link'
-  TESTS=(test/ros/test_carrier.py)
+  TESTS=(test/ros/test_carrier.py test/ros/test_datagrams.py)
 else
   # Their conftest.py starts a screen for them alone.
   unset DISPLAY XAUTHORITY

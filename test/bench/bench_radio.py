@@ -3,10 +3,10 @@
 """Robots behind a bad radio: how old is what they obey, and what the operator is shown of them.
 
 Side by side: by one ROS master for all (TCPROS), and by the link (``mhri_link``; ``udp`` and
-``tcp`` endpoints, and with keys ``tls`` and ``quic``). What goes over the radio: the commands
-(20 Hz) and what guard and gates tell each other, and of each robot odometry (50 Hz), IMU (100 Hz),
-laser (10 Hz), and the pictures of a camera (jpeg, 30 Hz). Delays are those of one way. See
-``support/behind_radio.py``.
+``tcp`` endpoints, and with keys ``tls``, with its sealed datagrams, and ``quic``). What goes over
+the radio: the commands (20 Hz) and what guard and gates tell each other, and of each robot odometry
+(50 Hz), IMU (100 Hz), laser (10 Hz), and the pictures of a camera (jpeg, 30 Hz). Delays are those
+of one way. See ``support/behind_radio.py``.
 
 - command: age of a command when the robot first obeyed it, from the stick on; and in what share of
   the time in which the stick was held the robot drove
@@ -124,12 +124,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--short', action='store_true', help='fewer cases, less time for each')
     parser.add_argument('--ways', nargs='+', choices=list(WAYS),
-                        help='default: TCPROS and udp; in the short form udp')
+                        help='default: TCPROS, udp and tls; in the short form tls')
     parser.add_argument('--robots', type=int, default=1, help='so many of each way (1 to 4)')
     parser.add_argument('--cases', type=int, nargs='+', help='only these, from 0')
     parser.add_argument('--inside', action='store_true', help=argparse.SUPPRESS)
     options = parser.parse_args()
-    options.ways = options.ways or (['udp'] if options.short else ['TCPROS', 'udp'])
+    options.ways = options.ways or (['tls'] if options.short else ['TCPROS', 'udp', 'tls'])
     if not options.inside:
         reason = why_not()
         if reason:

@@ -3,9 +3,9 @@
 """How long the report of a session takes, without the film: one hour, four robots.
 
 The session is made: a bag a minute, as a recording has them. Goal: 60 s at most. It writes about
-1 GB, at the rates of real robots; with ``--short`` far less. ``--fastest`` is every sensor at its full
-rate, pictures of 10 kB at 30 Hz (6 GB); ``--film`` five minutes of that, with pictures of 640x480
-(2 GB), and a film of them.
+1 GB, at the rates of real robots; with ``--short`` far less. ``--fastest`` is every sensor at its
+full rate, pictures of 10 kB at 30 Hz (6 GB); ``--film`` five minutes of that, with pictures of
+640x480 (2 GB), and a film of them.
 """
 import argparse
 import os

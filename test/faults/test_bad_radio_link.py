@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A linked robot behind a radio that loses a fifth of 1 Mbit/s, and then everything for a while."""
+"""A robot linked by keys behind a radio that loses a fifth of 1 Mbit/s, and then everything."""
 import os
 import subprocess
 import sys
@@ -31,11 +31,11 @@ def inside():
     """Be the operator; end with an AssertionError where something is not so."""
     from support.behind_radio import path_m, World
     subprocess.run(['ip', 'link', 'set', 'lo', 'up'], check=True)
-    with World(['udp'], 1) as world:
+    with World(['tls'], 1) as world:
         world.start()
-        world.look('udp')
-        world.settle('udp')
-        shown = world.shown['udp1']
+        world.look('tls')
+        world.settle('tls')
+        shown = world.shown['tls1']
         world.radio.follow([BAD])
         shown.forget()
         wait_for(lambda: any(size < 8000 for _, _, size in shown.pictures), LONG_S,
@@ -50,11 +50,11 @@ def inside():
         world.radio.follow([dict(BAD, down=True)])
         wait_for(lambda: not moves(world), LONG_S, 'it to stand by its lease', poll_s=0.3)
         world.operator.let_go()
-        world.at_the_robots('udp')
+        world.at_the_robots('tls')
         world.radio.follow([dict(BAD, down=False)])
         wait_for(lambda: shown.pose_age_s() < 2.0 and world.operator.ready(), LONG_S,
                  'it to be back')
-        went_m = path_m(world.at_the_robots('udp')['udp1'][1], 0.0)
+        went_m = path_m(world.at_the_robots('tls')['tls1'][1], 0.0)
         print('MEASURED after the outage it went {:.4f} m'.format(went_m))
         assert went_m < 0.005
 
@@ -62,7 +62,7 @@ def inside():
 def moves(world):
     """Tell whether the robot got anywhere since the last look."""
     from support.behind_radio import path_m
-    _, been = world.at_the_robots('udp')['udp1']
+    _, been = world.at_the_robots('tls')['tls1']
     return path_m(been, 0.0) > 0.005
 
 
@@ -71,7 +71,7 @@ def read_row(words):
     import rospy
     from std_msgs.msg import String
     from mhri.core.link.figures import FIGURES, read_figures, thinned_words
-    rospy.Subscriber('/udp1/' + FIGURES, String, lambda message: words.append(
+    rospy.Subscriber('/tls1/' + FIGURES, String, lambda message: words.append(
         '; '.join(thinned_words(read_figures(message.data)))))
 
 

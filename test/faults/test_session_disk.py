@@ -1,14 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A session on a disk that is full, and on one that is read-only; killed again and again.
+"""A session on a disk that is full, and on one that is read-only; killed, and others around it.
 
 The session's recorder is a program of its own; an input of a lab's own is what it records.
 """
 import os
+import random
 import subprocess
 import sys
 import threading
 import time
+import xmlrpc.client
 
 import pytest
 import rosbag
@@ -21,6 +23,9 @@ from support.ros_system import wait_for  # noqa: E402
 TOPIC = '/mux_in/lab'
 PATIENCE_S = 60.0
 KILLS = 3
+# Whom a session hears: executable, its name on the graph, and what it says again and again.
+OTHERS = (('mux', 'mux', '/mux/mode'), ('gates', 'gates', '/gates/state'),
+          ('tasks', 'mhri_tasks', '/mhri_tasks/list'))
 
 
 class Recorder:
@@ -71,6 +76,24 @@ class Lab:
 
     def heard(self):
         return self._publisher.get_num_connections() > 0
+
+
+class Ear:
+    """Hears a topic, whoever says it."""
+
+    def __init__(self, topic):
+        import rospy
+        self.heard_s = 0.0
+        rospy.Subscriber(topic, rospy.AnyMsg, self._hear)
+
+    def _hear(self, _):
+        self.heard_s = self.heard_s or time.time()
+
+    def forget(self):
+        self.heard_s = 0.0
+
+    def wait(self):
+        wait_for(lambda: self.heard_s, PATIENCE_S, 'somebody to say something')
 
 
 @pytest.fixture(scope='module')
@@ -154,3 +177,75 @@ def test_killed_at_any_time_it_loses_little(recorder, lab, tmp_path):
     recorder.start('_folder:=' + str(tmp_path))
     wait_for(lambda: recorder.state.recording, PATIENCE_S, 'it goes on')
     assert recorder.record(False).success
+
+
+def times_of(folder, topic):
+    """Return when messages of a topic were received [s since 1970]."""
+    found = []
+    for name in bags_of(os.listdir(folder)):
+        with rosbag.Bag(os.path.join(folder, name)) as bag:
+            found += [when.to_sec() for _, _, when in bag.read_messages([topic], raw=True)]
+    return found
+
+
+def records(node, topic):
+    """Tell whether a node has the recorder among those who hear a topic of it."""
+    import rosgraph
+    try:
+        rows = xmlrpc.client.ServerProxy(
+            rosgraph.Master('/test').lookupNode(node)).getBusInfo('/test')[2]
+    except (OSError, rosgraph.MasterException, xmlrpc.client.Error):
+        return False
+    return any(row[4] == topic and 'mhri_session' in row[1] and row[2] == 'o' for row in rows)
+
+
+def test_whoever_is_killed_it_goes_on_and_hears_who_comes_back(recorder, lab, system, tmp_path):
+    """Mux, gates, tasks and the master, each at a random time: only their own silence is lost."""
+    recorder.start('_folder:=' + str(tmp_path))
+    wait_for(lab.heard, PATIENCE_S, 'the recorder to listen')
+    assert recorder.record().success
+    wait_for(lambda: recorder.state.recording, PATIENCE_S, 'the state')
+    folder = recorder.state.folder
+    chance = random.Random(14)
+    # The master last: those who listen here would not be known to the next one.
+    kills = [*chance.sample(OTHERS, len(OTHERS)), None]
+    ears = {topic: Ear(topic) for _, _, topic in OTHERS}
+    running = {topic: system.node(name, '__name:=' + node) for name, node, topic in OTHERS}
+    gone = []
+
+    def bring(node, topic):
+        """Wait until it is heard here and by the recorder, and for some time after."""
+        ears[topic].wait()
+        wait_for(lambda: records(node, topic), PATIENCE_S, 'the recorder to hear ' + topic)
+        passed(chance.randint(20, 60))
+
+    def passed(messages):
+        before = recorder.state.messages
+        wait_for(lambda: recorder.state.messages > before + messages, PATIENCE_S, 'messages')
+    for _, node, topic in OTHERS:
+        bring(node, topic)
+    for other in kills:
+        killed = time.time()
+        if other is None:
+            system.kill(system.master)
+            system.start_master()
+            passed(20)
+            continue
+        name, node, topic = other
+        system.kill(running[topic])
+        ears[topic].forget()
+        running[topic] = system.node(name, '__name:=' + node)
+        bring(node, topic)
+        gone.append((name, topic, killed, ears[topic].heard_s))
+    recorder.end()
+    for name, topic, killed, back in gone:
+        times = times_of(folder, topic)
+        last = max(when for when in times if when < killed)
+        first = min(when for when in times if when > killed)
+        print('MEASURED {} killed: back after {:.2f} s, recorded again after {:.2f} s, silent for '
+              '{:.2f} s'.format(name, back - killed, first - killed, first - last))
+    numbers = [number for name in sorted(bags_of(os.listdir(folder)))
+               for number in numbers_of(os.path.join(folder, name))]
+    print('MEASURED lost of what others said meanwhile: {} of {}'.format(
+        numbers[-1] - numbers[0] + 1 - len(numbers), len(numbers)))
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))

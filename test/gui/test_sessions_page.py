@@ -3,7 +3,9 @@
 """The list of recorded sessions: read from a disk that is not kind, replayed, reported on."""
 import os
 import stat
+import subprocess
 import sys
+import xmlrpc.client
 
 import pytest
 from python_qt_binding.QtCore import Qt
@@ -13,11 +15,14 @@ from python_qt_binding.QtWidgets import QApplication
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from mhri.gui.screen.screen import ScreenWidget  # noqa: E402
+from mhri.gui.screen import theme  # noqa: E402
+from mhri.gui.screen.tile_header import REPLAY  # noqa: E402
 from mhri.presenters.session_host import ShelfHost  # noqa: E402
 from mhri.ros.resources import resource_path  # noqa: E402
 from mhri.ros.session.session_shelf import SessionShelf  # noqa: E402
 from support import made_session  # noqa: E402
-from support.ros_system import wait_for  # noqa: E402
+from support.ros_system import System, wait_for  # noqa: E402
+from support.windows import close, times_written, windows_called  # noqa: E402
 
 PATIENCE_S = 600.0
 GOOD, KILLED = '2026-03-01-14-03-22', '2026-02-28-10-00-00'
@@ -26,13 +31,13 @@ GOOD, KILLED = '2026-03-01-14-03-22', '2026-02-28-10-00-00'
 class Desk:
     """A screen without a master, with a page of sessions."""
 
-    def __init__(self, home, command):
+    def __init__(self, home, **shelf):
         self.app = QApplication.instance() or QApplication(['panel'])
         self.home = home / 'mhri' / 'sessions'
         self.home.mkdir(parents=True)
         self.screen = ScreenWidget(resource_path())
         self.screen.resize(1280, 800)
-        self.shelf = SessionShelf(dict(os.environ, ROS_HOME=str(home)), command)
+        self.shelf = SessionShelf(**dict({'env': dict(os.environ, ROS_HOME=str(home))}, **shelf))
         self.host = ShelfHost(self.screen, self.shelf)
         self.page = self.host.page
         self.screen.show()
@@ -87,7 +92,7 @@ def desk(tmp_path):
     script = tmp_path / 'replay.sh'
     script.write_text('#!/bin/sh\necho "$@" > {}\necho could not start >&2\nexit 1\n'.format(told))
     script.chmod(stat.S_IRWXU)
-    desk = Desk(tmp_path, lambda path: [str(script), path])
+    desk = Desk(tmp_path, command=lambda path: [str(script), path])
     desk.told = told
     yield desk
     desk.close()
@@ -155,3 +160,41 @@ def test_a_session_is_replayed_by_a_program_of_its_own_and_reported_on(desk, tmp
     page = tmp_path / 'mhri' / 'reports' / GOOD / 'report.html'
     assert desk.page.note.text() == 'the report is {}'.format(page)
     assert page.stat().st_size > 1000
+
+
+@pytest.fixture
+def live(tmp_path):
+    """A master with something on it, and a screen that belongs to it."""
+    with System(adopt=False) as system:
+        system.start_master()
+        subprocess.run(['rosparam', 'set', '/bot1/robot_type', 'turtlebot2'], env=system.env,
+                       check=True, timeout=PATIENCE_S)
+        system.env['ROS_HOME'] = str(tmp_path)
+        desk = Desk(tmp_path, env=system.env)
+        desk.master = xmlrpc.client.ServerProxy(system.env['ROS_MASTER_URI'])
+        desk.children = lambda: subprocess.run(
+            ['pgrep', '-f', str(tmp_path)], stdout=subprocess.PIPE).stdout.split()
+        yield desk
+        desk.close()
+
+
+def test_a_replay_is_a_screen_of_its_own_that_leaves_the_live_one_alone(live):
+    """Started from the page by the real script, read off the X server, closed by its cross."""
+    def known():
+        return live.master.getSystemState('/test')[2], live.master.getParam('/test', '/')[2]
+    made_session.write_session(live.home / GOOD)
+    before, title = known(), 'mhri: replay of ' + GOOD
+    live.open()
+    live.choose(GOOD)
+    live.press(live.page.replay_button)
+    live.until(lambda: live.page.note.text().startswith('the replay opens'), 'the word of it')
+    live.until(lambda: windows_called(title), 'its window')
+    window, = windows_called(title)
+    font = theme.number_font(theme.base_font(live.screen.font()))
+    live.until(lambda: times_written(window, REPLAY, font) == 2, 'the word on both tiles')
+    assert known() == before
+    close(window)
+    live.until(lambda: not live.children(), 'the end of all that it had started')
+    live.until(lambda: True, 'what it said last')
+    assert live.page.note.text().startswith('the replay opens'), live.page.note.text()
+    assert known() == before

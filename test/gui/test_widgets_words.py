@@ -4,9 +4,10 @@
 import math
 
 import pytest
+from python_qt_binding.QtGui import QFont, QFontDatabase, QFontMetrics
 
 from mhri.core.screen import views
-from mhri.gui.screen import words
+from mhri.gui.screen import theme, words
 from mhri.gui.screen.pending import Pace, Pending
 
 NAN = float('nan')
@@ -133,6 +134,12 @@ def test_pace_lets_four_through_in_a_second():
         passed += pace.due()
         clock.now += 0.05
     assert passed == 4
+
+
+def test_digits_are_all_as_wide_in_every_font_there_is(application):
+    for family in QFontDatabase().families():
+        metrics = QFontMetrics(theme.number_font(QFont(family, 11)))
+        assert len({metrics.horizontalAdvance(digit) for digit in '0123456789'}) == 1, family
 
 
 def test_a_voice_that_is_not_understood_reads_what_to_do():

@@ -56,9 +56,10 @@ def running(node, uri=None):
 
 
 def always(node):
-    """Return what a node has, without the camera and scan that a tile on show subscribes."""
+    """Return what a node has, without the camera and laser that a tile on show subscribes."""
+    of_tile = ('/scan', '/tf_static') if node == 'mhri_panel' else ('/scan',)
     return {row for row in running('/' + node) if row[0] != 'subscribes'
-            or '/camera/' not in row[1] and not row[1].endswith('/scan')}
+            or '/camera/' not in row[1] and not row[1].endswith(of_tile)}
 
 
 def filled(rows, robot, streams):

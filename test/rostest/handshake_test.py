@@ -4,12 +4,16 @@
 """Connections that say nothing lock nobody out of a node: subscribers and services get through."""
 import os
 import socket
+import struct
 import sys
 import threading
 import time
 import unittest
+from unittest import mock
+from xmlrpc.server import SimpleXMLRPCServer
 
 import rosgraph
+from rosgraph.network import encode_ros_handshake_header
 import rospy
 from rospy.impl.tcpros_base import get_tcpros_server_address
 import rostest
@@ -18,6 +22,7 @@ from std_srvs.srv import SetBool, SetBoolResponse
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
+from mhri.ros.graph import handshake  # noqa: E402
 from mhri.ros.graph.handshake import limit_handshakes  # noqa: E402
 from mhri.ros.recording.raw_link import RawLink  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
@@ -25,6 +30,42 @@ from support.ros_system import wait_for  # noqa: E402
 CONNECT_S = 5.0
 DRIBBLE_S = 0.2
 SILENT = 8
+
+
+class SilentAtFirst:
+    """A publisher of one word that takes a first connection and never answers it."""
+
+    def __init__(self, topic, word):
+        self.calls = []
+        self._head = encode_ros_handshake_header({
+            'callerid': '/late', 'topic': topic, 'type': String._type, 'md5sum': String._md5sum})
+        text = word.encode()
+        self._word = struct.pack('<II', len(text) + 4, len(text)) + text
+        self._door = socket.create_server(('127.0.0.1', 0))
+        self._node = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False)
+        self._node.register_function(lambda *_: (1, '', [
+            'TCPROS', '127.0.0.1', self._door.getsockname()[1]]), 'requestTopic')
+        for work in (self._node.serve_forever, self._answer):
+            threading.Thread(target=work, daemon=True).start()
+        self._master = rosgraph.Master('/late')
+        self._said = topic, 'http://127.0.0.1:{}/'.format(self._node.server_address[1])
+        self._master.registerPublisher(topic, String._type, self._said[1])
+
+    def _answer(self):
+        while True:
+            try:
+                self.calls.append(self._door.accept()[0])
+            except OSError:
+                return
+            if len(self.calls) > 1:
+                self.calls[-1].sendall(self._head + self._word)
+
+    def close(self):
+        self._master.unregisterPublisher(*self._said)
+        self._node.shutdown()
+        self._node.server_close()
+        for end in [self._door] + self.calls:
+            end.close()
 
 
 class HandshakeTest(unittest.TestCase):
@@ -88,6 +129,17 @@ class HandshakeTest(unittest.TestCase):
     def test_a_browser(self):
         self.knock(b'GET / HTTP/1.0\r\n\r\n')
         self.assert_open()
+
+    def test_a_publisher_that_does_not_answer_is_called_again(self):
+        heard = []
+        with mock.patch.object(handshake, 'LIMIT_S', 1.0):
+            publisher = SilentAtFirst('/late_word', 'at last')
+            self.addCleanup(publisher.close)
+            listener = rospy.Subscriber('/late_word', String, heard.append)
+            self.addCleanup(listener.unregister)
+            wait_for(lambda: heard, 60.0, lambda: '{} calls'.format(len(publisher.calls)))
+        self.assertEqual((heard[0].data, len(publisher.calls)), ('at last', 2))
+        wait_for(lambda: listener.get_num_connections() == 1, 60.0, 'one connection')
 
     def test_more_than_are_waited_for(self):
         for _ in range(100):

@@ -113,8 +113,13 @@ class ReplayTest(unittest.TestCase):
 
     def is_as_recorded(self, time_s):
         """Tell whether the screen comes to show what was so."""
+        return self.comes_to(lambda: shown(self.screen.view()) == recorded(time_s))
+
+    @staticmethod
+    def comes_to(condition):
+        """Tell whether a condition comes true soon."""
         try:
-            wait_for(lambda: shown(self.screen.view()) == recorded(time_s), 5.0)
+            wait_for(condition, 5.0)
         except AssertionError:
             return False
         return True
@@ -129,6 +134,22 @@ class ReplayTest(unittest.TestCase):
             self.assertEqual(shown(self.screen.view()), recorded(time_s), time_s)
             self.assertAlmostEqual(self.screen.replay().position_s, time_s, 2)
             self.assertAlmostEqual(self.screen.clock.wall(), made.STARTED + time_s, 2)
+
+    def test_a_silent_robot_is_as_old_as_it_was_wherever_one_comes_from(self):
+        self.screen.control('pause')
+        for time_s in (45.0, 47.0, 43.0, 14.0, 46.0):
+            lost = made.LOST_S[0] < time_s
+            age_s = time_s - (made.LOST_S[0] - 0.1) if lost else 0.0
+            for _ in range(TRIES):
+                self.seek(time_s)
+                if self.comes_to(lambda: abs(self.robot('bot2').age_s - age_s) < 0.15):
+                    break
+            self.assertAlmostEqual(self.robot('bot2').age_s, age_s, delta=0.15)
+            self.assertEqual(self.robot('bot2').note,
+                             'nothing for {:.1f} s'.format(age_s) if lost else '')
+
+    def robot(self, name):
+        return next(robot for robot in self.screen.view().robots if robot.name == name)
 
     def test_what_was_asked_for_is_told_though_no_velocity_is(self):
         self.screen.control('pause')

@@ -225,7 +225,8 @@ class ReferenceModel:
 
     def _back_guard(self, now, key, part, starting):
         if starting or part.lasted > GUARD_LOST_S + 0.5:
-            self._wait(now, GUARD_LOST_S, 'its guard is back', key[1])
+            # Until one that has just been started is there, its robot is driven without.
+            self._wait(now, SAY_S if starting else GUARD_LOST_S, 'its guard is back', key[1])
 
     def _gone(self, name, now):
         if name in self.holders:

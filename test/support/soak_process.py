@@ -84,7 +84,7 @@ def operator(name):
     select = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1,
                              latch=True, tcp_nodelay=True)
     joy = rospy.Publisher('/mux_in/joy', Joy, queue_size=1, tcp_nodelay=True)
-    state = {'chosen': None, 'out': False}
+    state = {'chosen': [], 'out': False}
 
     def take(word, *rest):
         if word == 'select':
@@ -94,17 +94,21 @@ def operator(name):
             state['out'] = rest[0] == 'out'
             joy.publish(axes=[OUT[1], OUT[0]] if state['out'] else [0.0, 0.0])
         else:
-            rospy.ServiceProxy('/gates/take_control', Trigger)()
-            select.publish(state['chosen'] or [])
+            try:
+                rospy.ServiceProxy('/gates/take_control', Trigger)()
+            except rospy.ServiceException:
+                return
+            select.publish(state['chosen'])
             print('taken', flush=True)
 
+    select.publish([])
     print('ready', flush=True)
     told(take)
     count = 0
     while not rospy.is_shutdown():
         count += 1
         joy.publish(axes=[OUT[1], OUT[0]] if state['out'] else [0.0, 0.0])
-        if count % 10 == 0 and state['chosen'] is not None:
+        if count % 10 == 0:
             select.publish(state['chosen'])
         time.sleep(PERIOD_S)
 

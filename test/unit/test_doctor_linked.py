@@ -8,7 +8,8 @@ import sys
 import pytest
 
 from mhri.core.doctor.facts import (
-    ANSWERS, FINE, KeysSeen, LinkNote, REFUSED, SILENT, Stream, UNRESOLVED)
+    ANSWERS, EARLY, FINE, KeysSeen, LinkNote, REFUSED, RUN_OUT, SILENT, Stream, UNRESOLVED,
+    UNTIMELY, UNWELCOME)
 from mhri.core.doctor.judgement import diagnose
 from mhri.core.doctor.linked import links_of
 
@@ -70,6 +71,11 @@ def test_a_linked_robot_is_healthy():
     ({'heard': 'never', 'router': True}, REFUSED, 'router_unreachable', 'the router 192.0.2.7:'),
     ({'heard': 'no', 'router': True}, SILENT, 'router_unreachable', 'does not answer'),
     ({'heard': 'never', 'router': True}, ANSWERS, 'link_silent', 'answers, but not for bot1'),
+    # Keys that are not taken, and whose clock it is.
+    ({'heard': 'never', 'secret': True}, EARLY, 'keys_clock', 'by the clock here the time of its'),
+    ({'heard': 'no', 'secret': True}, RUN_OUT, 'keys_expired', 'its key has run out'),
+    ({'heard': 'no', 'secret': True}, UNTIMELY, 'keys_clock', 'answers that by its clock the key'),
+    ({'heard': 'never', 'secret': True}, UNWELCOME, 'keys_wrong', 'are of two authorities'),
     # Sides that differ.
     ({'peer': {'mhri': '0.9.0', 'zenoh': '1.5.1'}}, '', 'link_versions', '1.0.0 here, 0.9.0 on'),
     ({'peer': {'mhri': '1.0.0', 'zenoh': '1.4.0'}}, '', 'zenoh_versions', '1.5.1 here, 1.4.0 on'),

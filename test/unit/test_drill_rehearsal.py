@@ -9,7 +9,8 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.drill.operator import Act, ahead_of, ScriptedOperator, Seen  # noqa: E402
+from mhri.core.drill.operator import (  # noqa: E402
+    Act, ahead_of, MOST_TURN, ScriptedOperator, Seen)
 from mhri.core.drill.referee import ALL_FOUND  # noqa: E402
 from mhri.sim.rehearsal import Rehearsal  # noqa: E402
 from support.drills import drill, NAMES  # noqa: E402
@@ -64,7 +65,7 @@ def test_it_stops_for_what_is_ahead_and_turns_before_it_drives():
     operator.act({'bot1': Seen(0.0, 0.0, 0.0)})
     assert operator.act({'bot1': Seen(0.0, 0.0, 0.0, ahead_m=0.4)}) == Act('bot1')
     aside = operator.act({'bot1': Seen(0.0, 0.0, math.pi / 2.0)})
-    assert aside.forward == 0.0 and aside.turn == -1.0
+    assert aside.forward == 0.0 and aside.turn == -MOST_TURN
 
 
 def test_what_is_ahead_in_a_scan():

@@ -45,7 +45,8 @@ def test_the_line(drill, age_s, first, last):
     (RUNS, ENDS, ['drill.found', 'drill.ended']),
     (ENDS, ENDS, []),
     # The next run, of the same drill or of another.
-    (ENDS, BEGINS, ['drill.waits']), (RUNS, BEGINS, ['drill.waits']), (BEGINS, replace(RUNS, title='Maze'), [])))
+    (ENDS, BEGINS, ['drill.waits']), (RUNS, BEGINS, ['drill.waits']),
+    (BEGINS, replace(RUNS, title='Maze'), [])))
 def test_the_events(old, new, kinds):
     told = drill_changes(old, new)
     assert [kind for kind, _ in told] == kinds

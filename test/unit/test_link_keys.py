@@ -73,12 +73,13 @@ def test_a_host_speaks_below_its_own_name_and_a_watching_one_hardly():
     assert allowed(rules, 'host:lab', 'ingress', 'put') == ['mhri/bot1/host:lab/down/**']
     assert allowed(rules, 'host:lab', 'egress', 'put') == ['mhri/bot1/host:lab/up/**']
     assert allowed(rules, 'watch:gallery', 'ingress', 'put') == [
-        'mhri/bot1/watch:gallery/down/_beat']
+        'mhri/bot1/watch:gallery/down/_beat', 'mhri/bot1/watch:gallery/down/_key']
 
 
 def test_nobody_commands_a_robot_that_is_only_watched():
     rules = access(Keys('watched:bot3', PEERS), 'robot', 'bot3')
-    assert allowed(rules, 'host:lab', 'ingress', 'put') == ['mhri/bot3/host:lab/down/_beat']
+    assert allowed(rules, 'host:lab', 'ingress', 'put') == [
+        'mhri/bot3/host:lab/down/_beat', 'mhri/bot3/host:lab/down/_key']
 
 
 def test_a_host_hears_of_a_robot_from_itself_alone():

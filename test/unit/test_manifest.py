@@ -12,11 +12,13 @@ import pytest
 REPO = Path(__file__).resolve().parents[2]
 ROOT = xml.etree.ElementTree.parse(str(REPO / 'package.xml')).getroot()
 # Modules whose package, or rosdep key, has another name.
-KEYS = {'catkin_pkg': 'python3-catkin-pkg', 'cv2': 'python3-opencv', 'evdev': 'python3-evdev',
+KEYS = {'catkin_pkg': 'python3-catkin-pkg', 'cryptography': 'python3-cryptography',
+        'cv2': 'python3-opencv', 'evdev': 'python3-evdev',
         'mccabe': 'python3-mccabe', 'netifaces': 'python3-netifaces', 'numpy': 'python3-numpy',
         'psutil': 'python3-psutil', 'pyaudio': 'python3-pyaudio', 'pygame': 'python3-pygame',
         'pyqtgraph': 'python3-pyqtgraph', 'pytest': 'python3-pytest',
-        'rospkg': 'python3-rospkg', 'setuptools': 'python3-setuptools', 'yaml': 'python3-yaml'}
+        'PyQt5': 'python_qt_binding', 'rospkg': 'python3-rospkg',
+        'setuptools': 'python3-setuptools', 'yaml': 'python3-yaml'}
 # No key of rosdep; Python 2's names of modules; turtlesim, which tests have stand-ins of.
 UNNAMED = {'pocketsphinx', 'SimpleXMLRPCServer', 'httplib', 'urlparse', 'xmlrpclib', 'turtlesim'}
 # Used by other means than an import or a launch file.

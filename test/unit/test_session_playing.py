@@ -4,7 +4,8 @@
 import pytest
 
 from mhri.core.session.folder import SessionEvent
-from mhri.core.session.playing import other_speed, Playing, ReplayClock, SPEEDS
+from mhri.core.session.playing import (
+    age_groups, other_speed, Playing, ReplayClock, SPEEDS)
 from mhri.core.session.timeline import (
     duration_text, EVENT, MARK, read_time_line, Span, STOP, TimeLine)
 
@@ -158,3 +159,12 @@ def test_nothing_recorded_is_an_empty_line():
                                            (-1, '0:00')])
 def test_times_read_as_on_a_clock(seconds, text):
     assert duration_text(seconds) == text
+
+
+@pytest.mark.parametrize('times, groups', [
+    ([], []), ([9.9, 10.0], [(10.0, [0, 1])]),
+    ([4.0, 9.8, 4.1, 7.0], [(4.0, [0, 2]), (7.0, [3]), (10.0, [1])]),
+    ([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
+     [(1.0, [0, 1]), (2.0, [2]), (3.0, [3]), (4.0, [4]), (5.0, [5]), (6.0, [6])])])
+def test_what_is_older_than_a_run_up_is_told_as_of_when_it_was_said(times, groups):
+    assert age_groups(times, 10.0) == groups

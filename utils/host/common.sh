@@ -30,7 +30,8 @@ DEBIAN_RUN=(
   python3-tf2-msgs python3-rosgraph-msgs python3-diagnostic-msgs python3-diagnostic-updater
   python3-cv-bridge python3-python-qt-binding python3-pyqt5 python3-pyqtgraph python3-pygame
   python3-evdev python3-pocketsphinx pocketsphinx-en-us python3-pyaudio
-  python3-numpy python3-opencv python3-yaml python3-genpy python3-netifaces fonts-dejavu-core
+  python3-numpy python3-opencv python3-yaml python3-genpy python3-netifaces python3-cryptography
+  fonts-dejavu-core
   libturbojpeg0 openssh-client openssl
   xvfb xauth hostname util-linux
 )

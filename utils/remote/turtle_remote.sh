@@ -58,7 +58,7 @@ A bad radio
                        in the guide. No HOST_IP: the host calls, now or later. Needs ROS Noetic,
                        and 'turtlebot_deploy.sh --link' once
   --listen ENDPOINT    with --link: where the host calls (default 0.0.0.0:7447). On a radio that
-                       loses packets try udp/0.0.0.0:7447, or with keys quic/0.0.0.0:7447
+                       loses packets make keys (mhri_keys.sh), or try udp/0.0.0.0:7447
   --router ENDPOINT    with --link: instead call a router that the host calls, too, such as
                        192.0.2.1:7447
                        With a key in place (mhri_keys.sh put), the link is by keys alone

@@ -12,7 +12,8 @@ Where neither reaches the other, both call a router that both reach, with ``--ro
 router --listen 0.0.0.0:7447``, which needs no ROS master.
 
 With keys (``utils/host/mhri_keys.sh``) the endpoints are ``tls/`` or ``quic/``, and who has none,
-or one that was withdrawn, is not let in. Keys that are replaced take effect within seconds.
+or one that was withdrawn, is not let in. Keys that are replaced take effect within seconds. By
+``tls/`` what is said goes as sealed datagrams where those pass, to the UDP port of that number.
 
 It is called ``/<name>/mhri_link`` on both masters.
 """
@@ -131,7 +132,7 @@ def call(options):
     ends = [[endpoint(word, bool(keys)) for word in words.split()]
             for words in (options.listen, options.connect or options.router)]
     place = 'router' if options.side == 'router' else 'routed' if options.router else 'peer'
-    return keys, Carrier(*ends, secrets=secrets, place=place)
+    return keys, Carrier(*ends, secrets=secrets, place=place, own=keys.keys.own if keys else '')
 
 
 def robot_side(options, carrier, own):
@@ -202,11 +203,12 @@ def main():
         host = own or marked(options.host, facts())
         side = HostSide(options.name, carrier.between(options.name, host), watch.set_parameter,
                         host, bool(keys), options.keep)
-        publish_diagnostics({'link to ' + options.name: side.fill})
+        title = 'link to ' + options.name
         note.follow(side, watch, bool(keys))
     else:
         side = robot_side(options, carrier, own)
-        publish_diagnostics({'link to the host': side.fill})
+        title = 'link to the host'
+    publish_diagnostics({title: lambda status: carrier.fill(side.fill(status))})
     rospy.on_shutdown(side.close)
     side.start()
     if keys:

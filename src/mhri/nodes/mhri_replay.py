@@ -4,7 +4,7 @@
 
 It needs a master of its own: ``utils/host/mhri_run.sh --replay FOLDER`` starts both. Parameters it
 sets: ``/<robot>`` of each robot as recorded, ``/mux/sources``, ``/mhri/replay/robots`` ({name:
-number}).
+number}), ``/mhri/replay/driven`` (whether mhri drove them).
 """
 import argparse
 import sys
@@ -21,7 +21,8 @@ from mhri.ros.resources import profile_reader, read_text, resource_path, robot_t
 from mhri.ros.session.bag_set import open_session
 from mhri.ros.session.player import Player
 
-ROBOTS_PARAMETER = '/mhri/replay/robots'
+ROBOTS_PARAMETER, DRIVEN_PARAMETER = '/mhri/replay/robots', '/mhri/replay/driven'
+GATES = '/gates/state'
 
 
 def main():
@@ -43,20 +44,24 @@ def main():
     if any(taken):
         sys.exit('mhri drives at {}: replay with a master of its own (utils/host/mhri_run.sh '
                  '--replay)'.format(rospy.core.rosgraph.get_master_uri()))
-    set_parameters(kept.robots)
+    set_parameters(kept.robots, any(found.topic == GATES for found in kept.bags.connections()))
     Player(kept).start()
     rospy.spin()
     kept.bags.close()
 
 
-def set_parameters(robots):
-    """Set what a screen asks for before it knows a robot (blocking)."""
+def set_parameters(robots, driven):
+    """Set what a screen asks for before it knows a robot (blocking).
+
+    :param driven: whether mhri drove them: else nobody misses its word
+    """
     for name, robot in robots.items():
         parameters = robot.get('parameters')
         known = {'robot_type': robot.get('type'), 'robot_model': robot.get('model')}
         rospy.set_param('/' + name, {
             **(parameters if isinstance(parameters, dict) else {}),
             **{key: value for key, value in known.items() if isinstance(value, str)}})
+    rospy.set_param(DRIVEN_PARAMETER, driven)
     rospy.set_param(ROBOTS_PARAMETER, {name: number_of(robot) for name, robot in robots.items()})
     path = resource_path('mux.yaml')
     try:

@@ -14,6 +14,7 @@ from mhri.gui.session.time_line import NOTHING_DRIVES, TimeLineBar
 from mhri.presenters.event_host import EventHost
 from mhri.presenters.screen_host import ScreenHost
 from mhri.ros.session.replay_backend import ReplayBackend
+from mhri.ros.session.replay_tasks import ReplayTasks
 from mhri.standalone import Standalone
 
 _SEVERITIES = {INFO: CALM, WARNING: ATTENTION, ERROR: ALARM}
@@ -75,7 +76,9 @@ class ReplayHost(ScreenHost):
         self._lines = tuple(lines)
         self._line = None
         self.bar = TimeLineBar()
-        super().__init__(operator, events=ReplayEvents)
+        tasks = ReplayTasks(operator.recalled, operator.clock.wall)
+        operator.on_jump = tasks.forget
+        super().__init__(operator, events=ReplayEvents, tasks=tasks)
 
     def _connect(self):
         super()._connect()
@@ -131,6 +134,10 @@ class ReplayHost(ScreenHost):
         if state.settled:
             self.bar.show_state(state.position_s, state.speed, state.playing)
             self.events.show_until(self._line.events_until(state.position_s))
+
+    def asks_before_closing(self):
+        """Ask nothing: what drove or recorded did so then."""
+        return ''
 
     def close(self, forget=False):
         """Close everything."""

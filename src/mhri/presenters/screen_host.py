@@ -50,9 +50,10 @@ class ScreenHost(QObject):
 
     :param operator: :class:`mhri.ros.screen.backend.ScreenBackend`, started by :meth:`start`
     :param events: makes its :class:`mhri.presenters.event_host.EventHost`
+    :param tasks: its :class:`mhri.ros.tasks.tasks_client.TasksClient`, None for the usual
     """
 
-    def __init__(self, operator, parent=None, events=EventHost):
+    def __init__(self, operator, parent=None, events=EventHost, tasks=None):
         super().__init__(parent)
         self.operator = operator
         self._to_add = []
@@ -68,7 +69,7 @@ class ScreenHost(QObject):
         self.session = SessionHost(self.screen, self.events, self.tiles.save_stills)
         self.doctor = DoctorHost(operator, self.screen)
         self.pad = PadHost(operator, self.screen, parent=self)
-        self.tasks = TaskHost(operator, self.screen, self._select, self._note_task)
+        self.tasks = TaskHost(operator, self.screen, self._select, self._note_task, tasks)
         self.map = MapHost(operator, self.screen, self.tasks)
         self.faults = FaultHost(self.doctor.page, FaultsClient())
         self.drill = DrillHost(self.screen, self.events.note, DrillClient(), operator.do,
@@ -158,10 +159,10 @@ class ScreenHost(QObject):
     def _draw_in_turn(self):
         """Draw or, every other time, make a tile that is missing; say when it is time again.
 
-        A click would have to wait for both at once.
+        A click would have to wait for both at once. Robots are in the list before their tiles come.
         """
         begun = time.monotonic()
-        self._made = self.tiles.lacks_one and not self._made
+        self._made = self.tiles.lacks_one and not (self._made or self._to_add)
         self._guard.run(self.tiles.make_missing if self._made else self.draw)
         took_ms = round(1000 * (time.monotonic() - begun))
         self._draw_timer.setInterval(

@@ -11,6 +11,10 @@ SEVERITIES = (FAULT, WARNING, FINE)
 # back in time. UNRESOLVED: its name is unknown here. STRANGER: something else answers there.
 ANSWERS, REFUSED, SILENT, UNRESOLVED, STRANGER = (
     'answers', 'refused', 'silent', 'unresolved', 'stranger')
+# How a linked robot takes the key of this computer, and this computer that of the robot. EARLY: by
+# the clock here that is not valid yet. RUN_OUT: nor any more. UNTIMELY: so the robot says of the
+# one here. UNWELCOME: they are of two authorities.
+EARLY, RUN_OUT, UNTIMELY, UNWELCOME = 'early', 'run out', 'untimely', 'unwelcome'
 
 HOST = 'this computer'
 MASTER = 'ROS master'
@@ -211,7 +215,7 @@ class LinkNote:
     keys; ``heard`` is ``yes``, ``no`` (not any more) or ``never``. ``problem`` says why it could
     not start, ``trouble`` what with: ``library``, ``keys`` or ``endpoint``. ``own`` and ``peer``
     are the versions of both sides: {``mhri`` or ``zenoh``: version}. ``reach`` says how the
-    endpoint answers, '' if nobody asked.
+    endpoint answers, with keys also how they are taken; '' if nobody asked.
     """
 
     robot: str

@@ -4,8 +4,8 @@
 from typing import Dict, List, Set
 
 from mhri.core.doctor.facts import (
-    ANSWERS, Facts, FAULT, FINE, Finding, Graph, HOST, LinkNote, listed, REFUSED, UNRESOLVED,
-    WARNING)
+    ANSWERS, EARLY, Facts, FAULT, FINE, Finding, Graph, HOST, LinkNote, listed, REFUSED, RUN_OUT,
+    UNRESOLVED, UNTIMELY, UNWELCOME, WARNING)
 from mhri.core.doctor.robots import clock_offset, LINK
 
 # What the host's side says of itself, as a parameter below its name.
@@ -25,6 +25,17 @@ _KEY_REMEDIES = {
     'keys_expired': 'utils/host/mhri_keys.sh renew <name>; utils/host/mhri_keys.sh put <name>',
     'keys_clock': 'timedatectl   # sudo timedatectl set-ntp true, or: sudo date -s <the time>',
     'keys_wrong': 'utils/host/mhri_keys.sh check   # then put the right key in place'}
+_CLOCK_THERE = 'on the robot: date   # sudo timedatectl set-ntp true, or: sudo date -s <the time>'
+# How keys are not taken: check, what is wrong, and the remedy.
+_TAKEN = {
+    EARLY: ('keys_clock', 'by the clock here the time of its key has not begun', 'date   # wrong '
+            'here? sudo timedatectl set-ntp true; right? mhri_keys.sh renew {0}, and put it there'),
+    RUN_OUT: ('keys_expired', 'by the clock here its key has run out', 'date   # right here? '
+              'utils/host/mhri_keys.sh renew {0}; utils/host/mhri_keys.sh put {0} USER@IP'),
+    UNTIMELY: ('keys_clock', 'it answers that by its clock the key of this computer is not valid '
+               'today, and by the clock here it is', _CLOCK_THERE),
+    UNWELCOME: ('keys_wrong', 'its key and that of this computer are of two authorities',
+                _KEY_REMEDIES['keys_wrong'] + ', and put {0} USER@IP')}
 
 
 def links_of(graph: Graph) -> List[LinkNote]:
@@ -108,6 +119,10 @@ def _silent(note: LinkNote) -> List[Finding]:
     if note.heard == 'yes':
         return []
     where, robot = note.endpoint, note.robot
+    if note.reach in _TAKEN:
+        check, problem, remedy = _TAKEN[note.reach]
+        return [Finding(FAULT, check, robot, 'is not heard over its link ({}): {}'.format(
+            where, problem), _STANDS, remedy.format(robot))]
     if note.router and note.reach not in (ANSWERS, ''):
         return [Finding(
             FAULT, 'router_unreachable', robot, 'the router {} between this computer and the robot '

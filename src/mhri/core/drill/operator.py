@@ -14,9 +14,10 @@ from mhri.core.drill.scenario import Point
 
 # A place is reached within so much [m].
 REACHED_M = 0.25
-# How much it turns for each radian that the robot is off [1/s]. With more, a link of 0.4 s each
-# way would swing for ever (pi / 2 over the delay of the loop).
-STEER = 1.2
+# How much it turns for each radian that the robot is off [1/s], and the most it pushes the stick to
+# a side. With more, a link of 0.4 s each way has it swing (for ever at pi / 2 over the delay of the
+# loop): a computer that is 30 ms late would then take a tenth longer for a drill.
+STEER, MOST_TURN = 1.0, 0.4
 # It does not drive, only turns, if the robot is further off [rad]; it slows down before a place,
 # within so much [m].
 ASIDE_RAD, SLOW_M = 0.7, 0.6
@@ -121,7 +122,7 @@ class ScriptedOperator:
     def _steer(self, robot: str, seen: Seen) -> Tuple[float, float]:
         x, y = self._left[robot][0]
         off = math.remainder(math.atan2(y - seen.y_m, x - seen.x_m) - seen.yaw_rad, 2.0 * math.pi)
-        turn = max(-1.0, min(1.0, STEER * off / self._turn_rad_s))
+        turn = max(-MOST_TURN, min(MOST_TURN, STEER * off / self._turn_rad_s))
         way = math.hypot(x - seen.x_m, y - seen.y_m)
         if seen.ahead_m < min(AHEAD_M, way) and abs(off) < ASIDE_RAD:
             return 0.0, turn

@@ -16,7 +16,7 @@ import zlib
 
 from mhri.core.link.carried import valid_topic, valid_type
 
-VERSION = 3
+VERSION = 4
 _HEAD = struct.Struct('>2sBBIId')
 _MAGIC = b'mh'
 MOST_TOPICS = 100

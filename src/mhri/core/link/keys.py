@@ -12,6 +12,8 @@ import hashlib
 import re
 from typing import Dict, FrozenSet, Iterable, List, Sequence, Tuple
 
+from mhri.core.link.sealed import OFFER
+
 DRIVES, WATCHES, ROBOT, WATCHED = 'host', 'watch', 'robot', 'watched'
 ROUTER = 'router'
 _NAME = re.compile(r'(host|watch|robot|watched|router):([A-Za-z0-9_-]{1,64})'
@@ -19,6 +21,8 @@ _NAME = re.compile(r'(host|watch|robot|watched|router):([A-Za-z0-9_-]{1,64})'
 _ODD = re.compile(r'[^A-Za-z0-9_-]')
 _SERIAL = re.compile(r'^\s*Serial Number:\s*([0-9A-Fa-f]+)\s*$', re.MULTILINE)
 ALONE, TLS = ('tcp', 'udp'), ('tls', 'quic')
+# What who may only watch says: that it is there, and its key for datagrams.
+LITTLE = ('_beat', OFFER)
 
 
 class KeysError(Exception):
@@ -67,6 +71,11 @@ def is_host(owner: str) -> bool:
 def may_drive(owner: str) -> bool:
     """Tell whether a computer of this name may command a robot."""
     return split(owner)[0] == DRIVES
+
+
+def says_all(robot: str, host: str) -> bool:
+    """Tell whether a host may say all to a robot, by the names in their keys, or :data:`LITTLE`."""
+    return may_drive(host) and split(robot)[0] == ROBOT
 
 
 def host_of(computer: str) -> str:
@@ -151,9 +160,10 @@ def access(keys: Keys, side: str, robot: str, routed: bool = False) -> Dict[str,
     beats = 'mhri/{}/*/down/_beat'.format(robot)
     for owner in known:
         root = 'mhri/{}/{}/'.format(robot, owner if side == 'robot' else keys.own)
-        silent = side == 'robot' and not (may_drive(owner) and split(keys.own)[0] == ROBOT)
-        table.allow(owner, root + coming + ('/_beat' if silent else '/**'), root + going + '/**',
-                    [root + going + '/**', beats], [root + coming + '/**', beats])
+        streams = ('**',) if side == 'host' or says_all(keys.own, owner) else LITTLE
+        table.allow(owner, ['{}{}/{}'.format(root, coming, stream) for stream in streams],
+                    root + going + '/**', [root + going + '/**', beats],
+                    [root + coming + '/**', beats])
     return table.settings()
 
 
@@ -166,11 +176,11 @@ def access_of_router(keys: Keys) -> Dict[str, object]:
         beats = 'mhri/{}/*/down/_beat'.format('*' if is_host(owner) else name)
         if is_host(owner):
             up, down = 'mhri/*/{}/up/**'.format(owner), 'mhri/*/{}/down/'.format(owner)
-            table.allow(owner, down + ('**' if role == DRIVES else '_beat'), up, [up, beats],
+            table.allow(owner, [down + ('**' if role == DRIVES else '_beat')], up, [up, beats],
                         [down + '**', beats])
         else:
             up, down = 'mhri/{}/*/up/**'.format(name), 'mhri/{}/*/down/**'.format(name)
-            table.allow(owner, up, down, [down, beats], [up, beats])
+            table.allow(owner, [up], down, [down, beats], [up, beats])
     return table.settings()
 
 
@@ -187,10 +197,11 @@ class _Table:
         self._rules: List[Dict[str, object]] = []
         self._policies: List[Dict[str, object]] = []
 
-    def allow(self, owner: str, says: str, gets: str, wants: List[str], asked: List[str]) -> None:
+    def allow(self, owner: str, says: List[str], gets: str, wants: List[str],
+              asked: List[str]) -> None:
         """Let somebody say and get messages, want some, and be asked for some."""
         for flow, message, on in (
-                ('ingress', 'put', [says]), ('egress', 'put', [gets]),
+                ('ingress', 'put', says), ('egress', 'put', [gets]),
                 ('ingress', 'declare_subscriber', wants), ('egress', 'declare_subscriber', asked)):
             self._rules.append({'id': 'rule{}'.format(len(self._rules)), 'permission': 'allow',
                                 'flows': [flow], 'messages': [message], 'key_exprs': on})

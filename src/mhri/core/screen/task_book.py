@@ -11,16 +11,13 @@ from typing import Dict, List, NamedTuple, Optional, Tuple
 import yaml
 
 from mhri.core.screen.task_views import KindView, Progress, RunView, TasksView, TaskView
-from mhri.core.screen.task_words import ended_line
+from mhri.core.screen.task_words import ended_line, STARTED
 from mhri.core.screen.text import tidy_text
-from mhri.core.tasks.base import (
-    BLOCKED, ENDS, LOST, STOPPED, TAKEN_OVER, TEAM, TIMEOUT, WAITING)
+from mhri.core.tasks.base import ENDS, LOST, RESUMES, TEAM, WAITING
 
 # A goal without an answer, and a run that is listed no more without a result [s].
 ANSWER_S, RESULT_S = 5.0, 2.0
 _MOST_ENDED = 500
-# After these a robot may be sent on; whoever cancelled it meant it.
-_RESUMES = (TAKEN_OVER, STOPPED, LOST, BLOCKED, TIMEOUT)
 
 
 class News(NamedTuple):
@@ -126,7 +123,7 @@ class TaskBook:
         label = self.view().label(run.key)
         if old is None and robot.state not in ENDS:
             self._left.pop(robot.robot, None)
-            self._news.append(News('task.begun', robot.robot, label.lower() + ' started'))
+            self._news.append(News('task.begun', robot.robot, label.lower() + STARTED))
         said = robot.said[len(old.said) if old else 0:]
         self._news += [
             News('task.said', robot.robot, '{}: {}'.format(label.lower(), tidy_text(line)))
@@ -134,8 +131,9 @@ class TaskBook:
         if robot.state in ENDS and (old is None or old.state not in ENDS):
             self._news.append(News('task.' + robot.state, robot.robot,
                                    ended_line(label, robot.state, robot.text)))
-            # Who got another task is on that, whichever is heard of first.
-            if robot.state in _RESUMES and not self._is_cancelled(
+            # Whoever cancelled it meant it. Who got another task is on that, whichever is heard of
+            # first.
+            if robot.state in RESUMES and not self._is_cancelled(
                     run.id, robot.robot) and self.of(robot.robot) is None:
                 self._left[robot.robot] = Goal(run.key, (robot.robot,), with_team(
                     run.parameters, tuple(one.robot for one in run.robots)))

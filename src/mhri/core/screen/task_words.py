@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Tasks in words: how a robot is getting on, how it ended, and why none can be started now."""
-from typing import Sequence, Tuple
+import re
+from typing import Optional, Sequence, Tuple
 
 from mhri.core.screen.task_views import TasksView, TaskView
 from mhri.core.screen.views import PanelView, RobotView, UNANSWERED
@@ -16,6 +17,9 @@ _GOES_ON = {'goto': 'goes on to its goal', 'return': 'goes on back',
 _ANEW = 'begins anew from where it stands'
 _ENDED = {'done': 'done', 'timeout': 'timed out', 'blocked': 'blocked', 'lost': 'lost',
           'taken_over': 'taken over', 'stopped': 'stopped', 'failed': 'failed'}
+# What is said of a task that begins ends so.
+STARTED = ' started'
+_ENDED_LINE = re.compile('([^:]+?) ({}): (.*)'.format('|'.join(_ENDED.values())))
 
 
 def task_line(task: TaskView) -> str:
@@ -55,6 +59,15 @@ def interrupted_line(label: str, key: str = '') -> str:
 def ended_line(label: str, state: str, text: str) -> str:
     """Return how a task ended, e.g. "square blocked: for 5 s: something is in its way"."""
     return '{} {}: {}'.format(label.lower(), _ENDED.get(state, state), text)
+
+
+def ended_as(line: str) -> Optional[Tuple[str, str, str]]:
+    """Return (label, state, text) of a line of :func:`ended_line`, None of any other."""
+    found = _ENDED_LINE.fullmatch(line)
+    if found is None:
+        return None
+    label, word, text = found.groups()
+    return label, next(state for state, said in _ENDED.items() if said == word), text
 
 
 def carry_on_line(key: str) -> str:

@@ -1,13 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Playing a session: where it is, how fast it goes, and the time that a screen of it counts by."""
-from typing import Callable
+from typing import Callable, Iterable, List, Tuple
 
 #: times as fast as it was
 SPEEDS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0)
 # A seek begins so long before its aim [s], so that what is silent then is known to be: longer than
 # a robot may be silent, and than a new stamp needs to be believed.
 RUN_UP_S = 1.5
+# Of what is older than that, so much [s] apart is told as of one time; so often at most.
+TOGETHER_S, MOST_GROUPS = 0.3, 6
 # Without a word of the player for so long [s], its time stands still.
 _TRUSTED_S = 0.5
 # After a jump back everything heard before is older than anything may be [s].
@@ -57,6 +59,25 @@ class Playing:
     def seek(self, position_s: float, now: float) -> None:
         """Go to a position in [0, length]; it plays on if it did."""
         self._position_s, self._since = min(max(0.0, position_s), self.length_s), now
+
+
+def age_groups(times: Iterable[float], begin: float) -> List[Tuple[float, List[int]]]:
+    """Return [(time, places in ``times``)]: what a screen is to hear as of when, the oldest first.
+
+    What was said a moment before ``begin`` counts as of then. Of what is older, several that fell
+    silent together are one group; of more than :data:`MOST_GROUPS` the oldest are one.
+
+    :param times: when each was said [s]
+    """
+    groups: List[Tuple[float, List[int]]] = []
+    for time_s, place in sorted((time_s, place) for place, time_s in enumerate(times)):
+        time_s = begin if begin - time_s < TOGETHER_S else time_s
+        if not groups or time_s - groups[-1][0] >= TOGETHER_S:
+            groups.append((time_s, []))
+        groups[-1][1].append(place)
+    while len(groups) > MOST_GROUPS:
+        groups[:2] = [(groups[1][0], groups[0][1] + groups[1][1])]
+    return groups
 
 
 def other_speed(speed: float, steps: int) -> float:

@@ -22,6 +22,8 @@ RUNNING, WAITING = 'running', 'waiting'
 DONE, TIMEOUT, BLOCKED, LOST = 'done', 'timeout', 'blocked', 'lost'
 TAKEN_OVER, STOPPED, FAILED = 'taken_over', 'stopped', 'failed'
 ENDS = (DONE, TIMEOUT, BLOCKED, LOST, TAKEN_OVER, STOPPED, FAILED)
+# After these a robot may be sent on.
+RESUMES = (TAKEN_OVER, STOPPED, LOST, BLOCKED, TIMEOUT)
 
 NOWHERE = np.zeros((0, 2))
 MOST_CORNERS = 1000

@@ -4,28 +4,69 @@
 from dataclasses import replace
 import os
 import socket
+import ssl
 import threading
 import time
 
-from mhri.core.doctor.facts import ANSWERS, KeysSeen, REFUSED, SILENT, UNRESOLVED
+from mhri.core.doctor.facts import (
+    ANSWERS, EARLY, KeysSeen, REFUSED, RUN_OUT, SILENT, UNRESOLVED, UNTIMELY, UNWELCOME)
 
 # Through which the authority's own computer is known.
 _AUTHORITY = '~/.config/mhri/authority/authority.pem'
 _ASK_S = 0.8
+_IMPORTING = threading.Lock()
+# What OpenSSL says of another end's certificate (X509_V_ERR_...), and that end of the own one.
+_THEIRS = {9: EARLY, 10: RUN_OUT, 7: UNWELCOME, 19: UNWELCOME, 20: UNWELCOME, 21: UNWELCOME}
+_OURS = (('CERTIFICATE_EXPIRED', UNTIMELY), ('UNKNOWN_CA', UNWELCOME), ('DECRYPT_ERROR', UNWELCOME))
+
+
+def taken(connection, folder):
+    """Return how another end takes the key here, and this one its key; :data:`ANSWERS` for well.
+
+    :param connection: a socket that is connected to it, with a timeout
+    :param folder: with the keys of this computer
+    """
+    own, its_key, authority = (os.path.join(folder, name)
+                               for name in ('own.pem', 'own.key', 'authority.pem'))
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    # The name in a certificate is that of the robot, not its address.
+    context.check_hostname = False
+    try:
+        context.load_cert_chain(own, its_key)
+        context.load_verify_locations(authority)
+        with context.wrap_socket(connection) as secured:
+            # Whether the key here is taken comes a moment later.
+            secured.recv(1)
+    except ssl.SSLCertVerificationError as error:
+        return _THEIRS.get(error.verify_code, ANSWERS)
+    except ssl.SSLError as error:
+        return next((found for words, found in _OURS if words in str(error.reason)), ANSWERS)
+    except OSError:
+        pass  # it says nothing: it waits for us
+    return ANSWERS
+
+
+def _keys_there():
+    """Return (the module of the keys, the folder with those of this computer or '')."""
+    # Slow to import: only where there are links. Not by two threads at once: one might get half.
+    with _IMPORTING:
+        from mhri.ros.link import key_folder
+    return key_folder, key_folder.find_folder(key_folder.AUTO) or ''
 
 
 class LinkLook:
     """Asks the ends of the links that hear nobody, and looks at the keys; returns at once.
 
     :param notes: the :class:`mhri.core.doctor.facts.LinkNote` of this computer
+    :param ask_s: how long each may take to answer [s]
     """
 
-    def __init__(self, notes):
-        self._notes = list(notes)
+    def __init__(self, notes, ask_s=_ASK_S):
+        self._notes, self._ask_s = list(notes), ask_s
         self._reach, self._keys, self._threads = {}, KeysSeen(), []
         for note in self._notes:
             if note.heard != 'yes' and note.endpoint.partition('/')[0] not in ('udp', 'quic'):
-                self._start(self._knock, note.endpoint)
+                self._start(self._knock, note.endpoint, note.secret)
         if self._notes:
             self._start(self._look_at_keys)
 
@@ -41,14 +82,20 @@ class LinkLook:
         for thread in self._threads:
             thread.join(max(0.0, deadline - time.monotonic()))
         reach = dict(self._reach)
+        if self._keys.problem:
+            # Then that is what the robots say.
+            reach.update({end: ANSWERS for end, found in reach.items() if found == UNTIMELY})
         return tuple(replace(note, reach=reach.get(note.endpoint, '')) for note in self._notes), \
             self._keys
 
-    def _knock(self, endpoint):
+    def _knock(self, endpoint, secret):
         host, _, port = endpoint.rpartition('/')[2].rpartition(':')
         try:
-            socket.create_connection((host.strip('[]'), int(port)), _ASK_S).close()
-            self._reach[endpoint] = ANSWERS
+            with socket.create_connection((host.strip('[]'), int(port)), self._ask_s) as connection:
+                self._reach[endpoint] = ANSWERS
+                folder = _keys_there()[1] if secret else None
+                if folder:
+                    self._reach[endpoint] = taken(connection, folder)
         except ConnectionRefusedError:
             self._reach[endpoint] = REFUSED
         except (socket.gaierror, UnicodeError):
@@ -57,14 +104,12 @@ class LinkLook:
             self._reach[endpoint] = SILENT
 
     def _look_at_keys(self):
-        # Slow to import: only where there are links.
-        from mhri.core.link.keys import KeysError
-        from mhri.ros.link.key_folder import AUTO, find_folder, KeyFolder
-        folder, problem = find_folder(AUTO) or '', ''
+        key_folder, folder = _keys_there()
+        problem = ''
         authority = os.path.exists(os.path.expanduser(_AUTHORITY)) and not folder
         if folder:
             try:
-                KeyFolder(folder, 'host', '').read()
-            except (KeysError, OSError) as error:
+                key_folder.KeyFolder(folder, 'host', '').read()
+            except (key_folder.KeysError, OSError) as error:
                 problem = str(error)
         self._keys = KeysSeen(folder, problem, authority)

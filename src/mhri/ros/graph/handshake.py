@@ -19,7 +19,11 @@ import struct
 import threading
 import time
 
-from rospy.impl import tcpros_base
+import rospy
+from rospy.exceptions import TransportInitError
+from rospy.impl import tcpros_base, tcpros_pubsub
+
+from mhri.ros.graph.rospy_inside import meet_publishers
 
 LIMIT_S = 10.0
 # A header is a few hundred bytes. One that claims more is no header: "GET " is 541 million.
@@ -27,6 +31,8 @@ MOST_BYTES = 64 * 1024
 # Threads that wait at a time; beyond that the one that has waited longest must go.
 MOST_WAITING = 32
 _LOOK_AGAIN_S = 0.01
+# A publisher that did not answer is called again after this [s].
+_CALL_AGAIN_S = 1.0
 _LENGTH = struct.Struct('<I')
 _LOG = logging.getLogger('rosout')
 
@@ -39,16 +45,20 @@ def _check():
     accepts = getattr(getattr(tcpros_base, 'TCPServer', None), 'run', None)
     reads = getattr(getattr(tcpros_base, 'TCPROSServer', None), '_tcp_server_callback', None)
     header = getattr(getattr(tcpros_base, 'TCPROSTransport', None), 'read_header', None)
-    wanted = ((accepts, ('self',), {'accept', 'inbound_handler'}),
+    connects = getattr(tcpros_pubsub, 'robust_connect_subscriber', None)
+    wanted = ((connects, ('conn', 'dest_addr', 'dest_port', 'pub_uri', 'receive_cb',
+                          'resolved_topic_name'), {'connect', 'receive_loop'}),
+              (accepts, ('self',), {'accept', 'inbound_handler'}),
               (header, ('self',), {'read_buff', 'read_ros_handshake_header'}),
               (reads, ('self', 'sock', 'client_addr'), {'read_ros_handshake_header'}))
     for function, arguments, used in wanted:
         code = getattr(function, '__code__', None)
         if code is None or code.co_varnames[:code.co_argcount] != arguments \
                 or not used <= set(code.co_names):
-            raise ImportError('rospy.impl.tcpros_base is not that of ROS Noetic (TCPServer.run, '
-                              'TCPROSServer._tcp_server_callback or TCPROSTransport.read_header): '
-                              'mhri.ros.graph.handshake has to be adapted to it')
+            raise ImportError('rospy.impl is not that of ROS Noetic (TCPServer.run, TCPROSServer.'
+                              '_tcp_server_callback, TCPROSTransport.read_header or '
+                              'robust_connect_subscriber): mhri.ros.graph.handshake has to be '
+                              'adapted to it')
 
 
 _check()
@@ -140,22 +150,40 @@ def _header_problem(connection, deadline):
 
 
 def _begin_headers_afresh():
-    """Let a reconnected transport forget the bytes of the connection before."""
+    """Let a transport forget the bytes of the connection before, and wait so long for new ones."""
     read = tcpros_base.TCPROSTransport.read_header
 
     def read_header(self):
         """Read the header of a connection, and nothing that came before it."""
         self.read_buff.seek(0)
         self.read_buff.truncate()
+        problem = _header_problem(self.socket, time.monotonic() + LIMIT_S)
+        if problem:
+            self.mhri_unanswered = True
+            self.close()
+            raise TransportInitError(problem)
         read(self)
     tcpros_base.TCPROSTransport.read_header = read_header
+
+
+def _call_again():
+    """Let a publisher that took a connection and did not answer be called again."""
+    connect = tcpros_pubsub.robust_connect_subscriber
+
+    def robust_connect_subscriber(conn, dest_addr, dest_port, pub_uri, receive_cb, topic):
+        """Connect and receive; rospy's thread for one publisher of one topic."""
+        connect(conn, dest_addr, dest_port, pub_uri, receive_cb, topic)
+        if getattr(conn, 'mhri_unanswered', False) and not rospy.is_shutdown():
+            time.sleep(_CALL_AGAIN_S)
+            meet_publishers(topic, [pub_uri])
+    tcpros_pubsub.robust_connect_subscriber = robust_connect_subscriber
 
 
 def limit_handshakes():
     """Allow every connection to this process's TCPROS port :data:`LIMIT_S` for its header.
 
-    The process's own connections begin each header afresh. Call it before or after
-    ``rospy.init_node``; further calls do nothing.
+    The process's own connections begin each header afresh, and wait for it so long. Call it before
+    or after ``rospy.init_node``; further calls do nothing.
     """
     server_class = tcpros_base.TCPROSServer
     read = server_class._tcp_server_callback
@@ -170,6 +198,7 @@ def limit_handshakes():
     callback.limited = True
     server_class._tcp_server_callback = callback
     _begin_headers_afresh()
+    _call_again()
     running = tcpros_base._tcpros_server
     if running is not None and running.tcp_ros_server is not None:
         # In rqt another plugin may have started the server, which keeps its first callback.

@@ -11,14 +11,18 @@ import threading
 import rospkg
 
 from mhri.core.link.carried import COMMAND, key_of, PICTURE
-from mhri.core.link.keys import ALONE, TLS
+from mhri.core.link.keys import ALONE, called, LITTLE, says_all, TLS
 from mhri.core.link.records import RECORD
+from mhri.core.link.sealed import OFFER
+from mhri.ros.link.datagrams import open_port
 
 # utils/host/common.sh installs it.
 VERSION = '1.5.1'
 ENDPOINT = re.compile(r'(tcp|udp|tls|quic)/(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9.-]+):[0-9]{1,5}\Z')
 # A peer that says nothing for so long is gone; knocks at one that is not there yet [ms].
 _LEASE_MS, _KNOCK_MS, _KNOCK_MOST_MS, _OPEN_MS = 1500, 200, 1000, 1000
+# Beside datagrams TLS has the time for repeating what a bad radio loses: their keys need it.
+_LONG_LEASE_MS, _LONG_OPEN_MS = 5000, 4000
 
 
 class LibraryMissing(Exception):
@@ -77,11 +81,12 @@ class Carrier:
     :param secrets: settings of zenoh for keys, see :meth:`mhri.ros.link.key_folder.KeyFolder.read`;
         None for a link without
     :param place: ``peer``; ``routed`` if what is called is a zenoh router; or ``router`` itself
+    :param own: the name in the own key: between peers that have one sealed datagrams go, too
     :raises LibraryMissing: see :func:`load_library`
     :raises CarrierError: an endpoint cannot be listened on
     """
 
-    def __init__(self, listen=(), connect=(), secrets=None, place='peer'):
+    def __init__(self, listen=(), connect=(), secrets=None, place='peer', own=''):
         check_endpoints('listen', listen, secrets is not None)
         check_endpoints('connect', connect, secrets is not None)
         self._zenoh = load_library()
@@ -91,6 +96,8 @@ class Carrier:
         # What to declare anew: {key: its publisher and its class}, [(keys, function, subscriber)].
         self._publishers = {}
         self._kept = []
+        self._own = own
+        self._datagrams = open_port(listen, connect) if own and place == 'peer' else None
         self._open(secrets)
 
     def _open(self, secrets):
@@ -105,7 +112,8 @@ class Carrier:
             'scouting/multicast/enabled': False,
             'scouting/gossip/enabled': self._place != 'peer',
             'scouting/gossip/autoconnect': {'router': [], 'peer': []},
-            'transport/unicast/open_timeout': _OPEN_MS, 'transport/link/tx/lease': _LEASE_MS,
+            'transport/unicast/open_timeout': _LONG_OPEN_MS if self._datagrams else _OPEN_MS,
+            'transport/link/tx/lease': _LONG_LEASE_MS if self._datagrams else _LEASE_MS,
             'transport/link/protocols': list(ALONE if secrets is None else TLS)}
         settings.update(secrets or {})
         config = self._zenoh.Config()
@@ -132,6 +140,8 @@ class Carrier:
             session, self._session = self._session, None
             self._publishers = {key: (None, urgency)
                                 for key, (_, urgency) in self._publishers.items()}
+        if self._datagrams is not None:
+            self._datagrams.forget()
         if session is not None:
             session.close()
         self._open(secrets)
@@ -174,8 +184,24 @@ class Carrier:
         """Return what carries the link of a robot with one host."""
         return Between(self, robot, host)
 
+    def way(self, *words):
+        """Return a :class:`mhri.ros.link.datagrams.Way`, None where there are no datagrams."""
+        return self._datagrams and self._datagrams.way(*words)
+
+    def fill(self, status):
+        """Add the figures of the datagrams to a ``DiagnosticStatusWrapper``."""
+        if self._datagrams is not None:
+            self._datagrams.fill(status)
+        return status
+
+    def lets(self, host, topic):
+        """Tell whether a host may say something to the robot here, as zenoh does for TLS."""
+        return topic in LITTLE or says_all(self._own, host)
+
     def close(self):
         """Hang up."""
+        if self._datagrams is not None:
+            self._datagrams.close()
         with self._lock:
             session, self._session = self._session, None
             self._publishers = {key: (None, urgency)
@@ -189,12 +215,33 @@ class Between:
 
     def __init__(self, carrier, robot, host):
         self._carrier, self._robot, self._host = carrier, robot, host
+        self._way = None
 
     def sender(self, way, topic, urgency):
         """Return a function that sends bytes as a stream's next message."""
-        return self._carrier.sender(key_of(self._robot, self._host, way, topic), urgency)
+        send = self._carrier.sender(key_of(self._robot, self._host, way, topic), urgency)
+
+        def go(data):
+            """Send by a sealed datagram where those pass."""
+            if self._way is None or not self._way.send(topic, data):
+                send(data)
+        return go
 
     def listen(self, way, on_bytes):
-        """Call a function with (topic, bytes) of all that comes on a way, on zenoh's thread."""
+        """Call a function with (topic, bytes) of all that comes on a way, on another thread."""
         root = key_of(self._robot, self._host, way, '')
-        self._carrier.listen(root + '**', lambda key, data: on_bytes(key[len(root):], data))
+        back = key_of(self._robot, self._host, 'up' if way == 'down' else 'down', OFFER)
+        self._way = self._carrier.way(
+            '{} with {}'.format(self._robot, called(self._host)),
+            self._carrier.sender(back, COMMAND),
+            lambda topic: way == 'up' or self._carrier.lets(self._host, topic))
+        if self._way is not None:
+            self._way.listen(on_bytes)
+
+        def hear(key, data):
+            """Take in what came over TLS, or without keys."""
+            if key[len(root):] != OFFER:
+                on_bytes(key[len(root):], data)
+            elif self._way is not None:
+                self._way.on_offer(data)
+        self._carrier.listen(root + '**', hear)

@@ -11,7 +11,8 @@ from mhri.core.link.frames import FrameError, read_rows, unpack, unpack_beat
 from mhri.core.link.keys import called, is_host, may_drive, ROBOT, split
 from mhri.core.link.peer import BEAT_S
 from mhri.ros.link.robot_side import RobotSide
-from mhri.ros.link.side import BEAT, boot_clock, CONTROL
+from mhri.ros.link.clock import boot_clock
+from mhri.ros.link.side import BEAT, CONTROL
 
 # More hosts than this are not heard.
 MOST_HOSTS = 16

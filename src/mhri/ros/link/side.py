@@ -5,7 +5,6 @@ import collections
 from dataclasses import replace
 import os
 import threading
-import time
 
 import rospy
 
@@ -15,6 +14,7 @@ from mhri.core.link.frames import (
     Beat, FrameError, Newest, pack, pack_beat, PIECE, PLAIN, Thinned, unpack, unpack_beat)
 from mhri.core.link.peer import BEAT_S, Peer
 from mhri.core.link.pieces import Gathered
+from mhri.ros.link.clock import boot_clock
 
 # Streams of the link itself; no topic begins with an underscore.
 BEAT, ABOUT, CONTROL = '_beat', '_about', '_control'
@@ -30,11 +30,6 @@ def per_s(rows, now):
     # As many as are kept may be less than the while.
     took_s = now - rows[0][0] if len(rows) > _AGES // 2 else _TOLD_S
     return 1e-3 * sum(size for _, size in rows) / max(took_s, 0.1)
-
-
-def boot_clock():
-    """Return the seconds of a clock that goes on while the computer sleeps."""
-    return time.clock_gettime(time.CLOCK_BOOTTIME)
 
 
 class Side:

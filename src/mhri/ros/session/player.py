@@ -5,6 +5,7 @@
 Publishes every recorded topic with the bytes as they were, except velocities and requests
 (:func:`mhri.core.session.foreign.may_be_replayed`): nothing here can drive anything. Further
 interfaces: ``/mhri_replay/state`` (``mhri/ReplayState``, latched, 10 Hz while playing, on change),
+``/mhri_replay/heard`` (``std_msgs/UInt32``: the number of the state that a screen has heard),
 service ``/mhri_replay/control`` (``mhri/ControlReplay``). It serves the services by which a screen
 knows the drive and task services, and refuses whatever they are asked: a screen then believes what
 they said when it was recorded.
@@ -14,10 +15,11 @@ import threading
 import time
 
 import rospy
+from std_msgs.msg import UInt32
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 from mhri.core.session.foreign import may_be_replayed
-from mhri.core.session.playing import Playing, RUN_UP_S
+from mhri.core.session.playing import age_groups, Playing, RUN_UP_S
 from mhri.msg import ReplayState
 from mhri.ros.driving.in_force import STOP_SERVICE, TAKE_SERVICE
 from mhri.ros.tasks.tasks_client import SERVICE as TASKS_SERVICE
@@ -32,10 +34,12 @@ REPEAT_S = 0.5
 NEW_S = 2.0
 # A large one that is late by more is left out: the next one is due [s].
 LATE_S = 0.3
-# Messages of a topic may come so much later than the word of a jump [s].
-HEARD_S = 0.15
-# How much faster than in truth the run-up of a seek goes.
-RUN_UP_SPEED = 16.0
+# Messages of a topic may come so much later than the word of a jump [s], to a screen that says
+# nothing. One that says what it has heard is awaited for so long, and hears other topics as late.
+HEARD_S, MOST_HEARD_S, LEAST_LAG_S = 0.15, 2.0, 0.02
+# How much faster than in truth the run-up of a seek goes at most, and how much of the session
+# a screen may lag behind meanwhile [s].
+RUN_UP_SPEED, RUN_UP_LATE_S = 16.0, 0.3
 _LARGE = frozenset(('sensor_msgs/Image', 'sensor_msgs/CompressedImage', 'sensor_msgs/PointCloud2'))
 # Screens count the age of these by the session's own time: to repeat them would make them new.
 _AGED = frozenset(('nav_msgs/Odometry', 'turtlesim/Pose', 'mhri/GatesState'))
@@ -179,10 +183,13 @@ class Player:
         self._aim = 0.0
         self._jumps = 0
         self._told = None
+        self._number, self._lag_s, self._heard = 0, LEAST_LAG_S, threading.Event()
         self._coming = iter(())
         self._next = None
         self._stage, self._said = Stage(kept.bags.connections(), kept.prefix), Said()
         self._state = rospy.Publisher('/mhri_replay/state', ReplayState, queue_size=10, latch=True)
+        self._screen = rospy.Subscriber('/mhri_replay/heard', UInt32, self._on_heard,
+                                        queue_size=10, tcp_nodelay=True)
         self._services = [
             rospy.Service('/mhri_replay/control', ControlReplay, self._on_control),
             rospy.Service(STOP_SERVICE, SetBool, _no(SetBoolResponse)),
@@ -262,19 +269,23 @@ class Player:
     def _seek(self, position_s):
         """Go to a position: what was newest a moment before it, then, fast, what came since.
 
-        A screen hears of the jump first: by its clock everything from before is old then.
+        A screen hears of the jump first: by its clock everything from before is old then. What is
+        older is said as of when it was: its age is shown.
         """
         self._jumps += 1
         begin_s = max(0.0, position_s - RUN_UP_S)
-        self._tell(begin_s, RUN_UP_SPEED, False, position_s)
         self._stage.forget()
         self._said.forget()
         aim_ns, plays = self._ns(position_s), self._plays
         self._stage.go_to(aim_ns)
-        for recorded in self._bags.newest(self._ns(begin_s), _small(plays)):
-            self._say(recorded)
-        # By the clock of a screen this was said before what follows, even if it hears it late.
-        time.sleep(HEARD_S)
+        newest = self._bags.newest(self._ns(begin_s), _small(plays))
+        for at_s, places in age_groups([self._as_of(recorded, begin_s) for recorded in newest],
+                                       begin_s) or [(begin_s, [])]:
+            self._tell_heard(at_s, position_s)
+            for place in places:
+                self._say(newest[place])
+            # By the clock of a screen this was said before what follows, even if it hears it late.
+            time.sleep(self._tell_heard(at_s, position_s))
         self._run_up(begin_s, position_s)
         for recorded in self._bags.newest(aim_ns, lambda kind: plays(kind)
                                           and kind.kind in _LARGE):
@@ -285,14 +296,40 @@ class Player:
                 self._playing.seek(position_s, self._clock())
         self._told = None
 
-    def _run_up(self, begin_s, end_s):
-        """Play the moment before the aim of a seek, without pictures."""
+    def _as_of(self, recorded, begin_s):
+        """Return as of when a message counts that is the newest at the begin of a run-up [s]."""
+        if recorded.connection.latched or recorded.connection.kind not in _AGED:
+            return begin_s
+        return (recorded.time_ns - self._start_ns) / _NS
+
+    def _tell_heard(self, position_s, aim_s):
+        """Tell where it stands on its way, and wait until a screen has heard it.
+
+        :returns: how much longer to wait for what was said just before [s]
+        """
         begun = self._clock()
-        self._tell(begin_s, RUN_UP_SPEED, True, end_s)
+        self._heard.clear()
+        self._tell(position_s, 1.0, False, aim_s)
+        if self._state.get_num_connections() and self._screen.get_num_connections():
+            self._heard.wait(MOST_HEARD_S)
+            self._lag_s = max(LEAST_LAG_S, self._clock() - begun)
+            return self._lag_s
+        return HEARD_S
+
+    def _on_heard(self, message):
+        """Take in which word a screen has heard (on a ROS thread)."""
+        if message.data == self._number:
+            self._heard.set()
+
+    def _run_up(self, begin_s, end_s):
+        """Play the moment before the aim of a seek, without pictures; slower if screens are."""
+        begun = self._clock()
+        speed = max(1.0, min(RUN_UP_SPEED, RUN_UP_LATE_S / self._lag_s))
+        self._tell(begin_s, speed, True, end_s)
         for recorded in self._bags.after(self._ns(begin_s), _small(self._plays)):
             if recorded.time_ns > self._ns(end_s) or self._aim is not None:
                 return
-            due_s = ((recorded.time_ns - self._start_ns) / _NS - begin_s) / RUN_UP_SPEED
+            due_s = ((recorded.time_ns - self._start_ns) / _NS - begin_s) / speed
             wait_s = due_s - (self._clock() - begun)
             if wait_s > 0.002:
                 time.sleep(wait_s)
@@ -310,8 +347,10 @@ class Player:
     def _tell(self, position_s, speed, playing, aim_s=None):
         """Publish the state; ``aim_s`` is where it is on its way to, None while it is there."""
         self._told, self._told_at = playing if aim_s is None else None, self._clock()
+        self._number += 1
         self._state.publish(
-            session=self._kept.name, start=rospy.Time(*divmod(self._start_ns, _NS)),
+            number=self._number, session=self._kept.name,
+            start=rospy.Time(*divmod(self._start_ns, _NS)),
             length_s=self._playing.length_s, position_s=position_s, speed=speed, playing=playing,
             settled=aim_s is None, until_s=self._playing.length_s if aim_s is None else aim_s,
             jumps=self._jumps, asked=self._said.asked(self._ns(position_s)),

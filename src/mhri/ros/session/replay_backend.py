@@ -5,11 +5,13 @@ from dataclasses import replace
 import time
 
 import rospy
+from std_msgs.msg import UInt32
 
 from mhri.core.robots.link_quality import RecordedQuality
-from mhri.core.screen.views import ControlView, LIVE
-from mhri.core.session.lines import link_notes
+from mhri.core.screen.status import CALM
+from mhri.core.screen.views import ControlView, LIVE, PROOF_STOPPED, ROS_CONNECTED
 from mhri.core.session.playing import ReplayClock
+from mhri.core.session.recalled import Recalled
 from mhri.msg import ReplayState, RobotSelect
 from mhri.ros.graph.look import Found
 from mhri.ros.screen.backend import ScreenBackend
@@ -17,8 +19,9 @@ from mhri.ros.screen.seat import Seat
 from mhri.ros.worker import Worker
 from mhri.srv import ControlReplay
 
-ROBOTS_PARAMETER = '/mhri/replay/robots'
+ROBOTS_PARAMETER, DRIVEN_PARAMETER = '/mhri/replay/robots', '/mhri/replay/driven'
 CONTROL_SERVICE = '/mhri_replay/control'
+NOT_OURS = 'recorded by another program: who drove is not known'
 # The player reads its files before it says who was there.
 LOOK_S, PATIENCE_S = 0.2, 60.0
 
@@ -45,7 +48,9 @@ class ReplayBackend(ScreenBackend):
         clock = ReplayClock(time.monotonic)
         super().__init__(argv, Seat(), (clock, clock.wall))
         self._fleet.quality = RecordedQuality
-        self._link_notes = link_notes(lines)
+        self.recalled = Recalled(lines)
+        #: called, on a ROS thread, when the session jumps: what was heard before counts no more
+        self.on_jump = lambda: None
         self._selected = ()
         self._state = None
         self._topics = []
@@ -55,6 +60,8 @@ class ReplayBackend(ScreenBackend):
         super()._connect()
         if self._closing.is_set():
             return
+        self._heard = rospy.Publisher('/mhri_replay/heard', UInt32, queue_size=10,
+                                      tcp_nodelay=True)
         self._topics = [
             rospy.Subscriber('/mhri_replay/state', ReplayState, self._on_state, queue_size=10,
                              tcp_nodelay=True),
@@ -66,16 +73,21 @@ class ReplayBackend(ScreenBackend):
             if robots is not None:
                 self.selection.numbers.restore({name: number for name, number in robots.items()
                                                 if number})
+                self._gates.expected = rospy.get_param(DRIVEN_PARAMETER, True)
                 self._events.put(('found', Found(live=tuple(map(_Named, robots)),
                                                  facts=dict.fromkeys(robots))))
                 return
 
     def _on_state(self, state):
+        jumped = self._state is not None and self._state.jumps != state.jumps
         self._state = state
+        if jumped:
+            self.on_jump()
         if self._mux is not None:
             self._mux.tell(tuple(state.asked) or (0.0, 0.0), tuple(state.limits) or None)
         self.clock.hear(state.start.to_sec(), state.position_s, state.until_s,
                         state.speed if state.playing else 0.0, state.jumps)
+        self._heard.publish(state.number)
 
     def _on_selected(self, message):
         self._selected = tuple(message.robots)
@@ -102,14 +114,21 @@ class ReplayBackend(ScreenBackend):
     def view(self):
         """Return the :class:`PanelView` of this moment of the session."""
         self.selection.check(self._selected)
-        return super().view()
+        view = super().view()
+        if self._gates.expected or view.ros != ROS_CONNECTED:
+            return view
+        return replace(view, status=NOT_OURS, status_level=CALM)
 
     def _robot_view(self, name, selected):
         view = super()._robot_view(name, selected)
         now = self.clock.wall()
-        words = [words for at_s, words in self._link_notes.get(name, ()) if at_s <= now][-1:]
-        if view.link == LIVE and not view.slow and any(words):
-            return replace(view, note=words[0], slow=True)
+        proof = self.recalled.proof(name, now)
+        if proof is not None and (view.proof is None or proof.state == PROOF_STOPPED
+                                  or view.proof.state != proof.state):
+            view = replace(view, proof=proof)
+        words = self.recalled.link_note(name, now)
+        if view.link == LIVE and not view.slow and words:
+            return replace(view, note=words, slow=True)
         return view
 
     def _control(self):

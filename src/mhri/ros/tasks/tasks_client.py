@@ -100,6 +100,11 @@ class TasksClient:
                 _progress(message.result.robots),
                 message.status.status in (GoalStatus.PREEMPTED, GoalStatus.RECALLED))
 
+    def forget(self):
+        """Begin anew: what was heard before counts no more."""
+        with self._lock:
+            self._book = TaskBook()
+
     def view(self):
         """Return the :class:`mhri.core.screen.task_views.TasksView` of this moment."""
         now = self._clock()
