@@ -113,15 +113,15 @@ def test_what_is_written_can_be_read():
 
 def gaussians(**change):
     """Return a file of Gaussians that is wrong in one way."""
-    values = dict(dict(magic=0x11223344, sizes=(2, 2, 2), count=4 * 3 * 4 * 2), **change)
-    head = struct.pack('<4i', values['magic'], 4, 3, 4)
+    values = dict(dict(magic=0x11223344, streams=3, sizes=(2, 2, 2), count=4 * 3 * 4 * 2), **change)
+    head = struct.pack('<4i', values['magic'], 4, values['streams'], 4)
     return b's3\nendhdr\n' + head + struct.pack('<4i', *values['sizes'], values['count']) + bytes(
         4 * 4 * 3 * 4 * 2)
 
 
 BAD = {'nothing': b'', 'a text': b'hello', 'another order': gaussians(magic=0x44332211),
        'several sizes': gaussians(sizes=(2, 3, 2)), 'a wrong count': gaussians(count=5),
-       'cut off': gaussians()[:-8]}
+       'cut off': gaussians()[:-8], 'no streams': gaussians(streams=-1)}
 
 
 @WITH_MODEL

@@ -51,6 +51,8 @@ def read_gaussians(data: bytes, name: str) -> np.ndarray:
     if not mark or len(rest) < 32 or rest[:4] != b'\x44\x33\x22\x11':
         raise ModelError('{} is no file of Gaussians'.format(name))
     books, streams, densities = struct.unpack_from('<3i', rest, 4)
+    if not 0 < streams <= 4:
+        raise ModelError('{} has {} streams'.format(name, streams))
     sizes = struct.unpack_from('<{}i'.format(streams), rest, 16)
     at = 16 + 4 * streams
     count, = struct.unpack_from('<i', rest, at)
