@@ -264,7 +264,9 @@ class Recogniser:
         self._voice = voice
         self._spotting = self._wake_spotted = False
         with tempfile.TemporaryDirectory(prefix='mhri_voice_') as folder:
-            self._spotter = self._new_spotter(folder, grammar)
+            # A stop is heard as by anybody, too: of what one has learned, some is missed.
+            self._spotters = [self._new_spotter(folder, grammar, one)
+                              for one in sorted({'', voice})]
         self.set_grammar(grammar)
 
     def _rows(self, words, language):
@@ -277,8 +279,8 @@ class Recogniser:
             rows += [(word, sounds) for sounds in self._dictionary.spoken(word, language)]
         return rows
 
-    def _new_spotter(self, folder, grammar):
-        """Return the decoder that spots stops and wake words."""
+    def _new_spotter(self, folder, grammar, voice):
+        """Return a decoder that spots stops and wake words."""
         language, tuning = grammar.language, self._tuning
         path = os.path.join(folder, 'spotted.kws')
         with open(path, 'w', encoding='utf-8') as stream:
@@ -288,7 +290,7 @@ class Recogniser:
         words = sorted({word for phrase in language.stop + language.wake_words
                         for word in phrase.split()})
         return new_decoder(folder, self._rows(words, language), kws=path, remove_noise=False,
-                           beam=1e-100, pbeam=1e-100, mean=self._voice)
+                           beam=1e-100, pbeam=1e-100, mean=voice)
 
     def set_grammar(self, grammar):
         """Listen for other robots from the next utterance on; takes about 0.2 s.
@@ -316,7 +318,8 @@ class Recogniser:
     def begin(self, sound):
         """Begin an utterance with the sound that led to it; return as :meth:`go_on` does."""
         self.end()
-        self._spotter.start_utt()
+        for spotter in self._spotters:
+            spotter.start_utt()
         self._spotting, self._wake_spotted = True, False
         return self.go_on(sound)
 
@@ -326,29 +329,35 @@ class Recogniser:
         A wake word is told once for each utterance. Shorter than ``stop_frames`` it is no stop but
         a part of another word: "fastest" has one.
         """
-        self._spotter.process_raw(sound, False, False)
-        if self._spotter.hyp() is None:
+        heard = [self._spotted(spotter, sound) for spotter in self._spotters]
+        stops = [word for word in heard if word in self._language.stop]
+        if stops:
+            for spotter in self._spotters:
+                spotter.end_utt()
+                spotter.start_utt()
+        return next(filter(None, stops + heard), '')
+
+    def _spotted(self, spotter, sound):
+        """Return the stop or wake word that one of the spotters hears, or ''."""
+        spotter.process_raw(sound, False, False)
+        if spotter.hyp() is None:
             return ''
         parts = [(part.word.strip(), part.end_frame - part.start_frame)
-                 for part in self._spotter.seg()]
+                 for part in spotter.seg()]
         woken = [word for word, _ in parts if word in self._language.wake_words]
         if woken and not self._wake_spotted:
             # It does not begin anew: the end of a wake word is the beginning of the stop behind it.
             self._wake_spotted = True
             return woken[0]
-        stops = [word for word, frames in parts
-                 if word in self._language.stop and frames >= self._tuning.stop_frames]
-        if not stops:
-            return ''
-        self._spotter.end_utt()
-        self._spotter.start_utt()
-        return stops[0]
+        return next((word for word, frames in parts if word in self._language.stop
+                     and frames >= self._tuning.stop_frames), '')
 
     def end(self):
         """End the utterance for the spotter."""
         if self._spotting:
             self._spotting = False
-            self._spotter.end_utt()
+            for spotter in self._spotters:
+                spotter.end_utt()
 
     # The command, when it has been spoken.
 
