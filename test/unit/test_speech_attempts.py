@@ -6,7 +6,7 @@ import pytest
 from mhri.core.voice.attempts import Attempts, ATTEMPTS, LONGEST_S, RECENT_S
 from mhri.core.voice.speech import Heard, NO_COMMAND, NOT_SURE
 
-TOLD = 'not understood 3 times: speak slower and close to the microphone, or '
+TOLD = 'not understood 3 times: speak slower and close to the microphone, '
 UNSURE = Heard('robot drive forward', 'forward', False, NOT_SURE, 0.2)
 ATTEMPT = UNSURE, 1.5, 2.0, False
 
@@ -24,13 +24,14 @@ def say(*attempts):
 
 def test_the_third_in_a_row_says_what_to_do():
     assert say(*[ATTEMPT] * (ATTEMPTS - 1)) == NOT_SURE
-    assert say(*[ATTEMPT] * ATTEMPTS) == TOLD + 'hold push-to-talk'
-    assert say(*[ATTEMPT] * (ATTEMPTS + 2)) == TOLD + 'hold push-to-talk'
+    for more in (0, 2):
+        assert say(*[ATTEMPT] * (ATTEMPTS + more)) == (
+            TOLD + 'hold push-to-talk, or teach it your voice')
 
 
 def test_who_holds_push_to_talk_is_not_told_to():
     held = UNSURE, 1.5, 2.0, True
-    assert say(ATTEMPT, ATTEMPT, held) == TOLD + 'drive another way'
+    assert say(ATTEMPT, ATTEMPT, held) == TOLD + 'drive another way, or teach it your voice'
 
 
 def test_what_fits_no_command_counts_as_well():
@@ -60,3 +61,10 @@ def test_clear_forgets():
         attempts.judge(UNSURE, 1.0, 5.0, False)
     attempts.clear()
     assert attempts.judge(UNSURE, 1.0, 5.0, False).reason == NOT_SURE
+
+
+def test_whose_voice_was_taught_is_not_told_to_teach_it():
+    attempts = Attempts()
+    for _ in range(ATTEMPTS):
+        heard = attempts.judge(UNSURE, 1.5, 5.0, False, taught=True)
+    assert heard.reason == TOLD + 'or hold push-to-talk'

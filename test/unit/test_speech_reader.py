@@ -177,6 +177,23 @@ def test_orders_come_in_lines():
         orders.take()
 
 
+def test_another_voice_begins_anew(desk):
+    desk.reader.want_voice('ann')
+    with pytest.raises(DeviceLost):
+        desk.reader.read(0.0)
+
+
+def test_a_voice_that_nobody_taught_is_named_with_the_remedy(monkeypatch, tmp_path):
+    monkeypatch.setenv('ROS_HOME', str(tmp_path))
+    reader = VoiceReader(parse_language(PATH.read_text(), str(PATH)), str(PATH), None, None)
+    reader.want_voice('ann')
+    with pytest.raises(DeviceAbsent, match='rosrun mhri mhri_voice_teach ann'):
+        reader.open()
+    reader.want_voice('../ann')
+    with pytest.raises(DeviceAbsent, match='~voice: expected a name of letters'):
+        reader.open()
+
+
 def test_without_pocketsphinx_or_its_model(monkeypatch, tmp_path):
     """The message names the package."""
     assert listening.missing() == ''
@@ -205,7 +222,7 @@ def test_a_voice_that_is_not_understood_is_told_what_to_do(desk):
     for _ in range(3):
         desk.ended('robot drive forward', 0.2)
     assert desk.heard[-1].reason.startswith('not understood 3 times: speak slower')
-    assert desk.heard[-1].reason.endswith('hold push-to-talk')
+    assert desk.heard[-1].reason.endswith('hold push-to-talk, or teach it your voice')
     desk.ended('robot drive forward')
     desk.ended('robot drive forward', 0.2)
     assert desk.heard[-1].reason == 'not sure enough', 'one that was understood begins anew'
@@ -215,4 +232,4 @@ def test_who_holds_push_to_talk_is_told_something_else(desk):
     for _ in range(3):
         desk.reader.push_to_talk(True)
         desk.ended('drive forward', 0.1)
-    assert desk.heard[-1].reason.endswith('or drive another way')
+    assert desk.heard[-1].reason.endswith('drive another way, or teach it your voice')

@@ -7,8 +7,8 @@ run, and the zero that ends a spoken motion must not wait for that. So it has a 
 which :class:`mhri.inputs.voice.VoiceReader` begins and ends.
 
 It reads orders and writes events, both as JSON, one a line. The first order is ``{"source": text,
-"language": path, "robots": [names]}``, later ones ``{"robots": [names]}``; where the orders end, so
-does the process. Events are ``{"kind": ...}`` with one of these kinds:
+"language": path, "robots": [names], "voice": path or ""}``, later ones ``{"robots": [names]}``;
+where the orders end, so does the process. Events are ``{"kind": ...}`` with one of these kinds:
 
 - ``open`` (``device``, ``notes``, ``robots``, ``words``), again after each change of the robots
 - ``absent`` or ``lost`` (``reason``): the process ends
@@ -22,6 +22,7 @@ import select
 import sys
 
 from mhri.core.config import ConfigError
+from mhri.core.voice.adaptation import ModelError
 from mhri.core.voice.sound import MODEL
 from mhri.core.voice.language import parse_language
 from mhri.inputs.audio import open_source
@@ -70,11 +71,14 @@ def begin(first, say):
     # Only now: loading takes a second of a core, and a microphone is looked for once a second.
     from mhri.inputs.recogniser import RecogniserError
     from mhri.inputs.session import Session
+    from mhri.inputs.teaching import check_voice
     try:
         with open(first['language'], encoding='utf-8') as stream:
             language = parse_language(stream.read(), first['language'])
-        return Session(language, source, device, first['robots'], say)
-    except (RecogniserError, ConfigError, OSError) as reason:
+        if first['voice']:
+            check_voice(first['voice'])
+        return Session(language, source, device, first['robots'], first['voice'], say)
+    except (RecogniserError, ConfigError, ModelError, OSError) as reason:
         source.close()
         raise DeviceAbsent(str(reason))
 

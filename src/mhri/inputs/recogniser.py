@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mhri.core.voice.sound import MODEL
+from mhri.core.voice.sound import MODEL, SOUNDS
 
 try:
     import pocketsphinx
@@ -192,6 +192,18 @@ class Dictionary:
         self._read()
         return self._sounds.get(word, [])
 
+    def spoken(self, word, language):
+        """Return the ways in which a word is spoken: the language's own come first.
+
+        :raises RecogniserError: it has none
+        """
+        ways = list(language.pronunciations.get(word, ())) or self.sounds(word)
+        if not ways:
+            raise RecogniserError('the word "{}" of the voice language {} is not in the '
+                                  'dictionary: give its sounds below pronunciations'.format(
+                                      word, language.name))
+        return ways
+
     def phones(self):
         """Return every sound of the language, sorted."""
         self._read()
@@ -199,8 +211,12 @@ class Dictionary:
                        for phone in way.split()})
 
 
-def _decoder(folder, rows, **settings):
-    """Return a decoder with a dictionary of some rows (word, sounds)."""
+def new_decoder(folder, rows, **settings):
+    """Return a decoder of pocketsphinx with a dictionary of some rows (word, sounds).
+
+    :param folder: for its files, needed no longer than this takes
+    :param settings: options of pocketsphinx; an empty text counts as not given
+    """
     path = os.path.join(folder, 'words.dict')
     with open(path, 'w', encoding='utf-8') as stream:
         counts = {}
@@ -209,8 +225,9 @@ def _decoder(folder, rows, **settings):
             number = '({})'.format(counts[word]) if counts[word] > 1 else ''
             stream.write('{}{} {}\n'.format(word, number, sounds))
     config = pocketsphinx.Decoder.default_config()
-    texts = {'-hmm': os.path.join(MODEL, 'en-us'), '-dict': path, '-logfn': os.devnull}
-    texts.update({'-' + key: value for key, value in settings.items() if isinstance(value, str)})
+    texts = {'-hmm': SOUNDS, '-dict': path, '-logfn': os.devnull}
+    texts.update({'-' + key: value for key, value in settings.items()
+                  if isinstance(value, str) and value})
     for key, value in texts.items():
         config.set_string(key, value)
     # The endpointer has cut the sound already.
@@ -226,7 +243,7 @@ def _decoder(folder, rows, **settings):
         return pocketsphinx.Decoder(config)
     except RuntimeError as error:
         raise RecogniserError('pocketsphinx does not take its model {}: {}; {}'.format(
-            MODEL, error, _REMEDY))
+            ' with '.join(filter(None, (SOUNDS, settings.get('mean')))), error, _REMEDY))
 
 
 class Recogniser:
@@ -234,18 +251,22 @@ class Recogniser:
 
     :param grammar: :class:`mhri.core.voice.grammar.Grammar`
     :param dictionary: :class:`Dictionary`
+    :param voice: path of a voice that was taught, see :mod:`mhri.inputs.teaching`; '': any voice
     :raises RecogniserError: pocketsphinx or its model is missing
     """
 
-    def __init__(self, grammar, dictionary, tuning=Tuning()):
+    def __init__(self, grammar, dictionary, tuning=Tuning(), voice=''):
         if pocketsphinx is None:
             raise RecogniserError('pocketsphinx cannot be loaded ({}); {}'.format(
                 IMPORT_PROBLEM, _REMEDY))
         self._dictionary = dictionary
         self._tuning = tuning
+        self._voice = voice
         self._spotting = self._wake_spotted = False
         with tempfile.TemporaryDirectory(prefix='mhri_voice_') as folder:
-            self._spotter = self._new_spotter(folder, grammar)
+            # A stop is heard as by anybody, too: of what one has learned, some is missed.
+            self._spotters = [self._new_spotter(folder, grammar, one)
+                              for one in sorted({'', voice})]
         self.set_grammar(grammar)
 
     def _rows(self, words, language):
@@ -255,16 +276,11 @@ class Recogniser:
         """
         rows = []
         for word in words:
-            ways = list(language.pronunciations.get(word, ())) or self._dictionary.sounds(word)
-            if not ways:
-                raise RecogniserError('the word "{}" of the voice language {} is not in the '
-                                      'dictionary: give its sounds below pronunciations'.format(
-                                          word, language.name))
-            rows += [(word, sounds) for sounds in ways]
+            rows += [(word, sounds) for sounds in self._dictionary.spoken(word, language)]
         return rows
 
-    def _new_spotter(self, folder, grammar):
-        """Return the decoder that spots stops and wake words."""
+    def _new_spotter(self, folder, grammar, voice):
+        """Return a decoder that spots stops and wake words."""
         language, tuning = grammar.language, self._tuning
         path = os.path.join(folder, 'spotted.kws')
         with open(path, 'w', encoding='utf-8') as stream:
@@ -273,8 +289,8 @@ class Recogniser:
                 stream.writelines('{} /{:g}/\n'.format(phrase, threshold) for phrase in phrases)
         words = sorted({word for phrase in language.stop + language.wake_words
                         for word in phrase.split()})
-        return _decoder(folder, self._rows(words, language), kws=path, remove_noise=False,
-                        beam=1e-100, pbeam=1e-100)
+        return new_decoder(folder, self._rows(words, language), kws=path, remove_noise=False,
+                           beam=1e-100, pbeam=1e-100, mean=voice)
 
     def set_grammar(self, grammar):
         """Listen for other robots from the next utterance on; takes about 0.2 s.
@@ -289,8 +305,8 @@ class Recogniser:
             # compallsen: only so are the scores of two searches comparable. topn: more of the
             # model's densities than usual, which helps in noise. The beams: what was said must not
             # be lost early where the voice is unlike those of the model.
-            decoder = _decoder(folder, rows, compallsen=True, cmn='batch', topn=8, beam=1e-120,
-                               wbeam=1e-100, pbeam=1e-120)
+            decoder = new_decoder(folder, rows, compallsen=True, cmn='batch', topn=8, beam=1e-120,
+                                  wbeam=1e-100, pbeam=1e-120, mean=self._voice)
         decoder.set_jsgf_string(_COMMAND, grammar.jsgf())
         decoder.set_jsgf_string(_FILLER, '#JSGF V1.0;\ngrammar filler;\npublic <any> = ({})+;\n'
                                 .format(loop))
@@ -302,7 +318,8 @@ class Recogniser:
     def begin(self, sound):
         """Begin an utterance with the sound that led to it; return as :meth:`go_on` does."""
         self.end()
-        self._spotter.start_utt()
+        for spotter in self._spotters:
+            spotter.start_utt()
         self._spotting, self._wake_spotted = True, False
         return self.go_on(sound)
 
@@ -312,29 +329,35 @@ class Recogniser:
         A wake word is told once for each utterance. Shorter than ``stop_frames`` it is no stop but
         a part of another word: "fastest" has one.
         """
-        self._spotter.process_raw(sound, False, False)
-        if self._spotter.hyp() is None:
+        heard = [self._spotted(spotter, sound) for spotter in self._spotters]
+        stops = [word for word in heard if word in self._language.stop]
+        if stops:
+            for spotter in self._spotters:
+                spotter.end_utt()
+                spotter.start_utt()
+        return next(filter(None, stops + heard), '')
+
+    def _spotted(self, spotter, sound):
+        """Return the stop or wake word that one of the spotters hears, or ''."""
+        spotter.process_raw(sound, False, False)
+        if spotter.hyp() is None:
             return ''
         parts = [(part.word.strip(), part.end_frame - part.start_frame)
-                 for part in self._spotter.seg()]
+                 for part in spotter.seg()]
         woken = [word for word, _ in parts if word in self._language.wake_words]
         if woken and not self._wake_spotted:
             # It does not begin anew: the end of a wake word is the beginning of the stop behind it.
             self._wake_spotted = True
             return woken[0]
-        stops = [word for word, frames in parts
-                 if word in self._language.stop and frames >= self._tuning.stop_frames]
-        if not stops:
-            return ''
-        self._spotter.end_utt()
-        self._spotter.start_utt()
-        return stops[0]
+        return next((word for word, frames in parts if word in self._language.stop
+                     and frames >= self._tuning.stop_frames), '')
 
     def end(self):
         """End the utterance for the spotter."""
         if self._spotting:
             self._spotting = False
-            self._spotter.end_utt()
+            for spotter in self._spotters:
+                spotter.end_utt()
 
     # The command, when it has been spoken.
 

@@ -16,18 +16,19 @@ class Session:
     :param source: of :mod:`mhri.inputs.audio`, open
     :param device: its name
     :param robots: names in the panel's order
+    :param voice: path of a voice that was taught, '' for any voice
     :param say: function that takes an event as a mapping, see :mod:`mhri.inputs.listening`
     :raises RecogniserError: speech cannot be recognised here
     """
 
-    def __init__(self, language, source, device, robots, say):
+    def __init__(self, language, source, device, robots, voice, say):
         self._language = language
         self._source = source
         self._device = device
         self._say = say
         self._dictionary = Dictionary()
         self._grammar = self._new_grammar(robots)
-        self._recogniser = Recogniser(self._grammar, self._dictionary)
+        self._recogniser = Recogniser(self._grammar, self._dictionary, voice=voice)
         self._listener = Listener(self._recogniser, self._is_stop)
         self._robots = None
         self._say_open()

@@ -11,6 +11,7 @@ import time
 from mhri.core.voice.attempts import Attempts
 from mhri.core.voice.speech import Heard, VoiceRules
 from mhri.core.voice.grammar import Command, Grammar, STOP
+from mhri.core.voice.teaching import voice_path, voice_problem
 from mhri.inputs import child
 from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader, Reading
 
@@ -35,6 +36,7 @@ class VoiceReader(Reader):
     def __init__(self, language, path, on_heard, on_act, clock=time.monotonic):
         self._path = path
         self._source = self._opened_source = ''
+        self._voice = self._opened_voice = ''
         self._on_heard = on_heard
         self._on_act = on_act
         self._clock = clock
@@ -59,6 +61,10 @@ class VoiceReader(Reader):
         """Listen to this, see :func:`mhri.inputs.audio.open_source`; '' is the microphone."""
         self._source = str(source)
 
+    def want_voice(self, name):
+        """Listen to the one whose voice was taught under this name; '' is anybody."""
+        self._voice = str(name)
+
     def set_robots(self, robots):
         """Listen for these robots, the names in the panel's order."""
         with self._lock:
@@ -79,6 +85,8 @@ class VoiceReader(Reader):
         """Begin to listen; see :meth:`Reader.open`."""
         self.close()
         self._opened_source = source = self._source
+        self._opened_voice = self._voice
+        voice = _voice_file(self._opened_voice)
         orders, self._orders = os.pipe()
         try:
             self._process = subprocess.Popen(
@@ -94,7 +102,8 @@ class VoiceReader(Reader):
             self._told = self._robots
         self._attempts.clear()
         self._held, self._last, self._woken = b'', None, False
-        self._order({'source': source, 'language': self._path, 'robots': self._told})
+        self._order({'source': source, 'language': self._path, 'robots': self._told,
+                     'voice': voice})
         return self._wait_open()
 
     def _wait_open(self):
@@ -116,7 +125,7 @@ class VoiceReader(Reader):
 
     def read(self, timeout_s):
         """Wait for what is heard; see :meth:`Reader.read`."""
-        if self._source != self._opened_source:
+        if (self._source, self._voice) != (self._opened_source, self._opened_voice):
             raise DeviceLost('something else is to be listened to')
         with self._lock:
             robots = self._robots
@@ -184,7 +193,8 @@ class VoiceReader(Reader):
             held = self._rules.talking(began)
         if heard.act is not None:
             self._on_act(heard.act)
-        self._on_heard(self._attempts.judge(heard, event['age_s'], now, held))
+        self._on_heard(self._attempts.judge(heard, event['age_s'], now, held,
+                                            bool(self._opened_voice)))
 
     def close(self):
         """End the process; see :meth:`Reader.close`."""
@@ -227,3 +237,20 @@ class VoiceReader(Reader):
                 self._process.wait()))
         *lines, self._held = (self._held + data).split(b'\n')
         return [json.loads(line.decode()) for line in lines]
+
+
+def _voice_file(name):
+    """Return the path of a voice that was taught, '' for nobody's.
+
+    :raises DeviceAbsent: there is none of that name
+    """
+    if not name:
+        return ''
+    problem = voice_problem(name)
+    if problem:
+        raise DeviceAbsent('~voice: ' + problem)
+    path = voice_path(name, os.environ)
+    if not os.path.exists(path):
+        raise DeviceAbsent('nobody has taught the voice {0}: rosrun mhri mhri_voice_teach {0}; or '
+                           'set ~voice to nothing'.format(name))
+    return path

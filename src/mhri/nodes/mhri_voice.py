@@ -9,6 +9,8 @@ those of :mod:`mhri.ros.voice.voice`. Parameters:
 - ``~source``: what to listen to: '' (default) the default microphone, ``microphone:<part of its
   name>``, ``<path>.wav``, the path of a FIFO with raw sound (16 kHz, mono, 16 bit little endian),
   or ``-``, the same from the standard input; takes effect within two seconds
+- ``~voice``: the operator, by the name given to ``mhri_voice_teach``; '' (default) for any voice;
+  takes effect within two seconds
 - ``~language``: a file below ``resource/voice`` without its ending, or a path (default: english)
 """
 import signal
@@ -45,6 +47,7 @@ def main():
     reader = VoiceReader(language, path, link.on_heard, link.on_act)
     node = InputNode(reader, '/mux_in/voice', '~set_suspended')
     LiveParameter('~source', '', reader.want_source, node.resumed).start()
+    LiveParameter('~voice', '', reader.want_voice, node.resumed).start()
     link.start(reader, node.resumed)
     node.start()
     rospy.spin()

@@ -12,7 +12,7 @@ ATTEMPTS = 3
 RECENT_S = 30.0
 # Longer than any command is spoken: that was talk.
 LONGEST_S = 4.0
-_WORDS = 'not understood {} times: speak slower and close to the microphone, or {}'
+_WORDS = 'not understood {} times: speak slower and close to the microphone, {}'
 
 
 class Attempts:
@@ -25,12 +25,14 @@ class Attempts:
         """Forget the attempts so far."""
         self._failed.clear()
 
-    def judge(self, heard: Heard, lasted_s: float, now: float, held: bool) -> Heard:
+    def judge(self, heard: Heard, lasted_s: float, now: float, held: bool,
+              taught: bool = False) -> Heard:
         """Return what was heard, its reason being what to do where nothing is understood.
 
         :param lasted_s: how long the utterance was [s]
         :param now: [s] of a clock that never goes back
         :param held: push-to-talk was held, which is no advice then
+        :param taught: the voice was taught, which is none either
         """
         if heard.reason not in UNCLEAR:
             self.clear()
@@ -41,4 +43,5 @@ class Attempts:
         if len(self._failed) < ATTEMPTS or now - self._failed[0] > RECENT_S:
             return heard
         other = 'drive another way' if held else 'hold push-to-talk'
+        other = 'or ' + other if taught else other + ', or teach it your voice'
         return replace(heard, reason=_WORDS.format(ATTEMPTS, other))

@@ -43,6 +43,8 @@ class Language:
     ``drive`` maps a direction to (verbs, words), ``manner`` a manner to its phrases, ``robots`` an
     action on robots to its phrases, ``requests`` a wish to the panel, ``sources`` a source of
     ``mux.yaml``. ``pronunciations`` maps a word to the sounds it is spoken with (CMU phones).
+    ``teach`` is what an operator reads so that the voice is known, ``teach_check`` what shows
+    whether it is.
     """
 
     name: str
@@ -60,6 +62,8 @@ class Language:
     use: Tuple[str, ...]
     sources: Dict[str, Tuple[str, ...]]
     pronunciations: Dict[str, Tuple[str, ...]]
+    teach: Tuple[str, ...]
+    teach_check: Tuple[str, ...]
     motion: Motion
     wake_window_s: float
     push_to_talk_s: float
@@ -88,6 +92,7 @@ def parse_language(text: str, origin: str) -> Language:
         requests=_table(section.section('requests'), REQUESTS), use=_phrases(section, 'use'),
         sources=_free_table(section, 'sources', _WORD_OR_PHRASE, 'lower-case words'),
         pronunciations=_free_table(section, 'pronunciations', _SOUNDS, 'CMU phones such as B AA T'),
+        teach=_phrases(section, 'teach', ()), teach_check=_phrases(section, 'teach_check', ()),
         motion=_motion(section.section('motion')),
         **_listening(section.section('listening')))
     section.close()

@@ -9,3 +9,5 @@ BLOCK_S = 0.02
 BLOCK_BYTES = int(RATE_HZ * BLOCK_S) * 2
 # The model of the recogniser, as Debian and Ubuntu install it (pocketsphinx-en-us).
 MODEL = '/usr/share/pocketsphinx/model/en-us'
+# Its sounds, of no voice in particular.
+SOUNDS = MODEL + '/en-us'

@@ -1,0 +1,59 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A voice that is not understood is taught: sentences read by espeak-ng into the program.
+
+A short language of the test's own, so that it takes seconds.
+"""
+import os
+from pathlib import Path
+import subprocess
+import sys
+
+import numpy as np
+import yaml
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support import speech  # noqa: E402
+
+from mhri.core.voice.grammar import Grammar  # noqa: E402
+from mhri.core.voice.language import parse_language  # noqa: E402
+from mhri.inputs.recogniser import Dictionary, Recogniser  # noqa: E402
+from mhri.inputs.teaching import check_voice  # noqa: E402
+
+REPO = Path(__file__).resolve().parents[2]
+# One of which pocketsphinx understands next to nothing.
+VOICE = speech.Voice('en-us+Annie', 150, 50)
+TEACH = ('robot turn right and go left a little', 'robot deselect bot one and the rover',
+         'start recording and stop recording again', 'four hours of steady work faced us')
+CHECK = ('robot left a little', 'robot record')
+LATER = ('robot go right', 'robot deselect rover', 'robot turn left')
+PATIENCE_S = 900.0
+
+
+def spoken(text, gain=1.0):
+    """Return a sentence in a quiet room."""
+    sound = speech.speak(text, VOICE) * gain
+    return speech.in_room(sound, np.random.RandomState(1), before_s=0.5, after_s=1.5)
+
+
+def test_a_voice_is_taught_and_understood(tmp_path):
+    path = tmp_path / 'short.yaml'
+    rows = yaml.safe_load((REPO / 'resource' / 'voice' / 'english.yaml').read_text())
+    path.write_text(yaml.safe_dump(dict(rows, teach=list(TEACH), teach_check=list(CHECK))))
+    sound = b''.join([spoken(TEACH[0], 30.0)] + [spoken(text) for text in TEACH + CHECK])
+    done = subprocess.run(
+        [sys.executable, str(REPO / 'scripts' / 'mhri_voice_teach'), 'annie', '--source', '-',
+         '--language', str(path)], input=sound, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        env=dict(os.environ, ROS_HOME=str(tmp_path)), timeout=PATIENCE_S, check=False)
+    output = done.stdout.decode()
+    assert done.returncode == 0, output
+    assert output.count('again: ') == 1 and 'again: too loud' in output
+    voice = tmp_path / 'mhri' / 'voices' / 'annie.means'
+    check_voice(str(voice))
+    dictionary = Dictionary()
+    grammar = Grammar(parse_language(path.read_text(), str(path)), ('bot1', 'rover'),
+                      dictionary.__contains__)
+    recogniser = Recogniser(grammar, dictionary, voice=str(voice))
+    heard = [recogniser.recognise(spoken(text)) for text in LATER]
+    assert [found and found.text for found in heard] == list(LATER)
