@@ -252,6 +252,17 @@ def test_a_narrow_screen_with_known_robots_begins_with_pictures(scene):
         assert screen.drawer_button.isChecked() != is_open, size
 
 
+def test_what_grows_in_the_drawer_does_not_close_it(scene):
+    made = scene(LARGE, 3)
+    made.screen.arrangement.begin_with_robots()
+    screen = made.show()
+    assert screen.drawer.isVisible()
+    screen.robots_side.setMinimumWidth(LARGE[0] // 2)
+    made.show()
+    assert screen.splitter.sizes()[0] >= LARGE[0] // 2
+    assert screen.drawer.isVisible()
+
+
 @pytest.mark.parametrize('count', [3, 12])
 def test_the_stick_floats_over_the_large_picture_alone(scene, count):
     made = scene(SMALL, count)

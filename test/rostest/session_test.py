@@ -12,6 +12,7 @@ import tempfile
 import time
 import unittest
 
+from nav_msgs.msg import Odometry
 import rosbag
 import rospy
 import rostest
@@ -141,6 +142,7 @@ class SessionTest(unittest.TestCase):
                        if topic not in topics]
             self.assertEqual(missing, [], name)
         run('rosbag', 'check', os.path.join(folder, bags[0]))
+        self.is_played(os.path.join(folder, bags[0]))
         self.no_odometry_is_missing(folder, bags)
         with open(os.path.join(folder, 'session.yaml'), encoding='utf-8') as file:
             info = read_info(file.read())
@@ -153,6 +155,18 @@ class SessionTest(unittest.TestCase):
         self.assertEqual(mark.text, 'a red door')
         self.assertEqual({pose[3] for pose in mark.poses.values()}, {'map'})
         self.assertEqual(set(mark.poses), set(ROBOTS))
+
+    def is_played(self, path):
+        """Every message of a topic, by another name: the robots here are not driven by it."""
+        with rosbag.Bag(path) as bag:
+            count = bag.get_message_count('/bot1/odom')
+        played = []
+        ear = rospy.Subscriber('/played/odom', Odometry, played.append, queue_size=None)
+        self.addCleanup(ear.unregister)
+        run('rosbag', 'play', '--wait-for-subscribers', '-q', '-r', '2', path, '--topics',
+            '/bot1/odom', '/bot1/odom:=/played/odom')
+        wait_for(lambda: len(played) == count, PATIENCE_S,
+                 lambda: '{} messages, {} played'.format(count, len(played)))
 
     def no_odometry_is_missing(self, folder, bags):
         """The numbers of a robot's odometry run on from bag to bag."""

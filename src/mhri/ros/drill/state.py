@@ -5,6 +5,7 @@
 ``/mhri_drill/state`` (``mhri/DrillState``, latched, on change and at 1 Hz until it is over).
 """
 import math
+import threading
 
 import rospy
 
@@ -75,6 +76,7 @@ class DrillClient:
         return self._view
 
     def close(self):
-        """Hear nothing more."""
+        """Hear nothing more; returns at once."""
         if self._subscriber is not None and not rospy.is_shutdown():
-            self._subscriber.unregister()
+            # It asks the master, which may hang.
+            threading.Thread(target=self._subscriber.unregister, daemon=True).start()

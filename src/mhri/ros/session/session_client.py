@@ -6,6 +6,7 @@ Publishes ``/panel/events`` (``mhri/SessionEvent``) and ``/panel/pictures`` (``m
 subscribes ``/mhri_session/state``; calls ``/mhri_session/record``, ``mark``, ``note``, ``still``.
 """
 import queue
+import threading
 import time
 
 import rospy
@@ -111,9 +112,10 @@ class SessionClient:
                           getattr(answer, 'id', '')))
 
     def close(self):
-        """Pass nothing on any more."""
+        """Pass nothing on any more; returns at once."""
         PASSED_ON.open(None)
         self._worker.stop()
         for topic in (self._events, self._pictures, self._subscriber):
             if topic is not None and not rospy.is_shutdown():
-                topic.unregister()
+                # It asks the master, which may hang.
+                threading.Thread(target=topic.unregister, daemon=True).start()
