@@ -136,14 +136,15 @@ def test_a_node_that_was_replaced_is_learnt_even_where_the_first_question_fails(
     assert not answers, 'it was asked once, and never again'
 
 
-@pytest.mark.parametrize('silent_s, ended', [(2.0, True), (60.0, False)])
-def test_one_that_hung_before_it_was_known_is_ended(node, monkeypatch, silent_s, ended):
-    """But not one that began after the last word that was heard."""
+@pytest.mark.parametrize('silent_s, age_s, ended', [
+    (2.0, 10.0, True), (60.0, 10.0, False), (60.0, 30.0, True)])
+def test_one_that_hung_before_it_was_known_is_ended(node, monkeypatch, silent_s, age_s, ended):
+    """But not one that began after the last word, unless its start takes too long."""
     process, uri = node
     monkeypatch.setattr(neighbour, 'MasterApi', lambda *_, **__: SimpleNamespace(
         node_uri=lambda name: uri))
     monkeypatch.setattr(Process, 'comes_back', lambda self: True)
-    monkeypatch.setattr(Process, 'begun_s', time.clock_gettime(time.CLOCK_BOOTTIME) - 10.0)
+    monkeypatch.setattr(Process, 'begun_s', time.clock_gettime(time.CLOCK_BOOTTIME) - age_s)
     watched = neighbour.Neighbour('the gates')
     watched.beat('/mhri_gates')
     watched._look(time.monotonic() + silent_s)

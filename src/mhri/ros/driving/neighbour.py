@@ -19,6 +19,9 @@ from mhri.ros.graph.master_api import MasterApi, MasterError
 
 SILENT_S = 0.9
 END_S = 1.8
+# One that was started again and says nothing for so long hangs, too: at a load of 40, a start takes
+# 5 s at most.
+START_S = 20.0
 _LOOK_S = 0.1
 _LEARN_AGAIN_S = 0.5
 # A watch that runs this late was stopped itself, and knows nothing about the other node.
@@ -215,7 +218,8 @@ class Neighbour:
             return
         # Ask again where it is not found, even if it was known before: it may just be starting.
         self._process = self._known = None
-        heard_s = time.clock_gettime(time.CLOCK_BOOTTIME) - (now - beat_at)
+        now_s = time.clock_gettime(time.CLOCK_BOOTTIME)
+        speaks_since_s = max(now_s - (now - beat_at), now_s - START_S)
         try:
             uri = MasterApi(rospy.get_name(), timeout_s=0.5).node_uri(caller)
             if not uri:
@@ -228,9 +232,9 @@ class Neighbour:
             # Asking may have taken long: that does not count as silence.
             with self._lock:
                 self._looked_at = self._clock()
-        if process is None or process.begun_s <= heard_s:
+        if process is None or process.begun_s <= speaks_since_s:
             self._process, self._known = process, caller
-        # Else it is the next one, which has said nothing yet.
+        # Else it is the next one, which starts.
 
     def _end(self, caller):
         """Kill a process that hangs, once, if it will be restarted."""
