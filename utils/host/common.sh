@@ -266,16 +266,20 @@ socket.socket(socket.AF_UNIX).connect("/tmp/.X11-unix/X" + sys.argv[1])' "${DISP
   return 1
 }
 
-# end_leftovers: ends what this run started and left running, known by its mark; prints each.
+# end_leftovers: ends what this run started and left running, known by its mark; prints each. Looks
+# again until nothing is left: what is ended may have started more in the meantime.
 end_leftovers() {
-  local entry pid
-  for entry in /proc/[0-9]*/environ; do
-    pid=${entry#/proc/}
-    pid=${pid%/environ}
-    if [ "$pid" != "$$" ] && grep -qzsxF "MHRI_RUN_ID=$RUN_ID" "$entry"; then
-      warn "ending a leftover process: $pid $(tr '\0' ' ' 2>/dev/null <"/proc/$pid/cmdline")"
-      kill -KILL "$pid" 2>/dev/null || true
-    fi
+  local entry pid found=true
+  while $found; do
+    found=false
+    for entry in /proc/[0-9]*/environ; do
+      pid=${entry#/proc/}
+      pid=${pid%/environ}
+      if [ "$pid" != "$$" ] && grep -qzsxF "MHRI_RUN_ID=$RUN_ID" "$entry"; then
+        warn "ending a leftover process: $pid $(tr '\0' ' ' 2>/dev/null <"/proc/$pid/cmdline")"
+        if kill -KILL "$pid" 2>/dev/null; then found=true; fi
+      fi
+    done
   done
 }
 
