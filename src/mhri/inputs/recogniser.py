@@ -56,7 +56,7 @@ class Tuning:
     limits lie 0.4 of a slope below what those ten gave, since other voices fit worse.
 
     For a voice that was taught all limits but a stop's lie ``taught`` slopes lower: of one such
-    voice 12 commands lay 3 and more above 0.5, 30 sentences of talk 17 and more below.
+    voice 12 commands lay 1 and more above them, 30 sentences of talk 17 and more below.
     """
 
     stop_threshold: float = 1e-10

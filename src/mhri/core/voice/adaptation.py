@@ -17,8 +17,8 @@ import numpy as np
 
 SILENCE = 'SIL'
 _NOT_SPOKEN = [SILENCE, '+NSN+', '+SPN+']
-# Frames of 10 ms. Drawn once only, or with twice the inertia, a sound that a voice says much unlike
-# the model stays halfway: "deselect" was taken for "please select".
+# Frames of 10 ms. Drawn only once, with an inertia of 10, a sound that a voice says much unlike the
+# model stayed halfway: "deselect" was taken for "please select".
 _TRANSFORMATIONS, _REST_FRAMES, _DRAWN, _INERTIA = 2, 20.0, 3, 5.0
 _STATES = 3
 _LEAST_WEIGHT = 1e-7
