@@ -54,7 +54,8 @@ HELD_OUT_VOICES = ['flite:rms', 'flite:slt', 'flite:awb', 'festival:ked_diphone'
                    'en-us-nyc', 'en-us+Andy', 'en-us+Annie', 'en-us+Michael', 'en-us+Alicia',
                    'en-us+Denis']
 # For --taught: chosen before anything was measured with them. The way of teaching was chosen with
-# Annie. The first four are made of recordings of three people.
+# Annie and Andrea, the limits and that silence is learned with Annie, en-029+f4 and shelby, on the
+# sentences to tune on. The first four are made of recordings of three people.
 TAUGHT_VOICES = ['flite:slt', 'flite:awb', 'flite:kal16', 'festival:kal_diphone', 'en-029+f4',
                  'en-gb-x-gbcwmd', 'en-gb-scotland+f3', 'en-gb-x-rp+m2', 'en-us-nyc+f1',
                  'en-us+adam', 'en-us+belinda', 'en-us+max', 'en-us+paul', 'en-us+pablo',

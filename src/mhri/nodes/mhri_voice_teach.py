@@ -22,7 +22,7 @@ _TRIES = 3
 # With fewer of the sentences a voice is not known [fraction].
 _ENOUGH = 0.6
 _HELP = ('Read each sentence aloud when it is shown, the way you talk to the robots: at an even\n'
-         'pace, the mouth a hand\'s width from the microphone. It takes about three minutes.\n'
+         'pace, the mouth a hand\'s width from the microphone. It takes about four minutes.\n'
          'Ctrl-C ends it, and nothing is kept.')
 
 
