@@ -110,7 +110,7 @@ isolate() {
 
 # begin JOBS NICENESS GROUP...: starts their targets, JOBS at a time; RUN_PID is the process.
 begin() {
-  local jobs=$1 command=(nice -n "$2")
+  local jobs=$1 niceness=$2 command=(nice -n "$2")
   shift 2
   say "tests: $*"
   if [ "$1" = fast ]; then
@@ -118,7 +118,7 @@ begin() {
   else
     command+=(make --no-print-directory -C "$WS/build" "-j$jobs" --keep-going)
     # Print what runs at the same time one after the other.
-    if [ "$jobs" -gt 1 ]; then command+=(--output-sync=target); fi
+    if [ "$jobs" -gt 1 ] || [ "$niceness" -gt 0 ]; then command+=(--output-sync=target); fi
     command+=("${@/#/run_tests_mhri_}")
   fi
   MHRI_RUN_ID=$RUN_ID setsid setpriv --pdeathsig TERM "${command[@]}" </dev/null &
