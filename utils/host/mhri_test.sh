@@ -8,9 +8,9 @@ set -euo pipefail
 
 GROUPS_IN_ORDER=(lint unit oldest scripts rostest gui faults bench)
 # Targets whose files may run at the same time (the longest first), those of which two may, and those
-# that measure time, which run alone but for the nodes among them (LIGHT): these take a tenth of a
-# processor, and two may. Of the benchmarks' short form nobody reads the figures: what it tests is that
-# each runs to its end.
+# that measure time. These run alone but for the nodes among them (LIGHT), which take a tenth of a
+# processor, and of which two may. Of the benchmarks' short form nobody reads the figures: what it
+# tests is that each runs to its end.
 CALM=(scripts_calm rostest_calm faults_calm oldest unit lint gui_calm)
 PAIRED=(scripts_paired rostest_paired gui_paired faults_paired)
 LIGHT=(rostest_timed)
@@ -125,8 +125,8 @@ begin() {
   RUN_PID=$!
 }
 
-# await PID STARTED GROUP...: waits for their end and says how long it took. A make that fails counts
-# as a failed test, since then something did not run.
+# await PID STARTED GROUP...: waits for their end and says how long it took. A make that fails
+# counts as a failed test, since then something did not run.
 await() {
   local status=0 pid=$1 took
   wait "$pid" || status=$?
@@ -146,8 +146,8 @@ run() {
   end_leftovers
 }
 
-# run_beside: runs the calm targets beside the paired ones, which leave more than half of the time
-# over. These go first, but take no more than three quarters where there is not enough: nobody starves.
+# run_beside: runs the calm targets beside the paired ones, which leave more than half of the
+# processors' time over. These go first, but where there is not enough the others get a quarter.
 run_beside() {
   local started=$SECONDS calm_pid
   begin "$((JOBS - 2))" 5 "${CALM[@]}"
