@@ -78,6 +78,7 @@ parse_arguments() {
   if [ "$BENCH" = full ]; then TIMED+=(bench); else CALM=(bench "${CALM[@]}"); fi
   [ "${#ONLY[@]}" -gt 0 ] || ONLY=("${GROUPS_IN_ORDER[@]}")
   if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 3 ? $(nproc) + 2 : 5)); fi
+  PAIR=$((JOBS > 2 ? 2 : 1))
 }
 
 # Installs in the workspace, at fixed versions, the tools that Debian and Ubuntu do not package.
@@ -150,9 +151,9 @@ run() {
 # processors' time over. These go first, but where there is not enough the others get a quarter.
 run_beside() {
   local started=$SECONDS calm_pid
-  begin "$((JOBS - 2))" 5 "${CALM[@]}"
+  begin "$((JOBS - PAIR))" 5 "${CALM[@]}"
   calm_pid=$RUN_PID
-  begin 2 0 "${PAIRED[@]}"
+  begin "$PAIR" 0 "${PAIRED[@]}"
   await "$RUN_PID" "$started" "${PAIRED[@]}"
   await "$calm_pid" "$started" "${CALM[@]}"
   end_leftovers
@@ -171,15 +172,15 @@ keep_wanted() {
 
 # run_all: runs the chosen groups.
 run_all() {
-  local pair=$((JOBS > 2 ? 2 : 1)) target
+  local target
   keep_wanted
   if [ "$JOBS" -gt 2 ] && [ "${#CALM[@]}" -gt 0 ] && [ "${#PAIRED[@]}" -gt 0 ]; then
     run_beside
   else
     [ "${#CALM[@]}" = 0 ] || run "$JOBS" "${CALM[@]}"
-    [ "${#PAIRED[@]}" = 0 ] || run "$pair" "${PAIRED[@]}"
+    [ "${#PAIRED[@]}" = 0 ] || run "$PAIR" "${PAIRED[@]}"
   fi
-  [ "${#LIGHT[@]}" = 0 ] || run "$pair" "${LIGHT[@]}"
+  [ "${#LIGHT[@]}" = 0 ] || run "$PAIR" "${LIGHT[@]}"
   for target in "${TIMED[@]}"; do run 1 "$target"; done
 }
 
