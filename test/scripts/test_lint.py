@@ -158,14 +158,19 @@ def test_python_3_8_check_would_speak_up(tmp_path, text):
     assert status != 0 and 'sample.py' in output
 
 
-def mypy(cache, files):
-    """Return (exit status, output) of the strict check; what the files import is not judged."""
-    return run([sys.executable, '-m', 'mypy', '--config-file', REPO / 'setup.cfg',
-                '--cache-dir', cache] + files, cache)
+@pytest.fixture(scope='module')
+def mypy(tmp_path_factory):
+    """Return a function that gives (exit status, output) of the strict check.
+
+    What the files import is not judged; what the standard library has is read once.
+    """
+    cache = tmp_path_factory.mktemp('mypy')
+    return lambda files: run([sys.executable, '-m', 'mypy', '--config-file', REPO / 'setup.cfg',
+                              '--cache-dir', cache] + files, cache)
 
 
-def test_core_types(tmp_path):
-    status, output = mypy(tmp_path, [REPO / 'src' / 'mhri' / 'core'])
+def test_core_types(mypy):
+    status, output = mypy([REPO / 'src' / 'mhri' / 'core'])
     assert 'No module named mypy' not in output, (
         'mypy is not there: mhri_test.sh installs it with pip and could not, see above')
     assert status == 0, output
@@ -175,7 +180,7 @@ def test_core_types(tmp_path):
     ('def f(x):\n    return x\n', 'no-untyped-def'),
     ('def f(x: int) -> str:\n    return x\n', 'return-value'),
 ])
-def test_mypy_would_speak_up(tmp_path, text, said):
+def test_mypy_would_speak_up(mypy, tmp_path, text, said):
     (tmp_path / 'sample.py').write_text(text)
-    status, output = mypy(tmp_path, [tmp_path / 'sample.py'])
+    status, output = mypy([tmp_path / 'sample.py'])
     assert status != 0 and said in output

@@ -160,7 +160,8 @@ def test_meeting():
 
 
 @pytest.mark.parametrize('names, jobs, together', [
-    ('one two', '2', True), ('one two', '1', False), ('killed key_held', '2', False)])
+    ('one two', '2', True), ('one two', '1', False), ('one drive', '3', True),
+    ('killed key_held', '4', False)])
 def test_files_that_measure_no_times_run_together(package, names, jobs, together):
     for folder in ('scripts', 'gui'):
         shutil.rmtree(str(package.root / 'test' / folder), ignore_errors=True)

@@ -22,10 +22,14 @@ from support.xvfb import start_xvfb
 PATIENCE_S = 60.0
 # Who waits for less asks whether it is quick [s].
 QUICK_S = 10.0
+# The longest rest between two looks that take long themselves: at the master, at processes [s].
+REST_S = 0.05
 
 
 def wait_for(condition, timeout_s=PATIENCE_S, what='the condition', poll_s=0.002):
     """Return the first true value of a condition.
+
+    Looking takes a third of a processor at most, or what is waited for would come late for it.
 
     :param timeout_s: from QUICK_S on it is patience, of which there is never less than PATIENCE_S
     :param what: what is waited for, or a function that says so at the end
@@ -35,13 +39,15 @@ def wait_for(condition, timeout_s=PATIENCE_S, what='the condition', poll_s=0.002
         timeout_s = max(timeout_s, PATIENCE_S)
     deadline = time.monotonic() + timeout_s
     while True:
+        begun = time.monotonic()
         value = condition()
         if value:
             return value
-        if time.monotonic() > deadline:
+        now = time.monotonic()
+        if now > deadline:
             raise AssertionError('waited {:g} s for {}'.format(
                 timeout_s, what() if callable(what) else what))
-        time.sleep(poll_s)
+        time.sleep(max(poll_s, min(2.0 * (now - begun), REST_S)))
 
 
 def free_port():

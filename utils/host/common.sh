@@ -191,7 +191,8 @@ needs_plain_path() {
 # build_workspace TESTING [MAKE_TARGET]: builds this checkout in its own workspace; TESTING is ON or
 # OFF. The workspace is in build, which rosrun skips when it searches a package, and hidden, which
 # roslaunch skips: either would find every file of the package twice. The checkout itself is its
-# source folder: a link to it in there would be a loop for whoever searches the package.
+# source folder: a link to it in there would be a loop for whoever searches the package. What runs
+# from here is Python; messages for other languages take half of the build.
 build_workspace() {
   local testing=$1 target=${2:-} stamp="$WS/built" log="$WS/build.log"
   mkdir -p "$WS" 2>/dev/null ||
@@ -216,7 +217,8 @@ build_workspace() {
   say "building in $WS (log: $log)"
   # If a master's address is already set, catkin does not bake the default one into the tests'
   # environment.
-  (cd -P "$WS" && ROS_MASTER_URI=${ROS_MASTER_URI:-http://127.0.0.1:11311} catkin_make \
+  (cd -P "$WS" && ROS_MASTER_URI=${ROS_MASTER_URI:-http://127.0.0.1:11311} \
+    ROS_LANG_DISABLE=gencpp:geneus:genlisp:gennodejs catkin_make \
     --source "$REPO" -DPYTHON_EXECUTABLE=/usr/bin/python3 "-DCATKIN_ENABLE_TESTING=$testing" \
     ${target:+"$target"}) >"$log" 2>&1 {BUILD_LOCK}>&- || {
     tail -n 40 "$log" >&2

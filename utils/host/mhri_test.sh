@@ -8,10 +8,13 @@ set -euo pipefail
 
 GROUPS_IN_ORDER=(lint unit oldest scripts rostest gui faults bench)
 # Targets whose files may run at the same time (the longest first), those of which two may, and those
-# that measure time, which run alone.
+# that measure time. These run alone but for the nodes among them (LIGHT), which take a tenth of a
+# processor, and of which two may. Of the benchmarks' short form nobody reads the figures: what it
+# tests is that each runs to its end.
 CALM=(scripts_calm rostest_calm faults_calm oldest unit lint gui_calm)
 PAIRED=(scripts_paired rostest_paired gui_paired faults_paired)
-TIMED=(rostest_timed scripts_timed faults_timed gui_timed bench)
+LIGHT=(rostest_timed)
+TIMED=(scripts_timed faults_timed gui_timed)
 
 help_text() {
   cat <<'HELP'
@@ -23,8 +26,9 @@ and nothing failed.
 
   --only GROUP   run one group only (may be repeated): lint, unit, oldest, scripts, rostest,
                  gui, faults, bench, or fast
-  --jobs N       run N files at once, those that drive robots two at a time if N is above 2, those
-                 that measure time alone (default: one more than there are processors, at most 4)
+  --jobs N       run at most N files at once: of those that drive robots, and of nodes that are
+                 timed, two (one if N is below 3), and alone what else measures time (default: two
+                 more than there are processors, at most 5)
   --bench        run the benchmarks (test/bench) in full instead of their short form
   --once         do not run a second time what failed (see below)
   -h, --help     this text
@@ -71,8 +75,10 @@ parse_arguments() {
     esac
     shift
   done
+  if [ "$BENCH" = full ]; then TIMED+=(bench); else CALM=(bench "${CALM[@]}"); fi
   [ "${#ONLY[@]}" -gt 0 ] || ONLY=("${GROUPS_IN_ORDER[@]}")
-  if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 4 ? $(nproc) + 1 : 4)); fi
+  if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 3 ? $(nproc) + 2 : 5)); fi
+  PAIR=$((JOBS > 2 ? 2 : 1))
 }
 
 # Installs in the workspace, at fixed versions, the tools that Debian and Ubuntu do not package.
@@ -92,55 +98,90 @@ install_tools() {
 }
 
 # Keeps the operator's master, screen and ~/.ros out of the tests. Files of test/gui that run at the
-# same time share no screen: two windows cannot both have the keyboard.
+# same time share no screen: two windows cannot both have the keyboard. The tests start thousands of
+# processes: each module is compiled once for all of them, and leaves nothing in the checkout.
 isolate() {
   unset ROS_HOSTNAME ROS_NAMESPACE WAYLAND_DISPLAY
   export ROS_IP=127.0.0.1 ROS_MASTER_URI=http://127.0.0.1:9 ROS_HOME="$SCRATCH/ros"
   export QT_QPA_PLATFORM=xcb MHRI_BENCH=$BENCH MHRI_OWN_SCREEN=1
+  unset PYTHONDONTWRITEBYTECODE
+  export PYTHONPYCACHEPREFIX="$SCRATCH/pycache"
   start_xvfb
 }
 
-# run JOBS GROUP...: runs their targets, JOBS at a time, and says how long it took. A make that
-# fails counts as a failed test, since then something did not run.
-run() {
-  local status=0 jobs=$1 started=$SECONDS targets=() command
-  shift
+# begin JOBS NICENESS GROUP...: starts their targets, JOBS at a time; RUN_PID is the process.
+begin() {
+  local jobs=$1 niceness=$2 command=(nice -n "$2")
+  shift 2
   say "tests: $*"
-  command=("$REPO/test/run_fast.sh" "$RESULTS")
-  if [ "$1" != fast ]; then
-    targets=("${@/#/run_tests_mhri_}")
-    command=(make --no-print-directory -C "$WS/build" "-j$jobs" --keep-going)
+  if [ "$1" = fast ]; then
+    command+=("$REPO/test/run_fast.sh" "$RESULTS")
+  else
+    command+=(make --no-print-directory -C "$WS/build" "-j$jobs" --keep-going)
     # Print what runs at the same time one after the other.
-    if [ "$jobs" -gt 1 ]; then command+=(--output-sync=target); fi
-    command+=("${targets[@]}")
+    if [ "$jobs" -gt 1 ] || [ "$niceness" -gt 0 ]; then command+=(--output-sync=target); fi
+    command+=("${@/#/run_tests_mhri_}")
   fi
   MHRI_RUN_ID=$RUN_ID setsid setpriv --pdeathsig TERM "${command[@]}" </dev/null &
   RUN_PID=$!
-  wait "$RUN_PID" || status=$?
-  RUN_PID=
+}
+
+# await PID STARTED GROUP...: waits for their end and says how long it took. A make that fails
+# counts as a failed test, since then something did not run.
+await() {
+  local status=0 pid=$1 took
+  wait "$pid" || status=$?
+  took="$((SECONDS - $2)) s"
+  shift 2
   # The fast group exits with 1 if a test failed; a make target ends with 0 whatever its tests say.
   [ "$status" = 0 ] || [ "$*/$status" = fast/1 ] || NOT_RUN+=("$*")
-  TIMES+=("$* $((SECONDS - started)) s")
-  say "tests: $* took $((SECONDS - started)) s"
+  TIMES+=("$* $took")
+  say "tests: $* took $took"
+}
+
+# run JOBS GROUP...: runs their targets, JOBS at a time.
+run() {
+  local started=$SECONDS
+  begin "$1" 0 "${@:2}"
+  await "$RUN_PID" "$started" "${@:2}"
   end_leftovers
 }
 
-# run_wanted JOBS TARGET...: runs those of the chosen groups, JOBS files at a time.
-run_wanted() {
-  local jobs=$1 target targets=()
-  shift
-  for target in "$@"; do
-    if wanted "${target%_*}"; then targets+=("$target"); fi
+# run_beside: runs the calm targets beside the paired ones, which leave more than half of the
+# processors' time over. These go first, but where there is not enough the others get a quarter.
+run_beside() {
+  local started=$SECONDS calm_pid
+  begin "$((JOBS - PAIR))" 5 "${CALM[@]}"
+  calm_pid=$RUN_PID
+  begin "$PAIR" 0 "${PAIRED[@]}"
+  await "$RUN_PID" "$started" "${PAIRED[@]}"
+  await "$calm_pid" "$started" "${CALM[@]}"
+  end_leftovers
+}
+
+# keep_wanted: leaves only targets of the chosen groups.
+keep_wanted() {
+  local kind target
+  for kind in CALM PAIRED LIGHT TIMED; do
+    local -n targets=$kind
+    for target in "${!targets[@]}"; do
+      wanted "${targets[target]%_*}" || unset "targets[target]"
+    done
   done
-  if [ "${#targets[@]}" -gt 0 ]; then run "$jobs" "${targets[@]}"; fi
 }
 
 # run_all: runs the chosen groups.
 run_all() {
   local target
-  run_wanted "$JOBS" "${CALM[@]}"
-  run_wanted "$((JOBS > 2 ? 2 : 1))" "${PAIRED[@]}"
-  for target in "${TIMED[@]}"; do run_wanted 1 "$target"; done
+  keep_wanted
+  if [ "$JOBS" -gt 2 ] && [ "${#CALM[@]}" -gt 0 ] && [ "${#PAIRED[@]}" -gt 0 ]; then
+    run_beside
+  else
+    [ "${#CALM[@]}" = 0 ] || run "$JOBS" "${CALM[@]}"
+    [ "${#PAIRED[@]}" = 0 ] || run "$PAIR" "${PAIRED[@]}"
+  fi
+  [ "${#LIGHT[@]}" = 0 ] || run "$PAIR" "${LIGHT[@]}"
+  for target in "${TIMED[@]}"; do run 1 "$target"; done
 }
 
 # run_again: runs what failed once more.

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What a mark keeps of a moment: where every robot is, and what every camera in sight shows."""
-import cv2
 import genpy
 import numpy as np
 import rospy
@@ -41,6 +40,7 @@ def jpeg_of(frame):
     data = bytes(read(CompressedImage, frame).data)
     if data.startswith(_JPEG):
         return data
+    import cv2  # nearly every camera has jpegs: a start does not wait for it
     pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
     done, found = cv2.imencode('.jpg', pixels) if pixels is not None else (False, None)
     return found.tobytes() if done else None
