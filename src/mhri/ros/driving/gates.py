@@ -19,7 +19,6 @@ Everything runs on ROS threads and one thread of its own; a single lock guards a
 import threading
 import time
 
-from geometry_msgs.msg import Twist
 import rospy
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
@@ -29,11 +28,12 @@ from mhri.core.driving.seat import ControlSeat, MOST_ROBOTS
 from mhri.core.robots.link_quality import link_share
 from mhri.core.robots.names import name_problem
 from mhri.msg import GroupSpeed, RobotSelect, TeamTwist
-from mhri.ros.convert import from_twist
+from mhri.ros.convert import from_twist, PlanarTwist
 from mhri.ros.driving.in_force import InForce, STOP_SERVICE, Strangers, TAKE_SERVICE
 from mhri.ros.driving.neighbour import Neighbour
 from mhri.ros.driving.robot_gate import RobotGate
 from mhri.ros.driving.roster import Roster
+from mhri.ros.graph.prompt import hear_promptly
 from mhri.ros.graph.rospy_inside import caller_of, link_of, on_publisher_gone
 from mhri.ros.map.tf_feed import TfFeed
 
@@ -81,7 +81,8 @@ class Gates:
         select = rospy.Subscriber('/robot_controller/robot_select', RobotSelect, self._on_select,
                                   **nodelay)
         on_publisher_gone(select, self._on_operator_gone)
-        twist = rospy.Subscriber('/robot_controller/twist', Twist, self._on_twist, **nodelay)
+        twist = hear_promptly(rospy.Subscriber(
+            '/robot_controller/twist', PlanarTwist, self._on_twist, **nodelay))
         on_publisher_gone(twist, self._on_mux_gone)
         rospy.Subscriber('/robot_controller/task_twist', TeamTwist, self._on_task, **nodelay)
         rospy.Subscriber('/robot_controller/stop_all', Bool, self._on_stop, queue_size=10,
@@ -129,7 +130,7 @@ class Gates:
         """Forward; the one path on which every microsecond counts."""
         if not self._mux.believes(message, 'twist'):
             return
-        velocity = from_twist(message)
+        velocity = message.velocity
         with self._lock:
             now = self._clock()
             before, self._command = self._command, velocity

@@ -40,7 +40,7 @@ from mhri.core.driving.profile import (
 from mhri.core.driving.pulse import Pulse
 from mhri.core.driving.sources import TWIST
 from mhri.msg import ControlMode, PanelRequest, RobotSelect
-from mhri.ros.convert import to_twist
+from mhri.ros.convert import packed_twist, to_twist
 from mhri.ros.devices.device_profiles import DeviceProfiles
 from mhri.ros.graph.master_api import MasterError
 from mhri.ros.graph.master_watch import MasterWatch
@@ -51,7 +51,8 @@ from mhri.ros.driving.mux_takeover import is_superseded
 from mhri.ros.driving.source_topic import LONGEST_TEXT, SourceTopic
 from mhri.ros.driving.suspender import Suspender
 from mhri.ros.driving.task_mux import TaskMux
-from mhri.ros.graph.rospy_inside import caller_of, PromptPublisher
+from mhri.ros.graph.prompt import PromptPublisher
+from mhri.ros.graph.rospy_inside import caller_of
 from mhri.ros.worker import Worker
 
 # How often the mux repeats its stop-all and asks the master, and how long it waits for an answer
@@ -79,10 +80,10 @@ class Mux:
         self._clock = clock
         self._arbiter = Arbiter(config, clock())
         self._pulse = Pulse(clock())
-        self._next_beat = 0.0
+        self._next_beat = self._due = 0.0
         self._changed = threading.Condition(threading.RLock())
         self._said_waiting = self._said_pushed = None
-        self._closing = False
+        self._driving = self._closing = False
         self._service = None
         self._twist = PromptPublisher('/robot_controller/twist', Twist)
         self._mode = rospy.Publisher('/mux/mode', ControlMode, queue_size=10, latch=True)
@@ -163,16 +164,22 @@ class Mux:
         self._limit.publish(to_twist(*limits))
 
     def _send(self, velocity):
-        """Publish what a rule returned and what the mux waits for; call with the lock held.
+        """Publish what a rule returned; call with the lock held.
 
-        Publishing inside the lock keeps a zero behind the command it ends.
+        Publishing inside the lock keeps a zero behind the command it ends. What else has changed is
+        told, but for one command after another: the gates may be waiting for this processor.
         """
         if self._closing:
             return
         if velocity is not None:
-            publish = self._twist.publish_urgent if velocity.is_zero() else self._twist.publish
-            publish(to_twist(velocity.linear_mps, velocity.angular_rad_s))
-        now = self._clock()
+            self._twist.publish_packed(packed_twist(
+                velocity.linear_mps, velocity.angular_rad_s), urgent=velocity.is_zero())
+        was_driving, self._driving = self._driving, self._arbiter.state == DRIVING
+        if not (was_driving and self._driving):
+            self._tell(self._clock())
+
+    def _tell(self, now):
+        """Publish what the mux waits for, and let the timer look when it is due (lock held)."""
         waiting, pushed = self._arbiter.waits_for(now), self._arbiter.pushed(now)
         if waiting != self._said_waiting:
             self._said_waiting = waiting
@@ -180,7 +187,8 @@ class Mux:
         if pushed != self._said_pushed:
             self._said_pushed = pushed
             self._pushed.publish(data=pushed)
-        self._changed.notify()
+        if self._arbiter.next_tick(now) < self._due:
+            self._changed.notify()
 
     def _awake(self, now):
         """Tell whether a message heard now is new (with the lock held).
@@ -358,8 +366,9 @@ class Mux:
                 self._awake(now)
                 self._pulse.beat(now)
                 self._send_due(now)
-                due = min(self._arbiter.next_tick(now), now + LOOP_S)
-                self._changed.wait(max(0.0, due - self._clock()))
+                self._tell(now)
+                self._due = min(self._arbiter.next_tick(now), now + LOOP_S)
+                self._changed.wait(max(0.0, self._due - self._clock()))
 
     def _send_due(self, now):
         """Let the arbiter's time pass; ask a silent input node once more."""
