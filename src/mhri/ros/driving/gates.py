@@ -100,14 +100,11 @@ class Gates:
         object's clock, None for nobody.
         """
         with self._lock:
-            refused = ['{}: robot_select, {} times'.format(name, count)
-                       for name, count in self._seat.refused.items()]
-            refused += self._strangers.words(REFUSED_S)
             return dict(operator=self._seat.operator, since=self._seat.since,
                         leased=self._seat.state == 'leased', mux=self._mux.caller,
                         stop_all=bool(self._stop), together=self._together, share=self._share,
-                        brake=self._brake,
-                        refused=refused, robots=[gate.message() for gate in self._gates.values()])
+                        brake=self._brake, refused=self._strangers.words(REFUSED_S),
+                        robots=[gate.message() for gate in self._gates.values()])
 
     def mux_heard(self):
         """Tell whether the mux in force was heard within the last second."""
@@ -202,21 +199,23 @@ class Gates:
     def _on_select(self, message):
         """Take in the operator's selection, which also renews the lease."""
         names = [name for name in message.robots[:1000] if name_problem(name) is None]
+        caller = caller_of(message)
         with self._lock:
-            before = self._seat.checked
-            if self._seat.on_selection(caller_of(message), dict.fromkeys(names), self._clock()):
-                if self._seat.checked != before:
-                    self._check()
-            else:
-                self.on_change()
+            operator, before = self._seat.operator, self._seat.checked
+            if not self._seat.on_selection(caller, dict.fromkeys(names), self._clock()):
+                self._refuse(caller, 'robot_select')
+            elif self._seat.checked != before or caller != operator:
+                self._strangers.forget(caller)
+                self._check()
         if len(message.robots) > MOST_ROBOTS:
             rospy.logwarn_throttle(10.0, '{} selects {} names: no more than {} robots count'.format(
-                caller_of(message), len(message.robots), MOST_ROBOTS))
+                caller, len(message.robots), MOST_ROBOTS))
 
     def _on_operator_gone(self, caller):
         with self._lock:
             lost = caller == self._seat.operator
             self._seat.on_gone(caller)
+            self._strangers.forget(caller)
             self._check()
             if lost:
                 self._everybody_joins()
