@@ -152,3 +152,11 @@ def test_names_of_strangers_are_bounded():
     assert len(words) == in_force.MOST_STRANGERS and max(map(len, words)) < 300
     strangers.clear()
     assert strangers.words() == []
+
+
+def test_a_stranger_that_has_gone_is_forgotten():
+    strangers = Strangers()
+    for caller, topic in (('/a', 'twist'), ('/a', 'robot_select'), ('/b', 'robot_select')):
+        strangers.refuse(caller, topic)
+    strangers.forget('/a')
+    assert strangers.words() == ['/b: robot_select, 1 times']

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mhri.core.driving.brake import (
-    braked, BRAKES_MPS2, CRAWL_MPS, free_way, Scan, stopping_speed, Surroundings)
+    braked, BRAKES_MPS2, CRAWL_MPS, free_way, reach_of, Scan, stopping_speed, Surroundings)
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
 
@@ -186,3 +186,22 @@ def test_random_drives_end_without_contact(seed):
 
 def test_the_same_drives_without_the_brake_meet_something():
     assert any(random_drive(seed, 15.0, False).contacts for seed in range(5))
+
+
+@pytest.mark.parametrize('seed', range(20))
+def test_what_is_left_out_for_being_too_far_changes_nothing(seed):
+    chance, seen, left_out = np.random.RandomState(seed), Surroundings(), 0
+    for _ in range(50):
+        there = Pose(*chance.uniform(-1.0, 1.0, 2), chance.uniform(-math.pi, math.pi))
+        ranges = np.where(chance.rand(90) < 0.5, math.nan, chance.uniform(0.2, 3.0, 90))
+        seen.see(Scan(ranges * chance.choice((1.0, 3.0)), -math.pi, math.radians(4.0), 0.1, 10.0),
+                 there)
+        here = Pose(there.x_m + chance.uniform(-0.3, 0.3), there.y_m + chance.uniform(-0.3, 0.3),
+                    chance.uniform(-math.pi, math.pi))
+        wanted, age_s = Velocity(*chance.uniform(-0.7, 0.7, 2)), chance.uniform(0.0, 0.3)
+        looks = seen.looks(here)
+        near = seen.around(here, reach_of(wanted.linear_mps, RADIUS_M, age_s))
+        left_out += not len(near)
+        assert braked(wanted, near, RADIUS_M, age_s, looks) == braked(
+            wanted, seen.around(here), RADIUS_M, age_s, looks)
+    assert left_out

@@ -4,11 +4,21 @@
 import math
 import struct
 
+import genpy
 from geometry_msgs.msg import Twist
 import rospy
+from sensor_msgs.msg import Joy
 
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.link import Motion
+
+# With its length before it.
+_TWIST = struct.Struct('<I6d')
+# linear.x and angular.z of six.
+_PLANAR = struct.Struct('<d32xd')
+# Number, time, and how long frame_id is.
+_HEADER = struct.Struct('<4I')
+_COUNT = struct.Struct('<I')
 
 
 def header_of(message, message_class):
@@ -30,6 +40,11 @@ def to_twist(linear_mps, angular_rad_s):
     message.linear.x = linear_mps
     message.angular.z = angular_rad_s
     return message
+
+
+def packed_twist(linear_mps, angular_rad_s):
+    """Return the same as bytes, the length before them: what TCPROS sends."""
+    return _TWIST.pack(_TWIST.size - 4, linear_mps, 0.0, 0.0, 0.0, 0.0, angular_rad_s)
 
 
 def from_twist(message):
@@ -54,3 +69,53 @@ def motion_from_turtle_pose(message):
     """Return the :class:`Motion` of a ``turtlesim/Pose``."""
     return Motion(message.linear_velocity, message.angular_velocity, message.x, message.y,
                   message.theta)
+
+
+class PlanarTwist(Twist):
+    """``geometry_msgs/Twist`` as a :class:`Velocity`, ``velocity``, for subscribers.
+
+    What genpy generates makes an object of every part of a message. At a stick's pace hardly any of
+    that code is in the processor's cache when it is needed: it takes longer than the rules do.
+    """
+
+    def __init__(self):
+        self.velocity = None
+
+    def deserialize(self, data):
+        """Read it from bytes.
+
+        :raises genpy.DeserializationError: they are too few, or too many
+        """
+        try:
+            self.velocity = Velocity(*_PLANAR.unpack(data))
+        except struct.error as error:
+            raise genpy.DeserializationError(error)
+        return self
+
+
+class ShortJoy(Joy):
+    """``sensor_msgs/Joy`` with ``axes``, ``buttons`` and ``frame_id``, but without its header."""
+
+    def __init__(self):
+        self.frame_id, self.axes, self.buttons = '', (), ()
+
+    def deserialize(self, data):
+        """Read it from bytes.
+
+        :raises genpy.DeserializationError: they are too few
+        """
+        try:
+            at = _HEADER.size + _HEADER.unpack_from(data)[3]
+            self.frame_id = data[_HEADER.size:at].decode('utf-8', 'replace')
+            self.axes, at = _numbers(data, at, 'f')
+            self.buttons, at = _numbers(data, at, 'i')
+        except struct.error as error:
+            raise genpy.DeserializationError(error)
+        return self
+
+
+def _numbers(data, at, kind):
+    """Return an array that begins there as a tuple, and where it ends."""
+    count, = _COUNT.unpack_from(data, at)
+    at += _COUNT.size
+    return struct.unpack_from('<{}{}'.format(count, kind), data, at), at + 4 * count

@@ -120,6 +120,9 @@ class Surroundings:
         self._met = _NOTHING
         self._fresh = 0
         self._newest: Dict[str, _Seen] = {}
+        # Seen from here, nothing is nearer than this [m].
+        self._clear: Tuple[Pose, float] = (_HERE, math.inf)
+        self._all_round = False
 
     def see(self, scan: Scan, odometry: Pose, at_s: float = 0.0, laser: str = '') -> None:
         """Take in a scan that was made here.
@@ -139,7 +142,10 @@ class Surroundings:
         self._newest[laser] = _Seen(at_s, scan, odometry, _out_of(odometry, scan.points()))
         fresh = [seen.points for seen in self._newest.values()]
         self._fresh = sum(map(len, fresh))
-        self._met = np.vstack((*fresh, kept))
+        self._met = met = np.vstack((*fresh, kept))
+        far = np.hypot(met[:, 0] - odometry.x_m, met[:, 1] - odometry.y_m)
+        self._clear = odometry, float(far.min()) if len(met) else math.inf
+        self._all_round = any(seen.scan.all_round for seen in self._newest.values())
 
     def forget(self, odometry: Pose, robots: Iterable[Tuple[float, float, float]]) -> None:
         """Forget what is remembered where robots are known to be: they move, and leave nothing.
@@ -154,15 +160,20 @@ class Surroundings:
         near = (np.hypot(gaps[..., 0], gaps[..., 1]) < where[:, 2] + _BESIDE_M).any(axis=1)
         self._met = np.vstack((self._met[:self._fresh], kept[~near]))
 
-    def around(self, odometry: Pose) -> np.ndarray:
-        """Return what is around the robot, were it here: an array (n, 2) in its frame [m]."""
-        return _into(odometry, self._met)
+    def around(self, odometry: Pose, reach_m: float = math.inf) -> np.ndarray:
+        """Return what is around the robot, were it here: an array (n, 2) in its frame [m].
+
+        :param reach_m: nothing that is further off need be in it
+        """
+        there, clear_m = self._clear
+        way_m = math.hypot(odometry.x_m - there.x_m, odometry.y_m - there.y_m)
+        return _NOTHING if clear_m - way_m > reach_m else _into(odometry, self._met)
 
     def looks(self, odometry: Pose) -> Looks:
         """Return what tells where the newest scans look, seen from a robot that is here."""
-        newest = list(self._newest.values())
-        if any(seen.scan.all_round for seen in newest):
+        if self._all_round:
             return everywhere
+        newest = list(self._newest.values())
 
         def look(points: np.ndarray) -> np.ndarray:
             found = np.zeros(len(points), dtype=bool)
@@ -191,6 +202,8 @@ def _into(frame: Pose, points: np.ndarray) -> np.ndarray:
 
 def within_reach(points: np.ndarray, reach_m: float) -> np.ndarray:
     """Return those of some points (n, 2) that are no further from the middle than this [m]."""
+    if not len(points):
+        return points
     found: np.ndarray = points[np.einsum('ij,ij->i', points, points) <= reach_m * reach_m]
     return found
 
@@ -267,6 +280,16 @@ def seen_speed(velocity: Velocity, radius_m: float, delay_s: float, looks: Looks
     return least
 
 
+def reach_of(speed_mps: float, radius_m: float, age_s: float) -> float:
+    """Return how far from its middle something can limit a robot of this speed [m].
+
+    :param age_s: of the newest scan [s]
+    """
+    speed_mps = abs(speed_mps)
+    return radius_m + MARGIN_M + speed_mps * (
+        REACTION_S + age_s + speed_mps / (2.0 * BRAKES_MPS2))
+
+
 def braked(velocity: Velocity, points: np.ndarray, radius_m: float,
            age_s: Optional[float], looks: Looks = everywhere) -> Velocity:
     """Return the velocity that a robot may have; turning on the spot is always allowed.
@@ -284,9 +307,7 @@ def braked(velocity: Velocity, points: np.ndarray, radius_m: float,
     if age_s is None or age_s > SCAN_OLD_S:
         return Velocity(min(0.0, max(wanted, -CRAWL_MPS)), turn)
     wanted = seen_speed(velocity, radius_m + MARGIN_M, REACTION_S + age_s, looks)
-    # What is further than this cannot limit it.
-    points = within_reach(points, radius_m + MARGIN_M + abs(wanted) * (
-        REACTION_S + age_s + abs(wanted) / (2.0 * BRAKES_MPS2)))
+    points = within_reach(points, reach_of(wanted, radius_m, age_s))
     # Slower with the same turn is another arc: looked at once more.
     for _ in range(2):
         way_m = free_way(points, radius_m + MARGIN_M, Velocity(wanted, turn))

@@ -62,7 +62,8 @@ class GateRule:
                  brake: Brake = lambda velocity, _: velocity) -> None:
         self.limits = limits
         self._brake = brake
-        self._group = limits
+        # What it may do in its group.
+        self._most = limits
         self._share = 1.0
         self._state = IDLE
         self._checked = False
@@ -110,7 +111,7 @@ class GateRule:
         :param group: :class:`mhri.core.robots.robot_types.Limits` of the group, or its own
         :param share: fraction of a command that is passed on, in (0, 1]
         """
-        self._group, self._share = group, share
+        self._most, self._share = common_limits((group, self.limits)), share
 
     def on_command(self, velocity: Velocity, now: float) -> Optional[Velocity]:
         """Take in the operator's command; return what to send this robot, or None."""
@@ -120,9 +121,10 @@ class GateRule:
             self._state = self._belongs(now)
         if self._state != OPERATOR:
             return None
-        share = self._share
-        wanted = Velocity(share * velocity.linear_mps, share * velocity.angular_rad_s)
-        wanted = clamp_keeping_curvature(clamp_keeping_curvature(wanted, self._group), self.limits)
+        share, wanted = self._share, velocity
+        if share != 1.0:
+            wanted = Velocity(share * velocity.linear_mps, share * velocity.angular_rad_s)
+        wanted = clamp_keeping_curvature(wanted, self._most)
         said = self._say(self._brake(wanted, now))
         self._wanted = wanted
         return said

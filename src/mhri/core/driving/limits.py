@@ -38,8 +38,10 @@ def clamp_keeping_curvature(velocity: Velocity, limits: Limits) -> Velocity:
     """
     if not velocity.is_finite():
         return ZERO
-    excess = max(1.0, abs(velocity.linear_mps) / limits.linear_mps,
+    excess = max(abs(velocity.linear_mps) / limits.linear_mps,
                  abs(velocity.angular_rad_s) / limits.angular_rad_s)
+    if excess <= 1.0:
+        return velocity
     return Velocity(velocity.linear_mps / excess, velocity.angular_rad_s / excess)
 
 

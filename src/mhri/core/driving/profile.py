@@ -151,7 +151,7 @@ class Profile:
         """
         if not axes:
             raise JoyRefused('no_axes', 'a Joy message without axes')
-        if not all(math.isfinite(value) for value in axes):
+        if not all(map(math.isfinite, axes)):
             raise JoyRefused('not_finite', 'a Joy message with NaN or infinity in its axes')
         needed = max(self.forward.index, self.turn.index) + 1
         if len(axes) < needed:
@@ -189,6 +189,8 @@ class Profile:
 
     def pressed(self, buttons: Sequence[int]) -> FrozenSet[str]:
         """Return the actions whose buttons are down, as a set; missing buttons count as up."""
+        if not any(buttons):
+            return frozenset()
         return frozenset(action for button, action in self.actions if is_pressed(buttons, button))
 
     def _respond(self, value: float) -> float:

@@ -10,17 +10,15 @@ States and what leads out of them::
 
 Taking control is possible in every state. Only the robots of a leased seat may move.
 """
-import collections
 import math
-from typing import Counter, Iterable, Optional, Tuple
+from typing import Iterable, Optional, Tuple
 
 EMPTY, LEASED, LAPSED = 'empty', 'leased', 'lapsed'
 
 # A selection not repeated for this long no longer counts [s].
 LEASE_S = 1.5
-# The most that is kept: every name costs memory, and so does every robot.
+# The most that is kept: every robot costs memory.
 MOST_ROBOTS = 64
-MOST_REFUSED = 32
 
 
 class ControlSeat:
@@ -35,7 +33,6 @@ class ControlSeat:
         self._repeated_at = -math.inf
         self._lapsed = False
         self.since: Optional[float] = None
-        self.refused: Counter[str] = collections.Counter()
 
     @property
     def state(self) -> str:
@@ -60,7 +57,6 @@ class ControlSeat:
         :param names: of robots; those beyond :data:`MOST_ROBOTS` are cut off
         """
         if self._operator and caller != self._operator:
-            self.refuse(caller)
             return False
         if not self._operator:
             self._sit(caller, now)
@@ -68,18 +64,12 @@ class ControlSeat:
         self._repeated_at, self._lapsed = now, False
         return True
 
-    def refuse(self, caller: str) -> None:
-        """Count, by name, somebody who is not believed."""
-        if caller in self.refused or len(self.refused) < MOST_REFUSED:
-            self.refused[caller] += 1
-
     def take(self, caller: str, now: float) -> None:
         """Put the caller in control; only what it selects from now on counts."""
         self._sit(caller, now)
 
     def on_gone(self, caller: str) -> None:
         """Take note that a publisher of the selection has gone."""
-        self.refused.pop(caller, None)
         if caller == self._operator:
             self._operator, self._chosen, self._lapsed, self.since = '', (), False, None
 
@@ -95,4 +85,3 @@ class ControlSeat:
     def _sit(self, caller: str, now: float) -> None:
         self._operator, self._chosen, self._lapsed = caller, (), False
         self._repeated_at = self.since = now
-        self.refused.pop(caller, None)

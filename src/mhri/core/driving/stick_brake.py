@@ -4,10 +4,8 @@
 import math
 from typing import Optional, Tuple
 
-import numpy as np
-
 from mhri.core.driving.brake import (
-    braked, free_way, MARGIN_M, REACTION_S, Scan, SCAN_OLD_S, seen_speed, Surroundings)
+    braked, free_way, MARGIN_M, REACTION_S, reach_of, Scan, SCAN_OLD_S, seen_speed, Surroundings)
 from mhri.core.driving.limits import Velocity, ZERO
 from mhri.core.robots.mocap import Pose
 
@@ -83,8 +81,11 @@ class StickBrake:
         self._wanted, self._slowed_at = velocity, -math.inf
         if not self.reads or velocity.linear_mps == 0.0:
             return velocity
-        age_s, looks = self._age(now), self._seen.looks(self._pose or _HERE)
-        allowed = braked(velocity, self._points(), self._radius_m, age_s, looks)
+        age_s, here = self._age(now), self._pose or _HERE
+        looks = self._seen.looks(here)
+        points = self._seen.around(
+            here, reach_of(velocity.linear_mps, self._radius_m, age_s or 0.0))
+        allowed = braked(velocity, points, self._radius_m, age_s, looks)
         if age_s is not None and abs(velocity.linear_mps) - abs(allowed.linear_mps) > _SLOWER_MPS:
             self._slowed_at = now
             seen_mps = seen_speed(velocity, self._radius_m + MARGIN_M, REACTION_S + age_s, looks)
@@ -105,10 +106,8 @@ class StickBrake:
         if self._unseen:
             return UNSEEN, math.nan
         # From the robot itself: the brake keeps a margin around it.
-        return SLOWS, free_way(self._points(), self._radius_m + MARGIN_M, self._wanted) + MARGIN_M
-
-    def _points(self) -> np.ndarray:
-        return self._seen.around(self._pose or _HERE)
+        points = self._seen.around(self._pose or _HERE)
+        return SLOWS, free_way(points, self._radius_m + MARGIN_M, self._wanted) + MARGIN_M
 
     def _age(self, now: float) -> Optional[float]:
         return None if self._scan_at is None else now - self._scan_at

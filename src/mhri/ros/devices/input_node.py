@@ -23,7 +23,7 @@ from mhri.inputs.reader import DeviceAbsent, DeviceLost
 from mhri.ros.devices.device_state import DeviceState
 from mhri.ros.diagnostics import publish_diagnostics
 from mhri.ros.graph.master_watch import MasterWatch
-from mhri.ros.graph.rospy_inside import PromptPublisher
+from mhri.ros.graph.prompt import PromptPublisher
 from mhri.srv import SetSuspended, SetSuspendedResponse
 
 SUSPENDED = 'suspended'

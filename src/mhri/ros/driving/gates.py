@@ -19,7 +19,6 @@ Everything runs on ROS threads and one thread of its own; a single lock guards a
 import threading
 import time
 
-from geometry_msgs.msg import Twist
 import rospy
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
@@ -29,11 +28,12 @@ from mhri.core.driving.seat import ControlSeat, MOST_ROBOTS
 from mhri.core.robots.link_quality import link_share
 from mhri.core.robots.names import name_problem
 from mhri.msg import GroupSpeed, RobotSelect, TeamTwist
-from mhri.ros.convert import from_twist
+from mhri.ros.convert import from_twist, PlanarTwist
 from mhri.ros.driving.in_force import InForce, STOP_SERVICE, Strangers, TAKE_SERVICE
 from mhri.ros.driving.neighbour import Neighbour
 from mhri.ros.driving.robot_gate import RobotGate
 from mhri.ros.driving.roster import Roster
+from mhri.ros.graph.prompt import hear_promptly
 from mhri.ros.graph.rospy_inside import caller_of, link_of, on_publisher_gone
 from mhri.ros.map.tf_feed import TfFeed
 
@@ -81,7 +81,8 @@ class Gates:
         select = rospy.Subscriber('/robot_controller/robot_select', RobotSelect, self._on_select,
                                   **nodelay)
         on_publisher_gone(select, self._on_operator_gone)
-        twist = rospy.Subscriber('/robot_controller/twist', Twist, self._on_twist, **nodelay)
+        twist = hear_promptly(rospy.Subscriber(
+            '/robot_controller/twist', PlanarTwist, self._on_twist, **nodelay))
         on_publisher_gone(twist, self._on_mux_gone)
         rospy.Subscriber('/robot_controller/task_twist', TeamTwist, self._on_task, **nodelay)
         rospy.Subscriber('/robot_controller/stop_all', Bool, self._on_stop, queue_size=10,
@@ -99,14 +100,11 @@ class Gates:
         object's clock, None for nobody.
         """
         with self._lock:
-            refused = ['{}: robot_select, {} times'.format(name, count)
-                       for name, count in self._seat.refused.items()]
-            refused += self._strangers.words(REFUSED_S)
             return dict(operator=self._seat.operator, since=self._seat.since,
                         leased=self._seat.state == 'leased', mux=self._mux.caller,
                         stop_all=bool(self._stop), together=self._together, share=self._share,
-                        brake=self._brake,
-                        refused=refused, robots=[gate.message() for gate in self._gates.values()])
+                        brake=self._brake, refused=self._strangers.words(REFUSED_S),
+                        robots=[gate.message() for gate in self._gates.values()])
 
     def mux_heard(self):
         """Tell whether the mux in force was heard within the last second."""
@@ -129,7 +127,7 @@ class Gates:
         """Forward; the one path on which every microsecond counts."""
         if not self._mux.believes(message, 'twist'):
             return
-        velocity = from_twist(message)
+        velocity = message.velocity
         with self._lock:
             now = self._clock()
             before, self._command = self._command, velocity
@@ -201,21 +199,23 @@ class Gates:
     def _on_select(self, message):
         """Take in the operator's selection, which also renews the lease."""
         names = [name for name in message.robots[:1000] if name_problem(name) is None]
+        caller = caller_of(message)
         with self._lock:
-            before = self._seat.checked
-            if self._seat.on_selection(caller_of(message), dict.fromkeys(names), self._clock()):
-                if self._seat.checked != before:
-                    self._check()
-            else:
-                self.on_change()
+            operator, before = self._seat.operator, self._seat.checked
+            if not self._seat.on_selection(caller, dict.fromkeys(names), self._clock()):
+                self._refuse(caller, 'robot_select')
+            elif self._seat.checked != before or caller != operator:
+                self._strangers.forget(caller)
+                self._check()
         if len(message.robots) > MOST_ROBOTS:
             rospy.logwarn_throttle(10.0, '{} selects {} names: no more than {} robots count'.format(
-                caller_of(message), len(message.robots), MOST_ROBOTS))
+                caller, len(message.robots), MOST_ROBOTS))
 
     def _on_operator_gone(self, caller):
         with self._lock:
             lost = caller == self._seat.operator
             self._seat.on_gone(caller)
+            self._strangers.forget(caller)
             self._check()
             if lost:
                 self._everybody_joins()

@@ -191,6 +191,12 @@ class Strangers:
                 self._counts.pop(next(iter(self._counts)))
             self._counts[key] = (self._counts.get(key, (0,))[0] + 1, self._clock())
 
+    def forget(self, caller):
+        """Forget one who has gone, or is believed now."""
+        with self._lock:
+            self._counts = {key: said for key, said in self._counts.items()
+                            if key[0] != caller[:200]}
+
     def clear(self):
         """Forget them all."""
         with self._lock:

@@ -12,7 +12,8 @@ from std_srvs.srv import SetBool
 from mhri.core.driving.motor_power import MotorPowerRule
 from mhri.core.robots.listeners import first_obeying
 from mhri.core.robots.names import topic_of
-from mhri.ros.graph.rospy_inside import listeners, PromptPublisher
+from mhri.ros.graph.prompt import PromptPublisher
+from mhri.ros.graph.rospy_inside import listeners
 from mhri.ros.messages import message_class, MessageMissing, with_field
 from mhri.ros.worker import Worker
 

@@ -24,6 +24,7 @@ Interfaces (all global names; units SI):
   ``/mux/sources`` (written: list of {name, label}), ``/mux/stop_all`` (written, and read at start,
   so that a mux that crashed while everything was stopped comes back stopped)
 """
+from functools import partial
 import threading
 import time
 
@@ -40,7 +41,7 @@ from mhri.core.driving.profile import (
 from mhri.core.driving.pulse import Pulse
 from mhri.core.driving.sources import TWIST
 from mhri.msg import ControlMode, PanelRequest, RobotSelect
-from mhri.ros.convert import to_twist
+from mhri.ros.convert import packed_twist, to_twist
 from mhri.ros.devices.device_profiles import DeviceProfiles
 from mhri.ros.graph.master_api import MasterError
 from mhri.ros.graph.master_watch import MasterWatch
@@ -51,7 +52,8 @@ from mhri.ros.driving.mux_takeover import is_superseded
 from mhri.ros.driving.source_topic import LONGEST_TEXT, SourceTopic
 from mhri.ros.driving.suspender import Suspender
 from mhri.ros.driving.task_mux import TaskMux
-from mhri.ros.graph.rospy_inside import caller_of, PromptPublisher
+from mhri.ros.graph.prompt import PromptPublisher
+from mhri.ros.graph.rospy_inside import caller_of
 from mhri.ros.worker import Worker
 
 # How often the mux repeats its stop-all and asks the master, and how long it waits for an answer
@@ -79,10 +81,11 @@ class Mux:
         self._clock = clock
         self._arbiter = Arbiter(config, clock())
         self._pulse = Pulse(clock())
-        self._next_beat = 0.0
+        self._next_beat = self._due = 0.0
         self._changed = threading.Condition(threading.RLock())
-        self._said_waiting = self._said_pushed = None
-        self._closing = False
+        # What it waits for, and whether the stick is held, as it was said last.
+        self._said = None, None
+        self._driving = self._closing = False
         self._service = None
         self._twist = PromptPublisher('/robot_controller/twist', Twist)
         self._mode = rospy.Publisher('/mux/mode', ControlMode, queue_size=10, latch=True)
@@ -130,57 +133,55 @@ class Mux:
         self._watch.start()
         self._memory.start()
         self._service = rospy.Service('/mux/set_stop_all', SetBool, self._on_stop_all)
-        self._listen('/mux_in/mode_select', ControlMode, self._on_mode, queue_size=10)
-        self._listen('/mux_in/speed_limit', Twist, self._on_limit, queue_size=1)
-        self._listen('/robot_controller/robot_select', RobotSelect, self._on_selection,
-                     queue_size=1, tcp_nodelay=True)
-        for part in (self._gates, self._tasks, self._advice):
+        for begin in (
+                partial(rospy.Subscriber, '/mux_in/mode_select', ControlMode, self._on_mode,
+                        queue_size=10),
+                partial(rospy.Subscriber, '/mux_in/speed_limit', Twist, self._on_limit,
+                        queue_size=1),
+                partial(rospy.Subscriber, '/robot_controller/robot_select', RobotSelect,
+                        self._on_selection, queue_size=1, tcp_nodelay=True),
+                self._gates.start, self._tasks.start, self._advice.start,
+                *(partial(topic.open, self._on_source) for topic in self._topics.values())):
+            # Registering after a newer mux has taken the name would end it as well (ros_comm#2018).
             if not self._closing:
-                part.start()
-        for topic in self._topics.values():
-            if not self._closing:
-                topic.open(self._on_source)
+                begin()
         self._suspender.activate(self._arbiter.source.suspend_service)
         threading.Thread(target=self._run, name='mux_timer', daemon=True).start()
         self._diagnostics.start()
         with self._changed:
             self._announce()
 
-    def _listen(self, *args, **kwargs):
-        """Subscribe and return True, unless this mux was told to end while it was starting.
-
-        Registering after a newer mux has taken the name would end that one as well
-        (ros_comm#2018).
-        """
-        return None if self._closing else rospy.Subscriber(*args, **kwargs)
-
     def _announce(self):
         """Publish the latched state anew."""
         self._mode.publish(source=self._arbiter.mode)
         self._stop.publish(data=self._arbiter.stop_all)
         self._dead_man.publish(data=self._config.dead_man)
-        limits = self._arbiter.limits
-        self._limit.publish(to_twist(*limits))
+        self._limit.publish(to_twist(*self._arbiter.limits))
 
     def _send(self, velocity):
-        """Publish what a rule returned and what the mux waits for; call with the lock held.
+        """Publish what a rule returned; call with the lock held.
 
-        Publishing inside the lock keeps a zero behind the command it ends.
+        Publishing inside the lock keeps a zero behind the command it ends. What else has changed is
+        told, but for one command after another: the gates may be waiting for this processor.
         """
         if self._closing:
             return
         if velocity is not None:
-            publish = self._twist.publish_urgent if velocity.is_zero() else self._twist.publish
-            publish(to_twist(velocity.linear_mps, velocity.angular_rad_s))
-        now = self._clock()
-        waiting, pushed = self._arbiter.waits_for(now), self._arbiter.pushed(now)
-        if waiting != self._said_waiting:
-            self._said_waiting = waiting
-            self._waits.publish(data=waiting)
-        if pushed != self._said_pushed:
-            self._said_pushed = pushed
-            self._pushed.publish(data=pushed)
-        self._changed.notify()
+            self._twist.publish_packed(packed_twist(
+                velocity.linear_mps, velocity.angular_rad_s), urgent=velocity.is_zero())
+        was_driving, self._driving = self._driving, self._arbiter.state == DRIVING
+        if not (was_driving and self._driving):
+            self._tell(self._clock())
+
+    def _tell(self, now):
+        """Publish what the mux waits for, and let the timer look when it is due (lock held)."""
+        said = self._said
+        self._said = self._arbiter.waits_for(now), self._arbiter.pushed(now)
+        for topic, word, before in zip((self._waits, self._pushed), self._said, said):
+            if word != before:
+                topic.publish(data=word)
+        if self._arbiter.next_tick(now) < self._due:
+            self._changed.notify()
 
     def _awake(self, now):
         """Tell whether a message heard now is new (with the lock held).
@@ -358,12 +359,13 @@ class Mux:
                 self._awake(now)
                 self._pulse.beat(now)
                 self._send_due(now)
-                due = min(self._arbiter.next_tick(now), now + LOOP_S)
-                self._changed.wait(max(0.0, due - self._clock()))
+                self._tell(now)
+                self._due = min(self._arbiter.next_tick(now), now + LOOP_S)
+                self._changed.wait(max(0.0, self._due - self._clock()))
 
     def _send_due(self, now):
         """Let the arbiter's time pass; ask a silent input node once more."""
-        was_waiting = self._said_waiting
+        was_waiting, _ = self._said
         for name, topic in self._topics.items():
             moving = self._arbiter.state in (READY, DRIVING)
             if topic.has_gone() and (moving or topic.source.rests):
@@ -372,7 +374,7 @@ class Mux:
         if now >= self._next_beat:
             self._next_beat = now + BEAT_S
             self._stop.publish(data=self._arbiter.stop_all)
-            if self._said_waiting == 'source' and was_waiting == 'source':
+            if self._said[0] == was_waiting == 'source':
                 self._suspender.resume_again()
 
     def close(self):

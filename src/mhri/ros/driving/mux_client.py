@@ -24,7 +24,8 @@ from mhri.core.screen.text import tidy_text
 from mhri.msg import ControlMode, RobotSelect
 from mhri.ros.convert import to_twist
 from mhri.ros.driving.in_force import InForce, STOP_SERVICE, Strangers
-from mhri.ros.graph.rospy_inside import PromptPublisher, publishers
+from mhri.ros.graph.prompt import PromptPublisher
+from mhri.ros.graph.rospy_inside import publishers
 from mhri.ros.worker import Worker
 
 RETRY_S = 0.5

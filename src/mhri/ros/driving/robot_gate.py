@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The gate of one robot: its rule, and the connections that carry its commands."""
 import math
+import operator
 import time
 
 from geometry_msgs.msg import Twist, TwistStamped
@@ -16,11 +17,11 @@ from mhri.core.robots.listeners import obeying
 from mhri.core.robots.names import topic_of
 from mhri.core.screen.views import GONE, SILENT
 from mhri.msg import RobotGate as RobotGateMessage
-from mhri.ros.convert import to_twist
+from mhri.ros.convert import packed_twist, to_twist
 from mhri.ros.driving.brake_eye import BrakeEye
 from mhri.ros.driving.motor_power import MotorPower
-from mhri.ros.graph.rospy_inside import (
-    listeners, PromptPublisher, publisher_uri, unsubscribe)
+from mhri.ros.graph.prompt import PromptPublisher
+from mhri.ros.graph.rospy_inside import listeners, publisher_uri, unsubscribe
 from mhri.ros.robots.link_probe import LinkProbe
 from mhri.ros.robots.own_navigation import OwnNavigation
 
@@ -33,6 +34,7 @@ LIVE_S = 1.0
 MOST_TOPICS = 8
 # How often a guard that would go back alone is told that it is heard [s].
 BEAT_S = 0.5
+_PACKED_ZERO = packed_twist(0.0, 0.0)
 
 
 class RobotGate:
@@ -83,6 +85,8 @@ class RobotGate:
                              for topic in robot_type.command[:MOST_TOPICS]]
         self._links = [()] * len(self._publishers)
         self._obeying = [frozenset()] * len(self._publishers)
+        # The first velocity topic that the robot listens to, and its links.
+        self._listened = self._listeners = None
         self._heard = PromptPublisher('/{}/mhri_guard/heard'.format(name), String)
         self.power = MotorPower(name, robot_type)
         self._navigation = OwnNavigation(name)
@@ -167,10 +171,15 @@ class RobotGate:
             self._guarded = guarded
             self.send(self.rule.join(now) or ZERO)
 
+    def _look_at_listeners(self, now):
+        """Do so if those have changed that a command goes to; the others have until the tick."""
+        if self._listened is None or self._listened.links() is not self._listeners:
+            self._look_at_links(now)
+
     def _look_at_links(self, now):
         """Let the robot wait for neutral if one of its listeners is new."""
         links = [publisher.links() for publisher in self._publishers]
-        if all(new is old for new, old in zip(links, self._links)):
+        if all(map(operator.is_, links, self._links)):
             return
         ids = [listeners(link) for link in links]
         obeying_now = obeying(self.name, ids[:1]) + obeying(self.name, ids[1:])
@@ -178,18 +187,20 @@ class RobotGate:
         new = any(id(link) not in known and link.endpoint_id in names
                   for found, names in zip(links[1:], obeying_now[1:]) for link in found)
         self._links, self._obeying = links, obeying_now
+        self._listened, self._listeners = next((found for *found, names in zip(
+            self._publishers[1:], links[1:], obeying_now[1:]) if names), (None, None))
         if new:
             # Killed gates may have told it something before: send a zero.
             self.send(self.rule.join(now) or ZERO)
 
     def command(self, velocity, now):
         """Pass on what the rule allows of the operator's command."""
-        self._look_at_links(now)
+        self._look_at_listeners(now)
         self.send(self.rule.on_command(velocity, now))
 
     def task(self, velocity, now):
         """Pass on what the rule allows of the command of the robot's task."""
-        self._look_at_links(now)
+        self._look_at_listeners(now)
         self.send(self.rule.on_task(velocity, now))
 
     def tick(self, now):
@@ -205,11 +216,11 @@ class RobotGate:
         """Let a guard that would go back alone know that it is heard."""
         if self._guarded and self._guard_state.back_after_s and now - self._beat_at >= BEAT_S:
             self._beat_at = now
-            self._heard.publish(self._guard.token)
+            self._heard.publish(String(self._guard.token))
 
     def leave(self):
         """Tell the guard that this is the end: who is left on purpose does not go back alone."""
-        self._heard.publish_urgent('')
+        self._heard.publish_urgent(String())
 
     def _lost(self, now):
         """Tell whether the robot is not heard or its link confirms nothing."""
@@ -225,27 +236,25 @@ class RobotGate:
 
     def send(self, velocity):
         """Publish what the rule returned (None: nothing)."""
+        if velocity is not None:
+            self._publish(velocity)
         self._navigation.end_while(self.rule.checked or self.rule.state == STOPPED, self._clock())
-        if velocity is None:
-            return
+
+    def _publish(self, velocity):
         if velocity.is_zero():
             for publisher in self._publishers[1:]:
-                publisher.publish_urgent(to_twist(0.0, 0.0))
+                publisher.publish_packed(_PACKED_ZERO, urgent=True)
             self._send_to_guard(velocity)
         elif self._guarded:
             # A zero must first release a guard that still holds a stop.
             self._send_to_guard(ZERO if self._guard.stop_confirmed else velocity)
-        else:
-            chosen = self._chosen()
-            if chosen is not None:
-                chosen.publish(to_twist(velocity.linear_mps, velocity.angular_rad_s))
+        elif self._listened is not None:
+            self._listened.publish_packed(
+                packed_twist(velocity.linear_mps, velocity.angular_rad_s))
 
     def _chosen(self):
         """Return the publisher to use for commands, None if nobody listens."""
-        if self._guarded:
-            return self._publishers[0]
-        return next((publisher for publisher, names in zip(self._publishers[1:], self._obeying[1:])
-                     if names), None)
+        return self._publishers[0] if self._guarded else self._listened
 
     def _send_to_guard(self, velocity):
         guard = self._publishers[0]

@@ -5,11 +5,12 @@ import time
 
 from geometry_msgs.msg import Twist
 import rospy
-from sensor_msgs.msg import Joy
 
 from mhri.core.driving.ownership import Ownership
 from mhri.core.driving.sources import TWIST
+from mhri.ros.convert import ShortJoy
 from mhri.ros.devices.input_node import LOST
+from mhri.ros.graph.prompt import hear_promptly
 from mhri.ros.graph.rospy_inside import caller_of, link_of, publishers
 
 # The longest text taken from a message.
@@ -29,15 +30,18 @@ class SourceTopic:
         self.ownership = Ownership() if source.exclusive else None
         self._clock = clock
         self._subscriber = None
+        self._is_twist = source.kind == TWIST
         self._links = {}
+        self._newest = None, None, None
         self._heard = None
         self._rival = self._refusal = None
 
     def open(self, on_message):
         """Subscribe; ``on_message(message, self)`` is called on rospy's threads."""
-        kind = Twist if self.source.kind == TWIST else Joy
-        self._subscriber = rospy.Subscriber(self.source.topic, kind, on_message,
-                                            callback_args=self, queue_size=1, tcp_nodelay=True)
+        kind = Twist if self._is_twist else ShortJoy
+        self._subscriber = hear_promptly(rospy.Subscriber(
+            self.source.topic, kind, on_message, callback_args=self, queue_size=1,
+            tcp_nodelay=True))
 
     def connected(self):
         """Return the caller ids of the connected publishers."""
@@ -58,15 +62,20 @@ class SourceTopic:
 
         A restarted node has the same name but another connection.
         """
-        caller, link = caller_of(message), link_of(message)
+        link, frame = link_of(message), '' if self._is_twist else message.frame_id
+        known, said, found = self._newest
+        if link is known and frame == said:
+            return found
+        caller, name = caller_of(message), frame[:LONGEST_TEXT]
         known, number = self._links.get(caller, (None, 0))
         if link is not known:
             number += 1
             self._links[caller] = (link, number)
-        frame = '' if self.source.kind == TWIST else message.header.frame_id[:LONGEST_TEXT]
-        lost = frame.endswith(LOST)
-        frame = frame[:-len(LOST)] if lost else frame
-        return (caller, number, frame), frame, lost
+        lost = name.endswith(LOST)
+        name = name[:-len(LOST)] if lost else name
+        found = (caller, number, name), name, lost
+        self._newest = link, frame, found
+        return found
 
     def has_gone(self):
         """Tell, once, that the publisher listened to is no longer connected."""

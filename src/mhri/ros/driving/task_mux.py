@@ -6,7 +6,7 @@ import rospy
 
 from mhri.core.driving.task_relay import MOST_ROBOTS, NOTHING, PASS_ZEROS, TaskRelay
 from mhri.msg import TeamTwist
-from mhri.ros.graph.rospy_inside import PromptPublisher
+from mhri.ros.graph.prompt import PromptPublisher
 
 
 class TaskMux:

@@ -5,7 +5,7 @@ import math
 
 from actionlib_msgs.msg import GoalID
 
-from mhri.ros.graph.rospy_inside import PromptPublisher
+from mhri.ros.graph.prompt import PromptPublisher
 
 # A goal that somebody sends meanwhile, or a navigation that starts only now, hears it so soon [s].
 AGAIN_S = 0.5

@@ -22,7 +22,8 @@ import rospy
 from mhri.core.tasks.base import BLOCKED, DONE, FAILED, LOST, RUNNING, TAKEN_OVER
 from mhri.core.tasks.delegated import Errand
 from mhri.ros.graph.master_api import MasterApi
-from mhri.ros.graph.rospy_inside import PromptPublisher, unsubscribe
+from mhri.ros.graph.prompt import PromptPublisher
+from mhri.ros.graph.rospy_inside import unsubscribe
 
 try:
     from move_base_msgs.msg import MoveBaseActionGoal

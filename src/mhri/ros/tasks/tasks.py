@@ -37,7 +37,7 @@ from mhri.msg import (
 from mhri.ros.convert import to_twist
 from mhri.ros.driving.in_force import InForce, STOP_SERVICE, TAKE_SERVICE
 from mhri.ros.graph.master_api import MasterError
-from mhri.ros.graph.rospy_inside import PromptPublisher
+from mhri.ros.graph.prompt import PromptPublisher
 from mhri.ros.map.map_source import MapSource
 from mhri.ros.map.place_keeper import PlaceKeeper
 from mhri.ros.map.place_services import PlaceServices

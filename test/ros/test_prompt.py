@@ -11,8 +11,7 @@ import pytest
 pytest.importorskip('rospy')
 
 from geometry_msgs.msg import Twist  # noqa: E402
-from mhri.ros.graph.rospy_inside import (  # noqa: E402
-    Flow, PromptConnection, PromptPublisher)
+from mhri.ros.graph.prompt import Flow, PromptConnection, PromptPublisher  # noqa: E402
 import rospy  # noqa: E402
 from rospy.exceptions import TransportTerminated  # noqa: E402
 
@@ -43,19 +42,13 @@ class Transport:
         self._closed(self)
 
 
-class Call:
-    """What the publisher says of a message."""
-
-    urgent = False
-
-
 @pytest.fixture
 def link():
     """Return (connection, transport, the subscriber's end)."""
     ours, theirs = socket.socketpair()
     ours.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 4096)
     transport = Transport(ours)
-    connection = PromptConnection(transport, 1, Call())
+    connection = PromptConnection(transport, 1)
     yield connection, transport, theirs
     transport.close()
     theirs.close()
@@ -251,9 +244,7 @@ def test_nothing_but_the_word_to_stop_is_given_to_a_stalled_link(link):
     wait_until_idle(connection)
     stalled[0] = True
     connection.write_data(message(30))
-    connection._call.urgent = True
-    connection.write_data(message(0))
-    connection._call.urgent = False
+    connection.write_data(message(0), urgent=True)
     assert take(theirs, 100) == message(0)
     connection.write_data(message(31))
     with pytest.raises(socket.timeout):
