@@ -174,7 +174,10 @@ class RobotSide(Side):
         bearing.on_heard(heard, sum(flow.demand(now) for flow in flows), now)
         if not (was_bound or bearing.bound):
             return
-        found = shares(flows, bearing.bytes_per_s, bearing.loss, now, bearing.drains) \
+        if not was_bound:
+            for flow in flows:
+                flow.packed()
+        found = shares(flows, bearing.bytes_per_s, bearing.loss, now, bearing.quiet) \
             if bearing.bound else {}
         for carried in opened:
             carried.thin(found.get(carried.stream.topic))
