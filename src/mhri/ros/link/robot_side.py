@@ -16,6 +16,7 @@ from mhri.core.link.renaming import first_text, renamer, rewritten, Transforms
 from mhri.core.link.shares import Flow, shares
 from mhri.core.robots.robot_types import resolve_robot_type
 from mhri.ros.graph.master_api import MasterApi, MasterError
+from mhri.ros.graph.rospy_inside import PromptPublisher
 from mhri.ros.graph.subscription import Subscription
 from mhri.ros.link.note import versions
 from mhri.ros.link.pictures import Pictures
@@ -129,9 +130,9 @@ class RobotSide(Side):
         self._streams = {}
         self._open = {}
         self._publishers = {
-            stream.topic: rospy.Publisher(
-                full_topic(namespace, stream.topic), bytes_of(message_class(kind)), queue_size=10,
-                tcp_nodelay=True) for stream, kind in DOWN}
+            stream.topic: PromptPublisher(full_topic(namespace, stream.topic),
+                                          bytes_of(message_class(kind)), queue_size=10)
+            for stream, kind in DOWN}
 
     def start(self):
         """Begin, and record what the host asks for."""
