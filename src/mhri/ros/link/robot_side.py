@@ -29,6 +29,8 @@ LOOK_S = 1.0
 # What nobody on the host listens to any more stays subscribed for a while [s].
 LINGER_S = 5.0
 LATCHED_S = 1.0
+# On a busy computer the radio may seem full twice a minute: one line of that in so long [s].
+TOLD_S = 60.0
 # Smaller messages are not worth packing [bytes].
 PACKED_BYTES = 200
 
@@ -188,10 +190,10 @@ class RobotSide(Side):
             if found else Thinned()
         if not bearing.bound:
             self._pictures.forget()
-            rospy.loginfo('%s: the radio bears everything', self.name)
+            rospy.loginfo_throttle(TOLD_S, '{}: the radio bears everything'.format(self.name))
         elif not was_bound:
-            rospy.loginfo('%s: the radio bears %.0f kB/s: less is sent', self.name,
-                          1e-3 * bearing.bytes_per_s)
+            rospy.loginfo_throttle(TOLD_S, '{}: the radio bears {:.0f} kB/s: less is sent'.format(
+                self.name, 1e-3 * bearing.bytes_per_s))
 
     def on_frame(self, topic, frame, now):
         """Give the guard a command, unless it is late, or another host has control."""
