@@ -3,7 +3,8 @@
 """Robots behind a bad radio: how old is what they obey, and what the operator is shown of them.
 
 Side by side: by one ROS master for all (TCPROS), and by the link (``mhri_link``; ``udp`` and
-``tcp`` endpoints, and with keys ``tls``, with its sealed datagrams, and ``quic``). What goes over
+``tcp`` endpoints, and with keys ``tls``, with its sealed datagrams, ``quic``, and by a router on
+either side of the radio, ``router_near`` and ``router_far``, where TLS carries all). What goes over
 the radio: the commands (20 Hz) and what guard and gates tell each other, and of each robot odometry
 (50 Hz), IMU (100 Hz), laser (10 Hz), and the pictures of a camera (jpeg, 30 Hz). Delays are those
 of one way. See ``support/behind_radio.py``.

@@ -27,9 +27,12 @@ HERE = os.path.abspath(__file__)
 GUARD = os.path.join(os.path.dirname(HERE), '..', '..', 'utils', 'remote', 'mhri_guard')
 TCPROS = 'TCPROS'
 # What the names of a way's robots begin with; all but TCPROS are protocols of the link.
-WAYS = {TCPROS: 'ros', 'udp': 'udp', 'tcp': 'tcp', 'tls': 'tls', 'quic': 'quic'}
+WAYS = {TCPROS: 'ros', 'udp': 'udp', 'tcp': 'tcp', 'tls': 'tls', 'quic': 'quic',
+        'router_near': 'near', 'router_far': 'far'}
+# By a router, on which side of the radio.
+ROUTED = {'router_near': NEAR_IP, 'router_far': FAR_IP}
 # Of these, those that need keys.
-SECRET = ('tls', 'quic')
+SECRET = ('tls', 'quic') + tuple(ROUTED)
 FIRST_PORT, FAR_MASTER = 7447, 11411
 COMMAND, ODOMETRY = 'teleop/input', 'odom'
 PICTURE = 'camera/rgb/image_raw/compressed'
@@ -273,18 +276,23 @@ class World:
         """Make keys for the host and for robots, if there are any."""
         if robots:
             authority = Authority(Path(self._folder.name))
-            for kind, name in [('host', 'lab')] + [('robot', name) for name in robots]:
+            for kind, name in [('host', 'lab'), ('router', 'hub')] + [
+                    ('robot', name) for name in robots]:
                 authority.run(kind, name)
-            self._keys = {name: authority.put(name) for name in ['lab'] + robots}
+            self._keys = {name: authority.put(name) for name in ['lab', 'hub'] + robots}
 
     def _link(self, way, name, port):
-        endpoint = '{}/{}:{}'.format(way, FAR_IP, port)
+        endpoint = '{}/{}:{}'.format('tls' if way in ROUTED else way,
+                                     ROUTED.get(way, FAR_IP), port)
+        listens, calls = ('--router', '--router') if way in ROUTED else ('--listen', '--connect')
         keys = [str(self._keys[who]) if way in SECRET else 'off' for who in (name, 'lab')]
-        code = 'from mhri.nodes.mhri_link import main; main()'
-        self.system.start(*self._words(
-            way, sys.executable, '-c', code, '--side', 'robot', '--name', name, '--listen',
-            endpoint, '--keys', keys[0], '__ns:=/' + name))
-        self.system.node('mhri_link', '--side', 'host', '--name', name, '--connect', endpoint,
+        link = [sys.executable, '-c', 'from mhri.nodes.mhri_link import main; main()', '--side']
+        if way in ROUTED:
+            hub = link + ['router', '--listen', endpoint, '--keys', str(self._keys['hub'])]
+            self.system.start(*hub if way == 'router_near' else self._words(way, *hub))
+        self.system.start(*self._words(way, *link, 'robot', '--name', name, listens, endpoint,
+                                       '--keys', keys[0], '__ns:=/' + name))
+        self.system.node('mhri_link', '--side', 'host', '--name', name, calls, endpoint,
                          '--keys', keys[1], '__ns:=/' + name)
 
     def _show(self):

@@ -14,7 +14,10 @@ import time
 import uuid
 import xmlrpc.client
 
+import psutil
+
 from support import machines
+from support.authority import Authority
 from support.fake_mux import FakeOperator, StateEar
 from support.random_world import Computer, GUARD, HERE, RESTARTER
 from support.ros_system import free_port, System, wait_for
@@ -40,6 +43,22 @@ NODE = 'from mhri.nodes.{} import main; main()'
 class ToldRobot(RobotLog):
     """What a robot was told, what it did, and which commands its guard obeyed first when."""
 
+    def __init__(self, path):
+        super().__init__(path)
+        self._read = {}
+
+    def rows(self, what):
+        """Return all rows of ``told`` or ``moved``; in an hour those are too many to read anew."""
+        at, rows = self._read.setdefault(what, [0, []])
+        with contextlib.suppress(FileNotFoundError), open('{}.{}'.format(self.path, what)) as log:
+            log.seek(at)
+            for line in iter(log.readline, ''):
+                if not line.endswith('\n'):
+                    break
+                rows.append(tuple(map(float, line.split())))
+                self._read[what][0] += len(line)
+        return rows[:]
+
     def told_since(self, since):
         """Return the rows in which it was told to move."""
         return [row for row in self.rows('told') if row[0] >= since and any(row[1:])]
@@ -59,12 +78,16 @@ class Masters:
     """The whole of it; use it as a context manager.
 
     :param lan: :class:`support.machines.Lan`, of which this process is the host
+    :param keys: whether they are linked by keys
     """
 
-    def __init__(self, lan):
+    def __init__(self, lan, keys=False):
         self.folder = lan.folder
         self.port = free_port()
-        self._router = ['--router', 'tcp/{}:{}'.format(machines.HOST_IP, free_port())]
+        self._protocol = 'tls' if keys else 'tcp'
+        self._router = ['--router', '{}/{}:{}'.format(self._protocol, machines.HOST_IP,
+                                                      free_port())]
+        self._keys = self._make_keys() if keys else {}
         self.host = System(adopt=False)
         self.computers = {name: Computer(11 + number) for number, name in enumerate(ROBOTS)}
         self.logs = {name: ToldRobot(str(self.folder / name)) for name in ROBOTS}
@@ -75,6 +98,14 @@ class Masters:
             ip, self.host.port)) for place, ip in self.ips()}
         os.environ.update({key: self._envs['host'][key] for key in (
             'ROS_MASTER_URI', 'ROS_IP', 'ROS_HOME', 'ROS_LOG_DIR')})
+
+    def _make_keys(self):
+        """Return {place: the folder with its key}."""
+        authority = Authority(self.folder)
+        names = {'host': 'lab', 'router': 'hub', **{name: name for name in ROBOTS}}
+        for place, name in names.items():
+            authority.run(place if place in ('host', 'router') else 'robot', name)
+        return {place: authority.put(name) for place, name in names.items()}
 
     def ips(self):
         """Return [(place, address)] of the host and the robots."""
@@ -125,9 +156,12 @@ class Masters:
         if part == 'master':
             return ['rosmaster', '--core', '-p', str(self.host.port)], {}
         link = [sys.executable, '-c', NODE.format('mhri_link')]
+        if self._keys:
+            link += ['--keys', str(self._keys['router' if part == 'router' else place])]
         if part.startswith('link_'):
             name = part[5:]
-            where = ['--connect', 'tcp/{}:{}'.format(self.computers[name].ip, self.port)]
+            where = ['--connect', '{}/{}:{}'.format(self._protocol, self.computers[name].ip,
+                                                    self.port)]
             return link + ['--side', 'host', '--name', name] + (
                 self._router if name == ROUTED else where), {'ROS_NAMESPACE': '/' + name}
         if part == 'router':
@@ -142,7 +176,7 @@ class Masters:
             'guard': [sys.executable, GUARD, '_command:=' + topics[0]],
             'link': link + ['--side', 'robot', '--name', place, '--namespace', space] + (
                 self._router if place == ROUTED else
-                ['--listen', 'tcp/0.0.0.0:{}'.format(self.port)])}[part]
+                ['--listen', '{}/0.0.0.0:{}'.format(self._protocol, self.port)])}[part]
         return words, {'ROS_NAMESPACE': '/' + space}
 
     def start(self, place, part):
@@ -180,6 +214,21 @@ class Masters:
     def cut(self, name, down):
         """Pull the cable of a robot, or plug it in."""
         machines.run('ip', 'link', 'set', self.computers[name].cable, 'down' if down else 'up')
+
+    def sizes(self):
+        """Return {program: (its process, MB, threads, files and sockets, sockets, lines said)}."""
+        found = {}
+        for (place, part), process in self.processes.items():
+            # bash that starts it again, in it the program.
+            for one in psutil.Process(process.pid).children(recursive=True)[-1:]:
+                files = '/proc/{}/fd/'.format(one.pid)
+                links = [os.readlink(files + name) for name in os.listdir(files)
+                         if os.path.islink(files + name)]
+                text = (self.folder / '{}_{}.log'.format(place, part)).read_bytes()
+                found[place + ' ' + part] = (
+                    one.pid, one.memory_info().rss * 1e-6, one.num_threads(), len(links),
+                    sum(link.startswith('socket:') for link in links), text.count(b'\n'))
+        return found
 
     # The operator.
 

@@ -109,8 +109,12 @@ class Sender:
     def on_heard(self, heard, now):
         """Take in what the host says that came, as ``ros/link/robot_side.py``."""
         flows, bearing = list(self._flows.values()), self.bearing
+        was_bound = bearing.bound
         bearing.on_heard(heard, sum(flow.demand(now) for flow in flows), now)
-        self._shares = shares(flows, bearing.bytes_per_s, bearing.loss, now, bearing.drains) \
+        if bearing.bound and not was_bound:
+            for flow in flows:
+                flow.packed()
+        self._shares = shares(flows, bearing.bytes_per_s, bearing.loss, now, bearing.quiet) \
             if bearing.bound else {}
         for stream, _, _, _ in STREAMS[:-1]:
             share, rate_hz = self._shares.get(stream.topic), stream.rate_hz

@@ -11,7 +11,7 @@ import pytest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from mhri.core.link.bearing import (  # noqa: E402
-    AROUND_BYTES, Bearing, CUT, DRAIN_S, FIRST_CUT, LEAST_BYTES_PER_S, Meter)
+    AROUND_BYTES, Bearing, CUT, DRAIN_S, FIRST_CUT, LEAST_BYTES_PER_S, Meter, QUIET_S)
 from mhri.core.link.carried import (  # noqa: E402
     COMMAND, GUARD_ECHO, Pace, PICTURE, STATE, Stream)
 from mhri.core.link.figures import (  # noqa: E402
@@ -54,7 +54,8 @@ def test_the_meter_counts_each_stream_for_itself_and_another_run_anew():
 def bound(heard=FULL):
     """Return a bearing that has found a limit, and when."""
     bearing = Bearing()
-    for now in (0.8, 1.0, 1.2):
+    # What is lost and waits is enough once.
+    for now in (1.2,) if heard.loss and heard.queue_s else (0.8, 1.0, 1.2):
         assert not bearing.bound
         bearing.on_heard(heard, DEMAND, now)
     assert bearing.bound and bearing.drains
@@ -65,8 +66,11 @@ def bound(heard=FULL):
 def drained(heard=FULL):
     """Return a bearing whose radio has drained since; when."""
     bearing = bound(heard)
+    empty = Heard(5e4, 0.0, heard.loss)
+    bearing.on_heard(empty, DEMAND, 1.4)
+    assert bearing.drains
     now = 1.2 + DRAIN_S
-    bearing.on_heard(Heard(5e4, 0.0, heard.loss), DEMAND, now)
+    bearing.on_heard(empty, DEMAND, now)
     assert not bearing.drains
     return bearing, now
 
@@ -92,7 +96,7 @@ def test_half_of_everything_lost_is_no_computer_that_hung():
 @pytest.mark.parametrize('heard, later_s, change', [
     (CALM, 0.2, 1), (FULL, 0.2, -1), (LOSSY, 0.2, 1), (Heard(5e4, 0.05, 0.0), 0.2, 0),
     # What was lost before the cut says nothing.
-    (Heard(5e4, 0.0, 0.6), 0.2, 1), (Heard(2e4, 0.0, 0.6), 3.0, -1),
+    (Heard(5e4, 0.0, 0.6), 0.2, 1), (Heard(2e4, 0.0, 0.6), 3.5, -1),
     (Heard(0.0, 0.15, 0.0), 0.2, -1)])
 def test_more_while_nothing_waits_and_less_while_much_does(heard, later_s, change):
     bearing, now = drained()
@@ -126,6 +130,31 @@ def test_one_cut_is_given_time_while_what_waits_gets_less(count):
     for number in range(count):
         bearing.on_heard(Heard(5e4, 0.14 - 0.01 * number, 0.0), DEMAND, now + 1.3 + 0.2 * number)
         assert bearing.bytes_per_s == before
+
+
+def test_what_bears_far_less_than_before_begins_anew():
+    for loss, anew in ((0.6, True), (0.2, False)):
+        bearing, now = drained()
+        bearing.on_heard(Heard(1e4, 0.3, loss), DEMAND, now + 0.2)
+        assert (bearing.drains, bearing.quiet) == (anew, anew)
+        assert (bearing.bytes_per_s == LEAST_BYTES_PER_S) is anew
+
+
+def test_pictures_begin_again_while_the_radio_drains():
+    bearing = bound()
+    assert bearing.quiet
+    bearing.on_heard(FULL, DEMAND, 1.2 + QUIET_S)
+    assert bearing.drains and not bearing.quiet
+
+
+def test_a_deep_queue_drains_for_longer():
+    bearing = bound()
+    for number in range(40):
+        # It fills still, and then gets empty.
+        queue_s = 0.15 + 0.2 * number if number < 5 else 1.3 - 0.05 * number
+        assert number >= 28 or bearing.drains, number
+        bearing.on_heard(Heard(5e4, max(0.0, queue_s), 0.0), DEMAND, 1.4 + 0.2 * number)
+    assert not bearing.drains
 
 
 def test_who_has_much_gives_way_first():
@@ -263,8 +292,8 @@ def test_a_picture_is_first_rarer_then_smaller():
     assert [shares(lot(), 3e4, loss, 10.0)['camera'].group for loss in (0.05, 0.2)] == [6, 3]
 
 
-def test_no_picture_goes_while_the_radio_drains():
-    found = shares(lot(), 1e4, 0.0, 10.0, drains=True)
+def test_no_picture_goes_while_the_radio_is_full():
+    found = shares(lot(), 1e4, 0.0, 10.0, quiet=True)
     assert found['camera'].hz == 0.0 and found['odom'].hz > shares(lot(), 1e4, 0.0, 10.0)['odom'].hz
 
 
@@ -289,6 +318,15 @@ def test_several_cameras_share_the_place():
 def test_a_flow_that_ended_takes_nothing():
     ended = flow('camera', PICTURE, 30, 25000)
     assert ended.hz(10.0) == pytest.approx(30.0, rel=0.1) and ended.hz(30.0) < 0.01
+
+
+def test_the_size_of_what_is_packed_from_now_on_is_guessed_until_one_comes():
+    state, picture = flow('odom', STATE, 50, 800), flow('camera', PICTURE, 30, 25000)
+    for one in (state, picture):
+        one.packed()
+    assert state.size < 350 and picture.size == 25000
+    state.sized(190)
+    assert state.size == 190 + AROUND_BYTES
 
 
 def test_a_pace_changes():

@@ -25,12 +25,14 @@ QUEUE_MOST_S, QUEUE_CALM_S = 0.07, 0.03
 # Of the messages; the first makes the link careful, with the second it goes down, with the third
 # nothing is lost any more.
 LOSSY, LOSS_MOST, LOSSLESS = 0.08, 0.5, 0.01
-# So much of what is carried is sent from then on; half of it the first time, when the queues are
+# With that, and while things wait, another radio is there, which bears far less.
+FLOOD = 0.4
+# So much of what is carried is sent from then on; less of it the first time, when the queues are
 # full and nobody knows how long the way is without them. Then by such a part more each second: up
 # to near what was too much, around that, and beyond it, where the part grows each second. What came
 # before the first cut was whole pictures, or rather was not, and another radio bears nobody knows
 # what: that is found out quickly.
-CUT, FIRST_CUT = 0.85, 0.5
+CUT, FIRST_CUT = 0.85, 0.6
 GROWTH, AROUND_GROWTH, BEYOND_GROWTH = 0.03, 0.015, 0.01
 FIRST_GROWTH, NEW_GROWTH = 0.15, 0.5
 NEAR, BEYOND = 0.85, 1.15
@@ -43,12 +45,15 @@ _MIDDLE = 30000.0
 _USED = 2.0
 # What came in half a second varies: a cut believes no less than this part of what was sent.
 _SURELY = 0.7
-# What was sent before a cut is still on its way [s].
-SETTLE_S, DRAIN_S = 1.0, 1.5
+# What was sent before a cut is still on its way [s]; right after the first no picture joins it.
+SETTLE_S, QUIET_S = 1.0, 0.5
+# After the first one the queues get empty: for so long, or if that does not show, for longer, and
+# until they have not become emptier for a while [s].
+DRAIN_S, LONG_DRAIN_S, FELL_S = 1.0, 3.0, 0.5
 # What does not wait for less after two cuts, or the first, does not wait because of what is sent:
 # the way has become longer, or others fill it [s].
 _FALLS_S = 0.03
-# So many reports in a row say that the radio does not bear all.
+# So many reports in a row say that the radio does not bear all, or one by what is lost and waits.
 BAD = 3
 LEAST_BYTES_PER_S = 8000.0
 
@@ -115,12 +120,13 @@ class Bearing:
     def __init__(self) -> None:
         self.bytes_per_s = math.inf
         self.loss = 0.0
-        self._cut_at = self._full_at = -math.inf
+        self._cut_at = self._full_at = self._fell_at = -math.inf
         self._top = self._cut_loss = self._own_loss = 0.0
         self._heard_at = -math.inf
         self._bad = 0
-        # Draining after the first cut; then growing by such a part each second, 0 for slowly.
-        self.drains, self._fast = False, 0.0
+        # Draining after the first cut, at first without pictures; then growing by such a part each
+        # second, 0 for slowly.
+        self.drains, self.quiet, self._fast = False, False, 0.0
         # Of a row of cuts that did not help: how many, and what was sent before.
         self._vain, self._before = 0, math.inf
         self._waited_s = self._longer_s = self._last_s = 0.0
@@ -151,11 +157,9 @@ class Bearing:
         if not self.bound:
             self._begin(heard, full, now)
         elif self.drains:
-            self._top = max(self._top, self._carried(heard))
-            # Others may not have begun yet, or the computer is slow: then it takes longer.
-            falls = heard.queue_s < self._waited_s - _FALLS_S
-            if now - self._cut_at >= (DRAIN_S if falls else 2.0 * DRAIN_S):
-                self._drained(heard)
+            self._drain(heard, now)
+        elif full and heard.loss > FLOOD and now - self._cut_at > SETTLE_S:
+            self._first_cut(heard, now)
         elif full:
             # On a long way it takes a while until what waits gets less.
             falls = queue_s < self._last_s and now - self._cut_at < 2.0 * SETTLE_S
@@ -163,6 +167,7 @@ class Bearing:
                 self._again(heard, queue_s, now)
         elif queue_s < calm_s and now - self._cut_at > SETTLE_S:
             self._grow(heard, step_s, demand, now)
+        self.quiet = self.drains and now - self._cut_at < QUIET_S
         self._last_s = queue_s
 
     def _limits_s(self) -> Tuple[float, float]:
@@ -176,11 +181,30 @@ class Bearing:
 
     def _begin(self, heard: Heard, full: bool, now: float) -> None:
         """Look whether the radio bears everything still."""
-        # For a moment it may be the computer, which loses nothing.
-        self._bad = self._bad + 1 if full or heard.loss > LOSSY else 0
+        # For a moment it may be the computer, which loses nothing, or a radio that only loses.
+        lossy = heard.loss > LOSSY
+        self._bad = self._bad + (BAD if full and lossy else 1) if full or lossy else 0
         if self._bad >= BAD or heard.loss > LOSS_MOST:
-            self._cut(heard, now, FIRST_CUT)
-            self.drains, self._waited_s = True, max(heard.queue_s, _FALLS_S + QUEUE_CALM_S)
+            self._first_cut(heard, now)
+
+    def _first_cut(self, heard: Heard, now: float) -> None:
+        """Begin anew with what comes: what was sent was far too much."""
+        self.bytes_per_s = math.inf
+        self._cut(heard, now, FIRST_CUT)
+        self.drains, self._waited_s = True, max(heard.queue_s, _FALLS_S + QUEUE_CALM_S)
+
+    def _drain(self, heard: Heard, now: float) -> None:
+        """See whether what waits gets less still; what was sent before may let it grow at first."""
+        self._top = max(self._top, self._carried(heard))
+        fell = self._fell_at > self._cut_at
+        if heard.queue_s < self._waited_s - _FALLS_S:
+            self._waited_s, self._fell_at = heard.queue_s, now
+        elif not fell:
+            self._waited_s = max(self._waited_s, heard.queue_s)
+        # Others may not have begun yet, or the computer is slow: then it takes longer.
+        if now - self._cut_at >= (DRAIN_S if fell else LONG_DRAIN_S) \
+                and now - self._fell_at >= FELL_S:
+            self._drained(heard)
 
     def _drained(self, heard: Heard) -> None:
         """Take what things still wait for as the length of the way."""

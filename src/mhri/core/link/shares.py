@@ -22,6 +22,8 @@ RARE_HZ, LEAST_BYTES = 1.5, 1500.0
 SPARE = ((0.08, 3), (0.01, 6))
 # Time constant of the means [s].
 _MEAN_S = 1.0
+# What packing leaves of a state, until it is known.
+_PACKED = 0.3
 
 
 class Flow:
@@ -29,7 +31,7 @@ class Flow:
 
     def __init__(self, stream: Stream) -> None:
         self.stream = stream
-        self._bytes = 0.0
+        self._bytes, self._known = 0.0, False
         self._hz = 0.0
         self._at = -math.inf
 
@@ -41,7 +43,13 @@ class Flow:
 
     def sized(self, size: int) -> None:
         """Take in how large one is [bytes]."""
-        self._bytes += 0.1 * (size - self._bytes) if self._bytes else size
+        self._bytes += 0.1 * (size - self._bytes) if self._known else size - self._bytes
+        self._known = True
+
+    def packed(self) -> None:
+        """Guess the size until the next one comes: from now on they are packed."""
+        if self.stream.urgency == STATE:
+            self._bytes, self._known = _PACKED * self._bytes, False
 
     def hz(self, now: float) -> float:
         """Return how often it comes, at most as often as it may be sent [Hz]."""
@@ -77,11 +85,11 @@ class Share:
 
 
 def shares(flows: List[Flow], bytes_per_s: float, loss: float, now: float,
-           drains: bool = False) -> Dict[str, Share]:
+           quiet: bool = False) -> Dict[str, Share]:
     """Return {topic: its :class:`Share`} of what a radio bears.
 
     :param loss: the share of packets that it loses, from 0 to 1
-    :param drains: no pictures, since the radio is full of them still
+    :param quiet: no pictures, since the radio is full of them still
     """
     by_class: Dict[str, List[Flow]] = {COMMAND: [], STATE: [], PICTURE: []}
     for flow in flows:
@@ -90,7 +98,7 @@ def shares(flows: List[Flow], bytes_per_s: float, loss: float, now: float,
              for flow in by_class[COMMAND]}
     left = bytes_per_s - sum(found[flow.stream.topic].hz * flow.size for flow in by_class[COMMAND])
     left = max(left, 0.3 * bytes_per_s)
-    looked_at = [flow for flow in by_class[PICTURE] if flow.hz(now) > 0.01 and not drains]
+    looked_at = [flow for flow in by_class[PICTURE] if flow.hz(now) > 0.01 and not quiet]
     kept = max(TO_PICTURES * left, min(SOME_BYTES_PER_S, MOST_TO_PICTURES * left))
     level = _level(by_class[STATE], left - (kept if looked_at else 0.0), now)
     for flow in by_class[STATE]:
@@ -99,7 +107,7 @@ def shares(flows: List[Flow], bytes_per_s: float, loss: float, now: float,
         left -= min(hz, flow.hz(now)) * flow.size
     left = max(left, 0.1 * bytes_per_s)
     for flow in by_class[PICTURE]:
-        found[flow.stream.topic] = Share(0.0) if drains else _of_picture(
+        found[flow.stream.topic] = Share(0.0) if quiet else _of_picture(
             flow, left, max(1, len(looked_at)), loss)
     return found
 

@@ -16,6 +16,7 @@ from mhri.core.link.renaming import first_text, renamer, rewritten, Transforms
 from mhri.core.link.shares import Flow, shares
 from mhri.core.robots.robot_types import resolve_robot_type
 from mhri.ros.graph.master_api import MasterApi, MasterError
+from mhri.ros.graph.rospy_inside import PromptPublisher
 from mhri.ros.graph.subscription import Subscription
 from mhri.ros.link.note import versions
 from mhri.ros.link.pictures import Pictures
@@ -28,6 +29,8 @@ LOOK_S = 1.0
 # What nobody on the host listens to any more stays subscribed for a while [s].
 LINGER_S = 5.0
 LATCHED_S = 1.0
+# On a busy computer the radio may seem full twice a minute: one line of that in so long [s].
+TOLD_S = 60.0
 # Smaller messages are not worth packing [bytes].
 PACKED_BYTES = 200
 
@@ -129,9 +132,9 @@ class RobotSide(Side):
         self._streams = {}
         self._open = {}
         self._publishers = {
-            stream.topic: rospy.Publisher(
-                full_topic(namespace, stream.topic), bytes_of(message_class(kind)), queue_size=10,
-                tcp_nodelay=True) for stream, kind in DOWN}
+            stream.topic: PromptPublisher(full_topic(namespace, stream.topic),
+                                          bytes_of(message_class(kind)), queue_size=10)
+            for stream, kind in DOWN}
 
     def start(self):
         """Begin, and record what the host asks for."""
@@ -174,7 +177,10 @@ class RobotSide(Side):
         bearing.on_heard(heard, sum(flow.demand(now) for flow in flows), now)
         if not (was_bound or bearing.bound):
             return
-        found = shares(flows, bearing.bytes_per_s, bearing.loss, now, bearing.drains) \
+        if not was_bound:
+            for flow in flows:
+                flow.packed()
+        found = shares(flows, bearing.bytes_per_s, bearing.loss, now, bearing.quiet) \
             if bearing.bound else {}
         for carried in opened:
             carried.thin(found.get(carried.stream.topic))
@@ -184,10 +190,10 @@ class RobotSide(Side):
             if found else Thinned()
         if not bearing.bound:
             self._pictures.forget()
-            rospy.loginfo('%s: the radio bears everything', self.name)
+            rospy.loginfo_throttle(TOLD_S, '{}: the radio bears everything'.format(self.name))
         elif not was_bound:
-            rospy.loginfo('%s: the radio bears %.0f kB/s: less is sent', self.name,
-                          1e-3 * bearing.bytes_per_s)
+            rospy.loginfo_throttle(TOLD_S, '{}: the radio bears {:.0f} kB/s: less is sent'.format(
+                self.name, 1e-3 * bearing.bytes_per_s))
 
     def on_frame(self, topic, frame, now):
         """Give the guard a command, unless it is late, or another host has control."""
