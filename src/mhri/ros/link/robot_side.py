@@ -16,7 +16,7 @@ from mhri.core.link.renaming import first_text, renamer, rewritten, Transforms
 from mhri.core.link.shares import Flow, shares
 from mhri.core.robots.robot_types import resolve_robot_type
 from mhri.ros.graph.master_api import MasterApi, MasterError
-from mhri.ros.graph.rospy_inside import PromptPublisher
+from mhri.ros.graph.prompt import PromptPublisher
 from mhri.ros.graph.subscription import Subscription
 from mhri.ros.link.note import versions
 from mhri.ros.link.pictures import Pictures
