@@ -38,9 +38,10 @@ class Driver:
         self._topic = '/{}/mhri_guard/'.format(name)
         self.link = GuardLink(name)
         rospy.Subscriber(self._topic + 'echo', TwistStamped, self._on_echo, tcp_nodelay=True)
-        rospy.Subscriber(self._topic + 'dropped', TwistStamped, self.dropped.append)
+        dropped = rospy.Subscriber(self._topic + 'dropped', TwistStamped, self.dropped.append)
         self.connect(name)
-        wait_for(self.end.connected, START_S, 'the robot')
+        wait_for(lambda: self.end.connected() and dropped.get_num_connections(), START_S,
+                 'the robot, and the guard to be heard')
 
     def connect(self, session):
         """Begin a session with connections of its own."""
