@@ -4,8 +4,10 @@
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from mhri.inputs import teaching
 from mhri.nodes import mhri_voice_teach as teach
 
 GOOD = ''
@@ -100,3 +102,15 @@ def test_without_recordings_nothing_is_kept(voices, tmp_path):
     with pytest.raises(teach.Refused, match='only 0 of'):
         teach.teach(teach.parse(['ann', '--recordings', str(tmp_path)]), said.append)
     assert not voices.exists() and any('nothing was heard' in text for text in said)
+
+
+def test_what_is_learned_with_noise_has_as_much_of_it_whatever_its_level():
+    random = np.random.RandomState(3)
+    for level in (300.0, 3000.0):
+        plain = np.round(level * random.standard_normal(16001)).astype('<i2')
+        noisy = np.frombuffer(teaching.in_noise(plain.tobytes(), random), dtype='<i2')
+        under = noisy.astype(float) - plain
+        assert np.std(under) == pytest.approx(level / 10.0 ** 0.5, rel=0.03)
+    loudest = np.full(16000, 32767, dtype='<i2')
+    noisy = np.frombuffer(teaching.in_noise(loudest.tobytes(), random), dtype='<i2')
+    assert noisy.max() == 32767 and noisy.min() > -25000, 'cut off, not turned over'

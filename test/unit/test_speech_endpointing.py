@@ -224,17 +224,6 @@ STOP_MARGINS = [(GOOD, 10.0), (replace(GOOD, worst=-35.0), -5.0), (replace(GOOD,
                 (replace(GOOD, words=(('stop', -30.0), ('stop', -3.0))), 15.0)]
 
 
-def test_a_voice_that_was_taught_is_believed_sooner():
-    taught = TUNING.of_taught()
-    lower = TUNING.taught * TUNING.slope
-    poor = replace(GOOD, worst=-38.0)
-    assert poor.margin(TUNING) == -8.0 and poor.margin(taught) == lower - 8.0
-    assert poor.logit(taught) == pytest.approx(poor.logit(TUNING) + TUNING.taught)
-    late = replace(GOOD, start=50)
-    assert late.margin(taught) == late.margin(TUNING) < 0.0, 'speech before it is none of the voice'
-    assert taught.stop_word == TUNING.stop_word
-
-
 @pytest.mark.parametrize('fit, margin', STOP_MARGINS)
 def test_a_stop_may_come_late_but_has_to_be_one(fit, margin):
     """Talk that fits "no stop everything" but for the stop itself is no stop."""

@@ -11,7 +11,7 @@ the utterance was no command; and several small signs of that count together.
 import math
 import os
 import tempfile
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -54,9 +54,6 @@ class Tuning:
     than the wake word, which has to be 0.5 as well: commands against talk of both tuning runs, ten
     voices in three rooms, with ``by_start`` chosen by leaving one voice out after the other. All
     limits lie 0.4 of a slope below what those ten gave, since other voices fit worse.
-
-    For a voice that was taught all limits but a stop's lie ``taught`` slopes lower: of one such
-    voice 12 commands lay 1 and more above them, 30 sentences of talk 17 and more below.
     """
 
     stop_threshold: float = 1e-10
@@ -76,13 +73,6 @@ class Tuning:
     by_gaps: float = -0.068
     by_start: float = -0.8
     at_rest: float = 15.82
-    taught: float = 2.0
-
-    def of_taught(self):
-        """Return the limits for a voice that was taught."""
-        lower = {key: getattr(self, key) - self.taught * self.slope
-                 for key in ('worst_word', 'first_word', 'unspotted_wake', 'all_words')}
-        return replace(self, at_rest=self.at_rest + self.taught, **lower)
 
 
 @dataclass(frozen=True)
@@ -392,9 +382,8 @@ class Recogniser:
         stops = language.stop if any(word in language.stop for word in words) else ()
         woken = text.startswith(language.wake_words)
         fit = compare(fitted, anything)
-        tuning = self._tuning.of_taught() if self._voice and not stops else self._tuning
-        steps = fit.margin(tuning, stops, woken, self._wake_spotted) / tuning.slope
+        steps = fit.margin(self._tuning, stops, woken, self._wake_spotted) / self._tuning.slope
         if not stops and text not in language.wake_words:
-            steps = min(steps, fit.logit(tuning, woken))
+            steps = min(steps, fit.logit(self._tuning, woken))
         # Bounded, since exp() has a largest argument.
         return Hypothesis(text, 1.0 / (1.0 + math.exp(-max(-50.0, min(50.0, steps)))))
