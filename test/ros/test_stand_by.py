@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A process that stands by takes over at once, hands signals on, and leaves nobody behind."""
+"""A process that stands by takes over at once, hands signals on, and leaves nobody behind.
+
+What hangs is ended, and nothing else.
+"""
 import os
 import signal
 import subprocess
@@ -9,20 +12,26 @@ import sys
 import psutil
 import pytest
 
-# Says its number; ends with 7 when it is asked to by SIGTERM or SIGHUP, with 8 by SIGINT.
+from mhri.ros import stand_by
+
+# Says its number; ends with 7 if SIGTERM or SIGHUP asks it to, with 8 if SIGINT does. If it is to
+# beat, it does so once, and hangs from then on.
 PROGRAM = '''
 import os, signal, sys, time
 from mhri.ros import stand_by
 stand_by.LEAST_LIFE_S = {least_life_s}
-stand_by.stand_by('the sleepers')
+stand_by.HUNG_S = 0.3
+beat = stand_by.stand_by('the sleepers', beats={beats})
 def end(number, _):
     # It may come while the line below is being printed: print() in print() is an error.
     os.write(1, b'signal %d\\n' % number)
-    time.sleep(0.2)
+    time.sleep({end_s})
     os._exit(8 if number == signal.SIGINT else 7)
 for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
     signal.signal(number, end)
 print('here', os.getpid(), flush=True)
+if {beats}:
+    {beat}
 # A signal that comes just before a sleep begins is heard when that ends.
 for _ in range(600):
     time.sleep(0.1)
@@ -34,9 +43,10 @@ def start():
     """Return a function that starts the program, in a group of its own."""
     begun = []
 
-    def run(least_life_s=0.0):
+    def run(least_life_s=0.0, beats=False, beat='beat()', end_s=0.2):
         begun.append(subprocess.Popen(
-            [sys.executable, '-c', PROGRAM.format(least_life_s=least_life_s)],
+            [sys.executable, '-c', PROGRAM.format(
+                least_life_s=least_life_s, beats=beats, beat=beat, end_s=end_s), '--stand-by'],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True))
         return begun[-1]
     yield run
@@ -94,3 +104,55 @@ def test_the_child_has_a_processes_ordinary_signals(start):
     process = start()
     with open('/proc/{}/status'.format(here(process))) as stream:
         assert 'SigBlk:\t0000000000000000' in stream.read()
+
+
+def test_one_that_hangs_is_ended_and_followed_by_another(start):
+    process = start(beats=True)
+    first = here(process)
+    assert here(process) != first and process.poll() is None
+    assert process.stderr.readline() == \
+        'the sleepers: process {} hung and was ended, another one takes over\n'.format(first)
+
+
+@pytest.mark.parametrize('beat, ask', [
+    ('beat.end()', False), ('beat(); beat.end()', False), ('beat()', True)])
+def test_one_that_ends_is_given_its_time(start, beat, ask):
+    """Another one in its place would fight with a newer node of its name."""
+    process = start(beats=True, beat=beat, end_s=1.0)
+    child = here(process)
+    if ask:
+        os.kill(process.pid, signal.SIGTERM)
+    else:
+        # Long after it would have hung.
+        with pytest.raises(subprocess.TimeoutExpired):
+            process.wait(1.0)
+        os.kill(child, signal.SIGTERM)
+    assert process.wait(60) == 7
+    assert process.stdout.read().split() == ['signal', str(int(signal.SIGTERM))]
+
+
+@pytest.mark.parametrize('events, hung_at', [
+    # (time, what the child said by then)
+    ([(0.1, b'')] * 3 + [(19.9, b''), (20.1, b'')], None),
+    ([(at / 10.0, b'') for at in range(1, 220)], 20.1),
+    ([(at / 10.0, b'.' if at == 30 else b'') for at in range(1, 220)], 4.9),
+    ([(at / 10.0, b'.' if at % 5 == 0 else b'') for at in range(1, 220)], None),
+    ([(at / 10.0, b'.' if at == 5 else b'..e' if at == 10 else b'') for at in range(1, 900)], None),
+    # It was held up itself between two looks, and gives the child its time.
+    ([(0.1, b'.'), (9.0, b''), (9.1, b''), (9.5, b''), (9.9, b'')], None),
+    ([(0.1, b'.'), (9.0, b'')] + [(9.0 + at / 10.0, b'') for at in range(1, 30)], 10.9),
+])
+def test_what_counts_as_hung(events, hung_at):
+    now = [0.0]
+    hears, speaks = os.pipe()
+    os.set_blocking(hears, False)
+    try:
+        watch, found = stand_by.Watch(hears, lambda: now[0]), None
+        for now[0], said in events:
+            os.write(speaks, said)
+            if watch.hung() and found is None:
+                found = now[0]
+        assert found == hung_at
+    finally:
+        os.close(hears)
+        os.close(speaks)

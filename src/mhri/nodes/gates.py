@@ -27,16 +27,16 @@ def main():
     After ``rosnode kill`` the exit status is 1, so that ``mhri.launch`` restarts it.
     """
     types, errors = robot_types()
-    if '--stand-by' in sys.argv:
-        stand_by('the gates')
+    beat = stand_by('the gates', beats=True)
     limit_handshakes()
     rospy.init_node('mhri_gates', disable_rostime=True)
+    rospy.on_shutdown(beat.end)
     log.install()
     by_hand = ended_by_hand()
     # Closing the terminal must not end the gates without a zero.
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     gates = Gates(types)
-    speaker = GatesSpeaker(gates.read, gates.mux_heard)
+    speaker = GatesSpeaker(gates.read, gates.mux_heard, beat)
     gates.on_change = speaker.on_change
     rospy.on_shutdown(gates.close)
     MasterWatch(period_s=0.25, patience_s=1.1).start()

@@ -75,8 +75,7 @@ def options():
 def main():
     """Run until shut down, and close what is recorded; exit with 1 for a wrong parameter."""
     types, _ = robot_types()
-    if '--stand-by' in sys.argv:
-        stand_by('the session')
+    stand_by('the session')
     limit_handshakes()
     rospy.init_node('mhri_session')
     log.install()

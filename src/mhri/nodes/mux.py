@@ -57,8 +57,7 @@ def adjusted(config):
 
 def main():
     """Run until shut down; exit with 1 if the sources' file cannot be used."""
-    if '--stand-by' in sys.argv:
-        stand_by('the mux')
+    beat = stand_by('the mux', beats=True)
     try:
         path = config_path(sys.argv) or resource_path('mux.yaml')
         config = parse_mux_config(read_text(path), path, profile_reader(path))
@@ -66,6 +65,7 @@ def main():
         sys.exit('the mux cannot start: {}'.format(error))
     limit_handshakes()
     rospy.init_node('mux')
+    rospy.on_shutdown(beat.end)
     log.install()
     # Closing the terminal must not end the mux without a zero.
     signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
@@ -75,7 +75,7 @@ def main():
     except ConfigError as error:
         sys.exit('the mux cannot start: {}'.format(error))
     end_other_muxes()
-    Mux(config).start(stopped)
+    Mux(config, beat).start(stopped)
     if stopped:
         rospy.logwarn('stop-all was in force when the last mux ended: it still is')
     # What is loaded by now stays: searching it would delay a command.

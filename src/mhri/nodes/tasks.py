@@ -56,8 +56,7 @@ def main():
     """
     types, _ = robot_types()
     kinds, errors = task_kinds()
-    if '--stand-by' in sys.argv:
-        stand_by('the tasks')
+    stand_by('the tasks')
     limit_handshakes()
     rospy.init_node('mhri_tasks', disable_rostime=True)
     log.install()

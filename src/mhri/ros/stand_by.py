@@ -1,11 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Keeps a program's next process ready for when this one is killed: nothing needs loading again.
+"""Replaces a program's process when it is killed or hangs: the next one is loaded already.
 
 Loading Python and rospy takes a third of a second on an idle processor, and seconds on a busy one;
-driven robots wait for their zero meanwhile.
+driven robots wait for their zero meanwhile. And roslaunch, which restarts a node that has ended,
+does nothing about one that hangs.
 """
 import ctypes
+import math
 import os
 import signal
 import sys
@@ -16,18 +18,31 @@ _ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _PR_SET_PDEATHSIG = 1
 # A process killed so soon after its start would be killed again [s].
 LEAST_LIFE_S = 2.0
+# One that beats must do so this often [s]; the first beat may take longer: at a load of 40, a start
+# takes 5 s at most.
+HUNG_S = 1.8
+START_S = 20.0
+_LOOK_S = 0.1
+# A look that comes this late was held up itself, and knows nothing about the child.
+_OWN_SLEEP_S = 0.5
+# What the child says.
+_WORKS, _ENDS_ITSELF = b'.', b'e'
 
 
-def stand_by(label):
-    """Return in a child of this process, and in another one whenever a signal kills that.
+def stand_by(label, beats=False):
+    """Return in a child of this process, and in another one whenever that is killed or hangs.
 
-    Call it when everything is loaded, and before there are threads. The calling process stays and
-    does nothing else: it passes on the signals to end, and ends as its child ended. The child has
-    its own session, so that it gets each signal once; it is told to end (SIGTERM) if the parent is
-    killed.
+    Only with the argument ``--stand-by``; else it returns at once, and nobody looks after this
+    process. Call it when everything is loaded, and before there are threads. The calling process
+    stays and does nothing else: it passes on the signals to end, and ends as its child ended. The
+    child has its own session, so that it gets each signal once; it is told to end (SIGTERM) if the
+    parent is killed.
 
     :param label: the name of the program, for the line that says it was killed
+    :param beats: whether the child calls the returned :class:`Beat`, and hangs if it does not
     """
+    if '--stand-by' not in sys.argv:
+        return Beat()
     # Wait for signals, do not handle them: a handler could miss one that comes just before the
     # wait.
     signal.pthread_sigmask(signal.SIG_BLOCK, _ENDS + (signal.SIGCHLD,))
@@ -35,18 +50,74 @@ def stand_by(label):
         sys.stdout.flush()
         sys.stderr.flush()
         parent, begun = os.getpid(), time.monotonic()
+        hears, speaks = os.pipe()
+        os.set_blocking(hears, False)
+        os.set_blocking(speaks, False)
         child = os.fork()
         if not child:
+            os.close(hears)
             _be_child(parent)
-            return
-        status, asked = _end_of(child)
+            return Beat(speaks)
+        os.close(speaks)
+        status, asked, hung = _end_of(child, Watch(hears) if beats else None)
+        os.close(hears)
         if not os.WIFSIGNALED(status):
             os._exit(os.WEXITSTATUS(status))
         killer = os.WTERMSIG(status)
         if asked or time.monotonic() - begun < LEAST_LIFE_S:
             os._exit(128 + killer)
-        print('{}: process {} was killed by signal {}, another one takes over'.format(
-            label, child, killer), file=sys.stderr)
+        print('{}: process {} {}, another one takes over'.format(
+            label, child, 'hung and was ended' if hung else 'was killed by signal {}'.format(
+                killer)), file=sys.stderr)
+
+
+class Beat:
+    """The child's sign of life, from any thread; without a parent that listens it does nothing.
+
+    :param pipe: leads to the parent, and does not block
+    """
+
+    def __init__(self, pipe=None):
+        self._pipe = pipe
+
+    def __call__(self, word=_WORKS):
+        """Say that the program works."""
+        if self._pipe is not None:
+            try:
+                os.write(self._pipe, word)
+            except OSError:
+                pass  # the parent has ended, or hangs itself
+
+    def end(self):
+        """Say that the program is about to end by itself, and beats no more."""
+        self(_ENDS_ITSELF)
+
+
+class Watch:
+    """The parent's ear for the beats.
+
+    :param pipe: where they arrive; does not block
+    :param clock: function returning seconds that never go back
+    """
+
+    def __init__(self, pipe, clock=time.monotonic):
+        self._pipe = pipe
+        self._clock = clock
+        self._looked_at = clock()
+        self._due = self._looked_at + START_S
+
+    def hung(self):
+        """Tell whether a beat is overdue; ask every 0.1 s."""
+        now = self._clock()
+        if now - self._looked_at > _OWN_SLEEP_S:
+            self._due = max(self._due, now + HUNG_S)
+        self._looked_at = now
+        try:
+            said = os.read(self._pipe, 65536)
+            self._due = math.inf if _ENDS_ITSELF in said else now + HUNG_S
+        except BlockingIOError:
+            pass  # nothing yet
+        return now > self._due
 
 
 def _be_child(parent):
@@ -58,15 +129,24 @@ def _be_child(parent):
         os._exit(1)
 
 
-def _end_of(child):
-    """Pass on signals to end until the child ends; return (its status, whether it was asked to)."""
-    asked = False
+def _end_of(child, watch):
+    """Wait until the child ends; pass on signals to end, and kill it if it hangs.
+
+    :param watch: :class:`Watch`, None: without beats
+    :returns: (its status, whether it was asked to end, whether it hung)
+    """
+    asked = hung = False
     while True:
-        number = signal.sigwait(_ENDS + (signal.SIGCHLD,))
-        if number != signal.SIGCHLD:
+        watching = watch is not None and not asked and not hung
+        signs = _ENDS + (signal.SIGCHLD,)
+        info = signal.sigtimedwait(signs, _LOOK_S) if watching else signal.sigwaitinfo(signs)
+        if info is not None and info.si_signo != signal.SIGCHLD:
             asked = True
-            os.kill(child, number)
-            continue
-        ended, status = os.waitpid(child, os.WNOHANG)
-        if ended:
-            return status, asked
+            os.kill(child, info.si_signo)
+        elif info is not None:
+            ended, status = os.waitpid(child, os.WNOHANG)
+            if ended:
+                return status, asked, hung
+        elif watch.hung():
+            hung = True
+            os.kill(child, signal.SIGKILL)

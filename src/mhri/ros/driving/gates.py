@@ -24,13 +24,13 @@ from std_msgs.msg import Bool
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 from mhri.core.driving.gate import common_limits
+from mhri.core.driving.neighbour import Neighbour
 from mhri.core.driving.seat import ControlSeat, MOST_ROBOTS
 from mhri.core.robots.link_quality import link_share
 from mhri.core.robots.names import name_problem
 from mhri.msg import GroupSpeed, RobotSelect, TeamTwist
 from mhri.ros.convert import from_twist, PlanarTwist
 from mhri.ros.driving.in_force import InForce, STOP_SERVICE, Strangers, TAKE_SERVICE
-from mhri.ros.driving.neighbour import Neighbour
 from mhri.ros.driving.robot_gate import RobotGate
 from mhri.ros.driving.roster import Roster
 from mhri.ros.graph.prompt import hear_promptly
@@ -69,7 +69,7 @@ class Gates:
         self._states = []
         # What moves says nothing of where a laser sits on its robot.
         self._frames = TfFeed(clock, moving=False)
-        self._neighbour = Neighbour('the mux', lambda: self.on_change(), lambda: self.on_change())
+        self._neighbour = Neighbour('the mux')
         self._mux = InForce(STOP_SERVICE, self._refuse, self._on_new_mux)
         self._roster = Roster(types, self._open, self._close_gate, self._unheard)
 
@@ -90,7 +90,6 @@ class Gates:
         rospy.Subscriber('/gates_in/group_speed', GroupSpeed, self._on_group_speed, queue_size=10)
         rospy.Service(TAKE_SERVICE, Trigger, self._on_take)
         rospy.Service('/gates/set_motor_power', SetBool, self._on_motor_power)
-        self._neighbour.start()
         threading.Thread(target=self._run, name='gates', daemon=True).start()
 
     def read(self):
@@ -156,7 +155,7 @@ class Gates:
             return
         with self._lock:
             link = link_of(message)
-            self._neighbour.beat(caller_of(message))
+            self._neighbour.beat(caller_of(message), self._clock())
             if message.data:
                 self._stop_links = [link]
                 self._set_stop(True)
@@ -334,6 +333,10 @@ class Gates:
         self._each(lambda gate: gate.tick(now))
         if self._slow_with_link:
             self._keep_together()
+        news = self._neighbour.look(now)
+        if news:
+            self.on_change()
+            rospy.logwarn('%s', news)
         states = [(gate.rule.obeys, gate.rule.stands, gate.brake()[0])
                   for gate in self._gates.values()]
         if states != self._states:

@@ -22,11 +22,13 @@ class GatesSpeaker:
 
     :param read: :meth:`mhri.ros.driving.gates.Gates.read`
     :param mux_heard: function telling whether the mux was heard within the last second
+    :param beat: called whenever it has published
     """
 
-    def __init__(self, read, mux_heard, clock=time.monotonic):
+    def __init__(self, read, mux_heard, beat=lambda: None, clock=time.monotonic):
         self._read = read
         self._mux_heard = mux_heard
+        self._beat = beat
         self._clock = clock
         self._changed = threading.Event()
         self._computers = {}
@@ -51,6 +53,7 @@ class GatesSpeaker:
                 self._publisher.publish(self.message())
             except rospy.ROSException:
                 return  # the node has just ended
+            self._beat()
             time.sleep(LEAST_S)
 
     def message(self):

@@ -35,7 +35,6 @@ from std_srvs.srv import SetBool, SetBoolResponse
 
 from mhri.core.driving.arbiter import Arbiter, DRIVING, READY, REPEAT_HZ, ZEROS_S
 from mhri.core.driving.buttons import ButtonEdges
-from mhri.core.driving.limits import ZERO
 from mhri.core.driving.profile import (
     JoyRefused, MARK, NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL, STOP_ALL)
 from mhri.core.driving.pulse import Pulse
@@ -74,11 +73,12 @@ class Mux:
     """The only publisher of ``/robot_controller/twist``.
 
     :param config: :class:`mhri.core.driving.sources.MuxConfig`
+    :param beat: called twice a second while the mux works
     :param clock: function returning seconds that never go back
     """
 
-    def __init__(self, config, clock=time.monotonic):
-        self._clock = clock
+    def __init__(self, config, beat=lambda: None, clock=time.monotonic):
+        self._clock, self._beat = clock, beat
         self._arbiter = Arbiter(config, clock())
         self._pulse = Pulse(clock())
         self._next_beat = self._due = 0.0
@@ -208,7 +208,7 @@ class Mux:
                         self._send(self._arbiter.on_hold('lost', now))
                 switched = self._arbiter.mode != before
                 if switched:
-                    self._tell_mode()
+                    self._tell_mode(True)
         except JoyRefused as error:
             refusal, switched = error, False
             # Not while the lock is held: a log call must not delay a zero.
@@ -284,11 +284,12 @@ class Mux:
         with self._changed:
             self._send(self._arbiter.on_selection(message.robots, self._clock()))
 
-    def _tell_mode(self):
+    def _tell_mode(self, changed):
         """Publish a new mode, and wake and suspend the input nodes (with the lock held)."""
-        self._mode.publish(source=self._arbiter.mode)
         self._suspender.activate(self._arbiter.source.suspend_service)
-        self._profiles.forget()
+        if changed:
+            self._mode.publish(source=self._arbiter.mode)
+            self._profiles.forget()
 
     def _on_mode(self, message):
         wanted = message.source[:LONGEST_TEXT]
@@ -297,10 +298,7 @@ class Mux:
                 before = self._arbiter.mode
                 self._send(self._arbiter.on_mode(wanted, self._clock()))
                 changed = self._arbiter.mode != before
-                if changed:
-                    self._tell_mode()
-                else:
-                    self._suspender.activate(self._arbiter.source.suspend_service)
+                self._tell_mode(changed)
         except KeyError:
             rospy.logwarn_throttle(
                 1.0, 'no source {!r}: the mode stays {!r}. Sources are rows of mux.yaml'.format(
@@ -359,6 +357,7 @@ class Mux:
                 self._awake(now)
                 self._pulse.beat(now)
                 self._send_due(now)
+                self._gates.look(now)
                 self._tell(now)
                 self._due = min(self._arbiter.next_tick(now), now + LOOP_S)
                 self._changed.wait(max(0.0, self._due - self._clock()))
@@ -374,6 +373,7 @@ class Mux:
         if now >= self._next_beat:
             self._next_beat = now + BEAT_S
             self._stop.publish(data=self._arbiter.stop_all)
+            self._beat()
             if self._said[0] == was_waiting == 'source':
                 self._suspender.resume_again()
 
@@ -383,7 +383,7 @@ class Mux:
         If a newer mux has taken over, only the first zero is sent: more would interrupt its
         commands.
         """
-        zero = to_twist(ZERO.linear_mps, ZERO.angular_rad_s)
+        zero = Twist()
         with self._changed:
             if self._closing:
                 return

@@ -1,21 +1,22 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What the mux learns from the gates: the stop they remember, the operator, a sign of life."""
+import rospy
+
+from mhri.core.driving.neighbour import Neighbour
 from mhri.core.driving.stop_echo import StopEcho
 from mhri.msg import GatesState
 from mhri.ros.driving.in_force import InForce, Strangers, TAKE_SERVICE
-from mhri.ros.driving.neighbour import Neighbour
 from mhri.ros.graph.rospy_inside import caller_of, link_of
 
 
 class GatesWatch:
     """Subscribes ``/gates/state`` (``mhri/GatesState``), and believes only the gates in force.
 
-    The functions are called on rospy's threads or the watch's own.
-
-    :param on_state: called with (the mux must stop, these are new gates, operator or '')
+    :param on_state: called on rospy's threads with (the mux must stop, these are new gates,
+        operator or '')
     :param is_stopped: returns whether the mux is stopped
-    :param on_silent: called when the gates have been silent for 0.9 s
+    :param on_silent: called by :meth:`look` when the gates have been silent for 0.9 s
     """
 
     def __init__(self, on_state, is_stopped, on_silent, clock):
@@ -27,18 +28,17 @@ class GatesWatch:
         self._operator = ''
         self.strangers = Strangers()
         self._force = InForce(TAKE_SERVICE, self.strangers.refuse)
-        self._neighbour = Neighbour('the gates', on_silent)
+        self._on_silent = on_silent
+        self._neighbour = Neighbour('the gates')
 
     def start(self):
-        """Begin to listen and to watch."""
-        self._neighbour.start()
+        """Begin to listen."""
         self._force.subscribe('/gates/state', GatesState, self._on_message, queue_size=1,
                               tcp_nodelay=True)
         self._force.start()
 
     def stop(self):
-        """End the watch; returns at once."""
-        self._neighbour.stop()
+        """End the thread; returns at once."""
         self._force.stop()
 
     def in_control(self, caller):
@@ -47,14 +47,22 @@ class GatesWatch:
 
     def words(self):
         """Return what is known about the gates, in words."""
-        return self._neighbour.words()
+        return self._neighbour.words(self._clock())
+
+    def look(self, now):
+        """Look whether the gates are heard; call it at least every 0.4 s."""
+        news = self._neighbour.look(now)
+        if news and self._neighbour.silent:
+            self._on_silent()
+        if news:
+            rospy.logwarn('%s', news)
 
     def on_release(self):
         """Note that the operator has released the stop at this mux."""
         self._echo.on_release(self._clock())
 
     def _on_message(self, message):
-        self._neighbour.beat(caller_of(message))
+        self._neighbour.beat(caller_of(message), self._clock())
         link = link_of(message)
         another, self._link = self._link is not link, link
         took, self._operator = message.operator != self._operator, message.operator
