@@ -166,15 +166,16 @@ def run(count, seconds):
 def main():
     """Run the benchmark, or be its listener."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--short', action='store_true', help='fewer seconds')
-    parser.add_argument('--robots', type=int, default=12)
+    parser.add_argument('--short', action='store_true', help='fewer robots and seconds')
+    parser.add_argument('--robots', type=int)
     parser.add_argument('--seconds', type=float, help=argparse.SUPPRESS)
     parser.add_argument('--listen', type=json.loads, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.listen:
         listen([tuple(robot) for robot in options.listen], 1.0, options.seconds)
     else:
-        run(options.robots, options.seconds or (1.5 if options.short else 20.0))
+        run(options.robots or (3 if options.short else 12),
+            options.seconds or (1.5 if options.short else 20.0))
         sys.stdout.flush()
 
 

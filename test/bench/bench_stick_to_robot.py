@@ -321,7 +321,7 @@ def compare_streaming(mhri, chain, robots, events, table, short):
     """Measure both ways while every window shows pictures; see the top."""
     for title in ('mhri, simulated here', 'mhri, played from a bag'):
         if title.endswith('bag'):
-            mhri.streams.from_a_bag(3 if short else 20)
+            mhri.streams.from_a_bag(1 if short else 20)
         begun = mhri.streams.used()
         values = compare({title: mhri, 'topic_tools (mux, relay)': chain}, robots, events, table)
         took_s, panel_s, machine_s = (now - then for now, then in zip(mhri.streams.used(), begun))
@@ -334,7 +334,7 @@ def compare_streaming(mhri, chain, robots, events, table, short):
 def run(robots, table, streaming, brake, short):
     """Measure both ways with a number of robots."""
     import rospy
-    events = 100 if short else 1000
+    events = 20 if short else 1000
     names = ['bot{}'.format(number + 1) for number in range(robots)]
     with System(adopt=False) as system:
         os.environ.update({key: system.env[key] for key in ('ROS_MASTER_URI', 'ROS_IP', 'ROS_HOME',
@@ -354,7 +354,7 @@ def run(robots, table, streaming, brake, short):
 def main():
     """Print one table; each number of robots in a process of its own, rospy knows only one life."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--short', action='store_true', help='four robots only, fewer events')
+    parser.add_argument('--short', action='store_true', help='one robot only, fewer events')
     parser.add_argument('--robots', type=int, help='only this many')
     parser.add_argument('--brake', action='store_true', help='with the obstacle brake on')
     parser.add_argument('--play', nargs='+', metavar='ROBOT', help='play their sensors, no more')
@@ -366,8 +366,9 @@ def main():
     if options.robots is None:
         print('stick to robot [ms]        bots  values      p50      p90      p99      max',
               flush=True)
+        robots = '1' if options.short else '4'
         for words in ([] if options.short else [['1'], ['4'], ['12']]) + [
-                ['4', '--brake'], ['4', '--streaming']]:
+                [robots, '--brake'], [robots, '--streaming']]:
             arguments = [sys.executable, os.path.abspath(__file__), '--robots'] + words
             status = os.spawnv(os.P_WAIT, sys.executable,
                                arguments + (['--short'] if options.short else []))

@@ -20,7 +20,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 from bench_stick_to_robot import measure, percentile, Receiver, row  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
-ROBOTS = 12
+ROBOTS = 3 if '--short' in sys.argv else 12
 NODES = ('tasks', 'mux', 'gates')
 DRIVEN = 'driven'
 
@@ -168,9 +168,9 @@ def report(idle, busy, found):
 def main():
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('--short', action='store_true', help='fewer seconds and events')
+    parser.add_argument('--short', action='store_true', help='fewer robots, seconds and events')
     short = parser.parse_args().short
-    seconds, rounds, events = (2.0, 1, 40) if short else (20.0, 5, 300)
+    seconds, rounds, events = (1.0, 1, 10) if short else (20.0, 5, 300)
     names = ['bot{}'.format(number + 1) for number in range(ROBOTS)]
     with System() as system:
         processes = start(system, names)
@@ -180,7 +180,7 @@ def main():
         found, busy = used(processes, seconds, ages.during)
         report(idle, busy, found)
         tasks.end()
-        values = {'stick, no task': [], 'stick, 12 robots on tasks': []}
+        values = {'stick, no task': [], 'stick, {} robots on tasks'.format(ROBOTS): []}
         for turn in range(rounds):
             for words, some in values.items():
                 if words != 'stick, no task':

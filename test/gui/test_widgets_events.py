@@ -35,7 +35,7 @@ def shown(operator):
     widget = EventList()
     widget.resize(700, 300)
     widget.show_robots(('bot1', 'bot2', 'bot3'))
-    widget.show_events(log_of(NOTES))
+    widget.add(log_of(NOTES).events)
     operator.show(widget)
     operator.settle()
     return widget

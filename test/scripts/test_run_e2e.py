@@ -107,18 +107,30 @@ def publishers(proxy, topic):
         return []
 
 
-def test_demo_drives_robots_and_sends_them_to_work_without_hands(start, tmp_path):
-    before = NO_NETWORK if has_own_network() else ()
+def new_checkout(folder):
+    """Copy what is in this one, as a clone would, to a folder; return its script."""
+    shutil.copytree(str(REPO), str(folder),
+                    ignore=shutil.ignore_patterns('build', '.git', '__pycache__'))
+    return folder / 'utils' / 'host' / 'mhri_run.sh'
+
+
+def test_a_new_checkout_is_built_and_its_demo_drives_robots_without_hands(start, tmp_path):
+    """In a path with a space, without a network."""
     settings = tmp_path / 'config' / 'mhri' / 'panel.json'
     settings.parent.mkdir(parents=True)
     settings.write_text('{"state": {"mode": "joy"}}\n')
-    run = start('--demo', '--screenshot', 'drive.png', before=before)
+    checkout = tmp_path / 'my robots'
+    run = start('--demo', '--screenshot', 'drive.png', script=new_checkout(checkout),
+                before=NO_NETWORK if has_own_network() else ())
     status = run.wait(1200)
     print('\n' + '\n'.join(line for line in run.output.splitlines() if 'bot' in line))
     assert status == 0, run.output
     for robot in ('bot1', 'bot2', 'bot3', 'bot4'):
         assert re.search(r'\b{}\b'.format(robot), run.output), run.output
     assert 'the demo succeeded' in run.output
+    assert '{}/launch/mhri.launch'.format(checkout) in run.output
+    usage = in_new_terminal('rosrun mhri mhri_doctor --help', checkout / 'build' / '.ws' / 'devel')
+    assert usage[:6] == 'usage:'
     picture = cv2.imread(str(tmp_path / 'drive.png'))
     assert picture is not None and picture.shape[0] >= 400 and picture.shape[1] >= 600
     assert picture.std() > 5, 'the picture shows something'
@@ -131,19 +143,13 @@ def test_demo_drives_robots_and_sends_them_to_work_without_hands(start, tmp_path
     assert list(settings.parent.iterdir()) == [settings]
 
 
-@pytest.mark.parametrize('name, arguments, space', [
-    ('my robots', [], 'devel'),
-    ('robots', ['--install-space'], 'install'),
-], ids=['devel space, path with a space', 'install space'])
-def test_new_checkout_builds_and_runs(start, tmp_path, name, arguments, space):
-    shutil.copytree(str(REPO), str(tmp_path / name),
-                    ignore=shutil.ignore_patterns('build', '.git', '__pycache__'))
-    run = start('--demo', *arguments, script=tmp_path / name / 'utils' / 'host' / 'mhri_run.sh')
+def test_a_new_checkout_runs_from_an_install_space(start, tmp_path):
+    checkout = tmp_path / 'robots'
+    run = start('--demo', '--install-space', script=new_checkout(checkout))
     assert run.wait(1200) == 0, run.output
-    workspace = tmp_path / name / 'build' / '.ws'
-    place = tmp_path / name if space == 'devel' else workspace / space / 'share' / 'mhri'
-    assert '{}/launch/mhri.launch'.format(place) in run.output
-    assert in_new_terminal('rosrun mhri mhri_doctor --help', workspace / space)[:6] == 'usage:'
+    space = checkout / 'build' / '.ws' / 'install'
+    assert '{}/share/mhri/launch/mhri.launch'.format(space) in run.output
+    assert in_new_terminal('rosrun mhri mhri_doctor --help', space)[:6] == 'usage:'
     assert cv2.imread(str(tmp_path / 'mhri-demo.png')) is not None
     ignored = (REPO / '.gitignore').read_text().split()
     assert [path.name for path in tmp_path.glob('*.png')

@@ -8,13 +8,16 @@ set -euo pipefail
 
 GROUPS_IN_ORDER=(lint unit oldest scripts rostest gui faults bench)
 # Targets whose files may run at the same time (the longest first), those of which two may, and those
-# that measure time. These run alone but for the nodes among them (LIGHT), which take a tenth of a
-# processor, and of which two may. Of the benchmarks' short form nobody reads the figures: what it
-# tests is that each runs to its end.
-CALM=(scripts_calm rostest_calm faults_calm oldest unit lint gui_calm)
-PAIRED=(scripts_paired rostest_paired gui_paired faults_paired)
+# of which a third begins when nothing calm is left. Then those that measure time: alone, but for the
+# nodes among them (LIGHT), which take a tenth of a processor, and of which two may. What is left of
+# the processors meanwhile is for targets that drive and measure nothing (MODEST), one file at a time.
+# Of the benchmarks' short form nobody reads the figures: what it tests is that each runs to its end.
+CALM=(scripts_calm rostest_calm faults_calm gui_calm)
+PAIRED=(scripts_paired rostest_paired faults_paired)
+LATE=(gui_paired)
 LIGHT=(rostest_timed)
 TIMED=(scripts_timed faults_timed gui_timed)
+MODEST=(oldest unit lint)
 
 help_text() {
   cat <<'HELP'
@@ -26,9 +29,10 @@ and nothing failed.
 
   --only GROUP   run one group only (may be repeated): lint, unit, oldest, scripts, rostest,
                  gui, faults, bench, or fast
-  --jobs N       run at most N files at once: of those that drive robots, and of nodes that are
-                 timed, two (one if N is below 3), and alone what else measures time (default: two
-                 more than there are processors, at most 5)
+  --jobs N       run at most N files at once: of those that drive robots two, later three, of nodes
+                 that are timed two (one if N is below 3), and of what else measures time one,
+                 beside one that takes what is left (default: two more than there are processors,
+                 at most 5)
   --bench        run the benchmarks (test/bench) in full instead of their short form
   --once         do not run a second time what failed (see below)
   -h, --help     this text
@@ -109,9 +113,11 @@ isolate() {
   start_xvfb
 }
 
-# begin JOBS NICENESS GROUP...: starts their targets, JOBS at a time; RUN_PID is the process.
+# begin JOBS NICENESS GROUP...: starts their targets, JOBS at a time; RUN_PID is the process. Where
+# the kernel shares processors out between sessions, a session has a niceness of its own.
 begin() {
-  local jobs=$1 niceness=$2 command=(nice -n "$2")
+  local jobs=$1 niceness=$2 command=(nice -n "$2" bash -c
+    "{ echo $2 >/proc/self/autogroup; } 2>/dev/null || :; exec \"\$@\"" begin)
   shift 2
   say "tests: $*"
   if [ "$1" = fast ]; then
@@ -144,25 +150,44 @@ run() {
   local started=$SECONDS
   begin "$1" 0 "${@:2}"
   await "$RUN_PID" "$started" "${@:2}"
-  end_leftovers
 }
 
 # run_beside: runs the calm targets beside the paired ones, which leave more than half of the
 # processors' time over. These go first, but where there is not enough the others get a quarter.
 run_beside() {
-  local started=$SECONDS calm_pid
-  begin "$((JOBS - PAIR))" 5 "${CALM[@]}"
-  calm_pid=$RUN_PID
+  local started=$SECONDS paired_pid late
   begin "$PAIR" 0 "${PAIRED[@]}"
-  await "$RUN_PID" "$started" "${PAIRED[@]}"
-  await "$calm_pid" "$started" "${CALM[@]}"
+  paired_pid=$RUN_PID
+  begin "$((JOBS - PAIR))" 5 "${CALM[@]}"
+  await "$RUN_PID" "$started" "${CALM[@]}"
+  if [ "${#LATE[@]}" -gt 0 ]; then
+    late=$SECONDS
+    begin 1 0 "${LATE[@]}"
+    await "$RUN_PID" "$late" "${LATE[@]}"
+  fi
+  await "$paired_pid" "$started" "${PAIRED[@]}"
+  end_leftovers
+}
+
+# run_timed: runs the targets that measure time, and beside them the modest ones.
+run_timed() {
+  local started=$SECONDS modest_pid='' target
+  if [ "$JOBS" -gt 2 ] && [ "${#LIGHT[@]}${#TIMED[@]}" != 00 ] && [ "${#MODEST[@]}" -gt 0 ]; then
+    begin 1 10 "${MODEST[@]}"
+    modest_pid=$RUN_PID
+  elif [ "${#MODEST[@]}" -gt 0 ]; then
+    run "$JOBS" "${MODEST[@]}"
+  fi
+  [ "${#LIGHT[@]}" = 0 ] || run "$PAIR" "${LIGHT[@]}"
+  for target in "${TIMED[@]}"; do run 1 "$target"; done
+  [ -z "$modest_pid" ] || await "$modest_pid" "$started" "${MODEST[@]}"
   end_leftovers
 }
 
 # keep_wanted: leaves only targets of the chosen groups.
 keep_wanted() {
   local kind target
-  for kind in CALM PAIRED LIGHT TIMED; do
+  for kind in CALM PAIRED LATE LIGHT TIMED MODEST; do
     local -n targets=$kind
     for target in "${!targets[@]}"; do
       wanted "${targets[target]%_*}" || unset "targets[target]"
@@ -172,16 +197,16 @@ keep_wanted() {
 
 # run_all: runs the chosen groups.
 run_all() {
-  local target
   keep_wanted
+  if [ "${#PAIRED[@]}" = 0 ]; then PAIRED=("${LATE[@]}") LATE=(); fi
   if [ "$JOBS" -gt 2 ] && [ "${#CALM[@]}" -gt 0 ] && [ "${#PAIRED[@]}" -gt 0 ]; then
     run_beside
   else
     [ "${#CALM[@]}" = 0 ] || run "$JOBS" "${CALM[@]}"
-    [ "${#PAIRED[@]}" = 0 ] || run "$PAIR" "${PAIRED[@]}"
+    [ "${#PAIRED[@]}" = 0 ] || run "$PAIR" "${PAIRED[@]}" "${LATE[@]}"
+    end_leftovers
   fi
-  [ "${#LIGHT[@]}" = 0 ] || run "$PAIR" "${LIGHT[@]}"
-  for target in "${TIMED[@]}"; do run 1 "$target"; done
+  run_timed
 }
 
 # run_again: runs what failed once more.
@@ -189,6 +214,7 @@ run_again() {
   local targets target
   targets=$(python3 "$REPO/utils/host/count_results.py" --set-aside "$RESULTS")
   for target in $targets; do run 1 "$target"; done
+  end_leftovers
 }
 
 # wanted GROUP: true if it was asked for.

@@ -284,10 +284,6 @@ class EventList(QWidget):
         self.lines.activated.connect(self._on_line)
         self.lines.verticalScrollBar().valueChanged.connect(lambda *_: self._on_scroll())
 
-    def show_events(self, log):
-        """Show what a :class:`mhri.core.events.events.EventLog` has kept; for the start."""
-        self.add(log.events)
-
     def add(self, events):
         """Append new events, the oldest first; costs nothing where there are none."""
         if not events:
