@@ -7,14 +7,13 @@ set -euo pipefail
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 GROUPS_IN_ORDER=(lint unit oldest scripts rostest gui faults bench)
-# Targets whose files may run at the same time (the longest first), those of which two may, and those
-# of which a third begins when nothing calm is left. Then those that measure time: alone, but for the
-# nodes among them (LIGHT), which take a tenth of a processor, and of which two may. What is left of
-# the processors meanwhile is for targets that drive and measure nothing (MODEST), one file at a time.
-# Of the benchmarks' short form nobody reads the figures: what it tests is that each runs to its end.
+# Targets whose files may run at the same time (the longest first), and those of which two may. Then
+# those that measure time: alone, but for the nodes among them (LIGHT), which take a tenth of a
+# processor, and of which two may. What is left of the processors meanwhile is for targets that drive
+# and measure nothing (MODEST), one file at a time. Of the benchmarks' short form nobody reads the
+# figures: what it tests is that each runs to its end.
 CALM=(scripts_calm rostest_calm faults_calm gui_calm)
-PAIRED=(scripts_paired rostest_paired faults_paired)
-LATE=(gui_paired)
+PAIRED=(scripts_paired rostest_paired gui_paired faults_paired)
 LIGHT=(rostest_timed)
 TIMED=(scripts_timed faults_timed gui_timed)
 MODEST=(oldest unit lint)
@@ -29,10 +28,9 @@ and nothing failed.
 
   --only GROUP   run one group only (may be repeated): lint, unit, oldest, scripts, rostest,
                  gui, faults, bench, or fast
-  --jobs N       run at most N files at once: of those that drive robots two, later three, of nodes
-                 that are timed two (one if N is below 3), and of what else measures time one,
-                 beside one that takes what is left (default: two more than there are processors,
-                 at most 5)
+  --jobs N       run at most N files at once: of those that drive robots, and of nodes that are
+                 timed, two (one if N is below 3), and of what else measures time one, beside one
+                 that takes what is left (default: two more than there are processors, at most 5)
   --bench        run the benchmarks (test/bench) in full instead of their short form
   --once         do not run a second time what failed (see below)
   -h, --help     this text
@@ -155,24 +153,21 @@ run() {
 # run_beside: runs the calm targets beside the paired ones, which leave more than half of the
 # processors' time over. These go first, but where there is not enough the others get a quarter.
 run_beside() {
-  local started=$SECONDS paired_pid late
-  begin "$PAIR" 0 "${PAIRED[@]}"
-  paired_pid=$RUN_PID
+  local started=$SECONDS calm_pid
   begin "$((JOBS - PAIR))" 5 "${CALM[@]}"
-  await "$RUN_PID" "$started" "${CALM[@]}"
-  if [ "${#LATE[@]}" -gt 0 ]; then
-    late=$SECONDS
-    begin 1 0 "${LATE[@]}"
-    await "$RUN_PID" "$late" "${LATE[@]}"
-  fi
-  await "$paired_pid" "$started" "${PAIRED[@]}"
+  calm_pid=$RUN_PID
+  begin "$PAIR" 0 "${PAIRED[@]}"
+  await "$RUN_PID" "$started" "${PAIRED[@]}"
+  await "$calm_pid" "$started" "${CALM[@]}"
   end_leftovers
 }
 
-# run_timed: runs the targets that measure time, and beside them the modest ones.
+# run_timed: runs the targets that measure time, and beside them the modest ones, but not beside
+# benchmarks whose figures somebody reads.
 run_timed() {
   local started=$SECONDS modest_pid='' target
-  if [ "$JOBS" -gt 2 ] && [ "${#LIGHT[@]}${#TIMED[@]}" != 00 ] && [ "${#MODEST[@]}" -gt 0 ]; then
+  if [ "$JOBS" -gt 2 ] && [ "$BENCH" = short ] && [ "${#LIGHT[@]}${#TIMED[@]}" != 00 ] &&
+    [ "${#MODEST[@]}" -gt 0 ]; then
     begin 1 10 "${MODEST[@]}"
     modest_pid=$RUN_PID
   elif [ "${#MODEST[@]}" -gt 0 ]; then
@@ -187,7 +182,7 @@ run_timed() {
 # keep_wanted: leaves only targets of the chosen groups.
 keep_wanted() {
   local kind target
-  for kind in CALM PAIRED LATE LIGHT TIMED MODEST; do
+  for kind in CALM PAIRED LIGHT TIMED MODEST; do
     local -n targets=$kind
     for target in "${!targets[@]}"; do
       wanted "${targets[target]%_*}" || unset "targets[target]"
@@ -198,12 +193,11 @@ keep_wanted() {
 # run_all: runs the chosen groups.
 run_all() {
   keep_wanted
-  if [ "${#PAIRED[@]}" = 0 ]; then PAIRED=("${LATE[@]}") LATE=(); fi
   if [ "$JOBS" -gt 2 ] && [ "${#CALM[@]}" -gt 0 ] && [ "${#PAIRED[@]}" -gt 0 ]; then
     run_beside
   else
     [ "${#CALM[@]}" = 0 ] || run "$JOBS" "${CALM[@]}"
-    [ "${#PAIRED[@]}" = 0 ] || run "$PAIR" "${PAIRED[@]}" "${LATE[@]}"
+    [ "${#PAIRED[@]}" = 0 ] || run "$PAIR" "${PAIRED[@]}"
     end_leftovers
   fi
   run_timed
