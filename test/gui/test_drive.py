@@ -184,10 +184,12 @@ def test_a_robot_unchecked_while_driving_stops_and_the_other_goes_on(session):
     session.select('bot1', 'bot2')
     session.drive(0.0, 0.5, lambda: all(
         session.witnesses[name].moving() for name in ('bot1', 'bot2')))
-    session.click('check_bot1')
-    until(session.witnesses['bot1'].at_rest, 2, 'bot1 to stand still')
-    assert session.witnesses['bot2'].moving()
-    session.let_go()
+    try:
+        session.click('check_bot1')
+        until(session.witnesses['bot1'].at_rest, 2, 'bot1 to stand still')
+        assert session.witnesses['bot2'].moving()
+    finally:
+        session.let_go()
 
 
 def test_closing_the_torn_off_window_of_a_driven_robot_stops_it(session):

@@ -163,7 +163,9 @@ def test_6_the_page_ends_it_and_what_is_ended_so_is_not_offered(session):
     session.host.screen.arrangement.show_page(page)
 
     def stop():
-        for button in page.findChildren(QPushButton, 'task_stop_button'):
+        # A page that was hidden shows the task with its next turn.
+        for button in session.until(lambda: page.findChildren(QPushButton, 'task_stop_button'),
+                                    PATIENCE_S, 'its button'):
             button.click()
     end(session, 'bot1', stop, 'task.stopped')
     session.until(lambda: view(session, 'bot1').task is None, PATIENCE_S, 'no task')

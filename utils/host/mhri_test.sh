@@ -168,7 +168,7 @@ run_timed() {
   local started=$SECONDS modest_pid='' target
   if [ "$JOBS" -gt 2 ] && [ "$BENCH" = short ] && [ "${#LIGHT[@]}${#TIMED[@]}" != 00 ] &&
     [ "${#MODEST[@]}" -gt 0 ]; then
-    begin 1 10 "${MODEST[@]}"
+    begin 1 15 "${MODEST[@]}"
     modest_pid=$RUN_PID
   elif [ "${#MODEST[@]}" -gt 0 ]; then
     run "$JOBS" "${MODEST[@]}"
