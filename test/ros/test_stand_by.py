@@ -43,11 +43,11 @@ def start():
     """Return a function that starts the program, in a group of its own."""
     begun = []
 
-    def run(least_life_s=0.0, beats=False, beat='beat()', end_s=0.2):
+    def run(least_life_s=0.0, beats=False, beat='beat()', end_s=0.2, stderr=subprocess.PIPE):
         begun.append(subprocess.Popen(
             [sys.executable, '-c', PROGRAM.format(
                 least_life_s=least_life_s, beats=beats, beat=beat, end_s=end_s), '--stand-by'],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True))
+            stdout=subprocess.PIPE, stderr=stderr, text=True, start_new_session=True))
         return begun[-1]
     yield run
     for process in begun:
@@ -138,6 +138,8 @@ def test_one_that_ends_is_given_its_time(start, beat, ask):
     ([(at / 10.0, b'.' if at == 30 else b'') for at in range(1, 220)], 4.9),
     ([(at / 10.0, b'.' if at % 5 == 0 else b'') for at in range(1, 220)], None),
     ([(at / 10.0, b'.' if at == 5 else b'..e' if at == 10 else b'') for at in range(1, 900)], None),
+    # Another thread of the node beats once more after the node's last word.
+    ([(at / 10.0, b'e' if at == 10 else b'.' if at == 11 else b'') for at in range(1, 90)], None),
     # It was held up itself between two looks, and gives the child its time.
     ([(0.1, b'.'), (9.0, b''), (9.1, b''), (9.5, b''), (9.9, b'')], None),
     ([(0.1, b'.'), (9.0, b'')] + [(9.0 + at / 10.0, b'') for at in range(1, 30)], 10.9),
@@ -156,3 +158,22 @@ def test_what_counts_as_hung(events, hung_at):
     finally:
         os.close(hears)
         os.close(speaks)
+
+
+@pytest.mark.parametrize('beats', [False, True], ids=['killed', 'hung'])
+def test_a_terminal_that_takes_nothing_keeps_nobody_from_taking_over(start, beats):
+    reads, writes = os.pipe()
+    os.set_blocking(writes, False)
+    with pytest.raises(BlockingIOError):
+        while True:
+            os.write(writes, b'x' * 4096)
+    os.set_blocking(writes, True)
+    try:
+        process = start(beats=beats, stderr=writes)
+        first = here(process)
+        if not beats:
+            os.kill(first, signal.SIGKILL)
+        assert here(process) != first
+    finally:
+        os.close(reads)
+        os.close(writes)

@@ -9,9 +9,12 @@ does nothing about one that hangs.
 import ctypes
 import math
 import os
+import select
 import signal
 import sys
 import time
+
+from mhri.core.driving.pulse import SLEPT_S
 
 _ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 # Of prctl(2): the signal that this process gets when its parent has ended.
@@ -23,8 +26,6 @@ LEAST_LIFE_S = 2.0
 HUNG_S = 1.8
 START_S = 20.0
 _LOOK_S = 0.1
-# A look that comes this late was held up itself, and knows nothing about the child.
-_OWN_SLEEP_S = 0.5
 # What the child says.
 _WORKS, _ENDS_ITSELF = b'.', b'e'
 
@@ -46,9 +47,9 @@ def stand_by(label, beats=False):
     # Wait for signals, do not handle them: a handler could miss one that comes just before the
     # wait.
     signal.pthread_sigmask(signal.SIG_BLOCK, _ENDS + (signal.SIGCHLD,))
+    sys.stdout.flush()
+    sys.stderr.flush()
     while True:
-        sys.stdout.flush()
-        sys.stderr.flush()
         parent, begun = os.getpid(), time.monotonic()
         hears, speaks = os.pipe()
         os.set_blocking(hears, False)
@@ -66,9 +67,18 @@ def stand_by(label, beats=False):
         killer = os.WTERMSIG(status)
         if asked or time.monotonic() - begun < LEAST_LIFE_S:
             os._exit(128 + killer)
-        print('{}: process {} {}, another one takes over'.format(
+        _say('{}: process {} {}, another one takes over\n'.format(
             label, child, 'hung and was ended' if hung else 'was killed by signal {}'.format(
-                killer)), file=sys.stderr)
+                killer)))
+
+
+def _say(line):
+    """Print a line on stderr, if that takes one now: nobody may wait for a terminal (Ctrl-S)."""
+    try:
+        if select.select([], [2], [], 0.0)[1]:
+            os.write(2, line.encode())
+    except OSError:
+        pass  # it is closed
 
 
 class Beat:
@@ -107,14 +117,15 @@ class Watch:
         self._due = self._looked_at + START_S
 
     def hung(self):
-        """Tell whether a beat is overdue; ask every 0.1 s."""
+        """Tell whether a beat is overdue; ask every 0.1 s. A beat after the last word is old."""
         now = self._clock()
-        if now - self._looked_at > _OWN_SLEEP_S:
+        if now - self._looked_at > SLEPT_S:
             self._due = max(self._due, now + HUNG_S)
         self._looked_at = now
         try:
             said = os.read(self._pipe, 65536)
-            self._due = math.inf if _ENDS_ITSELF in said else now + HUNG_S
+            if self._due < math.inf:
+                self._due = math.inf if _ENDS_ITSELF in said else now + HUNG_S
         except BlockingIOError:
             pass  # nothing yet
         return now > self._due

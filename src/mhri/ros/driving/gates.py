@@ -24,7 +24,7 @@ from std_msgs.msg import Bool
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 from mhri.core.driving.gate import common_limits
-from mhri.core.driving.neighbour import Neighbour
+from mhri.core.driving.pulse import Neighbour
 from mhri.core.driving.seat import ControlSeat, MOST_ROBOTS
 from mhri.core.robots.link_quality import link_share
 from mhri.core.robots.names import name_problem

@@ -3,7 +3,7 @@
 """What the mux learns from the gates: the stop they remember, the operator, a sign of life."""
 import rospy
 
-from mhri.core.driving.neighbour import Neighbour
+from mhri.core.driving.pulse import Neighbour
 from mhri.core.driving.stop_echo import StopEcho
 from mhri.msg import GatesState
 from mhri.ros.driving.in_force import InForce, Strangers, TAKE_SERVICE
