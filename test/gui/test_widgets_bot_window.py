@@ -3,11 +3,14 @@
 """A robot's tile: which class, what it shows, and that one never wonders which robot moves."""
 from dataclasses import replace
 
+import numpy as np
 import pytest
-from python_qt_binding.QtCore import Qt
+from python_qt_binding.QtCore import QPoint, Qt
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QWidget
 
+from mhri.core.camera.depth_colour import DepthColour
+from mhri.core.camera.images import DEPTH, Frame
 from mhri.core.recording.recording import RECORDING, RecordingStatus
 from mhri.core.screen import views
 from mhri.core.screen.views import ProofView, RobotView
@@ -179,6 +182,32 @@ def test_the_header_lies_on_the_picture_where_that_is_all(window, operator):
     window.switches.choose({'rgb', 'imu'})
     operator.settle()
     assert window.view('rgb').mapTo(window, window.rect().topLeft()).y() >= window.header.height()
+
+
+@pytest.mark.parametrize('views_over_it', [{'depth'}, {'depth', 'imu'}])
+def test_what_is_written_on_the_picture_begins_below_the_header(window, operator, views_over_it):
+    window.offer({'depth', 'imu'})
+    window.resize(900, 640)
+    window.switches.choose(views_over_it)
+    operator.settle()
+    depth = np.full((48, 64), 2.0, np.float32)
+    rgb, depth_range_m = DepthColour((1.0, 3.0)).colour(depth, 0.0)
+    picture = window.view('depth').picture
+    window.view('depth').show_frame(
+        Frame(DEPTH, np.ascontiguousarray(rgb), depth, (64, 48), depth_range_m))
+    operator.settle()
+    image, target = picture.grab().toImage(), picture.target().toRect()
+    below = window.header.geometry().bottom() - picture.mapTo(window, QPoint(0, 0)).y()
+    beside, middle = range(picture.room().right() + 1, picture.width()), target.center().x()
+    ground = image.pixelColor(picture.width() - 1, 0)
+    scale = next(y for y in range(picture.height())
+                 if any(image.pixelColor(x, y) != ground for x in beside))
+    assert below < scale <= max(below, 0) + 2 * picture.fontMetrics().height()
+    picture.show_warning('OLD PICTURE, 2.3 s')
+    operator.settle()
+    image, ink = picture.grab().toImage(), theme.colour(theme.ATTENTION, picture.palette())
+    first = next(y for y in range(picture.height()) if image.pixelColor(middle, y) == ink)
+    assert first == max(target.top(), below + 1)
 
 
 def test_the_header_says_what_is_recorded(window, operator):

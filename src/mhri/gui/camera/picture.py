@@ -51,6 +51,7 @@ class PictureView(QWidget):
         self._warning = ''
         self._point = None
         self._with_scale = False
+        self._clear_px = 0
         self._build()
 
     def _build(self):
@@ -104,6 +105,12 @@ class PictureView(QWidget):
         """
         if warning != self._warning:
             self._warning = warning
+            self.update()
+
+    def keep_clear(self, height):
+        """Write below so much of the upper end [px]: something else lies on that."""
+        if height != self._clear_px:
+            self._clear_px = height
             self.update()
 
     def room(self):
@@ -195,7 +202,7 @@ class PictureView(QWidget):
 
     def _paint_scale(self, painter):
         """Paint the colours of depth, the distances they stand for, and that of no measurement."""
-        unit, room = self.fontMetrics().height(), self.rect()
+        unit, room = self.fontMetrics().height(), self.rect().adjusted(0, self._clear_px, 0, 0)
         left = room.right() - self._scale_width() + unit // 2
         bar = QRect(left, room.top() + unit // 2, unit, room.height() - round(2.75 * unit))
         text = theme.colour(theme.TEXT, self.palette())
@@ -242,7 +249,7 @@ class PictureView(QWidget):
         box = QRectF(0, 0, metrics.horizontalAdvance(words) + unit, metrics.height() + unit / 3.0)
         box.moveBottomLeft(point + QPointF(0.6 * unit, -0.6 * unit))
         box.moveRight(min(box.right(), target.right() - 2))
-        box.moveTop(max(box.top(), target.top() + 2))
+        box.moveTop(max(box.top(), target.top() + 2, self._clear_px + 2))
         painter.setPen(Qt.NoPen)
         painter.setBrush(QColor(0, 0, 0, 200))
         painter.drawRoundedRect(box, 4, 4)
@@ -253,6 +260,7 @@ class PictureView(QWidget):
         """Paint a frame around the picture and words across its top, and take the light off it."""
         ink = theme.colour(theme.ATTENTION, self.palette())
         painter.fillRect(target, QColor(0, 0, 0, 115))
+        target.setTop(max(target.top(), self._clear_px))
         half = _FRAME_PX / 2.0
         painter.setPen(QPen(ink, _FRAME_PX))
         painter.setBrush(Qt.NoBrush)

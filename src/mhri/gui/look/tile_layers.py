@@ -72,7 +72,10 @@ class TileLayers:
         inside = tile.rect().adjusted(EDGE_PX, EDGE_PX, -EDGE_PX, -EDGE_PX)
         height = tile.header.sizeHint().height()
         tile.header.setGeometry(inside.x(), inside.y(), inside.width(), height)
-        tile.header_space.setFixedHeight(0 if self._covers_picture() else height)
+        on_picture = self._covers_picture()
+        tile.header_space.setFixedHeight(0 if on_picture else height)
+        for key in tile.shown() & PICTURES:
+            tile.view(key).picture.keep_clear(height if on_picture else 0)
         covered = self._fit_tools(inside.height() - height, unit)
         tile.views_splitter.setVisible(bool(tile.shown()) and not covered)
         tile.motion_page.setVisible(not tile.shown() and tile.has_room() and not covered)
