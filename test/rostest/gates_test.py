@@ -163,6 +163,22 @@ class GatesTest(GatesCase):
         self.centre(late, newcomer)
         self.assertEqual(self.drive(newcomer, 0.1), (0.1, 0.0))
 
+    def test_a_second_topic_that_is_listened_to_late_makes_the_robot_wait(self):
+        topics = ('teleop/input', 'cmd_vel_mux/input/teleop')
+        for first, late in (topics, topics[::-1]):
+            (name, receiver), = self.robots(1, 'turtlebot2', first)
+            self.drive(receiver, 0.2)
+            newcomer = VelocityEnd('/{}/{}'.format(name, late))
+            wait_for(lambda: self.mux.say(0.2) and newcomer.received, 20.0, 'a word to ' + late,
+                     poll_s=0.02)
+            self.stays_at_rest(newcomer, 0.0)
+            self.assertEqual(receiver.values()[-1], ZERO, 'it joins as a whole')
+            self.state.wait_robot(name, lambda gate: gate.stands == 'joining', 'that it waits')
+            self.centre(name, newcomer)
+            chosen = newcomer if late == topics[0] else receiver
+            self.assertEqual(self.drive(chosen, 0.1), (0.1, 0.0), 'the first one is driven')
+            self.operator.check()
+
     def test_who_merely_listens_changes_nothing(self):
         (name, receiver), = self.robots(1, 'turtlebot2', 'cmd_vel_mux/input/teleop')
         self.drive(receiver, 0.2)
