@@ -7,12 +7,13 @@ set -euo pipefail
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 GROUPS_IN_ORDER=(lint unit oldest scripts rostest gui faults bench)
-# Targets whose files may run at the same time (the longest first), and those of which two may. Then
-# those that measure time: alone, but for the nodes among them (LIGHT), which take a tenth of a
-# processor, and of which two may. What is left of the processors meanwhile is for targets that drive
-# and measure nothing (MODEST), one file at a time. Of the benchmarks' short form nobody reads the
-# figures: what it tests is that each runs to its end.
-CALM=(scripts_calm rostest_calm faults_calm gui_calm)
+# Targets of which three files may run at once (PAIRED), and beside them others of any number (CALM);
+# those of LATE follow the paired ones. Then those that measure time: alone, but for the nodes among
+# them (LIGHT), which take a tenth of a processor, and of which two may. What is left of the processors
+# meanwhile is for targets that drive and measure nothing (MODEST). Of the benchmarks' short form
+# nobody reads the figures: what it tests is that each runs to its end.
+CALM=(scripts_calm)
+LATE=(rostest_calm faults_calm gui_calm)
 PAIRED=(scripts_paired rostest_paired gui_paired faults_paired)
 LIGHT=(rostest_timed)
 TIMED=(scripts_timed faults_timed gui_timed)
@@ -28,9 +29,9 @@ and nothing failed.
 
   --only GROUP   run one group only (may be repeated): lint, unit, oldest, scripts, rostest,
                  gui, faults, bench, or fast
-  --jobs N       run at most N files at once: of those that drive robots, and of nodes that are
-                 timed, two (one if N is below 3), and of what else measures time one, beside one
-                 that takes what is left (default: two more than there are processors, at most 5)
+  --jobs N       run at most N files at once: of those that drive robots three (two if N is below 5,
+                 one below 3), of nodes that are timed two, and of what else measures time one, beside
+                 two that take what is left (default: three more than there are processors, at most 6)
   --bench        run the benchmarks (test/bench) in full instead of their short form
   --once         do not run a second time what failed (see below)
   -h, --help     this text
@@ -77,10 +78,10 @@ parse_arguments() {
     esac
     shift
   done
-  if [ "$BENCH" = full ]; then TIMED+=(bench); else CALM=(bench "${CALM[@]}"); fi
+  if [ "$BENCH" = full ]; then TIMED+=(bench); else MODEST=(bench "${MODEST[@]}"); fi
   [ "${#ONLY[@]}" -gt 0 ] || ONLY=("${GROUPS_IN_ORDER[@]}")
-  if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 3 ? $(nproc) + 2 : 5)); fi
-  PAIR=$((JOBS > 2 ? 2 : 1))
+  if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 3 ? $(nproc) + 3 : 6)); fi
+  PAIR=$((JOBS > 4 ? 3 : JOBS > 2 ? 2 : 1))
 }
 
 # Installs in the workspace, at fixed versions, the tools that Debian and Ubuntu do not package.
@@ -150,14 +151,14 @@ run() {
   await "$RUN_PID" "$started" "${@:2}"
 }
 
-# run_beside: runs the calm targets beside the paired ones, which leave more than half of the
-# processors' time over. These go first, but where there is not enough the others get a quarter.
+# run_beside: runs the calm targets beside the paired ones. These go first, but where there is not
+# enough of the processors' time the others get a quarter.
 run_beside() {
   local started=$SECONDS calm_pid
   begin "$((JOBS - PAIR))" 5 "${CALM[@]}"
   calm_pid=$RUN_PID
-  begin "$PAIR" 0 "${PAIRED[@]}"
-  await "$RUN_PID" "$started" "${PAIRED[@]}"
+  run "$PAIR" "${PAIRED[@]}"
+  [ "${#LATE[@]}" = 0 ] || run "$PAIR" "${LATE[@]}"
   await "$calm_pid" "$started" "${CALM[@]}"
   end_leftovers
 }
@@ -168,12 +169,12 @@ run_timed() {
   local started=$SECONDS modest_pid='' target
   if [ "$JOBS" -gt 2 ] && [ "$BENCH" = short ] && [ "${#LIGHT[@]}${#TIMED[@]}" != 00 ] &&
     [ "${#MODEST[@]}" -gt 0 ]; then
-    begin 1 15 "${MODEST[@]}"
+    begin 2 15 "${MODEST[@]}"
     modest_pid=$RUN_PID
   elif [ "${#MODEST[@]}" -gt 0 ]; then
     run "$JOBS" "${MODEST[@]}"
   fi
-  [ "${#LIGHT[@]}" = 0 ] || run "$PAIR" "${LIGHT[@]}"
+  [ "${#LIGHT[@]}" = 0 ] || run "$((PAIR > 2 ? 2 : PAIR))" "${LIGHT[@]}"
   for target in "${TIMED[@]}"; do run 1 "$target"; done
   [ -z "$modest_pid" ] || await "$modest_pid" "$started" "${MODEST[@]}"
   end_leftovers
@@ -182,7 +183,7 @@ run_timed() {
 # keep_wanted: leaves only targets of the chosen groups.
 keep_wanted() {
   local kind target
-  for kind in CALM PAIRED LIGHT TIMED MODEST; do
+  for kind in CALM LATE PAIRED LIGHT TIMED MODEST; do
     local -n targets=$kind
     for target in "${!targets[@]}"; do
       wanted "${targets[target]%_*}" || unset "targets[target]"
@@ -193,9 +194,14 @@ keep_wanted() {
 # run_all: runs the chosen groups.
 run_all() {
   keep_wanted
+  if [ "${#CALM[@]}" = 0 ]; then
+    CALM=("${LATE[@]}")
+    LATE=()
+  fi
   if [ "$JOBS" -gt 2 ] && [ "${#CALM[@]}" -gt 0 ] && [ "${#PAIRED[@]}" -gt 0 ]; then
     run_beside
   else
+    CALM+=("${LATE[@]}")
     [ "${#CALM[@]}" = 0 ] || run "$JOBS" "${CALM[@]}"
     [ "${#PAIRED[@]}" = 0 ] || run "$PAIR" "${PAIRED[@]}"
     end_leftovers
