@@ -1,12 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""``catkin_make install`` for real, into a prefix of its own, and what runs from there."""
+"""``catkin_make install`` for real, as the one command calls it, and what runs from there."""
 import os
 import subprocess
 import sys
 
 from conftest import REPO
+import cv2
 import pytest
+
+from whole_run import in_new_terminal, new_checkout, Run
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
@@ -14,25 +17,35 @@ from support.ros_system import System, wait_for  # noqa: E402
 
 # The folders that are installed as they are.
 SHARED = ('launch', 'resource', 'utils')
+# What the setup file of a workspace sets.
+WORKSPACE = ('CMAKE_PREFIX_PATH', 'PYTHONPATH', 'ROS_PACKAGE_PATH')
 PATIENCE_S = 60.0
 
 
 @pytest.fixture(scope='module')
-def prefix(tmp_path_factory):
-    """Return the prefix; the checkout is only read."""
+def demo(tmp_path_factory):
+    """Return (folder, prefix, output) of the demo, run from the install space of a new checkout."""
     folder = tmp_path_factory.mktemp('install')
-    subprocess.run(
-        ['catkin_make', 'install', '-C', str(folder), '--source', str(REPO),
-         '-DPYTHON_EXECUTABLE=/usr/bin/python3', '-DCATKIN_ENABLE_TESTING=OFF',
-         '-DCMAKE_INSTALL_PREFIX={}'.format(folder / 'prefix')],
-        env=bare(), check=True, stdin=subprocess.DEVNULL)
-    return folder / 'prefix'
+    run = Run(folder, ['--demo', '--install-space'], script=new_checkout(folder / 'robots'),
+              before=['env', *('--unset=' + name for name in WORKSPACE)])
+    try:
+        status = run.wait(1200)
+    finally:
+        run.end()
+    assert status == 0, run.output
+    return folder, folder / 'robots' / 'build' / '.ws' / 'install', run.output
+
+
+@pytest.fixture(scope='module')
+def prefix(demo):
+    """Return the prefix."""
+    return demo[1]
 
 
 def bare():
     """Return this environment without any workspace."""
     return {name: value for name, value in os.environ.items()
-            if name not in ('CMAKE_PREFIX_PATH', 'PYTHONPATH', 'ROS_PACKAGE_PATH')}
+            if name not in WORKSPACE}
 
 
 @pytest.fixture(scope='module')
@@ -50,6 +63,16 @@ def system(prefix):
         made.env['QT_QPA_PLATFORM'] = 'offscreen'
         made.start_master()
         yield made
+
+
+def test_the_demo_runs_from_there(demo):
+    folder, prefix, output = demo
+    assert '{}/share/mhri/launch/mhri.launch'.format(prefix) in output
+    assert in_new_terminal('rosrun mhri mhri_doctor --help', prefix)[:6] == 'usage:'
+    assert cv2.imread(str(folder / 'mhri-demo.png')) is not None
+    ignored = (REPO / '.gitignore').read_text().split()
+    assert [path.name for path in folder.glob('*.png')
+            if not any(path.match(pattern) for pattern in ignored)] == []
 
 
 def test_every_file_is_there_and_what_runs_may_run(prefix):

@@ -3,19 +3,18 @@
 """The one command, for real: nothing stands in for anything but the robots, which are simulated."""
 import os
 import re
-import shutil
 import signal
 import socket
 import subprocess
 import time
-import uuid
 import xmlrpc.client
 
-from conftest import children_with, REPO
+from conftest import children_with
 import cv2
 import pytest
 
-SCRIPT = REPO / 'utils' / 'host' / 'mhri_run.sh'
+from whole_run import in_new_terminal, new_checkout, Run, SCRIPT
+
 # A network of its own with nothing in it but itself.
 NO_NETWORK = ['unshare', '--map-root-user', '--net', 'sh', '-c',
               'ip link set lo up && exec "$0" "$@"']
@@ -32,41 +31,6 @@ def wait_for(truth, what, limit_s=180.0):
     while not truth():
         assert time.monotonic() < end, 'waited {} s in vain for {}'.format(limit_s, what)
         time.sleep(0.05)
-
-
-class Run:
-    """One run of the script, without a display, as the operator of a bare machine has it."""
-
-    def __init__(self, folder, arguments, before=(), script=SCRIPT):
-        self.mark = 'MHRI_E2E={}'.format(uuid.uuid4())
-        name, value = self.mark.split('=')
-        # What roslaunch says comes at its end otherwise: its output is no terminal here.
-        environment = dict(os.environ, ROS_HOME=str(folder / 'ros'), PYTHONUNBUFFERED='1',
-                           XDG_CONFIG_HOME=str(folder / 'config'), **{name: value})
-        for name in ('DISPLAY', 'WAYLAND_DISPLAY', 'XAUTHORITY', 'ROS_MASTER_URI', 'ROS_IP'):
-            environment.pop(name, None)
-        self._log = folder / 'log-{}'.format(value)
-        with self._log.open('w') as log:
-            self.process = subprocess.Popen(
-                list(before) + [str(script)] + list(arguments), cwd=str(folder), env=environment,
-                stdin=subprocess.DEVNULL, stdout=log, stderr=subprocess.STDOUT,
-                preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
-
-    @property
-    def output(self):
-        return self._log.read_text()
-
-    def wait(self, limit_s):
-        """Return the exit status; nothing of the run is left then."""
-        status = self.process.wait(timeout=limit_s)
-        assert children_with(self.mark) == []
-        return status
-
-    def end(self):
-        """End it, whatever it does, for a test that failed."""
-        if self.process.poll() is None:
-            self.process.send_signal(signal.SIGTERM)
-            self.process.wait(timeout=120)
 
 
 @pytest.fixture
@@ -107,13 +71,6 @@ def publishers(proxy, topic):
         return []
 
 
-def new_checkout(folder):
-    """Copy what is in this one, as a clone would, to a folder; return its script."""
-    shutil.copytree(str(REPO), str(folder),
-                    ignore=shutil.ignore_patterns('build', '.git', '__pycache__'))
-    return folder / 'utils' / 'host' / 'mhri_run.sh'
-
-
 def test_a_new_checkout_is_built_and_its_demo_drives_robots_without_hands(start, tmp_path):
     """In a path with a space, without a network."""
     settings = tmp_path / 'config' / 'mhri' / 'panel.json'
@@ -141,29 +98,6 @@ def test_a_new_checkout_is_built_and_its_demo_drives_robots_without_hands(start,
     assert [name for name in pictures if name[5:-4] not in manual] == []
     assert settings.read_text() == '{"state": {"mode": "joy"}}\n'
     assert list(settings.parent.iterdir()) == [settings]
-
-
-def test_a_new_checkout_runs_from_an_install_space(start, tmp_path):
-    checkout = tmp_path / 'robots'
-    run = start('--demo', '--install-space', script=new_checkout(checkout))
-    assert run.wait(1200) == 0, run.output
-    space = checkout / 'build' / '.ws' / 'install'
-    assert '{}/share/mhri/launch/mhri.launch'.format(space) in run.output
-    assert in_new_terminal('rosrun mhri mhri_doctor --help', space)[:6] == 'usage:'
-    assert cv2.imread(str(tmp_path / 'mhri-demo.png')) is not None
-    ignored = (REPO / '.gitignore').read_text().split()
-    assert [path.name for path in tmp_path.glob('*.png')
-            if not any(path.match(pattern) for pattern in ignored)] == []
-
-
-def in_new_terminal(command, space):
-    """Return what a command prints in a terminal in which the setup file was sourced, as told."""
-    done = subprocess.run(
-        ['bash', '-c', 'source "$0/setup.bash"; ' + command, str(space)], env={
-            'PATH': '/usr/bin:/bin', 'HOME': str(space)}, stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT, universal_newlines=True)
-    assert done.returncode == 0, done.stdout
-    return done.stdout
 
 
 def test_ctrl_c_takes_everything_down(start, master):
