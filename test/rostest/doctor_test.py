@@ -130,6 +130,7 @@ class DoctorTest(unittest.TestCase):
 
     def test_node_that_the_master_has_forgotten(self):
         self.clinic.patient('/listener', '--subscribe', '/bot1/odom', ODOMETRY)
+        self.clinic.wait_connected('/listener', '/bot1/odom')
         self.clinic.forget('/listener')
         self.found('node_forgotten', about='/listener', remedy='start /listener again')
 
@@ -303,6 +304,7 @@ class DoctorTest(unittest.TestCase):
 
     def test_velocity_from_somebody_hidden(self):
         self.clinic.patient('/ghost', '--publish', '/bot1/teleop/input', TWIST)
+        self.clinic.wait_connected('/ghost', '/bot1/teleop/input')
         self.clinic.forget('/ghost')
         self.found('velocity_hidden', about='bot1', remedy='ss -tlnp')
 

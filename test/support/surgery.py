@@ -7,6 +7,7 @@ import socket
 import subprocess
 import sys
 import time
+import xmlrpc.client
 
 import rosgraph
 
@@ -118,6 +119,12 @@ class Clinic:
         """Wait until all patients have registered all they have."""
         wait_for(lambda: all('ready' in read_text(process.log) for process in self._patients),
                  2.0 * START_S, 'the patients', poll_s=0.02)
+
+    def wait_connected(self, node, topic):
+        """Wait until a node has a connection on a topic: forgotten before, it has none to find."""
+        handle = xmlrpc.client.ServerProxy(self.master.lookupNode(node))
+        wait_for(lambda: any(link[4] == topic for link in handle.getBusInfo('/clinic')[2]),
+                 START_S, 'a connection of {} on {}'.format(node, topic), poll_s=0.02)
 
     def register(self, node, topic, uri, kind='std_msgs/Bool'):
         """Register a publisher in the name of a node that may not exist."""
