@@ -5,9 +5,9 @@ import os
 from dataclasses import replace
 from datetime import datetime
 
-import cv2
 
 from mhri.core.camera.budget import DRIVEN, LOOKED_AT, REST
+from mhri.core.opencv import cv2
 from mhri.core.recording.recording import RECORDING
 from mhri.core.robots.mocap import DriftMeter, Pose
 from mhri.core.screen.view_rows import CLOUD, IMU, PICTURES, RGB, SCAN, VIEW_ROWS

@@ -9,9 +9,9 @@ optical axis, so its parameter is the z-depth.
 from collections import namedtuple
 import math
 
-import cv2
 import numpy as np
 
+from mhri.core.opencv import cv2
 from mhri.sim import textures
 
 WIDTH, HEIGHT = 640, 480

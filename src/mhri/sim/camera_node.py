@@ -16,12 +16,12 @@ subscribes to.
 import threading
 import time
 
-import cv2
 import rospy
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2, PointField
 
 from mhri.core.camera.depth_codec import encode_depth
 from mhri.core.camera.jpeg import encode_jpeg
+from mhri.core.opencv import cv2
 from mhri.sim.camera import Camera, CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, WIDTH
 from mhri.sim.cloud import cloud_of, LAYOUT
 from mhri.sim.fault_node import Healthy

@@ -7,8 +7,9 @@ so that drawing a frame only looks texels up.
 """
 import math
 
-import cv2
 import numpy as np
+
+from mhri.core.opencv import cv2
 
 WALL_PERIOD_M = 1.2
 WALL_SHADES = 3

@@ -3,8 +3,9 @@
 """Pictures as a colour sensor takes them: one colour per pixel, in a mosaic of two by two."""
 from typing import Optional
 
-import cv2
 import numpy as np
+
+from mhri.core.opencv import cv2
 
 
 # ROS names a Bayer pattern by its first two pixels, OpenCV by the second row's second and third:

@@ -13,13 +13,13 @@ import math
 import struct
 from typing import Optional, Tuple
 
-import cv2
 import numpy as np
 
 from mhri.core.camera.images import Data, FrameError, Size, check_size
 from mhri.core.camera.image_codec import decode_with_opencv, read_size
 from mhri.core.camera.raw_image import metres, shrink_depth
 from mhri.core.camera.rvl import decode_rvl, encode_rvl
+from mhri.core.opencv import cv2
 
 _HEADER = struct.Struct('<iff')
 _RVL_SIZE = struct.Struct('<ii')

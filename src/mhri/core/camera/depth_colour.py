@@ -9,11 +9,11 @@ Invalid is a hatch because to some people any single grey is near some colour of
 import math
 from typing import Optional, Tuple
 
-import cv2
 import numpy as np
 
 from mhri.core.camera.images import Range
 from mhri.core.camera.range_follower import RangeFollower
+from mhri.core.opencv import cv2
 
 LEAST_SPAN_M = 0.5
 _SAMPLES = 20_000

@@ -9,12 +9,12 @@ format only tells of a Bayer mosaic, and of an unusual order of a png's colours.
 import struct
 from typing import Optional, Tuple
 
-import cv2
 import numpy as np
 
 from mhri.core.camera.bayer import bayer_encoding, debayered
 from mhri.core.camera.images import Data, FrameError, Size, check_size, fit
 from mhri.core.camera.jpeg import decode_jpeg
+from mhri.core.opencv import cv2
 
 _PNG = b'\x89PNG\r\n\x1a\n'
 _JPEG = b'\xff\xd8\xff'

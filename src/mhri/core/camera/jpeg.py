@@ -97,7 +97,7 @@ def encode_jpeg(rgb: np.ndarray, quality: int = 80) -> bytes:
 def _encode_by_cv2(rgb: np.ndarray, quality: int) -> bytes:
     """Return the bytes as OpenCV writes them."""
     # Importing cv2 takes a second on a busy machine; asking for the library must not.
-    import cv2
+    from mhri.core.opencv import cv2
     coded: bytes = cv2.imencode('.jpg', cv2.cvtColor(rgb, cv2.COLOR_RGB2BGR),
                                 [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
     return coded

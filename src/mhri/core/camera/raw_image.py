@@ -7,12 +7,12 @@ REP-118 for depth.
 """
 from typing import NamedTuple, Optional, Tuple
 
-import cv2
 import numpy as np
 
 from mhri.core.camera.bayer import BAYER
 from mhri.core.camera.images import Data, FrameError, Size, check_size, fit
 from mhri.core.camera.image_codec import interpolation
+from mhri.core.opencv import cv2
 
 # Encoding: (type of one element, elements per pixel, how cv2 makes RGB of it; None: RGB already).
 _COLOUR = {

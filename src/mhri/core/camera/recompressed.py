@@ -4,13 +4,13 @@
 import struct
 from typing import Tuple
 
-import cv2
 import numpy as np
 
 from mhri.core.camera.depth_codec import encode_depth
 from mhri.core.camera.image_message import RAW_TYPE, read_raw, Wire
 from mhri.core.camera.images import Data
 from mhri.core.camera.raw_image import decode_raw, decode_raw_depth, MM_PER_M
+from mhri.core.opencv import cv2
 
 JPEG_QUALITY = 85
 _DEPTHS = ('16UC1', '32FC1')

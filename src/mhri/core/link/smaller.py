@@ -3,10 +3,10 @@
 """Makes compressed colour pictures smaller: harder compressed, then with fewer pixels."""
 import struct
 
-import cv2
 import numpy as np
 
 from mhri.core.link.renaming import after_texts
+from mhri.core.opencv import cv2
 
 _LENGTH = struct.Struct('<I')
 # (how many times fewer pixels each way, jpeg quality), from large to small.

@@ -137,7 +137,7 @@ class _Field:
         cells = cells[((cells >= 0) & (cells < size)).all(axis=1)].astype(int)
         if not len(cells):
             raise FitError('there is nothing on the map around it')
-        import cv2  # a start does not wait for it
+        from mhri.core.opencv import cv2  # a start does not wait for it
         empty = np.ones((size, size), dtype=np.uint8)
         empty[cells[:, 1], cells[:, 0]] = 0
         self._far_m = cv2.distanceTransform(empty, cv2.DIST_L2, 5) * _CELL_M

@@ -9,11 +9,11 @@ The ground is dark on every desktop, as a camera's picture has its own colours, 
 import math
 from typing import NamedTuple, Optional, Sequence, Tuple
 
-import cv2
 import numpy as np
 
 from mhri.core.camera.images import Range, Size
 from mhri.core.camera.range_follower import RangeFollower
+from mhri.core.opencv import cv2
 from mhri.core.sensors.orbit import Orbit, focal_px, projected
 from mhri.core.sensors.point_cloud import Cloud
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import math
 from typing import Any, List, Mapping, Optional, Sequence, Tuple
 
-import cv2
 import numpy as np
 
+from mhri.core.opencv import cv2
 from mhri.core.robots.numbers import natural_key
 from mhri.core.session.report import Report
 from mhri.core.session.timeline import duration_text, MARK

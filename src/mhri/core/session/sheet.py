@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import math
 from typing import List, Optional, Sequence, Tuple
 
-import cv2
 import numpy as np
 
 from mhri.core.map.grid import FREE, Grid, TAKEN_FROM, UNKNOWN
+from mhri.core.opencv import cv2
 from mhri.core.robots.mocap import Pose
 
 # The longer side has about so many pixels, a pixel is no smaller than this [m].

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import math
 from typing import Dict, List, Optional, Sequence, Tuple
 
-import cv2
 import numpy as np
 
 from mhri.core.map.places import composed
+from mhri.core.opencv import cv2
 from mhri.core.robots.link import Motion
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.robot_types import SILENT_AFTER_S

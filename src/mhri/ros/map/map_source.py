@@ -33,7 +33,7 @@ def load_map(path):
     """
     def load_image(name):
         """Return the picture; its path counts from the folder of the file."""
-        import cv2  # without a file, a start does not wait for it
+        from mhri.core.opencv import cv2  # without a file, a start does not wait for it
         image = os.path.join(os.path.dirname(os.path.abspath(path)), name)
         return cv2.imread(image, cv2.IMREAD_UNCHANGED) if os.path.isfile(image) else None
 

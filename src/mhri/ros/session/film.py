@@ -3,9 +3,9 @@
 """The film of a session, written frame by frame at a constant rate, by OpenCV (FFmpeg)."""
 import os
 
-import cv2
 import numpy as np
 
+from mhri.core.opencv import cv2
 from mhri.core.session.film import cameras_of, frame_count, frame_of, frame_size, Headings, Tile
 from mhri.core.session.folder import NotASession
 from mhri.ros.session.report_files import whole

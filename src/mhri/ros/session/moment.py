@@ -40,7 +40,7 @@ def jpeg_of(frame):
     data = bytes(read(CompressedImage, frame).data)
     if data.startswith(_JPEG):
         return data
-    import cv2  # nearly every camera has jpegs: a start does not wait for it
+    from mhri.core.opencv import cv2  # nearly every camera has jpegs: a start does not wait for it
     pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
     done, found = cv2.imencode('.jpg', pixels) if pixels is not None else (False, None)
     return found.tobytes() if done else None

@@ -5,9 +5,9 @@ import base64
 from contextlib import contextmanager
 import os
 
-import cv2
 import numpy as np
 
+from mhri.core.opencv import cv2
 from mhri.core.recording.recording import ros_home
 from mhri.core.session.report import (
     is_still, MOST_MARKS, MOST_STILLS, spots_of, ways_of)
