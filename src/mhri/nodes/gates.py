@@ -6,13 +6,13 @@
 killed (:mod:`mhri.ros.stand_by`).
 """
 import gc
-import signal
 import sys
 
 import rospy
 
 from mhri.ros.driving.gates import Gates
 from mhri.ros.driving.gates_state import GatesSpeaker
+from mhri.ros.ending import init_node
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
@@ -29,12 +29,10 @@ def main():
     types, errors = robot_types()
     beat = stand_by('the gates', beats=True)
     limit_handshakes()
-    rospy.init_node('mhri_gates', disable_rostime=True)
+    init_node('mhri_gates', disable_rostime=True)
     rospy.on_shutdown(beat.end)
     log.install()
     by_hand = ended_by_hand()
-    # Closing the terminal must not end the gates without a zero.
-    signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     gates = Gates(types)
     speaker = GatesSpeaker(gates.read, gates.mux_heard, beat)
     gates.on_change = speaker.on_change

@@ -26,6 +26,7 @@ from mhri.ros.drill.files import (
 from mhri.ros.drill.scripted_hands import ScriptedHands
 from mhri.ros.drill.state import DrillTeller
 from mhri.ros.drill.watch import FaultCaller, OperatorWatch
+from mhri.ros.ending import init_node
 from mhri.ros.resources import read_text, robot_types
 from mhri.sim.plan import parse_plan
 from mhri.sim.rehearsal import LIMITS, Rehearsal
@@ -194,7 +195,7 @@ def status_of(result):
 
 def referee(drill, options):
     """Run a drill on the graph; return the exit status."""
-    rospy.init_node('mhri_drill')
+    init_node('mhri_drill')
     run = Run(drill, options.delay, options.scripted)
     if not run.wait_for_robots():
         rospy.logfatal('the robots of the drill %s are not there: mhri_run.sh --drill %s starts '

@@ -11,7 +11,6 @@ is resumed.
 ``mhri_joy --calibrate`` writes a profile for the connected pad instead: see
 :mod:`mhri.inputs.pad_calibration`.
 """
-import signal
 import sys
 
 import rospy
@@ -23,6 +22,7 @@ from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.live_parameter import LiveParameter
 from mhri.ros.devices.pad_profiles import own_folder, pad_profiles, shipped_names
 from mhri.ros.devices.rumble import Rumble
+from mhri.ros.ending import init_node
 
 
 def main():
@@ -32,10 +32,8 @@ def main():
         from mhri.inputs.pad_calibration import calibrate
         sys.exit(calibrate(argv, own_folder(), shipped_names()))
     limit_handshakes()
-    rospy.init_node('mhri_joy')
+    init_node('mhri_joy')
     log.install()
-    # Closing the terminal must not end the node without a neutral stick.
-    signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     reader = PadReader(pad_profiles)
     node = InputNode(reader, '/mux_in/ps3joy', '~set_suspended')
     Rumble(reader.rumble, '~rumble')

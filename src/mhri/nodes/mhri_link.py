@@ -31,6 +31,7 @@ from mhri.core.link.keys import endpoint, host_of, is_host, KeysError, marked
 from mhri.core.link.records import IN_SESSIONS, KEEPS
 from mhri.core.robots.names import name_problem, tidy_name
 from mhri.ros.diagnostics import publish_diagnostics
+from mhri.ros.ending import init_node
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
@@ -180,7 +181,7 @@ def main():
         # Started by hand. On the host it has to be a node of the robot; rospy knows its namespace
         # from the start only.
         os.execv(sys.argv[0], sys.argv + ['__ns:=/' + options.name])
-    rospy.init_node('mhri_link', disable_rostime=True)
+    init_node('mhri_link', disable_rostime=True)
     log.install()
     note = Note(options.router or options.connect or options.listen, bool(options.router))
     try:

@@ -14,7 +14,6 @@ Publishes ``/mux_in/pedal`` (``sensor_msgs/Joy``; see :mod:`mhri.core.devices.pe
 
 The first two take effect within two seconds while the node is resumed.
 """
-import signal
 import sys
 
 import rospy
@@ -28,15 +27,14 @@ from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.live_parameter import LiveParameter
 from mhri.ros.devices.pedal_profiles import PedalProfiles
+from mhri.ros.ending import init_node
 
 
 def main():
     """Run until shut down; exit with 1 if the role is invalid."""
     limit_handshakes()
-    rospy.init_node('mhri_pedal')
+    init_node('mhri_pedal')
     log.install()
-    # Closing the terminal must not end the node without a neutral pedal.
-    signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     role = rospy.get_param('~role', DRIVE)
     if role not in ROLES:
         # A guess could make a pedal drive that was meant to stop.

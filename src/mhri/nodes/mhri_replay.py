@@ -16,6 +16,7 @@ from mhri.core.driving.sources import parse_mux_config
 from mhri.core.session.folder import NotASession
 from mhri.core.session.foreign import robots_of_topics
 from mhri.ros.driving.in_force import STOP_SERVICE, TAKE_SERVICE
+from mhri.ros.ending import init_node
 from mhri.ros.graph.master_api import MasterApi
 from mhri.ros.resources import profile_reader, read_text, resource_path, robot_types
 from mhri.ros.session.bag_set import open_session
@@ -35,7 +36,7 @@ def main():
         kept = open_session(path, lambda topics, name: robots_of_topics(topics, types, name))
     except NotASession as error:
         sys.exit('cannot replay {}'.format(error))
-    rospy.init_node('mhri_replay')
+    init_node('mhri_replay')
     for problem in kept.bags.problems:
         rospy.logwarn('left out: %s', problem)
     # What is recorded of robots must not meet those that drive.

@@ -9,7 +9,6 @@ record at once; default false), ``~cameras`` ("all", "stills", or pictures a sec
 ``~ring_s`` (30) and ``~ring_mb`` (64), ``~warn_free_mb`` (1000), ``~stop_free_mb`` (256),
 ``~bag_s`` (60, at most).
 """
-import signal
 import sys
 
 import rospy
@@ -18,6 +17,7 @@ from mhri.core.config import ConfigError, shown
 from mhri.core.recording.recording import MB, RecordingLimits
 from mhri.core.session.folder import BAG_S, CAMERA_ALL, CAMERA_STILLS
 from mhri.ros import parameters
+from mhri.ros.ending import init_node
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
@@ -77,10 +77,9 @@ def main():
     types, _ = robot_types()
     stand_by('the session')
     limit_handshakes()
-    rospy.init_node('mhri_session')
+    init_node('mhri_session')
     log.install()
     by_hand = ended_by_hand()
-    signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     try:
         node = SessionNode(Session, types, options(), parameters.flag('~record', False))
     except ConfigError as error:

@@ -13,7 +13,6 @@ those of :mod:`mhri.ros.voice.voice`. Parameters:
   takes effect within two seconds
 - ``~language``: a file below ``resource/voice`` without its ending, or a path (default: english)
 """
-import signal
 import sys
 
 import rospy
@@ -23,6 +22,7 @@ from mhri.core.voice.language import parse_language
 from mhri.inputs.voice import VoiceReader
 from mhri.ros import parameters
 from mhri.ros.devices.input_node import InputNode
+from mhri.ros.ending import init_node
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.live_parameter import LiveParameter
@@ -33,10 +33,8 @@ from mhri.ros.voice.voice import VoiceLink
 def main():
     """Run until shut down; exit with 1 if the language's file cannot be used."""
     limit_handshakes()
-    rospy.init_node('mhri_voice')
+    init_node('mhri_voice')
     log.install()
-    # Closing the terminal must not end the node without a neutral Joy.
-    signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     try:
         name = parameters.text('~language', 'english')
         path = name if '/' in name else resource_path('voice', name + '.yaml')

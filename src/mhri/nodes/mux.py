@@ -7,7 +7,6 @@ killed (:mod:`mhri.ros.stand_by`).
 """
 from dataclasses import replace
 import gc
-import signal
 import sys
 
 import rosgraph
@@ -21,6 +20,7 @@ from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.driving.mux import Mux, STOP_PARAMETER
 from mhri.ros.driving.mux_takeover import end_other_muxes
+from mhri.ros.ending import init_node
 from mhri.ros.resources import profile_reader, read_text, resource_path
 from mhri.ros.stand_by import stand_by
 
@@ -64,11 +64,9 @@ def main():
     except (ConfigError, OSError, MasterError) as error:
         sys.exit('the mux cannot start: {}'.format(error))
     limit_handshakes()
-    rospy.init_node('mux')
+    init_node('mux')
     rospy.on_shutdown(beat.end)
     log.install()
-    # Closing the terminal must not end the mux without a zero.
-    signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     stopped = bool(rospy.get_param(STOP_PARAMETER, False))
     try:
         config = adjusted(config)

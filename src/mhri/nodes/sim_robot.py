@@ -23,6 +23,7 @@ import rospy
 from mhri.core.config import ConfigError, short, shown
 from mhri.core.robots.robot_types import resolve_robot_type
 from mhri.ros import parameters
+from mhri.ros.ending import init_node
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
@@ -145,7 +146,7 @@ def build(name, of_robot):
 def main():
     """Run until shut down; exit with 1 and a reason if the robot cannot be built."""
     limit_handshakes()
-    rospy.init_node('base')
+    init_node('base')
     log.install()
     name = rospy.get_namespace().strip('/')
     if not name or '/' in name:

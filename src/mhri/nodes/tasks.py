@@ -7,7 +7,6 @@ killed (:mod:`mhri.ros.stand_by`). Parameter: ``~map`` (path of a YAML file of m
 published as ``/map``; default: none), ``~keep_to_map`` (true: no robot on a task leaves the free
 floor of the map, where it is placed on it and stands there; default: true).
 """
-import signal
 import sys
 
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -16,6 +15,7 @@ import rospy
 from mhri.core.config import ConfigError, short
 from mhri.ros import parameters
 from mhri.ros.diagnostics import publish_diagnostics
+from mhri.ros.ending import init_node
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
@@ -58,10 +58,9 @@ def main():
     kinds, errors = task_kinds()
     stand_by('the tasks')
     limit_handshakes()
-    rospy.init_node('mhri_tasks', disable_rostime=True)
+    init_node('mhri_tasks', disable_rostime=True)
     log.install()
     by_hand = ended_by_hand()
-    signal.signal(signal.SIGHUP, lambda *_: rospy.signal_shutdown('the terminal was closed'))
     for error in errors:
         rospy.logwarn('a task is left out: %s', error)
     tasks = Tasks(types, kinds, map_of_parameter(), keeps_to_map=keeps_to_map())

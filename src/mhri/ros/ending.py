@@ -1,0 +1,46 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""How a node ends that is told to by a signal: at any moment, also while it starts."""
+import atexit
+import os
+import queue
+import signal
+import threading
+
+import rospy
+
+_ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+# A shutdown keeps Python's end for this long at most [s]; the program itself is ended by
+# mhri.ros.graph.log, and before the node is there after the shorter time.
+_PATIENCE_S, _UNBORN_S = 10.0, 2.0
+
+
+def init_node(name, **options):
+    """Call ``rospy.init_node``; SIGINT, SIGTERM and SIGHUP then shut the node down on a thread.
+
+    rospy does so in the handler of the signal. Where the main thread asks the master just then, or
+    holds a lock that a shutdown hook takes, it would wait for itself for ever. Closing the terminal
+    (SIGHUP) would end the node without its last words.
+
+    A node that is not there 2 s after a signal has said nothing yet, and ends as it is.
+    """
+    # Its put() may be called in the middle of another one, as a handler is.
+    asked = queue.SimpleQueue()
+    there, begun, over = threading.Event(), threading.Event(), threading.Event()
+
+    def shut_down():
+        number = asked.get()
+        begun.set()
+        if not there.wait(_UNBORN_S):
+            # Without a master, rospy.init_node waits for ever and holds what a shutdown needs.
+            os._exit(128 + number)
+        rospy.signal_shutdown('signal-{}'.format(number))
+        over.set()
+
+    threading.Thread(target=shut_down, name='ending', daemon=True).start()
+    for number in _ENDS:
+        signal.signal(number, lambda number, _: asked.put(number))
+    # What it has begun, it finishes: Python's end would cut it off.
+    atexit.register(lambda: begun.is_set() and over.wait(_PATIENCE_S))
+    rospy.init_node(name, disable_signals=True, **options)
+    there.set()

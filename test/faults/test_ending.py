@@ -1,0 +1,65 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A signal ends a node whatever its main thread does, and its last words are said whole."""
+import os
+import signal
+import sys
+
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.ros_system import System, wait_for  # noqa: E402
+
+# The main thread holds what the last words need, as it does in the middle of a question to the
+# master: rospy's own handler would wait for it on this very thread.
+NODE = '''
+import sys, threading, time
+import rospy
+from mhri.ros.ending import init_node
+
+def last_words():
+    with lock:
+        time.sleep(0.3)
+        print('said', flush=True)
+
+lock = threading.Lock()
+init_node('patient')
+rospy.on_shutdown(last_words)
+with lock:
+    print('ready', flush=True)
+    while not rospy.core.is_shutdown_requested():
+        time.sleep(0.01)
+if sys.argv[1] == 'spin':
+    rospy.spin()
+'''
+
+
+@pytest.fixture(scope='module')
+def system():
+    with System(adopt=False) as made:
+        made.start_master()
+        yield made
+
+
+def text(process):
+    with open(process.log) as log:
+        return log.read()
+
+
+@pytest.mark.parametrize('then', ['spin', 'return'])
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_busy_main_thread_is_not_waited_for(system, number, then):
+    process = system.start(sys.executable, '-c', NODE, then)
+    wait_for(lambda: 'ready' in text(process), 60.0, lambda: text(process))
+    process.send_signal(number)
+    assert process.wait(60) == 0, text(process)
+    assert text(process).splitlines()[-1] == 'said'
+
+
+def test_without_a_master_a_signal_ends_it(system):
+    process = system.start('env', 'ROS_MASTER_URI=http://127.0.0.1:9', sys.executable, '-c', NODE,
+                           'spin')
+    wait_for(lambda: 'master' in text(process), 60.0, lambda: text(process))
+    process.send_signal(signal.SIGINT)
+    assert process.wait(60) == 128 + signal.SIGINT
