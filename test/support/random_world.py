@@ -17,7 +17,7 @@ import psutil
 
 from support import machines
 from support.reference_model import JOY, PAD, ReferenceModel
-from support.ros_system import System, wait_for
+from support.ros_system import children, System, wait_for
 
 HERE = Path(__file__).resolve().parent
 PROCESS = str(HERE / 'soak_process.py')
@@ -25,7 +25,8 @@ GUARD = str(HERE.parents[1] / 'utils' / 'remote' / 'mhri_guard')
 # Name and whether a guard runs on it.
 ROBOTS = {'bot1': False, 'bot2': True, 'bot3': False, 'bot4': True}
 OPERATORS = ('operator_a', 'operator_b')
-# Mux and gates end each other where they hang, if a roslaunch starts them again; this is one.
+# As mhri.launch starts again who has crashed; mux and gates that are killed or hang are replaced by
+# the process that stands by.
 RESTARTER = '''trap exit INT TERM
 until "$@"; do sleep 0.1; done
 '''
@@ -80,7 +81,7 @@ class World:
         self.processes = {}
         self.due = []
         self._calls = threading.Lock()
-        self._restarter = self.folder / 'roslaunch'
+        self._restarter = self.folder / 'restarter'
         self._restarter.write_text(RESTARTER)
 
     def __enter__(self):
@@ -162,7 +163,7 @@ class World:
             words.append(name)
         elif kind in ('mux', 'gates'):
             words = ['bash', str(self._restarter), sys.executable, '-c',
-                     'from mhri.nodes.{} import main; main()'.format(kind)]
+                     'from mhri.nodes.{} import main; main()'.format(kind), '--stand-by']
         path = self.folder / '{}.log'.format('_'.join(filter(None, (kind, name))))
         with path.open('ab') as log:
             process = subprocess.Popen(words, env=env, stdin=subprocess.PIPE, stdout=log,
@@ -194,11 +195,11 @@ class World:
             return None
         if key not in ('mux', 'gates'):
             return process.pid
-        return next((child.pid for child in psutil.Process(process.pid).children()
-                     if 'python' in child.name() and child.status() != psutil.STATUS_ZOMBIE), None)
+        return next((pid for standing_by in children(process.pid)
+                     for pid in children(standing_by)), None)
 
     def _notice(self):
-        """Tell where mux or gates were started again, or were ended by the other one."""
+        """Tell where mux or gates were started again, or were ended because they hung."""
         for key in ('mux', 'gates'):
             process = self.processes.get(key)
             if process is None:
@@ -218,13 +219,15 @@ class World:
         if pid is None:
             return False
         os.kill(pid, number)
-        if self.model.parts[key].how == 'hung' and not self.well(key):
+        if number != signal.SIGKILL and self.model.parts[key].how == 'hung' and not self.well(key):
             os.kill(pid, signal.SIGCONT)
         self.tell('fail', key, how)
         if key in ('mux', 'gates'):
             self.processes[key].number = None
-            # What is ended in order stays away until it is started again.
-            wait_for(lambda: self._pid(key) != pid, 10.0, 'the end of {}'.format(key))
+            # What is ended in order stays away until it is started again, but for one that hung.
+            wait_for(lambda: self._pid(key) != pid and (
+                how == 'killed' or self._pid(key) or self.processes[key].poll() is not None),
+                10.0, 'the end of {}'.format(key))
         else:
             self.processes[key].wait(10)
         return True

@@ -15,7 +15,7 @@ JOY, PAD = 'joy', 'ps3joy'
 
 # Within what time a robot stands [s]: the contract's timings, and issue 10 A for what hangs.
 AT_ONCE_S, SILENT_S, LEASE_S, MASTER_S = 0.05, 0.55, 1.6, 1.5
-GATES_KILLED_S, GATES_HUNG_S, GUARD_S, GUARD_LOST_S = 1.5, 4.5, 0.3, 0.55
+GATES_KILLED_S, GATES_HUNG_S, GUARD_S, GUARD_LOST_S = 1.5, 3.0, 0.3, 0.55
 # A robot is not heard for so long before it is held, and a guard drops what is older [s].
 NOT_HEARD_S, ANSWER_S = 1.0, 1.0
 # How long it may take until all is well again [s]: a program starts, a hung one goes on, all else.

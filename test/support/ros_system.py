@@ -64,6 +64,15 @@ def answers(port):
         return probe.connect_ex(('127.0.0.1', port)) == 0
 
 
+def children(number):
+    """Return the numbers of the processes that the first thread of a process has started."""
+    try:
+        with open('/proc/{0}/task/{0}/children'.format(number)) as numbers:
+            return [int(word) for word in numbers.read().split()]
+    except OSError:
+        return []
+
+
 def processes_with(*words, master=None):
     """Return the processes of a master whose command line has words; one that ends is not there.
 

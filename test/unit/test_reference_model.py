@@ -52,7 +52,7 @@ def test_never_centred_nothing_has_to_drive():
     (('fail', 'mux', 'killed'), 0.55, 0.55),
     (('fail', 'mux', 'ended'), 0.05, 0.05),
     (('fail', 'gates', 'killed'), 1.5, 0.3),
-    (('fail', 'gates', 'hung'), 4.5, 0.3),
+    (('fail', 'gates', 'hung'), 3.0, 0.3),
     (('fail', 'master', 'killed'), 1.5, 1.5),
 ])
 def test_what_ends_a_drive_and_when(event, due_s, guarded_due_s):
@@ -62,6 +62,14 @@ def test_what_ends_a_drive_and_when(event, due_s, guarded_due_s):
         assert says(model, 30.0 + limit_s - 0.02, robot) == EITHER
         says(model, 30.0 + limit_s, robot)
         assert says(model, 30.0 + limit_s + SLACK_S + 0.1, robot) == STAND
+
+
+def test_hung_gates_that_are_replaced_bring_the_zero_by_then():
+    model = driven()
+    model.tell(30.0, 'fail', 'gates', 'hung')
+    model.tell(32.0, 'fail', 'gates', 'killed')
+    model.tell(32.0, 'mend', 'gates')
+    assert [says(model, when) for when in (31.9, 33.05, 33.2)] == [EITHER, EITHER, STAND]
 
 
 def test_a_cut_link_stops_who_has_a_guard():
