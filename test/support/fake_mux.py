@@ -47,8 +47,8 @@ class FakeOperator:
     """Repeats its selection at 2 Hz, as whoever is in control has to."""
 
     def __init__(self):
-        self._publisher = rospy.Publisher('/robot_controller/robot_select', RobotSelect,
-                                          queue_size=1, latch=True, tcp_nodelay=True)
+        self.select = rospy.Publisher('/robot_controller/robot_select', RobotSelect,
+                                      queue_size=1, latch=True, tcp_nodelay=True)
         self._names = None
         self._changed = threading.Event()
         threading.Thread(target=self._run, daemon=True).start()
@@ -57,7 +57,7 @@ class FakeOperator:
         """Check exactly these robots; return when [s, monotonic]."""
         self._names = list(names)
         when = time.monotonic()
-        self._publisher.publish(self._names)
+        self.select.publish(self._names)
         return when
 
     def fall_silent(self):
@@ -68,13 +68,13 @@ class FakeOperator:
     def leave(self):
         """Give the topic back, as a program that ends does."""
         self._names = None
-        self._publisher.unregister()
+        self.select.unregister()
 
     def _run(self):
         while not rospy.is_shutdown():
             self._changed.wait(0.5)
             if self._names is not None:
-                self._publisher.publish(self._names)
+                self.select.publish(self._names)
 
 
 class StateEar:

@@ -12,14 +12,14 @@ class VelocityEnd:
 
     def __init__(self, topic):
         self.received = []
-        self._subscriber = rospy.Subscriber(topic, Twist, self._on_twist, queue_size=50,
-                                            tcp_nodelay=True)
+        self.subscriber = rospy.Subscriber(topic, Twist, self._on_twist, queue_size=50,
+                                           tcp_nodelay=True)
 
     def _on_twist(self, message):
         self.received.append((time.monotonic(), message.linear.x, message.angular.z))
 
     def connected(self):
-        return self._subscriber.get_num_connections() > 0
+        return self.subscriber.get_num_connections() > 0
 
     def after(self, when):
         return [entry for entry in list(self.received) if entry[0] >= when]

@@ -9,7 +9,8 @@ later subscriber and service call, for ever. Here a separate thread waits for ea
 
 And when a connection of our own breaks in the middle of a message, or brings garbage, rospy keeps
 what it has read: it takes that for the beginning of the next header, finds it invalid, and never
-connects again (``TCPROSTransport.read_header``). Here each header begins afresh.
+connects again (``TCPROSTransport.read_header``). Here each header begins afresh. Nor does it ever
+connect again where a connection broke while the publisher lives on: here it does.
 """
 import collections
 import logging
@@ -22,6 +23,8 @@ import time
 import rospy
 from rospy.exceptions import TransportInitError
 from rospy.impl import tcpros_base, tcpros_pubsub
+from rospy.impl.registration import get_topic_manager
+from rospy.impl.tcpros_pubsub import check_if_still_publisher
 
 from mhri.ros.graph.rospy_inside import meet_publishers
 
@@ -167,13 +170,20 @@ def _begin_headers_afresh():
 
 
 def _call_again():
-    """Let a publisher that took a connection and did not answer be called again."""
+    """Let a publisher be called again that did not answer, or whose connection broke."""
     connect = tcpros_pubsub.robust_connect_subscriber
 
     def robust_connect_subscriber(conn, dest_addr, dest_port, pub_uri, receive_cb, topic):
         """Connect and receive; rospy's thread for one publisher of one topic."""
         connect(conn, dest_addr, dest_port, pub_uri, receive_cb, topic)
-        if getattr(conn, 'mhri_unanswered', False) and not rospy.is_shutdown():
+        if not rospy.is_shutdown():
+            # A program that ends waits for rospy's thread; a publisher may hang.
+            threading.Thread(target=meet_again, daemon=True, args=(
+                getattr(conn, 'mhri_unanswered', False), topic, pub_uri)).start()
+
+    def meet_again(unanswered, topic, pub_uri):
+        if get_topic_manager().has_subscription(topic) and (
+                unanswered or check_if_still_publisher(topic, pub_uri)):
             time.sleep(_CALL_AGAIN_S)
             meet_publishers(topic, [pub_uri])
     tcpros_pubsub.robust_connect_subscriber = robust_connect_subscriber
