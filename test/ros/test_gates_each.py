@@ -8,6 +8,7 @@ from mhri.core.driving.gate import GateRule
 from mhri.core.driving.limits import ZERO
 from mhri.core.robots.robot_types import Limits
 from mhri.ros.driving import gates as module
+from mhri.ros.stand_by import Memory
 
 
 class Broken:
@@ -46,7 +47,7 @@ def _robots(monkeypatch):
     # What is logged asks for the time, which a node has.
     monkeypatch.setattr(rospy.rostime, '_rostime_initialized', True)
     monkeypatch.setattr(module, 'RobotGate', make)
-    gates = module.Gates({})
+    gates = module.Gates({}, Memory())
     for name in ('bot1', 'bot2', 'bot3'):
         gates._open(name, None)
     return gates, made

@@ -14,6 +14,7 @@ import rospy
 from mhri.ros.driving.in_force import InForce
 from mhri.ros.driving.roster import Roster
 from mhri.ros.graph.master_api import MasterApi, MasterError
+from mhri.ros.stand_by import Memory
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
@@ -93,7 +94,7 @@ def test_roster_and_in_force_go_on_asking(master, monkeypatch, kind):
     monkeypatch.setattr(rospy, 'is_shutdown', done.is_set)
     rospy.rostime.set_rostime_initialized(True)
     monkeypatch.setattr('mhri.ros.driving.roster.PERIOD_S', 0.02)
-    roster = Roster({}, lambda *_: None, lambda name: None, lambda: 5).start()
+    roster = Roster({}, lambda *_: None, lambda name: None, lambda: 5, Memory()).start()
     force = InForce('/service').start()
     try:
         for _ in range(3):

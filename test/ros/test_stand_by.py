@@ -177,3 +177,17 @@ def test_a_terminal_that_takes_nothing_keeps_nobody_from_taking_over(start, beat
     finally:
         os.close(reads)
         os.close(writes)
+
+
+def test_what_is_kept_is_known_to_the_next_process():
+    memory = stand_by.Memory(size=16)
+    assert memory.names() == []
+    child = os.fork()
+    if not child:
+        memory.keep(['bot1', 'bot2', 'much_too_long'])
+        memory.keep(['bot3', 'bot4'])
+        os._exit(0)
+    os.waitpid(child, 0)
+    assert memory.names() == ['bot3', 'bot4']
+    memory.keep(['bot1', 'a_name_too_long'])
+    assert memory.names() == ['bot1', 'a_name_too_']

@@ -222,7 +222,7 @@ class Process:
         self._popen = subprocess.Popen(command, stdout=output or self._said,
                                        stderr=subprocess.STDOUT,
                                        stdin=stdin, env=dict(os.environ, **(env or {})))
-        self.stdin = self._popen.stdin
+        self.stdin, self.number = self._popen.stdin, self._popen.pid
 
     def said(self):
         """Return everything the process has written."""

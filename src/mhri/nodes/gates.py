@@ -18,7 +18,7 @@ from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.graph.rospy_inside import ended_by_hand
 from mhri.ros.resources import robot_types
-from mhri.ros.stand_by import stand_by
+from mhri.ros.stand_by import Memory, stand_by
 
 
 def main():
@@ -27,13 +27,14 @@ def main():
     After ``rosnode kill`` the exit status is 1, so that ``mhri.launch`` restarts it.
     """
     types, errors = robot_types()
+    memory = Memory()
     beat = stand_by('the gates', beats=True)
     limit_handshakes()
     init_node('mhri_gates', disable_rostime=True)
     rospy.on_shutdown(beat.end)
     log.install()
     by_hand = ended_by_hand()
-    gates = Gates(types)
+    gates = Gates(types, memory)
     speaker = GatesSpeaker(gates.read, gates.mux_heard, beat)
     gates.on_change = speaker.on_change
     rospy.on_shutdown(gates.close)

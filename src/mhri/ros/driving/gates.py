@@ -46,11 +46,12 @@ class Gates:
     """The gates of all robots, fed by the mux and the operator in control.
 
     :param types: {name: RobotType}
+    :param memory: :class:`mhri.ros.stand_by.Memory` of the gates before
     ``on_change`` is called when ``/gates/state`` may have changed; it must be quick.
 
     """
 
-    def __init__(self, types, clock=time.monotonic):
+    def __init__(self, types, memory, clock=time.monotonic):
         self._clock = clock
         self.on_change = lambda: None
         self._lock = threading.RLock()
@@ -71,7 +72,7 @@ class Gates:
         self._frames = TfFeed(clock, moving=False)
         self._neighbour = Neighbour('the mux')
         self._mux = InForce(STOP_SERVICE, self._refuse, self._on_new_mux)
-        self._roster = Roster(types, self._open, self._close_gate, self._unheard)
+        self._roster = Roster(types, self._open, self._close_gate, self._unheard, memory)
 
     def start(self):
         """Subscribe, serve, and begin to watch the time; returns at once."""

@@ -37,13 +37,15 @@ class Roster:
     :param open_gate: called with (name, RobotType), on the thread; replaces what was open
     :param close_gate: called with a name, on the thread
     :param unheard: returns a list of (topic, type) to which robots that are heard do not listen
+    :param memory: :class:`mhri.ros.stand_by.Memory` of the gates before
     """
 
-    def __init__(self, types, open_gate, close_gate, unheard):
+    def __init__(self, types, open_gate, close_gate, unheard, memory):
         self._types = types
         self._open_gate = open_gate
         self._close_gate = close_gate
         self._unheard = unheard
+        self._memory = memory
         self._announced_at = 0.0
         self._checked = frozenset()
         self._ever = {}
@@ -90,13 +92,15 @@ class Roster:
             ('getParam', ROBOTS_PARAMETER), ('getParam', DRIVEN_PARAMETER)]))
         if not self._recalled:
             self._recalled = True
-            self._ever.update(dict.fromkeys(driven))
+            # A master started anew knows nothing of those who were driven.
+            self._ever.update(dict.fromkeys(driven + _names(self._memory.names())))
         listed = frozenset(listed)
         gone, self._listed = self._listed - listed - self._checked, listed
         self._ever.update(dict.fromkeys(sorted(self._checked)))
         for name in gone:
             self._ever.pop(name, None)
         known = list(self._ever)[:MOST_ROBOTS]
+        self._memory.keep(known)
         if known != driven:
             # Before their gates open: never drive a robot that is not noted.
             api.call('setParam', DRIVEN_PARAMETER, known)
