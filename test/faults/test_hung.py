@@ -13,6 +13,9 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 
 from support.ros_system import System, wait_for  # noqa: E402
 
+# Others are there by then, on a busy computer [s]; promised: 1.5 s and 3 s.
+KILLED_S, HUNG_S = 2.5, 4.5
+
 
 def process_of(name):
     """Return the process number of a node that answers, or None."""
@@ -47,8 +50,9 @@ def test_gates_that_somebody_kills_come_back(state):
     since = time.monotonic()
     subprocess.run(['rosnode', 'kill', '/mhri_gates'], check=True, stdout=subprocess.DEVNULL)
     wait_for(lambda: process_of('/mhri_gates') not in (None, ended), 15.0, 'other gates')
-    print('\nMEASURED rosnode kill /mhri_gates: others after {:.2f} s'.format(
-        time.monotonic() - since))
+    taken = time.monotonic() - since
+    print('\nMEASURED rosnode kill /mhri_gates: others after {:.2f} s'.format(taken))
+    assert taken < KILLED_S
     state.wait(lambda message: message.mux_heard and state.at > since + 1.0, 'all to be well', 20.0)
 
 
@@ -60,8 +64,9 @@ def test_gates_that_are_killed_are_replaced_by_those_that_stood_by(state):
         since = time.monotonic()
         os.kill(killed, signal.SIGKILL)
         wait_for(lambda: process_of('/mhri_gates') not in (None, killed), 15.0, 'other gates')
-        print('\nMEASURED gates killed (SIGKILL): others answer after {:.2f} s'.format(
-            time.monotonic() - since))
+        taken = time.monotonic() - since
+        print('\nMEASURED gates killed (SIGKILL): others answer after {:.2f} s'.format(taken))
+        assert taken < KILLED_S
         state.wait(lambda message: message.mux_heard and state.at > since, 'all to be well', 20.0)
 
 
@@ -81,6 +86,6 @@ def test_who_hangs_is_replaced_within_3_s(state, names):
                  'another process of ' + name, poll_s=0.02)
     taken = time.monotonic() - since
     print('\nMEASURED {} hung: replaced after {:.2f} s'.format(names, taken))
-    assert taken < 8.0, 'promised: 3 s; see the figure'
+    assert taken < HUNG_S
     state.wait(lambda message: message.mux_heard and state.at > since + taken, 'all to be well',
                20.0)

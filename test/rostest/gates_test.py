@@ -18,7 +18,7 @@ from std_srvs.srv import Trigger
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
 from mhri.msg import GroupSpeed  # noqa: E402
-from gates_case import GatesCase, start_gates, ZERO  # noqa: E402
+from gates_case import GatesCase, NEXT_S, start_gates, ZERO  # noqa: E402
 from rostest_tools import measured, Process  # noqa: E402
 from support.deaf_robot import DeafRobot  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
@@ -294,7 +294,7 @@ class GatesTest(GatesCase):
             wait_for(lambda: receiver.after(when), 20.0, 'the zero for ' + name)
             at, *value = receiver.after(when)[0]
             self.assertEqual(tuple(value), ZERO)
-            measured('zero of the next gates', at - when)
+            self.assertLess(measured('zero of the next gates', at - when), NEXT_S)
             self.stays_at_rest(receiver, when, commands=5)
         self.wait_for_mux()
         for name, receiver in made:
@@ -314,7 +314,8 @@ class GatesTest(GatesCase):
             wait_for(lambda: receiver.after(when), 20.0, 'the zero')
             at, *value = receiver.after(when)[0]
             self.assertEqual(tuple(value), ZERO)
-            measured('zero of the next gates, unchecked meanwhile', at - when)
+            self.assertLess(measured('zero of the next gates, unchecked meanwhile', at - when),
+                            NEXT_S)
         self.wait_for_mux()
 
     def test_gates_that_end_say_zero(self):
