@@ -35,6 +35,29 @@ if sys.argv[1] == 'spin':
 '''
 
 
+ASLEEP = '''
+import signal, threading, time
+import rospy
+from mhri.ros.ending import init_node
+
+def last_words():
+    print('said', flush=True)
+    told.set()
+
+def signal_to_another_thread():
+    signal.pthread_kill(threading.get_ident(), signal.SIGHUP)
+    told.wait(30.0) or print('in vain', flush=True)
+    import os
+    os._exit(0)
+
+told = threading.Event()
+init_node('sleeper')
+rospy.on_shutdown(last_words)
+threading.Thread(target=signal_to_another_thread).start()
+time.sleep(60.0)
+'''
+
+
 @pytest.fixture(scope='module')
 def system():
     with System(adopt=False) as made:
@@ -53,6 +76,13 @@ def test_a_busy_main_thread_is_not_waited_for(system, number, then):
     process = system.start(sys.executable, '-c', NODE, then)
     wait_for(lambda: 'ready' in text(process), 60.0, lambda: text(process))
     process.send_signal(number)
+    assert process.wait(60) == 0, text(process)
+    assert text(process).splitlines()[-1] == 'said'
+
+
+def test_a_signal_that_does_not_wake_the_main_thread_is_heard(system):
+    """As one that comes just before that falls asleep: it is heard within its sleep of a minute."""
+    process = system.start(sys.executable, '-c', ASLEEP)
     assert process.wait(60) == 0, text(process)
     assert text(process).splitlines()[-1] == 'said'
 

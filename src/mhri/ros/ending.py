@@ -3,8 +3,8 @@
 """How a node ends that is told to by a signal: at any moment, also while it starts."""
 import atexit
 import os
-import queue
 import signal
+import socket
 import threading
 
 import rospy
@@ -18,18 +18,25 @@ _PATIENCE_S, _UNBORN_S = 10.0, 2.0
 def init_node(name, **options):
     """Call ``rospy.init_node``; SIGINT, SIGTERM and SIGHUP then shut the node down on a thread.
 
-    rospy does so in the handler of the signal. Where the main thread asks the master just then, or
-    holds a lock that a shutdown hook takes, it would wait for itself for ever. Closing the terminal
-    (SIGHUP) would end the node without its last words.
+    rospy does so in the handler of the signal, on the main thread. Where that asks the master just
+    then, or holds a lock that a shutdown hook takes, it would wait for itself for ever; where it is
+    about to fall asleep, as ``rospy.spin`` does for half a second at a time, robots would drive on
+    so long. Closing the terminal (SIGHUP) would end the node without its last words.
 
     A node that is not there 2 s after a signal has said nothing yet, and ends as it is.
     """
-    # Its put() may be called in the middle of another one, as a handler is.
-    asked = queue.SimpleQueue()
+    # Python writes the number of a signal there at once, on whichever thread.
+    hears, speaks = socket.socketpair()
+    speaks.setblocking(False)
+    signal.set_wakeup_fd(speaks.detach(), warn_on_full_buffer=False)
+    for number in _ENDS:
+        signal.signal(number, lambda *_: None)
     there, begun, over = threading.Event(), threading.Event(), threading.Event()
 
     def shut_down():
-        number = asked.get()
+        number = hears.recv(1)[0]
+        while number not in _ENDS:
+            number = hears.recv(1)[0]
         begun.set()
         if not there.wait(_UNBORN_S):
             # Without a master, rospy.init_node waits for ever and holds what a shutdown needs.
@@ -38,8 +45,6 @@ def init_node(name, **options):
         over.set()
 
     threading.Thread(target=shut_down, name='ending', daemon=True).start()
-    for number in _ENDS:
-        signal.signal(number, lambda number, _: asked.put(number))
     # What it has begun, it finishes: Python's end would cut it off.
     atexit.register(lambda: begun.is_set() and over.wait(_PATIENCE_S))
     rospy.init_node(name, disable_signals=True, **options)
