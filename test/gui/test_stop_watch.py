@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The watch of STOP as the screen sees it: started, started again, ended, or said to be missing."""
+import errno
 import os
 import subprocess
 import sys
@@ -10,6 +11,7 @@ import psutil
 import pytest
 
 from mhri.gui.driving.stop_button import stop_places, StopButton
+from mhri.presenters import stop_watch
 from mhri.presenters.stop_watch import StopWatch
 
 NOBODY = 'http://127.0.0.1:9'
@@ -50,6 +52,27 @@ def test_it_is_started_again_and_ends_with_the_screen(operator, watch):
     operator.wait_until(lambda: watching() and watching() != [first], 30.0)
     watch.close()
     assert watching() == []
+
+
+def test_one_that_cannot_be_started_is_tried_again(operator, monkeypatch):
+    """Said once; a computer that had no room for a process has some a little later."""
+    said, tries, popen = [], [], subprocess.Popen
+
+    def start(*words, **options):
+        tries.append(words)
+        if len(tries) < 3:
+            raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+        return popen(*words, **options)
+    monkeypatch.setattr(subprocess, 'Popen', start)
+    monkeypatch.setattr(stop_watch, '_AGAIN_AFTER', 2)
+    monkeypatch.setattr('rospy.logwarn', lambda *words: said.append(words[0] % words[1:]))
+    held = psutil.Process().num_fds()
+    watch = StopWatch(NOBODY)
+    watch.start()
+    operator.wait_until(watching, 30.0)
+    watch.close()
+    assert len(said) == 1 and 'its watch cannot be started' in said[0]
+    assert len(tries) == 3 and psutil.Process().num_fds() == held
 
 
 def test_where_the_x_server_cannot_tell(operator, monkeypatch):

@@ -17,7 +17,7 @@ from mhri.gui.driving.stop_button import stop_places
 from mhri.inputs import child
 
 _PROCESS = 'mhri.presenters.stop_watch_process'
-# A watch that was ended from elsewhere is restarted after this many beats.
+# A watch that was ended from elsewhere, or cannot be started, is tried again after so many beats.
 _AGAIN_AFTER = 50
 
 
@@ -35,6 +35,7 @@ class StopWatch(QObject):
         self._master_uri = master_uri
         self._process = self._socket = None
         self._beats_to_start = 0
+        self._told = False
         self._timer = QTimer(self)
         self._timer.setInterval(round(1000 * BEAT_S))
         self._timer.timeout.connect(self._beat)
@@ -50,19 +51,46 @@ class StopWatch(QObject):
         rospy.logwarn('STOP ALL of this screen does not work while it hangs: %s', why)
 
     def _start_process(self):
-        """Start the process."""
-        self._socket, end = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        with end:
-            self._process = subprocess.Popen(child.command(_PROCESS, self._master_uri), stdin=end)
-        self._socket.setblocking(False)
+        """Start the process.
 
-    def _beat(self):
-        """Send a sign of life, and take in what the watch says."""
+        :raises OSError: there is no room for it now
+        """
+        ours, end = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        with end:
+            try:
+                self._process = subprocess.Popen(
+                    child.command(_PROCESS, self._master_uri), stdin=end)
+            except OSError:
+                ours.close()
+                raise
+        ours.setblocking(False)
+        self._socket = ours
+
+    def _is_started(self):
+        """Start the process where it is time to; tell whether it is there.
+
+        A computer that has no room for a process often has some a little later.
+        """
         if self._socket is None:
             self._beats_to_start -= 1
             if self._beats_to_start >= 0:
-                return
-            self._start_process()
+                return False
+            try:
+                self._start_process()
+            except OSError as error:
+                self._beats_to_start = _AGAIN_AFTER
+                if not self._told:
+                    self._cannot('its watch cannot be started, but is tried again: {}'.format(
+                        error))
+                self._told = True
+                return False
+            self._told = False
+        return True
+
+    def _beat(self):
+        """Send a sign of life, and take in what the watch says."""
+        if not self._is_started():
+            return
         try:
             words = self._hear()
             if 'cannot' in words:
