@@ -69,12 +69,16 @@ class Desk:
             return condition()
         wait_for(turn, PATIENCE_S, what)
 
-    def open(self):
-        """Turn to the page, and have the process there."""
+    def turn(self):
+        """Turn to the page."""
         titles = [self.screen.tabs.tabText(index) for index in range(self.screen.tabs.count())]
         self.hands.click(self.screen.tabs, self.screen.tabs.tabRect(
             titles.index(pad_host.TITLE)).center())
         self.until(self.page.isVisible, 'the page')
+
+    def open(self):
+        """Turn to the page, and have the process there."""
+        self.turn()
         self.until(lambda: os.path.exists(self._path), 'the process')
         self.pads = PadClient(self._path)
 
@@ -190,6 +194,18 @@ def test_the_pad_is_read_only_while_the_page_is_in_sight(desk):
     desk.screen.tabs.setCurrentIndex(0)
     desk.until(lambda: desk.host._reader.state() == QProcess.NotRunning, 'the end of the reading')
     assert desk.page.title.text() == NO_PAD
+
+
+@needs_pads
+def test_a_process_that_cannot_start_is_tried_again(desk, heard):
+    failed = heard(desk.host._reader.errorOccurred)
+    desk.host._restart_timer.setInterval(10)
+    program, desk.host._program = desk.host._program, ['/nonexistent/python3']
+    desk.turn()
+    desk.until(lambda: len(failed) > 1, 'a second try')
+    desk.host._program = program
+    desk.open()
+    desk.plug()
 
 
 FULL = CalibrationView('Logitech Gamepad F710', (0.4, None, -1.0, 1.0), (0, 1, 0),

@@ -106,13 +106,22 @@ def test_without_pygame_it_says_so_once_and_ends(make, monkeypatch, tmp_path):
     speaker.play('calm')
 
 
-def test_a_child_that_cannot_start_is_said_once(make, monkeypatch):
+def test_a_child_that_cannot_start_is_said_once_and_tried_again(make, monkeypatch, tmp_path):
+    pytest.importorskip('pygame')
+    python, tries = sys.executable, []
     monkeypatch.setattr(sys, 'executable', '/nonexistent/python3')
     monkeypatch.setattr(speaker_module, '_RESTART_S', 0.01)
-    speaker, said = make('dummy')
-    wait_until(lambda: said)
-    speaker.close()
+    command = speaker_module.child.command
+    monkeypatch.setattr(speaker_module.child, 'command',
+                        lambda *words: tries.append(words) or command(*words))
+    speaker, said = make('disk')
+    speaker.play('lost')
+    wait_until(lambda: len(tries) > 3)
     assert len(said) == 1 and said[0].startswith('the player cannot be started: ')
+    monkeypatch.setattr(sys, 'executable', python)
+    wait_until(lambda: (tmp_path / 'sound').exists() and np.abs(
+        np.fromfile(str(tmp_path / 'sound'), dtype='<i2')).max(initial=0) > 20000)
+    assert len(said) == 1, 'and the tone that was asked for meanwhile is heard'
 
 
 def test_a_child_that_dies_is_started_again(make, monkeypatch):

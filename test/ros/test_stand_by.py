@@ -4,6 +4,7 @@
 
 What hangs is ended, and nothing else.
 """
+import errno
 import os
 import signal
 import subprocess
@@ -43,9 +44,10 @@ def start():
     """Return a function that starts the program, in a group of its own."""
     begun = []
 
-    def run(least_life_s=0.0, beats=False, beat='beat()', end_s=0.2, stderr=subprocess.PIPE):
+    def run(least_life_s=0.0, beats=False, beat='beat()', end_s=0.2, stderr=subprocess.PIPE,
+            before=''):
         begun.append(subprocess.Popen(
-            [sys.executable, '-c', PROGRAM.format(
+            [sys.executable, '-c', before + PROGRAM.format(
                 least_life_s=least_life_s, beats=beats, beat=beat, end_s=end_s), '--stand-by'],
             stdout=subprocess.PIPE, stderr=stderr, text=True, start_new_session=True))
         return begun[-1]
@@ -84,6 +86,37 @@ def test_a_signal_to_end_is_handed_on_once_and_the_status_with_it(start, number,
     send(process.pid, number)
     assert process.wait(60) == status
     assert process.stdout.read().split() == ['signal', str(int(number))]
+
+
+SHORT = '''
+import errno, os
+from mhri.ros import stand_by
+fork, tries = os.fork, []
+def short_of_processes():
+    tries.append(0)
+    if 1 < len(tries) < {enough}:
+        raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+    return fork()
+stand_by.os.fork = short_of_processes
+'''
+
+
+def test_where_there_is_no_room_for_another_it_comes_a_little_later(start):
+    process = start(before=SHORT.format(enough=5))
+    first = here(process)
+    os.kill(first, signal.SIGKILL)
+    assert here(process) != first
+    lines = [process.stderr.readline() for _ in range(2)]
+    assert 'no process can be started yet: [Errno {}]'.format(errno.EAGAIN) in lines[1]
+
+
+def test_one_that_waits_for_room_can_be_ended(start):
+    process = start(before=SHORT.format(enough=10 ** 6))
+    os.kill(here(process), signal.SIGKILL)
+    for _ in range(2):
+        process.stderr.readline()
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(60) == 128 + signal.SIGTERM
 
 
 def test_no_child_outlives_its_parent(start):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Sources of sound: a stream that comes and goes, a recording played once, a microphone."""
 import os
+import sys
 import time
 import wave
 
@@ -128,6 +129,16 @@ def test_a_microphone_through_portaudio_and_alsa(alsa):
     assert microphone.open() == 'the microphone "stand_in"'
     assert [microphone.read(10.0) for _ in range(20)] == [BLOCK] * 20
     microphone.close()
+    microphone.close()
+
+
+def test_a_microphone_whose_driver_cannot_start_is_found_later(alsa, monkeypatch):
+    microphone = Microphone('stand_in')
+    with monkeypatch.context() as short:
+        short.setattr(sys, 'executable', '/nonexistent/python3')
+        with pytest.raises(DeviceAbsent, match='cannot be started'):
+            microphone.open()
+    assert microphone.open() == 'the microphone "stand_in"'
     microphone.close()
 
 

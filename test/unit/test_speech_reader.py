@@ -194,6 +194,19 @@ def test_a_voice_that_nobody_taught_is_named_with_the_remedy(monkeypatch, tmp_pa
         reader.open()
 
 
+def test_a_process_that_cannot_start_is_started_later(tmp_path, monkeypatch):
+    reader = VoiceReader(parse_language(PATH.read_text(), str(PATH)), str(PATH), None, None)
+    reader.want_source(str(tmp_path / 'none'))
+    with monkeypatch.context() as short:
+        short.setattr(sys, 'executable', '/nonexistent/python3')
+        with pytest.raises(DeviceAbsent, match='cannot be started'):
+            reader.open()
+    with pytest.raises(DeviceAbsent, match='No such file') as told:
+        reader.open()
+    assert 'none' in str(told.value), 'the process has looked for it'
+    reader.close()
+
+
 def test_without_pocketsphinx_or_its_model(monkeypatch, tmp_path):
     """The message names the package."""
     assert listening.missing() == ''

@@ -45,9 +45,12 @@ class Microphone:
         :raises DeviceAbsent: there is none, or it cannot be opened
         """
         self._held = b''
-        self._process = subprocess.Popen(
-            child.command('mhri.inputs.microphone', self._wanted),
-            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        try:
+            self._process = subprocess.Popen(
+                child.command('mhri.inputs.microphone', self._wanted),
+                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        except OSError as error:
+            raise DeviceAbsent('the driver of the microphone cannot be started: {}'.format(error))
         fcntl.fcntl(self._process.stdout, _SET_PIPE_SIZE, _PIPE_BYTES)
         deadline = time.monotonic() + _OPEN_S
         try:

@@ -66,6 +66,7 @@ class PadHost(QObject):
         self.page.restart_requested.connect(self._dialogue.again)
         self._reader.readyReadStandardOutput.connect(self._read)
         self._reader.finished.connect(self._on_end)
+        self._reader.errorOccurred.connect(self._on_error)
         self._draw_timer.timeout.connect(self._draw)
         self._restart_timer.timeout.connect(self._start)
         self._written.connect(self._on_written)
@@ -101,6 +102,11 @@ class PadHost(QObject):
         if self.page.isVisible() and not self._closed:
             self._dialogue.on_line({'kind': 'absent', 'reason': 'the program for the pad ended'})
             self._restart_timer.start()
+
+    def _on_error(self, error):
+        """Start again what could not be started: it does not count as finished."""
+        if error == QProcess.FailedToStart:
+            self._on_end()
 
     def _read(self):
         """Take in the output of the process."""

@@ -55,7 +55,7 @@ def stand_by(label, beats=False):
         hears, speaks = os.pipe()
         os.set_blocking(hears, False)
         os.set_blocking(speaks, False)
-        child = os.fork()
+        child = _fork(label)
         if not child:
             os.close(hears)
             _be_child(parent)
@@ -71,6 +71,24 @@ def stand_by(label, beats=False):
         _say('{}: process {} {}, another one takes over\n'.format(
             label, child, 'hung and was ended' if hung else 'was killed by signal {}'.format(
                 killer)))
+
+
+def _fork(label):
+    """Return as ``os.fork()`` does; where there is no room for a process, wait until there is some.
+
+    What killed the last one, such as a computer short of memory, may last a moment longer.
+    """
+    told = False
+    while True:
+        try:
+            return os.fork()
+        except OSError as error:
+            if not told:
+                _say('{}: no process can be started yet: {}\n'.format(label, error))
+            told = True
+            asked = signal.sigtimedwait(_ENDS, _LOOK_S)
+            if asked is not None:
+                os._exit(128 + asked.si_signo)
 
 
 def _say(line):
