@@ -10,6 +10,7 @@ from python_qt_binding.QtCore import QPoint, QRect
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication, QWidget
 
+from mhri.core.screen.views import ROS_CONNECTED, ROS_CUT_OFF
 from mhri.gui.screen import geometry
 from mhri.presenters.screen_host import ScreenHost
 from mhri.ros.screen.backend import ScreenBackend
@@ -105,6 +106,21 @@ def test_a_tile_is_torn_off_to_the_other_monitor(monkeypatch):
     del screens[1]
     geometry.place_on_another_screen(window, main)
     assert window.x() > 1200, 'left where it is'
+
+
+def test_a_torn_off_tile_says_with_the_bar_that_the_screen_is_cut_off(monkeypatch):
+    host, state = ScreenHost(ScreenBackend()), [ROS_CUT_OFF]
+    monkeypatch.setattr(ScreenBackend, '_state_of_ros', lambda _: state[-1])
+    host._add('bot1')
+    tear_off(host)
+    tile, bar = host.windows['bot1'], host.screen.stop_bar
+    host.draw()
+    assert tile.stop_button.text() == bar._headline.text() and 'cut off' in bar._headline.text()
+    assert not tile.stop_button.isEnabled()
+    state.append(ROS_CONNECTED)
+    host.draw()
+    assert tile.stop_button.text() == 'STOP ALL' and tile.stop_button.isEnabled()
+    host.close()
 
 
 def test_state_survives_as_json():

@@ -14,6 +14,7 @@ from mhri.core.camera.images import DEPTH, Frame
 from mhri.core.recording.recording import RECORDING, RecordingStatus
 from mhri.core.screen import views
 from mhri.core.screen.views import ProofView, RobotView
+from mhri.gui.driving.stop_bar import CUT_OFF
 from mhri.gui.screen import theme
 from mhri.gui.screen.bot_window import BotWindow
 from mhri.gui.look.hud import hud_lines
@@ -115,6 +116,35 @@ def test_stop_of_a_torn_off_tile_acts_on_press_and_again_while_stopped(window, o
     assert asked == [()] and window.stop_button.text().startswith('STOP ALL in force')
     QTest.mousePress(window.stop_button, Qt.LeftButton)
     assert len(asked) == 2
+
+
+@pytest.mark.parametrize('was_stopped', [False, True])
+def test_a_torn_off_tile_of_a_screen_that_is_cut_off_offers_no_stop(
+        window, operator, heard, was_stopped):
+    """It says so as the stop bar does, and looks as that does; whatever the robot's state."""
+    frame, button = operator.show(TornOff(window)), window.stop_button
+    window.show_view(VIEW, stop_all=was_stopped)
+    words = button.shown_words()
+    asked, clicked = heard(window.stop_requested), heard(window.clicked)
+    window.show_cut_off(True)
+    assert button.shown_words() == CUT_OFF and 'restart' in button.toolTip()
+    looks = []
+    for stop_all in (was_stopped, not was_stopped):
+        window.show_view(VIEW, stop_all=stop_all)
+        assert button.shown_words() == CUT_OFF and not button.isEnabled()
+        looks.append(button.grab().toImage())
+        QTest.mouseClick(frame.windowHandle(), Qt.LeftButton, Qt.NoModifier,
+                         button.mapTo(frame, button.rect().center()))
+    assert looks[0] == looks[1] and asked == clicked == []
+    assert looks[0].pixelColor(8, button.height() // 2) != theme.STOP_GROUND
+    frame.resize(200, 400)
+    operator.settle()
+    assert button.shown_words() == 'CUT OFF'
+    window.show_cut_off(False)
+    window.show_view(VIEW, stop_all=was_stopped)
+    frame.resize(800, 640)
+    operator.settle()
+    assert button.shown_words() == words and button.isEnabled() and not button.toolTip()
 
 
 def test_numbers_change_four_times_a_second_at_most(window):

@@ -12,6 +12,7 @@ from python_qt_binding.QtCore import QObject, QTimer, Signal
 from python_qt_binding.QtGui import QGuiApplication
 import rospy
 
+from mhri.core.screen.views import ROS_CUT_OFF
 from mhri.gui.screen.geometry import (
     geometry_of, in_sight, place_on_another_screen, restore_geometry)
 from mhri.gui.screen.torn_off import TornOff
@@ -92,6 +93,8 @@ class TilesHost(QObject):
         self._missing = next((robot.name for robot in robots
                               if robot.name not in self.windows and robot.type_label), '')
         self._stopped = view.stop_all
+        for tile in self.windows.values():
+            tile.show_cut_off(view.ros == ROS_CUT_OFF)
         self._timer.start()
         self._cameras.settle(wish for robot in self._due
                              for wish in self.hosts[robot.name].wishes(robot.selected))

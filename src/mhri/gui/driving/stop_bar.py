@@ -27,6 +27,7 @@ _ROOMY_UNITS = 38.0
 CUT_OFF = 'This screen is cut off: STOP ALL here reaches nothing'
 CUT_OFF_NOTE = ('another program has taken its name, or it was ended from elsewhere: stop the '
                 'robots by hand or from another screen; restart this one')
+CUT_OFF_SHORTEST = 'CUT OFF'
 CUT_OFF_SHORTER = ('stop the robots from elsewhere; restart this screen', 'restart this screen')
 
 
@@ -257,7 +258,7 @@ class StopBar(QWidget):
         self._headline.show_text(headline, shorter=shorter)
         self._note_line.show_text(self._idle or self._note or self._words.note)
         if self._cut_off:
-            self._headline.show_text(CUT_OFF, shorter=('CUT OFF',))
+            self._headline.show_text(CUT_OFF, shorter=(CUT_OFF_SHORTEST,))
             self._note_line.show_text(CUT_OFF_NOTE, shorter=CUT_OFF_SHORTER)
         confirming = self._countdown.isActive()
         self.confirm_button.setVisible(confirming)

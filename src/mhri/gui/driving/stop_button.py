@@ -46,13 +46,15 @@ class StopButton(QAbstractButton):
 
     def __init__(self, parent=None):
         super().__init__(parent)
-        self._hint = ''
+        self._hint = self._shorter = ''
         self._lines = 2.0
         self._engaged = False
         self._idle = ''
         _BUTTONS.add(self)
         self.pressed.connect(self._watch)
         self.setAttribute(Qt.WA_AcceptTouchEvents)
+        # Even one that takes no press is no part of what lies below it.
+        self.setAttribute(Qt.WA_NoMousePropagation)
         self.setFocusPolicy(Qt.TabFocus)
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
 
@@ -60,6 +62,11 @@ class StopButton(QAbstractButton):
         """Choose the small text at the right end, and the height in lines of text."""
         self._hint, self._lines = hint, lines
         self.updateGeometry()
+
+    def show_words(self, words, shorter=''):
+        """Say what it does; ``shorter`` where there is no room for the words."""
+        self._shorter = shorter
+        self.setText(words)
 
     def show_engaged(self, engaged):
         """Show whether everything is stopped already; pressing still stops once more."""
@@ -81,6 +88,11 @@ class StopButton(QAbstractButton):
         corner = self.mapTo(self.window(), seen.topLeft())
         return tuple(round(scale * length) for length in (
             corner.x(), corner.y(), seen.width(), seen.height()))
+
+    def shown_words(self):
+        """Return the words for which there is room."""
+        fits = self.fontMetrics().horizontalAdvance(self.text()) <= self.width()
+        return self.text() if fits else self._shorter or self.text()
 
     def sizeHint(self):  # noqa: N802
         """Return room for the text and for a gloved finger."""
@@ -122,7 +134,8 @@ class StopButton(QAbstractButton):
         unit = self.fontMetrics().height()
         text = Qt.white
         if self._engaged:
-            text = theme.colour(theme.TEXT, self.palette())
+            # As readable where it takes no press: then it says why.
+            text = self.palette().color(QPalette.Active, QPalette.WindowText)
             theme.paint_stopped_frame(painter, self.rect(), self.palette())
         else:
             ground = self.palette().color(QPalette.Window) if self._idle else \
@@ -141,8 +154,9 @@ class StopButton(QAbstractButton):
             painter.setFont(theme.base_font(self.window().font()))
             painter.drawText(self.rect(), int(Qt.AlignCenter | Qt.TextWordWrap), self._idle)
             return
-        painter.drawText(self.rect(), int(Qt.AlignCenter), self.text())
-        beside = (self.width() - painter.fontMetrics().horizontalAdvance(self.text())) / 2
+        words = self.shown_words()
+        painter.drawText(self.rect(), int(Qt.AlignCenter), words)
+        beside = (self.width() - painter.fontMetrics().horizontalAdvance(words)) / 2
         painter.setFont(theme.larger(theme.base_font(self.window().font()), 1.0))
         if self._hint and not self._engaged and \
                 painter.fontMetrics().horizontalAdvance(self._hint) + 1.5 * unit < beside:

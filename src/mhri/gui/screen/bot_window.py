@@ -9,6 +9,7 @@ from mhri.core.screen import views
 from mhri.core.screen.arrangement import USUAL_SHAPE
 from mhri.core.screen.view_rows import KEYS, load, PICTURES, RECORD, RGB, SCAN, VIEW_ROWS
 from mhri.gui.driving.drive_keys import mark_drive_area
+from mhri.gui.driving.stop_bar import CUT_OFF, CUT_OFF_NOTE, CUT_OFF_SHORTEST
 from mhri.gui.driving.stop_button import StopButton
 from mhri.gui.look.tile_layers import EDGE_PX, TileLayers, wants_inset
 from mhri.gui.look.tile_words import sentence_of
@@ -63,7 +64,7 @@ class BotWindow(QWidget):
         self._drive = None
         self._trouble = None
         self._link = None
-        self._looked_at = False
+        self._looked_at = self._stopped = self._cut_off = False
         self._wanted = self._arranged = set()
         self._offered = frozenset()
         self._views = {}
@@ -287,11 +288,25 @@ class BotWindow(QWidget):
             return
         self._trouble = trouble
         self._drive = drive
+        self._stopped = stopped
         self.header.show_drive(drive)
-        self.stop_button.setText('STOP ALL in force - release on the main screen'
-                                 if stopped else 'STOP ALL')
-        self.stop_button.show_engaged(stopped)
+        self._show_stop()
         self.update()
+
+    def show_cut_off(self, cut_off):
+        """Show that nothing that is pressed here reaches anything any more, as the bar does."""
+        if cut_off != self._cut_off:
+            self._cut_off = cut_off
+            self.stop_button.setEnabled(not cut_off)
+            self.stop_button.setToolTip(CUT_OFF_NOTE if cut_off else '')
+            self._show_stop()
+
+    def _show_stop(self):
+        """Say on the stop button of a torn-off tile what it is worth."""
+        words = (CUT_OFF, CUT_OFF_SHORTEST) if self._cut_off else (
+            'STOP ALL in force - release on the main screen' if self._stopped else 'STOP ALL',)
+        self.stop_button.show_words(*words)
+        self.stop_button.show_engaged(self._stopped or self._cut_off)
 
     def _show_sentence(self, view):
         """Show the one sentence there is to say."""
