@@ -69,6 +69,7 @@ def test_a_line_says_what_was_true_when_it_was_logged(logger):
 def test_every_handler_is_put_behind_its_own_queue_once(monkeypatch):
     terminal, other = Terminal(), logging.getLogger('trial_of_install')
     monkeypatch.setattr(log.atexit, 'register', lambda *_: None)
+    monkeypatch.setattr(logging, 'lastResort', logging.lastResort)
     before = {name: list(logger.handlers) for name, logger in _loggers().items()}
     try:
         other.addHandler(terminal)
@@ -89,6 +90,44 @@ def _loggers():
     named = logging.root.manager.loggerDict.items()
     return dict([('', logging.root)] + [(name, item) for name, item in named
                                         if isinstance(item, logging.Logger)])
+
+
+@pytest.mark.parametrize('lives_on', [False, True])
+def test_a_screen_outlives_its_node(lives_on):
+    """Any other program is ended where its node is, and does not end by itself."""
+    program = '''
+import threading, rospy
+from mhri.ros.graph import log
+log.install(lives_on={})
+rospy.signal_shutdown('its name was taken')
+print(any(isinstance(thread, threading.Timer) for thread in threading.enumerate()))
+'''.format(lives_on)
+    done = subprocess.run([sys.executable, '-c', program], timeout=60, stdout=subprocess.PIPE,
+                          universal_newlines=True)
+    assert done.stdout.strip() == str(not lives_on)
+
+
+def test_what_is_logged_before_there_is_a_node_holds_nobody_up():
+    """Nor does it keep rospy from setting up its handlers, which asks for the lock of each."""
+    program = '''
+import logging, logging.config, sys, threading, rospy
+from mhri.ros.graph import log
+class Terminal:
+    stuck = threading.Event()
+    def write(self, text):
+        self.stuck.set()
+        threading.Event().wait()
+    def flush(self):
+        pass
+sys.stderr = Terminal()
+log.install()
+rospy.logwarn('settings left out')
+sys.stderr.stuck.wait()
+logging.config.dictConfig({'version': 1})
+print('goes on', flush=True)
+'''
+    done = subprocess.run([sys.executable, '-c', program], timeout=60, stdout=subprocess.PIPE)
+    assert (done.stdout, done.returncode) == (b'goes on\n', 0)
 
 
 def test_a_program_that_hangs_at_its_end_is_ended():

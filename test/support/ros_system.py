@@ -50,6 +50,22 @@ def wait_for(condition, timeout_s=PATIENCE_S, what='the condition', poll_s=0.002
         time.sleep(max(poll_s, min(2.0 * (now - begun), REST_S)))
 
 
+@contextlib.contextmanager
+def stuck_terminal():
+    """Yield the file descriptor of a terminal that takes nothing: a full pipe that nobody reads."""
+    reading, writing = os.pipe()
+    try:
+        os.set_blocking(writing, False)
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                os.write(writing, bytes(65536))
+        os.set_blocking(writing, True)
+        yield writing
+    finally:
+        os.close(reading)
+        os.close(writing)
+
+
 def free_port():
     """Return a TCP port on loopback that nobody listens on."""
     with socket.socket() as probe:

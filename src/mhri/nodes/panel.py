@@ -9,6 +9,7 @@ import sys
 from python_qt_binding.QtWidgets import QApplication
 import rospy
 
+from mhri.ros.graph import log
 from mhri.standalone import Standalone
 
 PLUGIN = 'mhri.mhri_plugin.MhriPlugin'
@@ -46,6 +47,8 @@ def main():
         remappings = [arg for arg in sys.argv[1:] if ':=' in arg]
         extra = ['--args', '--robots', options.robots] if options.robots else []
         os.execvp('rqt', ['rqt', '--standalone', PLUGIN] + remappings + extra)
+    # The screen logs on the thread that draws, and may wait for a master for hours.
+    log.install(lives_on=True)
     app = QApplication(sys.argv[:1])
     if options.replay:
         sys.exit(replay(app, options.replay))

@@ -10,6 +10,7 @@ import atexit
 import logging
 import os
 import queue
+import sys
 import threading
 import time
 
@@ -73,12 +74,41 @@ class PatientHandler(logging.Handler):
             self._waiting.task_done()
 
 
-def install():
+class _Stderr(logging.Handler):
+    """Writes what is logged before rospy has set up its handlers.
+
+    It has no lock: setting them up asks every handler there is for its own, and would wait.
+    """
+
+    def createLock(self):
+        self.lock = None
+
+    def emit(self, record):
+        print(self.format(record), file=sys.stderr)
+
+
+def start_screen_node(name, argv):
+    """Start the node of a screen, which goes on where that is ended; its log holds up nobody.
+
+    In rqt, which has started one, this does nothing: the log is rqt's, too.
+    """
+    if not rospy.core.is_initialized():
+        rospy.init_node(name, argv=argv, disable_signals=True)
+        install(lives_on=True)
+
+
+def install(lives_on=False):
     """Put a queue in front of every log handler of the program; call it after init_node.
 
+    One that logs before that, on a thread that must not wait, calls it at its start as well.
+
+    :param lives_on: whether the program goes on where its node is ended
     :returns: the :class:`PatientHandler` of each; none if they are in place already
     """
     patient = {}
+    if not isinstance(logging.lastResort, PatientHandler):
+        before = logging.lastResort
+        logging.lastResort = patient[before] = PatientHandler(_Stderr(logging.WARNING))
     named = logging.root.manager.loggerDict.values()
     for logger in [logging.root] + [item for item in named if isinstance(item, logging.Logger)]:
         for handler in list(logger.handlers):
@@ -90,7 +120,8 @@ def install():
             logger.addHandler(patient[handler])
     if patient:
         atexit.register(_finish, list(patient.values()))
-        rospy.on_shutdown(_end_in_time)
+        if not lives_on:
+            rospy.on_shutdown(_end_in_time)
     return list(patient.values())
 
 

@@ -26,6 +26,7 @@ from mhri.ros.devices.device_client import DeviceClient
 from mhri.ros.robots.fleet import Fleet
 from mhri.ros.driving.gates_client import GatesClient
 from mhri.ros.graph.handshake import limit_handshakes
+from mhri.ros.graph.log import start_screen_node
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.master_watch import LOST, MasterWatch
 from mhri.ros.driving.mux_client import MuxClient
@@ -98,8 +99,7 @@ class ScreenBackend:
         if self._closing.is_set():
             return
         limit_handshakes()
-        if not rospy.core.is_initialized():
-            rospy.init_node(NODE_NAME, argv=self._argv, disable_signals=True)
+        start_screen_node(NODE_NAME, self._argv)
         for error in self._type_errors:
             rospy.logwarn('robot type left out: %s', error)
         self._watch = MasterWatch().start()
