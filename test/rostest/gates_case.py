@@ -20,11 +20,11 @@ ZERO = (0.0, 0.0)
 NEXT_S = 2.5
 
 
-def start_gates(stand_by=False):
-    """Start the real gates node, as mhri.launch does or alone."""
+def start_gates(stand_by=False, output=None):
+    """Start the real gates node, as mhri.launch does or alone; ``output``: where it writes."""
     words = roslib.packages.find_node('mhri', 'gates')[:1]
     return Process(['bash', '-c', RESTARTER, 'restarter'] + words + ['--stand-by']
-                   if stand_by else words)
+                   if stand_by else words, output=output)
 
 
 def end(process):
@@ -44,11 +44,12 @@ class GatesCase(unittest.TestCase):
 
     number = 0
     stand_by = False
+    output = None
 
     @classmethod
     def setUpClass(cls):
         cls.mux, cls.operator, cls.state = FakeMux(), FakeOperator(), StateEar()
-        GatesCase.gates = start_gates(cls.stand_by)
+        GatesCase.gates = start_gates(cls.stand_by, cls.output)
         cls.wait_for_mux()
 
     @classmethod

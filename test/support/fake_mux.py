@@ -24,8 +24,13 @@ class FakeMux:
         self.stop_all = rospy.Publisher('/robot_controller/stop_all', Bool, queue_size=10,
                                         latch=True, tcp_nodelay=True)
         rospy.Service('/mux/set_stop_all', SetBool, lambda request: SetBoolResponse(True, ''))
-        self.stopped = False
-        rospy.Timer(rospy.Duration(0.5), lambda event: self.stop_all.publish(self.stopped))
+        self.stopped = self.hangs = False
+        rospy.Timer(rospy.Duration(0.5), self._repeat)
+
+    def _repeat(self, event):
+        """Say again what is in force, which is the heartbeat, too."""
+        if not self.hangs:
+            self.stop_all.publish(self.stopped)
 
     def say(self, linear, angular=0.0):
         """Publish one command; return when [s, monotonic]."""
