@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The proof of a stop against odometry that lies, on the topics of a robot."""
 import collections
+import logging
 import os
 import sys
 import threading
@@ -32,8 +33,8 @@ class Teller:
     """A robot's odometry at 50 Hz: as it is told to lie, on time or late."""
 
     def __init__(self, name):
-        self.sideways_mps = self.creeps_mps = self.late_s = 0.0
-        self._x = 0.0
+        self.sideways_mps = self.creeps_mps = self.late_s = self.ahead_mps = 0.0
+        self.x = 0.0
         self._queue = collections.deque()
         self._done = threading.Event()
         self._publisher = rospy.Publisher('/{}/odom'.format(name), Odometry, queue_size=10)
@@ -42,11 +43,12 @@ class Teller:
 
     def _run(self):
         while not self._done.wait(PERIOD_S):
-            self._x += self.creeps_mps * PERIOD_S
+            self.x += self.creeps_mps * PERIOD_S
             message = Odometry()
             message.header.stamp = rospy.Time.from_sec(time.time())
-            message.pose.pose.position.x = self._x
+            message.pose.pose.position.x = self.x
             message.pose.pose.orientation.w = 1.0
+            message.twist.twist.linear.x = self.ahead_mps
             message.twist.twist.linear.y = self.sideways_mps
             self._queue.append((time.monotonic(), message))
             while self._queue and time.monotonic() - self._queue[0][0] >= self.late_s:
@@ -114,6 +116,43 @@ class StopProofTest(unittest.TestCase):
         self.teller.sideways_mps = NAN
         self.stop()
         self.refuted('its odometry is not possible')
+
+    def test_one_that_says_what_cannot_be(self):
+        """It is no speed of anything, counted, and said once a second at most."""
+        logged = []
+        handler = logging.Handler()
+        handler.emit = lambda record: logged.append(record.getMessage())
+        logging.getLogger('rosout').addHandler(handler)
+        self.addCleanup(logging.getLogger('rosout').removeHandler, handler)
+        begun, self.teller.ahead_mps = time.monotonic(), 1e30
+        self.stop()
+        self.refuted('its odometry is not possible')
+        view = self.link.view()
+        self.assertEqual((view.linear_mps, view.x_m), (None, 0.0))
+        self.assertTrue(view.moving, 'nobody knows that it stands')
+        refused = self.link.feeds.refused()['odometry']
+        self.assertGreater(refused, 1)
+        lines = [line for line in logged if 'speed of 1e+30 m/s is impossible' in line]
+        self.assertTrue(0 < len(lines) <= time.monotonic() - begun + 1.0, logged)
+        self.teller.ahead_mps = 0.0
+        wait_for(lambda: self.proof().state == PROOF_STOPPED, what='the proof')
+        self.assertEqual(self.link.view().linear_mps, 0.0)
+
+    def test_bytes_that_are_no_message_bring_no_motion_back(self):
+        self.link.view()
+        feed, = self.link._feeds
+        torn = rospy.AnyMsg()
+        torn._buff = 20 * b'\xff'
+        self.teller.close()
+        self.link._on_message(feed, torn, time.monotonic())
+        view = self.link.view()
+        self.assertEqual((view.link, view.linear_mps, view.x_m), ('live', None, None))
+
+    def test_one_in_a_national_grid(self):
+        self.teller.x = 5_900_000.0
+        wait_for(lambda: self.link.view().x_m == 5_900_000.0, what='the place')
+        self.stop()
+        wait_for(lambda: self.proof().state == PROOF_STOPPED, what='the proof')
 
     def test_one_that_is_heard_late(self):
         """What is heard first was measured before the stop."""

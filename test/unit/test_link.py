@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The link of a robot: how it moves, whether it is heard, and in which words."""
+import math
+
 import pytest
 
 from mhri.core.robots.link import link_note, link_state, Motion
@@ -24,6 +26,33 @@ def test_standstill(linear, angular, still):
 def test_standstill_is_of_the_whole_plane(motion, still):
     """Sideways counts, and a reading with anything impossible in it says nothing."""
     assert motion.is_standstill() == still
+
+
+GRID_M = 5_900_000.0  # as in a national grid
+
+
+@pytest.mark.parametrize('values, problem', [
+    ((0.3, -0.2, GRID_M, -GRID_M, 3.0, 0.1), None),
+    ((1e30, -0.2, 1.0, 2.0, 3.0, 0.1), 'speed of 1e+30 m/s'),
+    ((0.3, 2e3, 1.0, 2.0, 3.0, 0.1), 'angular velocity of 2e+03 rad/s'),
+    ((0.3, -0.2, 1.0, -1.6e308, 3.0, 0.1), 'place of -1.6e+308 m'),
+    ((0.3, -0.2, 1.0, 2.0, float('inf'), 0.1), 'angle of inf rad'),
+    ((0.3, -0.2, 1.0, 2.0, 3.0, -301.0), 'speed of -301 m/s')])
+def test_what_cannot_be_is_named_and_is_no_number(values, problem):
+    motion = Motion.told(*values)
+    kept = (motion.linear_mps, motion.angular_rad_s, motion.x_m, motion.y_m, motion.heading_rad,
+            motion.lateral_mps)
+    assert motion.problem == problem and motion.is_possible() == (problem is None)
+    assert sum(map(math.isnan, kept)) == (problem is not None)
+    assert all(one == told for one, told in zip(kept, values) if one == one)
+
+
+def test_a_heading_is_as_good_as_the_quaternion_it_is_from():
+    good = Motion.told(0.3, 0.0, 1.0, 2.0, 0.5, 0.0, turn=(0.0, 0.0, 0.6, 0.8))
+    bad = Motion.told(0.3, 0.0, 1.0, 2.0, 0.5, 0.0, turn=(0.0, 0.0, 1e30, 0.8))
+    assert good.is_possible() and good.heading_rad == 0.5
+    assert math.isnan(bad.heading_rad) and bad.linear_mps == 0.3
+    assert bad.problem == 'quaternion of 1e+30' and not bad.is_standstill()
 
 
 @pytest.mark.parametrize('age_s, connections, state', [

@@ -8,6 +8,7 @@ from mhri.core.robots.robot_types import SILENT_AFTER_S
 from mhri.core.robots.stop_proof import PATIENCE_S, ROW_S, StopProof, UNKNOWN_ROUND_TRIP_S
 from mhri.core.screen.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED, PROOF_WAITING
 
+GRID_M = 5_900_000.0  # as in a national grid
 REST, MOVES, NAN = Motion(0.0, 0.0), Motion(0.3, 0.0), Motion(float('nan'), 0.0)
 
 
@@ -33,6 +34,8 @@ CASES = {
     'stopped': (STOPS, 0.34, PROOF_STOPPED, 'stopped in 220 ms'),
     'three_readings_in_a_moment_are_no_proof': (
         [(0.1, REST), (0.101, REST), (0.102, REST)], 0.13, PROOF_WAITING, 'stopping'),
+    'in_a_national_grid': (every(0.02, 0.34, Motion(0.0, 0.0, GRID_M)), 0.34, PROOF_STOPPED,
+                           'stopped in 20 ms'),
     'two_readings_are_no_proof': ([(0.1, REST), (0.3, REST)], 0.33, PROOF_WAITING, 'stopping'),
     'a_move_between_begins_anew': (
         [(0.1, REST), (0.12, REST), (0.14, MOVES), (0.16, REST), (0.18, REST)], 0.19,
@@ -126,6 +129,8 @@ def rolls(speed, turn=0.0, rate_hz=50, until=5.0):
 
 
 NEVER = {
+    'creeps_in_a_national_grid': (
+        [(now, pose(GRID_M + motion.x_m)) for now, motion in rolls(0.03)], 'its pose moves at'),
     'slides': (every(0.02, 5.0, pose(lateral=0.5)), 'moves at 0.50 m/s, 0.00 rad/s'),
     'slides_back': (every(0.02, 5.0, pose(lateral=-0.02)), 'moves at 0.02 m/s'),
     'slow_both_ways': (every(0.02, 5.0, pose(linear=0.009, lateral=0.009)), 'moves at 0.01 m/s'),

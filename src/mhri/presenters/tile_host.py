@@ -142,7 +142,8 @@ class TileHost:
         captured = tracker.pose() if tracker else None
         if captured is not None:
             ages.append(('capture', tracker.age_s()))
-        odometry = None if view.x_m is None else Pose(view.x_m, view.y_m, view.heading_rad)
+        place = (view.x_m, view.y_m, view.heading_rad)
+        odometry = None if None in place else Pose(*place)
         self.window.state_line.show_state(
             StateView(tuple(ages), view.figures, captured, self._drift.drift(odometry, captured)))
 

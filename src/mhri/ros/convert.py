@@ -59,16 +59,16 @@ def yaw_of(quaternion):
 
 
 def motion_from_odometry(message):
-    """Return the :class:`Motion` of a ``nav_msgs/Odometry``."""
-    pose, twist = message.pose.pose, message.twist.twist
-    return Motion(twist.linear.x, twist.angular.z, pose.position.x, pose.position.y,
-                  yaw_of(pose.orientation), twist.linear.y)
+    """Return the :class:`Motion` of a ``nav_msgs/Odometry``; what cannot be is NaN in it."""
+    pose, twist, turn = message.pose.pose, message.twist.twist, message.pose.pose.orientation
+    return Motion.told(twist.linear.x, twist.angular.z, pose.position.x, pose.position.y,
+                       yaw_of(turn), twist.linear.y, turn=(turn.x, turn.y, turn.z, turn.w))
 
 
 def motion_from_turtle_pose(message):
-    """Return the :class:`Motion` of a ``turtlesim/Pose``."""
-    return Motion(message.linear_velocity, message.angular_velocity, message.x, message.y,
-                  message.theta)
+    """Return the :class:`Motion` of a ``turtlesim/Pose``; what cannot be is NaN in it."""
+    return Motion.told(message.linear_velocity, message.angular_velocity, message.x, message.y,
+                       message.theta, 0.0)
 
 
 class PlanarTwist(Twist):

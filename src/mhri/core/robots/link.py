@@ -3,16 +3,16 @@
 """What is known about a robot's link: how it moves, and whether it can still be heard."""
 import math
 from dataclasses import dataclass
-from typing import Optional
+from typing import Optional, Sequence
 
 from mhri.core.robots.robot_types import SILENT_AFTER_S
 from mhri.core.screen.views import GONE, LIVE, SILENT, WAITING
+from mhri.core.sensors.plausible import (
+    ANGLE, ANGULAR_VELOCITY, can_be, PLACE, QUATERNION, sifted, SPEED)
 
 STANDSTILL_MPS = 0.01
 STANDSTILL_RAD_S = 0.03
-# No robot drives, turns or travels beyond these: m/s or rad/s, and m from where it started.
-POSSIBLE_SPEED = 100.0
-POSSIBLE_M = 1e6
+_KINDS = (SPEED, ANGULAR_VELOCITY, PLACE, PLACE, ANGLE, SPEED)
 
 
 @dataclass(frozen=True)
@@ -20,6 +20,8 @@ class Motion:
     """A robot's motion by its own odometry: m/s, rad/s, m, m, rad in its ``odom`` frame.
 
     ``lateral_mps`` is its speed to the left [m/s], for a robot that slides or can drive sideways.
+    ``problem`` names what it said that cannot be (:mod:`mhri.core.sensors.plausible`), which is NaN
+    here; None: nothing.
     """
 
     linear_mps: float
@@ -28,6 +30,18 @@ class Motion:
     y_m: float = 0.0
     heading_rad: float = 0.0
     lateral_mps: float = 0.0
+    problem: Optional[str] = None
+
+    @classmethod
+    def told(cls, *values: float, turn: Sequence[float] = ()) -> 'Motion':
+        """Return the motion of what a robot says: the six values, in the order of the fields above.
+
+        :param turn: the quaternion that the heading is from, () where it is from none
+        """
+        (linear, angular, x_m, y_m, heading, lateral), problem = sifted(_KINDS, values)
+        _, twisted = sifted((QUATERNION,) * len(turn), turn)
+        return cls(linear, angular, x_m, y_m, math.nan if twisted else heading, lateral,
+                   problem or twisted)
 
     @property
     def speed_mps(self) -> float:
@@ -36,11 +50,9 @@ class Motion:
 
     def is_possible(self) -> bool:
         """Tell whether all values are possible for a robot."""
-        speeds = (self.linear_mps, self.lateral_mps, self.angular_rad_s)
-        # A comparison with NaN is false.
-        return (all(abs(speed) <= POSSIBLE_SPEED for speed in speeds)
-                and all(abs(place) <= POSSIBLE_M for place in (self.x_m, self.y_m))
-                and math.isfinite(self.heading_rad))
+        return all(map(can_be, _KINDS, (
+            self.linear_mps, self.angular_rad_s, self.x_m, self.y_m, self.heading_rad,
+            self.lateral_mps)))
 
     def is_standstill(self) -> bool:
         """Tell whether the speeds are those of a robot at rest.

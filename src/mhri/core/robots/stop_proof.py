@@ -4,10 +4,11 @@
 import math
 from typing import Optional, Tuple
 
-from mhri.core.robots.link import Motion, POSSIBLE_SPEED, STANDSTILL_MPS, STANDSTILL_RAD_S
+from mhri.core.robots.link import Motion, STANDSTILL_MPS, STANDSTILL_RAD_S
 from mhri.core.robots.robot_types import SILENT_AFTER_S
 from mhri.core.screen.views import (
     PROOF_NOT_CONFIRMED, PROOF_STOPPED, PROOF_WAITING, ProofView)
+from mhri.core.sensors.plausible import ANGULAR_VELOCITY, BOUNDS, SPEED
 
 READINGS = 3
 # Time from the first reading of a row to the last [s]: in less, a creeping pose looks at rest.
@@ -120,7 +121,8 @@ class StopProof:
                 motion.speed_mps, abs(motion.angular_rad_s))
         if pose_mps or pose_rad_s:
             self._crept = 'its pose moves at {:.2f} m/s, {:.2f} rad/s'.format(
-                min(pose_mps, POSSIBLE_SPEED), min(pose_rad_s, POSSIBLE_SPEED))
+                min(pose_mps, BOUNDS[SPEED].greatest),
+                min(pose_rad_s, BOUNDS[ANGULAR_VELOCITY].greatest))
             self._crept_at = measured
             return self._crept
         return ''

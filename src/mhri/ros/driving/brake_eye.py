@@ -56,6 +56,7 @@ class BrakeEye:
             self._odometry = None
         self._refusals = Refusals(', '.join(self._topics or [
             topic_of(name, topic) for topic in robot_type.depth]), clock)
+        self._odometry_refusals = Refusals('the odometry of ' + name, clock)
         self._track = PoseTrack()
         self._subscribers = []
         self._settling = threading.Lock()
@@ -92,8 +93,10 @@ class BrakeEye:
         if not self.brake.reads or self._odometry is None or now - self._pose_at < POSE_EVERY_S:
             return
         self._pose_at = now
-        message = self._refusals.read(message, self._odometry)
+        message = self._odometry_refusals.read(message, self._odometry)
         motion = None if message is None else self._read(message)
+        if motion is not None and motion.problem:
+            self._odometry_refusals.note(motion.problem)
         if motion is not None and motion.is_possible():
             self._mounts.see_odometry(message)
             pose = Pose(motion.x_m, motion.y_m, motion.heading_rad)

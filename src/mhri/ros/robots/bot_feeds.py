@@ -21,6 +21,8 @@ class BotFeeds:
         self.robot_type = robot_type
         #: the robot's own tf frame, '' until its odometry has named it
         self.base = ''
+        #: what else is read of the robot, and counts what it refuses
+        self.others = {}
         self._robot = robot
         self._worker = worker
         made = {row.key: load(row.feed).of(robot, robot_type, row.key) for row in VIEW_ROWS}
@@ -63,7 +65,7 @@ class BotFeeds:
 
     def refused(self):
         """Return {key: impossible messages left out so far} for feeds that had any."""
-        counts = {key: feed.refused() for key, feed in list(self._feeds.items())
+        counts = {key: feed.refused() for key, feed in [*self._feeds.items(), *self.others.items()]
                   if hasattr(feed, 'refused')}
         return {key: count for key, count in counts.items() if count}
 

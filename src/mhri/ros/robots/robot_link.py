@@ -82,6 +82,15 @@ class Feed:
         message = self._refusals.read(message, self._class)
         return None if message is None else self._read(message)
 
+    def note(self, problem):
+        """Count a message that says what cannot be; log it unless one was logged just now."""
+        self._refusals.note(problem)
+
+    @property
+    def refused(self):
+        """Number of messages that cannot be, among those that were read."""
+        return self._refusals.count
+
     def header(self, message):
         """Return (number, stamp [s]) of a message, or None if it has no header."""
         return header_of(message, self._class)
@@ -133,6 +142,7 @@ class RobotLink:
         self._radio = None
         self._fetching = ''
         self._feeds = self._open_feeds()
+        feeds.others['odometry'] = self
         self._battery_feeds = [
             Feed(topic_of(name, topic), BatteryState, battery_fraction, self._on_battery,
                  clock)
@@ -206,9 +216,15 @@ class RobotLink:
             return False
         feed, message = self._pending
         self._pending = None
-        motion = feed.value(message)
-        self._motion = motion or self._motion
-        return motion is not None
+        # Nothing from before may pass for what was heard now.
+        self._motion = feed.value(message)
+        if self._motion is not None and self._motion.problem:
+            feed.note(self._motion.problem)
+        return self._motion is not None
+
+    def refused(self):
+        """Return the number of messages of its odometry that cannot be, among those read."""
+        return sum(feed.refused for feed in self._feeds)
 
     def on_stop(self, stopped, now):
         """Begin (or end) the proof of a stop."""
@@ -245,10 +261,9 @@ class RobotLink:
             note=link_note(state, age, self._heard_wall, now - self.added_at) or warning
             or self._fetching,
             figures=figures, slow=bool(warning),
-            linear_mps=motion and motion.linear_mps, angular_rad_s=motion and motion.angular_rad_s,
-            heading_rad=motion and motion.heading_rad, x_m=motion and motion.x_m,
-            y_m=motion and motion.y_m, battery=self._battery,
-            moving=motion is not None and age < 1.0 and not motion.is_standstill(), proof=proof,
+            **_numbers(motion), battery=self._battery, proof=proof,
+            # Whoever is heard and says nothing that can be may well move.
+            moving=age is not None and age < 1.0 and not (motion and motion.is_standstill()),
             hardware_stop=self._hardware_stop.stopped, max_linear_mps=limits.linear_mps,
             max_angular_rad_s=limits.angular_rad_s,
             offers_power=self.robot_type.motor_power is not None)
@@ -278,6 +293,13 @@ class RobotLink:
         self.feeds.close()
         for feed in self._feeds + self._battery_feeds + self._guard_feeds:
             feed.unregister()
+
+
+def _numbers(motion):
+    """Return the numbers of a view that a :class:`Motion` gives, as {key: value}."""
+    keys = ('linear_mps', 'angular_rad_s', 'heading_rad', 'x_m', 'y_m')
+    told = {key: getattr(motion, key) for key in keys if motion is not None}
+    return {key: value for key, value in told.items() if math.isfinite(value)}
 
 
 def seen_by_gates(view, gate, answers):

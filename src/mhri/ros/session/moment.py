@@ -68,6 +68,8 @@ class Moment:
                 rospy.logdebug('%s: %s', source.fields['topic'], error)
                 continue
             motion = _READERS[source.fields['type']](message)
+            if not motion.is_possible():
+                continue
             frame = message.header.frame_id if message._has_header else ''
             return Pose(motion.x_m, motion.y_m, motion.heading_rad), frame or robot + '/odom'
         return None

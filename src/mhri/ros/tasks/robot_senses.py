@@ -160,7 +160,9 @@ class RobotSenses:
 
     def _go(self, message):
         motion = self._read(message)
-        if motion is None or not motion.is_possible():
+        if motion.problem:
+            self._odometry.note(motion.problem)
+        if not motion.is_possible():
             return
         self.pose = Pose(motion.x_m, motion.y_m, motion.heading_rad)
         header = header_of(message, type(message))
