@@ -45,7 +45,7 @@ def init_node(name, **options):
         over.set()
 
     threading.Thread(target=shut_down, name='ending', daemon=True).start()
-    # What it has begun, it finishes: Python's end would cut it off.
-    atexit.register(lambda: begun.is_set() and over.wait(_PATIENCE_S))
+    # What it has begun, it finishes: Python's end would cut it off. Until then it hears.
+    atexit.register(lambda: begun.is_set() and over.wait(_PATIENCE_S) and hears.close())
     rospy.init_node(name, disable_signals=True, **options)
     there.set()
