@@ -113,7 +113,7 @@ def imports(tree):
         elif isinstance(node, ast.ImportFrom):
             if node.level:
                 yield node.lineno, 'relative import'
-            elif node.module in ('mhri', 'mhri.core', 'mhri.ros', 'mhri.gui', 'mhri.sim'):
+            elif node.module in ('mhri', 'mhri.core', 'mhri.ros', 'mhri.gui', 'mhri.sim', 'rospy'):
                 for alias in node.names:
                     yield node.lineno, '{}.{}'.format(node.module, alias.name)
             else:
@@ -221,6 +221,12 @@ def script_problems(name, text):
                                       'mhri.nodes.{}.main'.format(name, name)]
 
 
+def crowded(paths):
+    """Return the folders of these files with more than 20 of them."""
+    folders = [path.parent for path in paths]
+    return {folder for folder in folders if folders.count(folder) > 20}
+
+
 def source_files():
     return sorted(SOURCE.rglob('*.py'))
 
@@ -240,6 +246,13 @@ def test_file_outside_src_keeps_size_and_licence(path):
     text = path.read_text(encoding='utf-8')
     rules = (size_problems, complexity_problems, spdx_problems)
     assert [problem for rule in rules for problem in rule(path, text)] == []
+
+
+def test_no_folder_has_more_than_20_files():
+    assert crowded(path for path in SOURCE.rglob('*')
+                   if path.is_file() and path.suffix != '.pyc') == set()
+    many = [Path('core/{}.py'.format(number)) for number in range(21)]
+    assert crowded(many) == {Path('core')} and not crowded(many[1:])
 
 
 def test_public_docstrings():

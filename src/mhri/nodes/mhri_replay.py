@@ -9,6 +9,7 @@ number}), ``/mhri/replay/driven`` (whether mhri drove them).
 import argparse
 import sys
 
+import rosgraph
 import rospy
 
 from mhri.core.config import ConfigError
@@ -44,7 +45,7 @@ def main():
         [('lookupService', name) for name in (STOP_SERVICE, TAKE_SERVICE)])
     if any(taken):
         sys.exit('mhri drives at {}: replay with a master of its own (utils/host/mhri_run.sh '
-                 '--replay)'.format(rospy.core.rosgraph.get_master_uri()))
+                 '--replay)'.format(rosgraph.get_master_uri()))
     set_parameters(kept.robots, any(found.topic == GATES for found in kept.bags.connections()))
     Player(kept).start()
     rospy.spin()

@@ -10,6 +10,7 @@ import queue
 import rospy
 
 from mhri.ros.graph.master_api import MasterApi, MasterError
+from mhri.ros.graph.rospy_inside import is_initialised
 from mhri.ros.worker import Worker
 from mhri.srv import SetFault
 
@@ -57,7 +58,7 @@ class FaultsClient:
     def _look(self):
         """See which robots are simulated; while somebody watches, ask what fails."""
         names = self._names
-        if not names or not rospy.core.is_initialized():
+        if not names or not is_initialised():
             return
         try:
             found = MasterApi(rospy.get_name(), timeout_s=1.0).call_many(

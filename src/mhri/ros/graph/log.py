@@ -16,6 +16,8 @@ import time
 
 import rospy
 
+from mhri.ros.graph.rospy_inside import is_initialised
+
 # Lines that may wait for one destination; any more are counted, not kept.
 QUEUE_SIZE = 1000
 # How long an ending program waits for its last lines [s].
@@ -92,7 +94,7 @@ def start_screen_node(name, argv):
 
     In rqt, which has started one, this does nothing: the log is rqt's, too.
     """
-    if not rospy.core.is_initialized():
+    if not is_initialised():
         rospy.init_node(name, argv=argv, disable_signals=True)
         install(lives_on=True)
 

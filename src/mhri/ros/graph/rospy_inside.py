@@ -71,6 +71,11 @@ def on_publisher_gone(subscriber, call):
     impl.remove_connection = remove_connection
 
 
+def is_initialised():
+    """Tell whether somebody in this process has called ``rospy.init_node``."""
+    return rospy.core.is_initialized()
+
+
 def ended_by_hand():
     """Return a function that tells whether somebody ended this node by ``rosnode kill``.
 
@@ -135,7 +140,7 @@ def meet_publishers(topic, uris):
 def require(methods, names):
     """Check for what a module relies on.
 
-    :param methods: [(class, names of its methods)]
+    :param methods: [(class or module, names of its functions)]
     :param names: [(function, names that it uses)]
     :raises ImportError: rospy is not the version this was written for
     """
@@ -148,6 +153,7 @@ def require(methods, names):
                           'or 1.16'.format(', '.join(missing)))
 
 
-require([(ROSHandler, ('getPid',)), (rospy.topics._SubscriberImpl, ('remove_connection',))],
+require([(ROSHandler, ('getPid',)), (rospy.topics._SubscriberImpl, ('remove_connection',)),
+         (rospy.core, ('add_preshutdown_hook', 'is_initialized'))],
         [(rospy.topics._TopicImpl.__init__, ('connections', 'connection_poll', 'closed')),
          (TCPROSTransport.__init__, ('callerid_pub', 'endpoint_id'))])

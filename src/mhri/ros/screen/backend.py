@@ -71,8 +71,7 @@ class ScreenBackend:
         self._asked = AskedAndDone()
         self._mux = self._watch = self._requests = self._diagnostics = self._devices = None
         self._claim = self._first_limits = self._first_mode = None
-        self._stop_note = ''
-        self._ros = ROS_STARTING
+        self._stop_note, self._ros = '', ROS_STARTING
         self._closing = threading.Event()
         self._worker = Worker('panel_jobs', self._supervise)
         self.master_uri = rosgraph.get_master_uri()
@@ -89,7 +88,7 @@ class ScreenBackend:
     def _connect(self):
         """Wait for a master, then open everything (on a thread of its own)."""
         api = MasterApi('/' + NODE_NAME, timeout_s=1.0)
-        while not self._closing.is_set() and not rospy.core.is_initialized():
+        while not self._closing.is_set() and not is_initialised():
             try:
                 api.call('getPid')
                 break
