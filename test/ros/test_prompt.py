@@ -25,10 +25,13 @@ class Transport:
         self.stat_bytes = self.stat_num_msg = 0
         self.endpoint_id = 'robot'
         self.threads = set()
-        self._closed = lambda connection: None
+        self.cleanup_cb = lambda connection: None
 
     def set_cleanup_callback(self, callback):
-        self._closed = callback
+        self.cleanup_cb = callback
+
+    def fileno(self):
+        return self.socket.fileno()
 
     def write_data(self, data):
         self.threads.add(threading.current_thread())
@@ -39,7 +42,7 @@ class Transport:
 
     def close(self):
         self.done = True
-        self._closed(self)
+        self.cleanup_cb(self)
 
 
 @pytest.fixture
@@ -252,3 +255,23 @@ def test_nothing_but_the_word_to_stop_is_given_to_a_stalled_link(link):
         theirs.recv(1)
     stalled[0] = False
     assert take(theirs, 100) == message(31)
+
+
+@pytest.mark.parametrize('ours_first', [True, False])
+def test_another_publisher_of_the_topic_in_this_process_changes_nothing(ours_first):
+    """As of another plugin of rqt: for rospy both are one, with the queue of the later."""
+    topic, made = '/bot{}/cmd_vel'.format(int(ours_first)), {}
+    for ours in (ours_first, not ours_first):
+        made[ours] = PromptPublisher(topic, Twist) if ours else rospy.Publisher(
+            topic, Twist, queue_size=10)
+    ours, theirs = socket.socketpair()
+    transport = Transport(ours)
+    made[True].impl.add_connection(transport)
+    link, = made[True].links()
+    try:
+        made[True].publish(Twist())
+        assert take(theirs, 52) and not transport.threads, "by the thread of rospy's own queue"
+    finally:
+        for end in (transport, ours, theirs):
+            end.close()
+        link._thread.join(5.0)
