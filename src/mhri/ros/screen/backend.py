@@ -29,6 +29,7 @@ from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.log import start_screen_node
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.master_watch import LOST, MasterWatch
+from mhri.ros.graph.rospy_inside import is_initialised
 from mhri.ros.driving.mux_client import MuxClient
 from mhri.ros.screen.panel_diagnostics import PanelDiagnostics
 from mhri.ros.screen.panel_jobs import PanelJobs
