@@ -17,6 +17,7 @@ import psutil
 import rosgraph
 import rospy
 import rostest
+from sensor_msgs.msg import Joy
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 sys.path.insert(0, os.path.join(HERE, '..'))
@@ -165,16 +166,55 @@ class ControlTest(unittest.TestCase):
         screen.wait('that it is cut off', lambda view: view['ros'] == 'cut_off')
         self.assertIn('cut off', screen.shown['status'])
 
-    def test_two_screens_in_one_program(self):
-        """To the gates they are one node: of the two one has a say, and closed it leaves none."""
-        one, other = ScreenBackend(['panel']), ScreenBackend(['panel'])
-        self.addCleanup(other.close)
-        self.addCleanup(one.close)
-        for screen in (one, other):
+    def screens(self, count):
+        """Start screens in this program, one after the other; the first has its say."""
+        made = [ScreenBackend(['panel']) for _ in range(count)]
+        self.addCleanup(self.leave, made)
+        for screen in made:
             screen.start()
             wait_for(lambda: screen.view().ros == 'connected', START_S, 'a screen')
             screen.add('bot1')
             screen.add('bot2')
+        return made
+
+    @staticmethod
+    def leave(made):
+        """Close screens of this program; the next test must not meet their selection."""
+        for screen in made:
+            screen.close(forget=True)
+        wait_for(lambda: '/control_test' not in publishers('/robot_controller/robot_select'),
+                 START_S, 'its topics to be given back')
+
+    def test_the_word_to_cut_the_power_of_the_motors_arrives_as_it_is_meant(self):
+        screen, = self.screens(1)
+        screen.set_motor_power(False)
+        wait_for(lambda: screen.view().stop_note == 'bot1: motor power cut', START_S, 'the answer')
+        self.assertEqual(self.gates.power, [False])
+        screen.set_motor_power(True)
+        wait_for(lambda: self.gates.power == [False, True], START_S, 'the word to restore it')
+
+    def test_of_two_screens_in_one_program_one_has_a_stick(self):
+        """Also before the screen that has lost its say has given its topics back."""
+        one, other = self.screens(2)
+        heard = []
+        ear = rospy.Subscriber('/mux_in/joy', Joy, lambda joy: heard.append(joy.axes[1]))
+        self.addCleanup(ear.unregister)
+
+        def drives(screen, forward):
+            """Hold the stick of a screen until it is heard."""
+            wait_for(lambda: screen.repeat_selection() or screen.send_stick(forward, 0.0)
+                     or forward in heard, START_S, 'the stick', 0.05)
+        drives(one, 0.25)
+        other.send_stick(1.0, 0.0)
+        drives(one, 0.5)
+        other.take_control()
+        one.send_stick(1.0, 0.0)
+        drives(other, 0.75)
+        self.assertNotIn(1.0, heard)
+
+    def test_two_screens_in_one_program(self):
+        """To the gates they are one node: of the two one has a say, and closed it leaves none."""
+        one, other = self.screens(2)
         self.assertTrue(one.view().control.ours)
         self.assertFalse(other.view().control.ours)
         self.assertIn('another screen', other.view().control.who)
