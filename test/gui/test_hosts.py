@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The two hosts of the panel: what they keep between runs, and how they end."""
 import json
-import sys
-import types
 
 import pytest
 from python_qt_binding.QtCore import QPoint, QRect
@@ -15,6 +13,8 @@ from mhri.gui.screen import geometry
 from mhri.presenters.screen_host import ScreenHost
 from mhri.ros.screen.backend import ScreenBackend
 from mhri.standalone import Standalone
+from support import rqt_stand_in
+from support.rqt_stand_in import Context, Settings
 
 
 @pytest.fixture(scope='module', autouse=True)
@@ -222,50 +222,11 @@ def test_a_fresh_panel_keeps_the_settings_until_something_is_changed(saved, chan
     assert robots_in(saved) == robots
 
 
-class Settings(dict):
-    """As qt_gui's Settings: set_value and value."""
-
-    def set_value(self, key, value):
-        self[key] = value
-
-    def value(self, key, default=None):
-        return self.get(key, default)
-
-
-class Context:
-    """As rqt's plugin context."""
-
-    def __init__(self, *argv):
-        self.widgets = []
-        self._argv = list(argv)
-
-    def argv(self):
-        return self._argv
-
-    def serial_number(self):
-        return 1
-
-    def add_widget(self, widget):
-        self.widgets.append(widget)
-
-
 @pytest.fixture
 def plugin_class(monkeypatch):
-    """The adapter over a stand-in of rqt_gui_py, which is not packaged everywhere."""
-    from python_qt_binding.QtCore import QObject
-
-    class Plugin(QObject):
-        def __init__(self, context):
-            super().__init__()
-
-    package, module = types.ModuleType('rqt_gui_py'), types.ModuleType('rqt_gui_py.plugin')
-    module.Plugin = Plugin
-    monkeypatch.setitem(sys.modules, 'rqt_gui_py', package)
-    monkeypatch.setitem(sys.modules, 'rqt_gui_py.plugin', module)
-    monkeypatch.delitem(sys.modules, 'mhri.mhri_plugin', raising=False)
+    """The adapter, without ROS."""
     monkeypatch.setattr(ScreenBackend, 'start', lambda self: None)
-    from mhri.mhri_plugin import MhriPlugin
-    return MhriPlugin
+    return rqt_stand_in.plugin_class(monkeypatch)
 
 
 def test_the_rqt_plugin_shows_the_panel_and_keeps_its_settings(plugin_class):

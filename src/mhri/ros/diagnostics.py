@@ -33,6 +33,8 @@ def publish_diagnostics(tasks):
         """
         while not done.wait(1.0):
             updater.force_update()
+        if not rospy.is_shutdown():
+            updater.publisher.unregister()
 
     threading.Thread(target=run, name='diagnostics', daemon=True).start()
     return done
