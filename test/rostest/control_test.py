@@ -241,6 +241,19 @@ class ControlTest(unittest.TestCase):
         wait_for(lambda: (one.repeat_selection(), len(self.gates.selections) > count)[-1], START_S)
         self.assertFalse(any(robots for _, robots in self.gates.selections[count:]))
 
+    def test_a_screen_that_is_closed_while_it_starts_leaves_nothing(self):
+        """Nor does it take the seat of the next one."""
+        self.gates.hang()
+        early = ScreenBackend(['panel'])
+        early.start()
+        wait_for(lambda: '/control_test' in publishers('/gates_in/group_speed'), START_S, 'it')
+        early.close(forget=True)
+        wait_for(lambda: not {'/control_test'} & {
+            *publishers('/gates_in/group_speed'), *publishers('/mhri_joy/rumble'),
+            *publishers('/mux_in/mode_select')}, START_S, 'its topics to be given back')
+        late, = self.screens(1)
+        self.assertTrue(late.view().control.ours)
+
     def test_ten_screens_that_were_closed_leave_nothing(self):
         """As plugins of rqt, which lives on: no thread, no handle, and no status of theirs."""
         statuses = []

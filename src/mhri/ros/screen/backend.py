@@ -122,6 +122,10 @@ class ScreenBackend:
         self._worker.start()
         self._worker.do(self._supervise)
         self._ros = ROS_CONNECTED
+        if self._closing.is_set():
+            # Closed before there was all that is to be closed.
+            self._closing.clear()
+            self.close(forget=True)
 
     def _supervise(self):
         """Fill in what is missing: the sources of the mux, the links and types of robots."""
@@ -237,10 +241,7 @@ class ScreenBackend:
         self._gates.set_motor_power(on, lambda done, text: self._on_answer(text))
 
     def add(self, name, parameters=None):
-        """Add a robot to the list, unchecked.
-
-        :returns: None, or why not, as a sentence
-        """
+        """Add a robot to the list, unchecked; return None, or why not, as a sentence."""
         problem = name_problem(name)
         if problem:
             return problem
@@ -367,8 +368,7 @@ class ScreenBackend:
 
         Takes as long as the word needs to leave, and bags that are open need to be closed whole.
 
-        :param forget: unregister every topic as well, in the background: for a program that lives
-            on
+        :param forget: unregister every topic as well, in the background: the program lives on
         """
         if self._closing.is_set():
             return
@@ -383,7 +383,7 @@ class ScreenBackend:
             part.stop()
         for part in filter(None, (self._devices, self._mux)):
             part.close()
-        if self._mux:
+        if self._ros == ROS_CONNECTED:
             time.sleep(FLUSH_S)
             self.recordings.close()
             if forget:
