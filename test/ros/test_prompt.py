@@ -233,6 +233,41 @@ def test_a_connection_that_came_while_the_publisher_was_made_is_taken_over(monke
     assert stalled_s == 0.0, 'it is still one of rospy'
 
 
+def test_a_connection_that_rospy_is_adding_meanwhile_is_taken_over(monkeypatch):
+    """Left in rospy's own wrapper, it was closed at the first word: a robot's zero."""
+    ours, theirs = socket.socketpair()
+    late = Transport(ours)
+    late.fileno, late.cleanup_cb = ours.fileno, None
+    wraps, go_on, adding = threading.Event(), threading.Event(), []
+    plain = rospy.topics.QueuedConnection
+
+    def wrap(*args):
+        """Take a while, as on a busy computer."""
+        wraps.set()
+        go_on.wait(20.0)
+        return plain(*args)
+
+    def register(self, name, message_class, **_):
+        """Do as rospy does, with a robot that is quick."""
+        self.impl = rospy.topics._PublisherImpl(name, message_class)
+        self.impl.set_queue_size(1)
+        adding.append(threading.Thread(target=self.impl.add_connection, args=(late,)))
+        adding[0].start()
+        assert wraps.wait(20.0)
+
+    monkeypatch.setattr(rospy.topics, 'QueuedConnection', wrap)
+    monkeypatch.setattr(rospy.Publisher, '__init__', register)
+    publisher = PromptPublisher('/bot1/cmd_vel', Twist)
+    go_on.set()
+    adding[0].join(20.0)
+    publisher.publish_urgent(Twist())
+    found = len(publisher.links())
+    late.close()
+    for end in (ours, theirs):
+        end.close()
+    assert found == 1, 'the robot was hung up on'
+
+
 def test_nothing_but_the_word_to_stop_is_given_to_a_stalled_link(link):
     connection, transport, theirs = link
     stalled = [True]

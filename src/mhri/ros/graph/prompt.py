@@ -169,6 +169,24 @@ class PromptConnection(QueuedConnection):
                 self._error = error or self._error
 
 
+_add_plainly = rospy.topics._TopicImpl.add_connection
+
+
+def _add_connection(topic, connection):
+    """Add a connection to a topic of rospy, to one of :class:`PromptPublisher` in our own wrapper.
+
+    Also one that rospy was about to add in its own, when the publisher was made.
+    """
+    with topic.c_lock:
+        size = getattr(topic, 'mhri_queue_size', None)
+        if size is not None and not isinstance(connection, PromptConnection):
+            connection = PromptConnection(getattr(connection, '_connection', connection), size)
+        return _add_plainly(topic, connection)
+
+
+rospy.topics._TopicImpl.add_connection = _add_connection
+
+
 class PromptPublisher(rospy.Publisher):
     """A ``rospy.Publisher`` with a queue, ``tcp_nodelay`` and :class:`PromptConnection`.
 
@@ -180,18 +198,12 @@ class PromptPublisher(rospy.Publisher):
     def __init__(self, name, message_class, queue_size=1):
         super().__init__(name, message_class, tcp_nodelay=True, queue_size=queue_size)
         impl = self.impl
-        plain = type(impl).add_connection
-
-        def add_connection(connection):
-            """Add the connection in our own wrapper."""
-            return plain(impl, PromptConnection(connection, queue_size))
-
         # Given a size, rospy wraps each connection in its own class; another publisher of this
         # topic in the same process (a plugin beside us in rqt) would set one.
         impl.set_queue_size(None)
         impl.set_queue_size = lambda size: None
-        impl.add_connection = add_connection
         with impl.c_lock:
+            impl.mhri_queue_size = queue_size
             # A waiting robot may have connected since the topic was registered, above.
             impl.connections = [link if isinstance(link, PromptConnection) else PromptConnection(
                 getattr(link, '_connection', link), queue_size)
@@ -298,6 +310,7 @@ def hear_promptly(subscriber):
 
 require(
     [(rospy.topics._PublisherImpl, ('add_connection', 'set_queue_size')),
+     (rospy.topics._TopicImpl, ('add_connection',)),
      (rospy.topics._SubscriberImpl, ('add_connection',)),
      (TCPROSTransport, ('set_cleanup_callback', 'write_data', 'close', 'receive_once')),
      (QueuedConnection, ('write_data', '_run', '_closed_connection_callback'))],
