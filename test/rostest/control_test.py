@@ -182,7 +182,7 @@ class ControlTest(unittest.TestCase):
         """Close screens of this program; the next test must not meet their selection."""
         for screen in made:
             screen.close(forget=True)
-        wait_for(lambda: '/control_test' not in publishers('/robot_controller/robot_select'),
+        wait_for(lambda: rospy.get_name() not in publishers('/robot_controller/robot_select'),
                  START_S, 'its topics to be given back')
 
     def test_the_word_to_cut_the_power_of_the_motors_arrives_as_it_is_meant(self):
@@ -246,9 +246,10 @@ class ControlTest(unittest.TestCase):
         self.gates.hang()
         early = ScreenBackend(['panel'])
         early.start()
-        wait_for(lambda: '/control_test' in publishers('/gates_in/group_speed'), START_S, 'it')
+        self.addCleanup(early.close)
+        wait_for(lambda: rospy.get_name() in publishers('/gates_in/group_speed'), START_S, 'it')
         early.close(forget=True)
-        wait_for(lambda: not {'/control_test'} & {
+        wait_for(lambda: rospy.get_name() not in {
             *publishers('/gates_in/group_speed'), *publishers('/mhri_joy/rumble'),
             *publishers('/mux_in/mode_select')}, START_S, 'its topics to be given back')
         late, = self.screens(1)
