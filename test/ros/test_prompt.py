@@ -238,14 +238,15 @@ def test_a_connection_that_rospy_is_adding_meanwhile_is_taken_over(monkeypatch):
     ours, theirs = socket.socketpair()
     late = Transport(ours)
     late.fileno, late.cleanup_cb = ours.fileno, None
-    wraps, go_on, adding = threading.Event(), threading.Event(), []
+    wraps, go_on, adding, wrapper = threading.Event(), threading.Event(), [], []
     plain = rospy.topics.QueuedConnection
 
     def wrap(*args):
         """Take a while, as on a busy computer."""
         wraps.set()
         go_on.wait(20.0)
-        return plain(*args)
+        wrapper.append(plain(*args))
+        return wrapper[0]
 
     def register(self, name, message_class, **_):
         """Do as rospy does, with a robot that is quick."""
@@ -262,6 +263,8 @@ def test_a_connection_that_rospy_is_adding_meanwhile_is_taken_over(monkeypatch):
     adding[0].join(20.0)
     publisher.publish_urgent(Twist())
     found = len(publisher.links())
+    wrapper[0]._thread.join(20.0)
+    assert not wrapper[0]._thread.is_alive(), 'nothing would end it: the program could not end'
     late.close()
     for end in (ours, theirs):
         end.close()

@@ -169,6 +169,25 @@ class PromptConnection(QueuedConnection):
                 self._error = error or self._error
 
 
+class _Ended:
+    """What a wrapper of rospy holds whose connection is in ours."""
+
+    done = True
+
+
+def _prompt(link, size):
+    """Return a connection in our own wrapper; rospy's, where it has one already, ends."""
+    if isinstance(link, PromptConnection):
+        return link
+    bare = link
+    if isinstance(link, QueuedConnection):
+        # Its thread would wait for ever for the end of the connection, which only ours is told,
+        # and the program could not end.
+        bare, link._connection = link._connection, _Ended()
+        link._closed_connection_callback(bare)
+    return PromptConnection(bare, size)
+
+
 _add_plainly = rospy.topics._TopicImpl.add_connection
 
 
@@ -179,9 +198,7 @@ def _add_connection(topic, connection):
     """
     with topic.c_lock:
         size = getattr(topic, 'mhri_queue_size', None)
-        if size is not None and not isinstance(connection, PromptConnection):
-            connection = PromptConnection(getattr(connection, '_connection', connection), size)
-        return _add_plainly(topic, connection)
+        return _add_plainly(topic, connection if size is None else _prompt(connection, size))
 
 
 rospy.topics._TopicImpl.add_connection = _add_connection
@@ -205,9 +222,7 @@ class PromptPublisher(rospy.Publisher):
         with impl.c_lock:
             impl.mhri_queue_size = queue_size
             # A waiting robot may have connected since the topic was registered, above.
-            impl.connections = [link if isinstance(link, PromptConnection) else PromptConnection(
-                getattr(link, '_connection', link), queue_size)
-                for link in impl.connections]
+            impl.connections = [_prompt(link, queue_size) for link in impl.connections]
 
     def publish(self, message):
         """Publish a message."""
