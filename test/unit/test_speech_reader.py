@@ -201,9 +201,9 @@ def test_a_process_that_cannot_start_is_started_later(tmp_path, monkeypatch):
         short.setattr(sys, 'executable', '/nonexistent/python3')
         with pytest.raises(DeviceAbsent, match='cannot be started'):
             reader.open()
-    with pytest.raises(DeviceAbsent, match='No such file') as told:
+    # What the process says: it has looked, or has no library to listen with.
+    with pytest.raises(DeviceAbsent, match='none|pocketsphinx is not installed'):
         reader.open()
-    assert 'none' in str(told.value), 'the process has looked for it'
     reader.close()
 
 

@@ -7,14 +7,13 @@ set -euo pipefail
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
 
 GROUPS_IN_ORDER=(lint unit oldest scripts rostest gui faults bench)
-# Targets of which three files may run at once (PAIRED), and beside them others of any number (CALM);
-# those of LATE follow the paired ones. Then those that measure time: alone, but for the nodes among
-# them (LIGHT), which take a tenth of a processor, and of which two may. What is left of the processors
-# meanwhile is for targets that drive and measure nothing (MODEST). Of the benchmarks' short form
-# nobody reads the figures: what it tests is that each runs to its end.
-CALM=(scripts_calm)
-LATE=(rostest_calm faults_calm gui_calm)
-PAIRED=(scripts_paired rostest_paired gui_paired faults_paired)
+# Targets of which three files may run at once (PAIRED), and beside them others of any number (CALM).
+# Then those that measure time: alone, but for the nodes among them (LIGHT), which take a tenth of a
+# processor, and of which two may. What is left of the processors meanwhile is for targets that drive
+# and measure nothing (MODEST). Of the benchmarks' short form nobody reads the figures: what it tests
+# is that each runs to its end.
+CALM=(scripts_calm rostest_calm faults_calm gui_calm)
+PAIRED=(rostest_paired gui_paired faults_paired scripts_paired)
 LIGHT=(rostest_timed)
 TIMED=(scripts_timed faults_timed gui_timed)
 MODEST=(oldest unit lint)
@@ -31,7 +30,7 @@ and nothing failed.
                  gui, faults, bench, or fast
   --jobs N       run at most N files at once: of those that drive robots three (two if N is below 5,
                  one below 3), of nodes that are timed two, and of what else measures time one, beside
-                 two that take what is left (default: three more than there are processors, at most 6)
+                 one that takes what is left (default: three more than there are processors, at most 6)
   --bench        run the benchmarks (test/bench) in full instead of their short form
   --once         do not run a second time what failed (see below)
   -h, --help     this text
@@ -78,7 +77,7 @@ parse_arguments() {
     esac
     shift
   done
-  if [ "$BENCH" = full ]; then TIMED+=(bench); else MODEST=(bench "${MODEST[@]}"); fi
+  if [ "$BENCH" = full ]; then TIMED+=(bench); else CALM=(bench "${CALM[@]}"); fi
   [ "${#ONLY[@]}" -gt 0 ] || ONLY=("${GROUPS_IN_ORDER[@]}")
   if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 3 ? $(nproc) + 3 : 6)); fi
   PAIR=$((JOBS > 4 ? 3 : JOBS > 2 ? 2 : 1))
@@ -122,7 +121,8 @@ begin() {
   if [ "$1" = fast ]; then
     command+=("$REPO/test/run_fast.sh" "$RESULTS")
   else
-    command+=(make --no-print-directory -C "$WS/build" "-j$jobs" --keep-going)
+    # Its Makefile runs one goal after the other; the one behind it all that there are.
+    command+=(make --no-print-directory -C "$WS/build" -f CMakeFiles/Makefile2 "-j$jobs" --keep-going)
     # Print what runs at the same time one after the other.
     if [ "$jobs" -gt 1 ] || [ "$niceness" -gt 0 ]; then command+=(--output-sync=target); fi
     command+=("${@/#/run_tests_mhri_}")
@@ -158,7 +158,6 @@ run_beside() {
   begin "$((JOBS - PAIR))" 5 "${CALM[@]}"
   calm_pid=$RUN_PID
   run "$PAIR" "${PAIRED[@]}"
-  [ "${#LATE[@]}" = 0 ] || run "$PAIR" "${LATE[@]}"
   await "$calm_pid" "$started" "${CALM[@]}"
   end_leftovers
 }
@@ -169,7 +168,7 @@ run_timed() {
   local started=$SECONDS modest_pid='' target
   if [ "$JOBS" -gt 2 ] && [ "$BENCH" = short ] && [ "${#LIGHT[@]}${#TIMED[@]}" != 00 ] &&
     [ "${#MODEST[@]}" -gt 0 ]; then
-    begin 2 15 "${MODEST[@]}"
+    begin 1 15 "${MODEST[@]}"
     modest_pid=$RUN_PID
   elif [ "${#MODEST[@]}" -gt 0 ]; then
     run "$JOBS" "${MODEST[@]}"
@@ -183,7 +182,7 @@ run_timed() {
 # keep_wanted: leaves only targets of the chosen groups.
 keep_wanted() {
   local kind target
-  for kind in CALM LATE PAIRED LIGHT TIMED MODEST; do
+  for kind in CALM PAIRED LIGHT TIMED MODEST; do
     local -n targets=$kind
     for target in "${!targets[@]}"; do
       wanted "${targets[target]%_*}" || unset "targets[target]"
@@ -194,14 +193,9 @@ keep_wanted() {
 # run_all: runs the chosen groups.
 run_all() {
   keep_wanted
-  if [ "${#CALM[@]}" = 0 ]; then
-    CALM=("${LATE[@]}")
-    LATE=()
-  fi
   if [ "$JOBS" -gt 2 ] && [ "${#CALM[@]}" -gt 0 ] && [ "${#PAIRED[@]}" -gt 0 ]; then
     run_beside
   else
-    CALM+=("${LATE[@]}")
     [ "${#CALM[@]}" = 0 ] || run "$JOBS" "${CALM[@]}"
     [ "${#PAIRED[@]}" = 0 ] || run "$PAIR" "${PAIRED[@]}"
     end_leftovers

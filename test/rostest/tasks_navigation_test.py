@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tasks of a robot with move_base, and of a turtle, by the real nodes."""
+import math
+import time
+
+from move_base_msgs.msg import MoveBaseActionGoal
+import rospy
+import rostest
+from rostest_tools import measured, moves, Process, rests, wait_until
+from tasks_more_case import PATIENCE_S, TasksMoreCase
+
+from mhri.msg import TaskState  # noqa: E402
+from support.ros_system import processes_with  # noqa: E402
+
+
+class TasksNavigation(TasksMoreCase):
+
+    def sent(self):
+        """Send the robot that has move_base somewhere; return the goal, once it is on its way."""
+        begun = time.monotonic()
+        goal = self.start('bot3', 'goto', '{x: 50.0, y: 1.0, frame: odom}')
+        wait_until(lambda: self.navigation.goals, 'its navigation gets no goal', 60.0)
+        self.commands.wait(moves, begun, 60.0)
+        return goal
+
+    def rests_for_good(self, since):
+        """Wait for silence after the first zero of the gates; no command but zeros came after."""
+        wait_until(lambda: not self.navigation.goals, 'its navigation goes on', 60.0)
+        self.commands.wait_silence(1.2, 60.0)
+        noted = self.commands.since(since)
+        self.assertTrue([item for item in noted if rests(item.value)], 'no zero came')
+        self.assertTrue(rests(noted[-1].value))
+
+    def test_a_goal_goes_to_the_navigation_of_the_robot(self):
+        goal = self.sent()
+        target = self.navigation.goals[0].get_goal().target_pose
+        self.assertEqual((target.pose.position.x, target.pose.position.y), (50.0, 1.0))
+        self.assertEqual([item.value for item in self.commands.since(0.0)
+                          if rests(item.value)][3:], [], 'zeros are in the way of its navigation')
+        self.navigation.end('succeeded')
+        ended = self.ends(goal)
+        self.assertEqual(ended[0][0], TaskState.DONE)
+        self.assertIn('it is there by its own navigation', ended[0][1])
+        goal = self.sent()
+        self.navigation.end('aborted')
+        self.assertEqual(self.ends(goal), [
+            (TaskState.BLOCKED, 'its own navigation found no way (the test says so)')])
+
+    def test_whatever_ends_a_task_cancels_the_goal_there(self):
+        for ends, state in (
+                (lambda goal: self.set_stop(True), TaskState.STOPPED),
+                (lambda goal: self.operator.check('bot3'), TaskState.TAKEN_OVER),
+                (lambda goal: goal.cancel(), TaskState.STOPPED),
+                (lambda goal: self.operator.fall_silent(), TaskState.LOST),
+                (lambda goal: self.start('bot3', 'hold', '{seconds: 0.5}'),
+                 TaskState.TAKEN_OVER)):
+            self.setUp()
+            goal = self.sent()
+            since = time.monotonic()
+            ends(goal)
+            self.assertEqual(self.ends(goal)[0][0], state)
+            self.rests_for_good(since)
+
+    def test_stop_all_and_checking_cancel_the_goal_while_mhri_tasks_hangs(self):
+        """Its navigation speaks to the robot itself: nobody else would tell it to end."""
+        for what, ends in (('stop-all', lambda: self.set_stop(True)),
+                           ('checked', lambda: self.operator.check('bot3'))):
+            self.setUp()
+            self.sent()
+            hung = processes_with('__name:=mhri_tasks')
+            try:
+                for process in hung:
+                    process.suspend()
+                since = time.monotonic()
+                ends()
+                self.rests_for_good(since)
+                first = next(item for item in self.commands.since(since) if rests(item.value))
+                measured('{}, mhri_tasks hangs: first zero'.format(what), first.at - since)
+            finally:
+                for process in hung:
+                    process.resume()
+
+    def test_a_goal_that_somebody_sends_under_stop_all_or_to_a_checked_robot_ends(self):
+        anybody = rospy.Publisher('/bot3/move_base/goal', MoveBaseActionGoal, queue_size=1)
+        wait_until(anybody.get_num_connections, 'its navigation does not listen', 60.0)
+        for what, ends in (('stop-all', lambda: self.set_stop(True)),
+                           ('checked', lambda: self.operator.check('bot3'))):
+            self.setUp()
+            ends()
+            self.state.wait_robot('bot3', lambda gate: gate.obeys or gate.stands, what, 60.0)
+            self.commands.wait_silence(1.2, 60.0)
+            since = time.monotonic()
+            anybody.publish(MoveBaseActionGoal())
+            self.commands.wait(moves, since, 60.0)
+            wait_until(lambda: not self.navigation.goals, what + ': its navigation goes on', 60.0)
+            self.commands.wait_silence(1.2, 60.0)
+            last = [item for item in self.commands.since(since) if moves(item.value)][-1]
+            measured('{}, a goal of somebody: drove for'.format(what), last.at - since)
+
+    def test_when_mhri_tasks_is_killed_the_next_one_cancels_its_goals(self):
+        self.sent()
+        killed = time.monotonic()
+        # The last one runs, the other one stands by.
+        processes_with('__name:=mhri_tasks')[-1].kill()
+        wait_until(lambda: not self.navigation.goals, 'its navigation goes on', 60.0)
+        print('mhri_tasks killed: goal cancelled after {:.1f} s'.format(time.monotonic() - killed))
+        self.commands.wait_silence(1.2, 60.0)
+        wait_until(lambda: self.lists.since(killed) and not self.lists.last().runs,
+                   'mhri_tasks does not come back', 60.0)
+
+    def test_a_result_waits_for_who_is_not_connected_yet(self):
+        ended = self.ends(self.start('bot1', 'return', '{mark: nowhere}'))
+        late = Process(['rostopic', 'echo', '-n', '1', '/mhri_tasks/run/result/result'])
+        self.addCleanup(late.end)
+        self.assertEqual(late.wait(PATIENCE_S), 0, late.said())
+        self.assertIn(ended[0][1], late.said())
+
+    def test_a_turtle_does_what_its_topics_allow(self):
+        x, y, _ = self.turtle.last()
+        self.done('pond', 'goto', '{{x: {}, y: {}, frame: odom, speed: 1.0}}'.format(
+            x + 1.0, y + 0.5))
+        self.assertLess(math.dist(self.turtle.last()[:2], (x + 1.0, y + 0.5)), 0.2)
+        self.assertIn('by odometry', self.done('pond', 'square', '{side: 0.5, speed: 1.0}'))
+        self.done('pond', 'replay', '{seconds: 600, speed: 1.0}')
+        self.done('pond', 'return', '{distance: 1.0, speed: 1.0}')
+        ended = self.ends(self.start('pond', 'follow', '{leader: bot1}'))
+        self.assertEqual(ended[0][0], TaskState.FAILED)
+
+
+if __name__ == '__main__':
+    rospy.init_node('tasks_navigation_test')
+    rostest.rosrun('mhri', 'tasks_navigation', TasksNavigation)
