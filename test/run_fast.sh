@@ -24,12 +24,24 @@ test_files() {
   return "$status"
 }
 
+# Two processes for the unit tests, every second file each.
+files=(test/unit/test_*.py) second=() worst=0
+for index in "${!files[@]}"; do
+  if ((index % 2)); then
+    second+=("${files[index]}")
+    unset "files[index]"
+  fi
+done
 test_files lint test/scripts/test_lint.py -k "$LINT" >"$RESULTS/lint.log" 2>&1 &
-lint=$!
-test_files unit test/unit
-unit=$?
-wait "$lint"
-lint=$?
-cat "$RESULTS/lint.log"
+pids=($!)
+if [ "${#second[@]}" -gt 0 ]; then
+  test_files unit2 "${second[@]}" >"$RESULTS/unit2.log" 2>&1 &
+  pids+=($!)
+fi
 # 1: a test failed; more: something did not run.
-exit $((lint > unit ? lint : unit))
+test_files unit "${files[@]}" || worst=$?
+for pid in "${pids[@]}"; do
+  wait "$pid" || worst=$(($? > worst ? $? : worst))
+done
+cat "$RESULTS"/*.log
+exit "$worst"
