@@ -134,7 +134,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--short', action='store_true', help='fewer seconds')
     options = parser.parse_args()
-    seconds, taps = (1.0, 20) if options.short else (12.0, 200)
+    seconds, taps = (0.5, 5) if options.short else (12.0, 200)
     with System() as system:
         system.start_master()
         import rospy

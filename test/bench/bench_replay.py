@@ -71,10 +71,11 @@ def jumps_s(length_s):
 def main():
     """Write a session, replay it, and print how long jumps took."""
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
-    parser.add_argument('--minutes', type=int, default=60)
-    parser.add_argument('--short', action='store_true', help='fewer messages')
+    parser.add_argument('--minutes', type=int, help='how long it is [min]: 60, or short 5')
+    parser.add_argument('--short', action='store_true', help='fewer minutes and messages')
     parser.add_argument('--fastest', action='store_true', help='every sensor at its full rate')
     options = parser.parse_args()
+    options.minutes = options.minutes or (5 if options.short else 60)
     with System() as system, tempfile.TemporaryDirectory(prefix='mhri_bench_') as folder:
         begun = time.monotonic()
         count = write(folder, options.minutes, SHORT if options.short else

@@ -62,13 +62,13 @@ def write(folder, minutes, rates_hz, jpeg=bytes(10000)):
 def main():
     """Measure, and print it."""
     parser = argparse.ArgumentParser(description=__doc__.split('\n')[0])
-    parser.add_argument('--short', action='store_true', help='few messages')
+    parser.add_argument('--short', action='store_true', help='few minutes and messages')
     parser.add_argument('--fastest', action='store_true', help='every sensor at its full rate')
     parser.add_argument('--minutes', type=int,
-                        help='how long it is [min]: 60, or with its film 5')
+                        help='how long it is [min]: 60; with its film or short 5')
     parser.add_argument('--film', action='store_true', help='at full rates, with a film')
     options = parser.parse_args()
-    minutes = options.minutes or (FILM_MIN if options.film else 60)
+    minutes = options.minutes or (FILM_MIN if options.film or options.short else 60)
     rates_hz = FASTEST if options.film or options.fastest else SHORT if options.short else FULL
     pictures = [picture()] if options.film else []
     with tempfile.TemporaryDirectory(prefix='mhri_bench_') as folder:
