@@ -13,13 +13,17 @@ import time
 import unittest
 
 from rostest_tools import (
-    FORWARD, free_port, measured, moves, NEUTRAL, Process, Recorder, rests, start_mux, Stick,
-    twist_recorder, wait_until)
+    FORWARD, measured, moves, NEUTRAL, Process, Recorder, rests, start_mux, Stick, twist_recorder,
+    wait_until)
 import rosgraph
 import rospy
 import rostest
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.ros_system import free_port  # noqa: E402
 
 PORT = free_port()
 MASTER = {'ROS_MASTER_URI': 'http://127.0.0.1:{}'.format(PORT), 'ROS_IP': '127.0.0.1'}

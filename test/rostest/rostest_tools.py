@@ -7,7 +7,6 @@ Nothing here sleeps to let something happen: whoever waits, waits for a conditio
 import contextlib
 import os
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -205,13 +204,6 @@ class Stick:
         with self._changed:
             self._send(axes, buttons)
             return self.last_sent
-
-
-def free_port():
-    """Return a TCP port that nobody uses."""
-    with socket.socket() as probe:
-        probe.bind(('127.0.0.1', 0))
-        return probe.getsockname()[1]
 
 
 class Process:

@@ -3,7 +3,6 @@
 """turtle_remote.sh in real runs on one machine: stand-in packages, simulated robots, a master."""
 import os
 import signal
-import socket
 import subprocess
 import sys
 import xmlrpc.client
@@ -13,7 +12,7 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from support.ros_system import System, wait_for  # noqa: E402
+from support.ros_system import free_port, System, wait_for  # noqa: E402
 from support.stand_ins import workspace  # noqa: E402
 
 SCRIPT = REPO / 'utils' / 'remote' / 'turtle_remote.sh'
@@ -223,12 +222,6 @@ def test_robot_can_be_driven_without_its_camera(remote, master):
     assert process.poll() is None
     node = xmlrpc.client.ServerProxy(master.lookupNode('/test', '/bot1/mobile_base')[2])
     assert node.getPid('/test')[0] == 1
-
-
-def free_port():
-    with socket.socket() as sock:
-        sock.bind((HOST, 0))
-        return sock.getsockname()[1]
 
 
 @pytest.mark.parametrize('arguments, environment, said', [

@@ -4,8 +4,8 @@
 import os
 import re
 import signal
-import socket
 import subprocess
+import sys
 import time
 import xmlrpc.client
 
@@ -14,6 +14,10 @@ import cv2
 import pytest
 
 from whole_run import in_new_terminal, new_checkout, Run, SCRIPT
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.ros_system import free_port  # noqa: E402
 
 # A network of its own with nothing in it but itself.
 NO_NETWORK = ['unshare', '--map-root-user', '--net', 'sh', '-c',
@@ -49,9 +53,7 @@ def start(tmp_path):
 @pytest.fixture
 def master():
     """Return (address, proxy) of a master that the script will start."""
-    with socket.socket() as sock:
-        sock.bind(('127.0.0.1', 0))
-        uri = 'http://127.0.0.1:{}'.format(sock.getsockname()[1])
+    uri = 'http://127.0.0.1:{}'.format(free_port())
     return uri, xmlrpc.client.ServerProxy(uri)
 
 

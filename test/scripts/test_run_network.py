@@ -1,11 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Which addresses mhri_run.sh takes, and what it says about them and about the master."""
+import os
 import socket
+import sys
 import threading
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support.ros_system import free_port  # noqa: E402
 
 LOOPBACK = ['ROS_HOSTNAME=127.0.0.1', 'ROS_IP=127.0.0.1']
 
@@ -17,9 +23,7 @@ def ros_variables(checkout):
 @pytest.fixture
 def quiet_port():
     """Return a port of this machine where nothing listens."""
-    with socket.socket() as sock:
-        sock.bind(('127.0.0.1', 0))
-        return sock.getsockname()[1]
+    return free_port()
 
 
 @pytest.fixture

@@ -3,6 +3,7 @@
 """A ROS system of a test's own: its master, its nodes, its screen; it ends what it started."""
 import contextlib
 import os
+import random
 import shutil
 import signal
 import socket
@@ -67,10 +68,16 @@ def stuck_terminal():
 
 
 def free_port():
-    """Return a TCP port on loopback that nobody listens on."""
-    with socket.socket() as probe:
-        probe.bind(('127.0.0.1', 0))
-        return probe.getsockname()[1]
+    """Return a TCP port on loopback that nobody uses.
+
+    It is none of those that the kernel gives to whoever asks for any (32768 and above), as each
+    node does: one of another test would have it before who was told it listens there.
+    """
+    while True:
+        port = random.SystemRandom().randrange(12000, 32768)
+        with socket.socket() as probe, contextlib.suppress(OSError):
+            probe.bind(('', port))
+            return port
 
 
 def answers(port):
