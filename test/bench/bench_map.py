@@ -72,8 +72,8 @@ def main():
             rospy.set_param('/{}/robot_type'.format(name), 'turtlebot2')
         system.start(sys.executable, WORLD, *NAMES)
         screen = Screen()
-        print('{:>2} robots, scans at 10 Hz, no cameras                 of a core'.format(len(NAMES)),
-              flush=True)
+        print('{:>2} robots, scans at 10 Hz, no cameras                 of a core'.format(
+            len(NAMES)), flush=True)
         closed = screen.cores(seconds)
         print('map closed                                                 {:.3f}'.format(closed))
         found, slowest_hz = {}, math.inf

@@ -65,7 +65,8 @@ class Master:
         self.server = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False)
         self.server.register_multicall_functions()
         self.server.register_instance(self)
-        threading.Thread(target=self.server.serve_forever, daemon=True).start()
+        threading.Thread(target=self.server.serve_forever, kwargs={'poll_interval': 0.01},
+                         daemon=True).start()
         self.uri = 'http://127.0.0.1:{}'.format(self.server.server_address[1])
 
     def getSystemState(self, _):

@@ -64,7 +64,8 @@ def master(monkeypatch):
     server.asked = 0
     server.uri = 'http://127.0.0.1:{}'.format(server.server_port)
     monkeypatch.setenv('ROS_MASTER_URI', server.uri)
-    threading.Thread(target=server.serve_forever, daemon=True).start()
+    threading.Thread(target=server.serve_forever, kwargs={'poll_interval': 0.01},
+                     daemon=True).start()
     yield server
     server.shutdown()
     server.server_close()

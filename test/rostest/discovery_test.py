@@ -62,7 +62,8 @@ class CountingMaster:
 
         self._server._dispatch = forward
         self.uri = 'http://127.0.0.1:{}/'.format(self._server.server_address[1])
-        threading.Thread(target=self._server.serve_forever, daemon=True).start()
+        threading.Thread(target=self._server.serve_forever, kwargs={'poll_interval': 0.01},
+                         daemon=True).start()
 
     def close(self):
         self._server.shutdown()

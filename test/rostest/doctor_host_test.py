@@ -34,7 +34,8 @@ LATE_S = 1.0
 def server(test):
     """Return the URI of an XML-RPC server that is no ROS node."""
     found = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False)
-    threading.Thread(target=found.serve_forever, daemon=True).start()
+    threading.Thread(target=found.serve_forever, kwargs={'poll_interval': 0.01},
+                     daemon=True).start()
     test.addCleanup(found.server_close)
     test.addCleanup(found.shutdown)
     return 'http://127.0.0.1:{}'.format(found.server_address[1])

@@ -39,7 +39,8 @@ class FakeMaster:
         for name in ('getPid', 'getParam', 'getParamNames', 'setParam', 'deleteParam',
                      'subscribeParam', 'unsubscribeParam', 'lookupNode', 'getSystemState'):
             self.server.register_function(getattr(self, name))
-        self.thread = threading.Thread(target=self.server.serve_forever, daemon=True)
+        self.thread = threading.Thread(target=self.server.serve_forever, daemon=True,
+                                       kwargs={'poll_interval': 0.01})
         self.thread.start()
 
     def close(self):

@@ -19,7 +19,8 @@ def served(**functions):
     server = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False, allow_none=True)
     for name, function in functions.items():
         server.register_function(function, name)
-    thread = threading.Thread(target=server.serve_forever, daemon=True)
+    thread = threading.Thread(target=server.serve_forever, kwargs={'poll_interval': 0.01},
+                              daemon=True)
     thread.start()
     yield 'http://127.0.0.1:{}/'.format(server.server_address[1])
     server.shutdown()

@@ -31,7 +31,8 @@ def master():
     """Return the port of something that answers as a master does."""
     server = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False)
     server.register_function(lambda caller: (1, 'ok', 7), 'getPid')
-    thread = threading.Thread(target=server.serve_forever, daemon=True)
+    thread = threading.Thread(target=server.serve_forever, kwargs={'poll_interval': 0.01},
+                              daemon=True)
     thread.start()
     yield server.server_address[1]
     server.shutdown()

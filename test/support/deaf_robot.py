@@ -18,7 +18,8 @@ class DeafRobot:
         self._topic = topic
         self._server = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False)
         self._server.register_function(self._hear, 'publisherUpdate')
-        threading.Thread(target=self._server.serve_forever, daemon=True).start()
+        threading.Thread(target=self._server.serve_forever, kwargs={'poll_interval': 0.01},
+                         daemon=True).start()
         self._uri = 'http://127.0.0.1:{}/'.format(self._server.server_address[1])
         self._name = '/deaf' + topic.replace('/', '_')
         rosgraph.Master(self._name).registerSubscriber(topic, 'geometry_msgs/Twist', self._uri)
