@@ -13,13 +13,8 @@ import numpy as np
 
 from mhri.core.opencv import cv2
 from mhri.sim import textures
+from mhri.sim.lens import CAMERA_HEIGHT_M, CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, WIDTH
 
-WIDTH, HEIGHT = 640, 480
-HORIZONTAL_FOV_RAD = math.radians(60.0)
-FOCAL_PX = 0.5 * WIDTH / math.tan(0.5 * HORIZONTAL_FOV_RAD)
-# The middle of the picture, between pixels; a pixel's centre is at whole numbers.
-CENTRE_X_PX, CENTRE_Y_PX = 0.5 * (WIDTH - 1), 0.5 * (HEIGHT - 1)
-CAMERA_HEIGHT_M = 0.3
 DEPTH_MAX_M = 10.0
 
 _NEAR_M, _FAR_M = 0.02, 200.0

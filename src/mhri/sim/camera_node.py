@@ -11,7 +11,7 @@
 - ``camera_info`` beside each ``sensor_msgs/CameraInfo``, at the rate of the picture
 
 All in the frame ``<robot>/camera_rgb_optical_frame``. It neither draws nor encodes what nobody
-subscribes to.
+subscribes to. OpenCV, half of a robot's start, is loaded only for a robot that begins to look.
 """
 import threading
 import time
@@ -19,12 +19,9 @@ import time
 import rospy
 from sensor_msgs.msg import CameraInfo, CompressedImage, Image, PointCloud2, PointField
 
-from mhri.core.camera.depth_codec import encode_depth
-from mhri.core.camera.jpeg import encode_jpeg
-from mhri.core.opencv import cv2
-from mhri.sim.camera import Camera, CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, WIDTH
 from mhri.sim.cloud import cloud_of, LAYOUT
 from mhri.sim.fault_node import Healthy
+from mhri.sim.lens import CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, WIDTH
 
 RGB_HZ = 30
 DEPTH_EVERY = 2
@@ -102,7 +99,23 @@ class _Cloud:
 
 def compress(rgb):
     """Return (format, data) of a picture (h, w, 3) uint8, red, green, blue."""
+    from mhri.core.camera.jpeg import encode_jpeg
     return 'rgb8; jpeg compressed bgr8', encode_jpeg(rgb, JPEG_QUALITY)
+
+
+def compress_depth(depth, kind):
+    """Return (format, data) of a depth picture (h, w) uint16 [mm], as 'png' or 'rvl'."""
+    from mhri.core.camera.depth_codec import encode_depth
+    return encode_depth(depth, kind)
+
+
+def camera_of(plan):
+    """Return the :class:`mhri.sim.camera.Camera` of a building."""
+    from mhri.core.opencv import cv2
+    from mhri.sim.camera import Camera
+    # OpenCV's own threads would spin on every core and delay the next step of the physics.
+    cv2.setNumThreads(1)
+    return Camera(plan)
 
 
 def camera_info():
@@ -132,7 +145,7 @@ class SimCamera:
         if depth_format not in DEPTH_FORMATS:
             raise ValueError('depth_format: expected one of {}, got {!r}'.format(
                 ', '.join(DEPTH_FORMATS), depth_format))
-        self._camera = Camera(plan)
+        self._plan, self._camera = plan, None
         self._failing = failing = failing or Healthy()
         self._pose_source = pose_source
         self._others_source = others_source
@@ -143,15 +156,15 @@ class SimCamera:
                             compress, failing) if template.rgb else None
         self._depth = _Stream(
             prefix + template.depth[0], 'compressedDepth', '16UC1', frame_id,
-            lambda depth: encode_depth(depth, depth_format), failing) if template.depth else None
+            lambda depth: compress_depth(depth, depth_format), failing) if template.depth else None
         self._cloud = _Cloud(prefix + template.cloud[0], frame_id,
                              failing) if template.cloud else None
 
     def start(self):
         """Begin; it ends with the node, or with :meth:`stop`."""
         if self._rgb or self._depth or self._cloud:
-            # OpenCV's own threads would spin on every core and delay the next step of the physics.
-            cv2.setNumThreads(1)
+            # Not for the first who subscribes: no other thread runs while OpenCV is being loaded.
+            self._camera = camera_of(self._plan)
             rospy.on_shutdown(self.stop)
             self._thread = threading.Thread(target=self._run, name='camera', daemon=True)
             self._thread.start()

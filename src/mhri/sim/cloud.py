@@ -3,7 +3,7 @@
 """The point cloud from a simulated robot's camera."""
 import numpy as np
 
-from mhri.sim.camera import CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, WIDTH
+from mhri.sim.lens import CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, WIDTH
 
 #: A point as pcl::PointXYZRGB lies in memory: metres, and 0x00rrggbb in four bytes.
 LAYOUT = np.dtype({'names': ['x', 'y', 'z', 'rgb'], 'formats': ['<f4', '<f4', '<f4', '<u4'],

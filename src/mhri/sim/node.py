@@ -25,7 +25,7 @@ from mhri.core.map.places import composed, inverse
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.names import topic_of
 from mhri.ros.messages import message_class, MessageMissing, read_field
-from mhri.sim.camera import CAMERA_HEIGHT_M
+from mhri.sim.lens import CAMERA_HEIGHT_M
 from mhri.sim.sensors import ImuSensor
 from mhri.sim.ticks import Due, Ticks
 
