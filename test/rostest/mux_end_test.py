@@ -163,24 +163,6 @@ class MuxEnd(unittest.TestCase):
         self.assertTrue(all(moves(item.value) for item in self.twists.since(start)))
         self.assertTrue(newer.running())
 
-    def test_zeros_of_the_older_mux_do_not_break_into_the_newer_one_s_commands(self):
-        """The older one's zeros end when the newer one is there.
-
-        The operator centres and drives on as soon as the newer mux answers.
-        """
-        older = self._start()
-        self._drive()
-        self.stick.hold(NEUTRAL)
-        begun = time.monotonic()
-        self._start()
-        self.waits.wait(lambda value: value == '', begun)
-        start = self.stick.hold(FORWARD)
-        first = self.twists.wait(moves, start)
-        self.twists.wait(lambda _: len(self.twists.since(first.at)) > 40)
-        older.wait()
-        broken_in = [item for item in self.twists.since(first.at) if rests(item.value)]
-        self.assertEqual(broken_in, [], 'first command at {}'.format(first))
-
     def test_an_older_mux_that_hangs_does_not_keep_the_newer_one_from_starting(self):
         """The request to end has a time limit."""
         older = self._start('__name:=mux_of_yesterday')

@@ -26,6 +26,8 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 from support.ros_system import free_port  # noqa: E402
 
 PORT = free_port()
+# Commands are 50 ms apart: none for so long, and none comes any more [s].
+SILENCE_S = 0.4
 MASTER = {'ROS_MASTER_URI': 'http://127.0.0.1:{}'.format(PORT), 'ROS_IP': '127.0.0.1'}
 
 
@@ -44,10 +46,15 @@ class MuxMaster(unittest.TestCase):
         """Start a master, a mux and a stick."""
         cls.master = start_master()
         rospy.init_node('mux_master_listener', disable_signals=True)
-        cls.mux = start_mux()
         cls.twists = twist_recorder()
         cls.waits = Recorder('/mux/waits_for', String, lambda message: message.data)
-        cls.stick = Stick('/mux_in/joy').wait_listener()
+        cls.stick = Stick('/mux_in/joy')
+        cls._start_mux()
+
+    @classmethod
+    def _start_mux(cls):
+        cls.mux = start_mux()
+        cls.stick.wait_listener()
         cls.twists.wait_publisher()
         cls.waits.wait_publisher()
         wait_until(lambda: '/diagnostics' in cls._registered()[0], 'the mux is not complete')
@@ -90,7 +97,7 @@ class MuxMaster(unittest.TestCase):
         first = self.twists.wait(rests, begun)
         measured('first zero after the master was killed', first.at - begun)
         self.waits.wait(lambda _: self.waits.last() == 'neutral')
-        self.twists.wait_silence(0.7)
+        self.twists.wait_silence(SILENCE_S)
         self.assertFalse([item for item in self.twists.since(first.at) if moves(item.value)])
 
         begun = time.monotonic()
@@ -100,8 +107,8 @@ class MuxMaster(unittest.TestCase):
         wait_until(lambda: rospy.get_param('/mux/stop_all', None) is False, 'stop-all forgotten')
         self.assertEqual(rospy.get_param('/mux/sources')[0]['name'], 'joy')
         self._drive()
-        self._assert_new_listener_hears('/mux/mode', 'source: "joy"')
-        self._assert_new_listener_hears('/robot_controller/twist', 'linear:')
+        self._assert_new_listeners_hear({
+            '/mux/mode': 'source: "joy"', '/robot_controller/twist': 'linear:'})
         answer = Process(['rosservice', 'call', '/mux/set_stop_all', 'true'], MASTER)
         self.assertEqual(answer.wait(), 0, answer.said())
         answer.end()
@@ -125,7 +132,7 @@ class MuxMaster(unittest.TestCase):
     def test_master_that_hangs_is_a_zero_within_1500_ms(self):
         """It takes calls and never answers; what it forgot, nobody knows."""
         took = []
-        for _ in range(3):
+        for _ in range(2):
             self.stick.hold(NEUTRAL)
             wait_until(lambda: rospy.ServiceProxy('/mux/set_stop_all', SetBool)(False).success,
                        'not released')
@@ -136,14 +143,36 @@ class MuxMaster(unittest.TestCase):
                 took.append(measured('first zero after the master hung', zero.at - hung))
             finally:
                 self.master.send(signal.SIGCONT)
-            self.twists.wait_silence(0.7)
+            self.twists.wait_silence(SILENCE_S)
             self._drive()
         self.assertLess(max(took), 1.5)
+
+    def test_ended_while_the_master_hangs(self):
+        """The zeros of its end do not wait for anybody: 20 Hz for half a second, then silence."""
+        self.stick.hold(NEUTRAL)
+        wait_until(lambda: rospy.ServiceProxy('/mux/set_stop_all', SetBool)(False).success,
+                   'not released')
+        self._drive()
+        self.master.send(signal.SIGSTOP)
+        try:
+            begun = self.mux.send(signal.SIGTERM)
+            first = self.twists.wait(rests, begun)
+            self.twists.wait_silence(0.7)
+            self.mux.wait()
+        finally:
+            self.master.send(signal.SIGCONT)
+        zeros = self.twists.since(first.at)
+        measured('zeros of a mux ended while the master hung, for', zeros[-1].at - first.at)
+        self._start_mux()
+        self.assertTrue(all(rests(item.value) for item in zeros), zeros)
+        self.assertLess(first.at - begun, 0.05)
+        self.assertTrue(8 <= len(zeros) <= 12, zeros)
+        self.assertTrue(0.35 < zeros[-1].at - first.at < 0.6, zeros)
 
     def test_registered_again_whatever_asks_the_new_master_first(self):
         """Also where something has made the new master know the node by its name alone."""
         before = self._registered()
-        for _ in range(5):
+        for _ in range(3):
             self._kill_master()
             type(self).master = start_master()
             self._assert_registered(before)
@@ -158,14 +187,17 @@ class MuxMaster(unittest.TestCase):
                 [sorted(new - old) for old, new in zip(before, self._registered())],
                 self.mux.said()))
 
-    def _assert_new_listener_hears(self, topic, words):
-        """A process that has never met the mux finds it through the new master."""
-        late = Process(['rostopic', 'echo', '-n1', topic], MASTER)
-        try:
-            self.assertEqual(late.wait(), 0)
-            self.assertIn(words, late.said())
-        finally:
-            late.end()
+    def _assert_new_listeners_hear(self, words):
+        """Processes that have never met the mux find it through the new master.
+
+        :param words: {topic: what is heard there}
+        """
+        late = {topic: Process(['rostopic', 'echo', '-n1', topic], MASTER) for topic in words}
+        for process in late.values():
+            self.addCleanup(process.end)
+        for topic, process in late.items():
+            self.assertEqual(process.wait(), 0)
+            self.assertIn(words[topic], process.said())
 
 
 if __name__ == '__main__':

@@ -44,10 +44,10 @@ from mhri.ros.convert import packed_twist, to_twist
 from mhri.ros.devices.device_profiles import DeviceProfiles
 from mhri.ros.graph.master_api import MasterError
 from mhri.ros.graph.master_watch import MasterWatch
+from mhri.ros.driving.in_force import STOP_SERVICE
 from mhri.ros.driving.mux_advice import Advice
 from mhri.ros.driving.mux_diagnostics import MuxDiagnostics
 from mhri.ros.driving.mux_gates import GatesWatch
-from mhri.ros.driving.mux_takeover import is_superseded
 from mhri.ros.driving.source_topic import LONGEST_TEXT, SourceTopic
 from mhri.ros.driving.suspender import Suspender
 from mhri.ros.driving.task_mux import TaskMux
@@ -86,7 +86,6 @@ class Mux:
         # What it waits for, and whether the stick is held, as it was said last.
         self._said = None, None
         self._driving = self._closing = False
-        self._service = None
         self._twist = PromptPublisher('/robot_controller/twist', Twist)
         self._mode = rospy.Publisher('/mux/mode', ControlMode, queue_size=10, latch=True)
         self._stop = rospy.Publisher('/robot_controller/stop_all', Bool, queue_size=10, latch=True)
@@ -132,7 +131,7 @@ class Mux:
             self._arbiter.engage_stop_all(self._clock())
         self._watch.start()
         self._memory.start()
-        self._service = rospy.Service('/mux/set_stop_all', SetBool, self._on_stop_all)
+        rospy.Service(STOP_SERVICE, SetBool, self._on_stop_all)
         for begin in (
                 partial(rospy.Subscriber, '/mux_in/mode_select', ControlMode, self._on_mode,
                         queue_size=10),
@@ -378,11 +377,7 @@ class Mux:
                 self._suspender.resume_again()
 
     def close(self):
-        """Stop the robots: a zero now, more for half a second, then nothing.
-
-        If a newer mux has taken over, only the first zero is sent: more would interrupt its
-        commands.
-        """
+        """Stop the robots: a zero now, more for half a second, then nothing."""
         zero = Twist()
         with self._changed:
             if self._closing:
@@ -392,9 +387,6 @@ class Mux:
             self._changed.notify()
         for part in (self._diagnostics, self._memory, self._watch, self._gates, self._advice):
             part.stop()
-        uri = self._service.uri if self._service else None
         for _ in range(int(ZEROS_S * REPEAT_HZ)):
             time.sleep(1.0 / REPEAT_HZ)
-            if is_superseded(uri):
-                return
             self._twist.publish(zero)

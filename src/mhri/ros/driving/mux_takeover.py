@@ -10,9 +10,9 @@ import xmlrpc.client
 
 import rospy
 
+from mhri.ros.driving.in_force import STOP_SERVICE
 from mhri.ros.graph.master_api import ERRORS, MasterApi, MasterError, TimedTransport
 
-STOP_SERVICE = '/mux/set_stop_all'
 PATIENCE_S = 1.5
 
 
@@ -42,17 +42,3 @@ def _end(api, name, uri):
         if name not in dict(api.call('getSystemState')[2]).get(STOP_SERVICE, []):
             return
         time.sleep(0.05)
-
-
-def is_superseded(service_uri):
-    """Tell whether another mux serves ``/mux/set_stop_all`` by now; False if nobody knows.
-
-    :param service_uri: that of this mux's own service
-    """
-    api = MasterApi(rospy.get_name(), timeout_s=0.3)
-    try:
-        current, node = api.call_many([('lookupService', STOP_SERVICE),
-                                       ('lookupNode', rospy.get_name())])
-    except MasterError:
-        return False
-    return current not in (None, service_uri) or node not in (None, rospy.get_node_uri())
