@@ -147,7 +147,7 @@ class Desk:
         wait_for(lambda: not self.is_stuck(), PATIENCE_S, 'the end of the hang')
         os.remove(self.path('end'))
         # By then the screen has done itself what was pressed, and shows that it is stopped.
-        pass_time(1.0)
+        pass_time(0.6)
         if os.path.exists(self.path('places')):
             os.remove(self.path('places'))
         wait_for(lambda: self.release() and os.path.exists(self.path('places')), PATIENCE_S,
@@ -235,7 +235,7 @@ def test_what_is_no_press_of_stop_stops_nothing(desk):
 def test_it_costs_nothing_and_ends_with_the_panel(desk):
     used = sum(desk.watch.cpu_times()[:2])
     begun = time.monotonic()
-    pass_time(4.0)
+    pass_time(2.0)
     share = (sum(desk.watch.cpu_times()[:2]) - used) / (time.monotonic() - begun)
     print('\nMEASURED watch of STOP: {:.2f} % of a core, {:.0f} MB'.format(
         100 * share, desk.watch.memory_info().rss / 1e6))

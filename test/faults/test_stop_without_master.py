@@ -4,8 +4,6 @@
 import os
 import sys
 
-import pytest
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from support.ros_system import System, wait_for  # noqa: E402
@@ -35,16 +33,34 @@ time.sleep(1000)
 """
 
 
-@pytest.mark.parametrize('release', [False, True])
-def test_stop_all_waits_for_the_mux(release):
-    with System(adopt=False) as system:
-        panel = system.start(sys.executable, '-c', PANEL.format(release=release))
+class Case:
+    """One screen, with a master and a mux of its own that come later."""
 
-        def said(text):
-            with open(panel.log) as log:
+    def __init__(self, release, system):
+        self.release, self._system = release, system
+        self._panel = system.start(sys.executable, '-c', PANEL.format(release=release))
+
+    def wait(self, text, what, timeout_s=30):
+        """Wait until the screen says something."""
+        def said():
+            with open(self._panel.log) as log:
                 return text in log.read()
-        wait_for(lambda: said('shown True'), 30, 'the stop on the screen', poll_s=0.05)
-        assert not release or wait_for(lambda: said('released False'), 10, 'its end', poll_s=0.05)
-        system.start_master()
-        system.node('mux', '__name:=mux')
-        wait_for(lambda: said('the mux says {}'.format(not release)), 60, 'the mux', poll_s=0.05)
+        wait_for(said, timeout_s, what, poll_s=0.05)
+
+    def start_mux(self):
+        self._system.start_master()
+        self._system.node('mux', '__name:=mux')
+
+
+def test_stop_all_waits_for_the_mux():
+    """Released meanwhile, or not; both at the same time."""
+    with System(adopt=False) as one, System(adopt=False) as other:
+        cases = [Case(False, one), Case(True, other)]
+        for case in cases:
+            case.wait('shown True', 'the stop on the screen')
+            if case.release:
+                case.wait('released False', 'its end')
+        for case in cases:
+            case.start_mux()
+        for case in cases:
+            case.wait('the mux says {}'.format(not case.release), 'the mux', 60)

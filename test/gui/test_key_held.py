@@ -10,7 +10,8 @@ from python_qt_binding.QtWidgets import QApplication
 from mhri.gui.driving.key_state import KeyState
 from support.ros_system import wait_for
 
-HELD_S = 4.0
+# An X server repeats a key from 0.66 s on; the power is cut after 2 s.
+HELD_S = 2.6
 
 
 def xdotool(*words):
@@ -87,8 +88,8 @@ def test_shift_and_space_held_for_two_seconds_cut_the_power(panel, heard, down):
     down('shift')
     down('space')
     begun = time.monotonic()
-    run_for(HELD_S)
-    assert stopped and cut
+    wait_for(lambda: (run_for(0.02), cut)[-1], 4, 'the cut')
+    assert stopped
     print('MEASURED Shift+Space held: power cut within {:.1f} s'.format(time.monotonic() - begun))
 
 
@@ -99,6 +100,6 @@ def test_a_release_that_waits_behind_a_slow_view_counts(panel, heard, down):
     run_for(0.3)
     xdotool('keyup', 'space')
     # The thread that draws is busy: when it looks again, release and timer are both due.
-    time.sleep(2.5)
-    run_for(1.0)
+    time.sleep(2.2)
+    run_for(0.5)
     assert cut == []

@@ -121,7 +121,7 @@ def test_table_is_followed_by_itself(link):
     """An outage in the middle of a stream, which takes longer than the table."""
     link.radio.follow([{'at_s': 0, 'rate_mbit': 1}, {'at_s': 1.0, 'down': True},
                        {'at_s': 1.5, 'down': False}])
-    _, whole = link.talk('tcp', count=400000)
+    _, whole = link.talk('tcp', count=250000)
     report = link.radio.follow(CLEAN)
     print('\n'.join(bad_radio.lines_of(report)))
     before, outage, after = report['rows']
