@@ -131,6 +131,12 @@ class TasksMoreCase(unittest.TestCase):
                 return ended
             print('again: {}'.format(ended))
 
+    def all_done(self, *tasks):
+        """Do (robot, task, parameters) of several robots at once, each to a good end."""
+        for one, goal in [(one, self.start(*one)) for one in tasks]:
+            if self.ends(goal)[0][0] != TaskState.DONE:
+                self.done(*one)
+
     def done(self, robots, task, parameters=''):
         """Do a task to its end, which has to be a good one; return the first sentence."""
         ended = self.ended(robots, task, parameters)

@@ -129,22 +129,22 @@ class Tasks(unittest.TestCase):
     def rests_for_good(self, robot, since):
         """Wait for silence after the first zero; nothing but zeros may have come since that."""
         zero = self.commands[robot].wait(rests, since, 30.0)
-        self.commands[robot].wait_silence(1.2, 60.0)
+        self.commands[robot].wait_silence(0.6, 60.0)
         self.assertEqual([item for item in self.commands[robot].since(zero.at)
                           if moves(item.value)], [])
         return zero.at - since
 
     def test_a_goal_is_reached_within_02_m(self):
         x, y = self.places['bot1'].last()
-        goal = (x + (1.5 if x < 6.0 else -1.5), 2.2 if y < 1.8 else 1.2)
-        self.done('bot1', 'goto', '{{x: {}, y: {}, heading: 1.0}}'.format(*goal))
+        goal = (x + (1.5 if x < 3.5 else -1.0), 2.2 if y < 1.8 else 1.2)
+        self.done('bot1', 'goto', '{{x: {}, y: {}, heading: 1.0, speed: 0.4}}'.format(*goal))
         self.assertLess(math.dist(self.places['bot1'].last(), goal), 0.2)
 
     def test_the_terminal_drives_a_square_and_says_its_corners(self):
         for _ in range(6):
             # Away from everything.
-            self.done('bot1', 'goto', '{x: 5.0, y: 2.0, heading: 0.0, speed: 0.4}')
-            tool = task_tool('bot1', 'square', '0.4')
+            self.done('bot1', 'goto', '{x: 5.0, y: 2.0, speed: 0.4}')
+            tool = task_tool('bot1', 'square', '0.4', 'speed=0.4')
             self.addCleanup(tool.end)
             status = tool.wait(PATIENCE_S)
             if 'bot1: lost: ' not in tool.said():
@@ -182,8 +182,8 @@ class Tasks(unittest.TestCase):
     def test_a_follower_keeps_its_distance_and_returns(self):
         following = self.start('bot2', 'follow', '{leader: bot1, distance: 1.0}')
         x = self.places['bot1'].last()[0]
-        self.done('bot1', 'goto', '{{x: {}, y: 2.0, speed: 0.2}}'.format(
-            5.0 if x < 3.5 else 2.5))
+        self.done('bot1', 'goto', '{{x: {}, y: 1.6, speed: 0.2}}'.format(
+            4.0 if x < 3.2 else 2.5))
         wait_until(lambda: math.dist(self.places['bot1'].last(), self.places['bot2'].last()) < 1.25,
                    'bot2 is left behind', PATIENCE_S)
         self.assertGreater(math.dist(self.places['bot1'].last(), self.places['bot2'].last()), 0.6)
@@ -191,7 +191,7 @@ class Tasks(unittest.TestCase):
                                       for robot in run.robots], 'bot2 is not listed', 30.0)
         following.cancel()
         self.assertEqual(self.ends(following), [(TaskState.STOPPED, 'it was cancelled')])
-        self.done('bot2', 'return', '')
+        self.done('bot2', 'return', '{speed: 0.4}')
         self.assertLess(math.dist(self.places['bot2'].last(), BOT2), 0.4)
 
     def test_stop_all_ends_every_task_and_nothing_resumes(self):
@@ -201,7 +201,7 @@ class Tasks(unittest.TestCase):
         measured('stop-all, first zero', self.rests_for_good('bot1', stopped))
         self.assertEqual(self.ends(goal)[0][0], TaskState.STOPPED)
         wait_until(lambda: self.set_stop(False).success, 'not released', 30.0)
-        self.commands['bot1'].wait_silence(1.2, 30.0)
+        self.commands['bot1'].wait_silence(0.6, 30.0)
         self.assertEqual([item for item in self.commands['bot1'].since(stopped + 0.5)
                           if moves(item.value)], [])
         wait_until(lambda: not self.lists.last().runs, 'the list has it still', 30.0)
@@ -243,6 +243,7 @@ class Tasks(unittest.TestCase):
         self.assertLess(took, 2.0)
         wait_until(lambda: self.lists.since(killed) and not self.lists.last().runs,
                    'mhri_tasks does not come back', 60.0)
+        self.rests_for_good('bot1', killed)
 
     def test_the_example_of_the_guide(self):
         path = os.path.join(rospkg.RosPack().get_path('mhri'), 'doc', 'operators_guide.md')
