@@ -30,7 +30,9 @@ class Rig:
 
     def __init__(self, **options):
         self.now = 100.0
-        self.arbiter = Arbiter(make_config(**options), self.now)
+        config = make_config(**options)
+        self.profiles = {source.name: source.profile for source in config.sources}
+        self.arbiter = Arbiter(config, self.now)
         self.sent = []
 
     def note(self, velocity):
@@ -41,7 +43,9 @@ class Rig:
 
     def joy(self, axes, buttons=HELD, name='stick', device='/pad'):
         """Send one Joy message now."""
-        return self.note(self.arbiter.on_joy(name, axes, buttons, device, self.now))
+        return self.note(self.arbiter.on_message(
+            name, device, self.now, lambda: self.profiles[name].read(axes, buttons),
+            buttons[:1] == HELD))
 
     def run(self, seconds):
         """Let time pass as the timer of the mux does, tick by tick."""

@@ -95,7 +95,7 @@ def _random_joy(dice, rig, oracle):
     device = dice.choice(('/pad',) * 19 + ('/pad2',))
     active = name == rig.arbiter.mode
     try:
-        sent = rig.arbiter.on_joy(name, axes, buttons, device, rig.now)
+        sent = rig.joy(axes, buttons, name, device)
     except JoyRefused:
         return None, False
     if active:

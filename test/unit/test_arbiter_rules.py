@@ -9,7 +9,6 @@ from test_arbiter import DRIVE, FORWARD, HELD, make_config, NEUTRAL, RELEASED, R
 from mhri.core.driving.arbiter import (
     Arbiter, DRIVING, ENABLING_TIMEOUT_S, READY, STOPPED, WAIT_NEUTRAL)
 from mhri.core.driving.limits import Velocity, ZERO
-from mhri.core.driving.profile import Axis, Profile
 
 
 def test_stop_all_is_released_only_with_the_active_source_at_neutral():
@@ -317,10 +316,11 @@ def test_a_device_that_is_touched_does_not_take_over(block):
         assert rig.joy(FORWARD, name='other') is None, 'held out all the while: not touched'
 
 
-def test_another_profile_reads_the_axes_of_its_device():
-    rig = rig_in(READY)
-    swapped = Profile('swapped', Axis(0, -1.0), Axis(1, 1.0))
-    rig.arbiter.on_joy('stick', NEUTRAL, (), ('/pad', 'profile:swapped'), rig.now, swapped)
-    sent = rig.arbiter.on_joy('stick', (-1.0, 0.0), (), ('/pad', 'profile:swapped'), rig.now,
-                              swapped)
-    assert sent == DRIVE
+def test_a_source_left_while_it_is_held_out_does_not_take_over_again():
+    rig = automatic_rig()
+    rig.joy(FORWARD)
+    rig.arbiter.on_mode('other', rig.now)
+    rig.run(1.0)
+    assert rig.joy(FORWARD) is None and rig.arbiter.mode == 'other'
+    rig.joy(NEUTRAL)
+    assert rig.joy(FORWARD) == ZERO and rig.arbiter.mode == 'stick'

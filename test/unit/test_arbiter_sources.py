@@ -8,7 +8,7 @@ from test_arbiter import DRIVE, FORWARD, HELD, make_config, NEUTRAL, Rig, rig_in
 
 from mhri.core.driving.arbiter import Arbiter, DRIVING, READY, STOPPED, WAIT_NEUTRAL
 from mhri.core.driving.limits import Velocity, ZERO
-from mhri.core.driving.profile import JoyRefused
+from mhri.core.driving.profile import JoyRefused, read_twist
 from mhri.core.driving.sources import JOY, MuxConfig, Source, TWIST
 
 REST = (0.0, 0.0)
@@ -25,8 +25,12 @@ class Velocities(Rig):
 
     def twist(self, linear, angular, device='/steering', name='cmd'):
         """Send one Twist now."""
-        return self.note(self.arbiter.on_twist(
-            name, (linear, 0.0, 0.0), (0.0, 0.0, angular), device, self.now))
+        return self.vectors((linear, 0.0, 0.0), (0.0, 0.0, angular), device, name)
+
+    def vectors(self, linear, angular, device='/steering', name='cmd'):
+        """Send one Twist of two vectors now."""
+        return self.note(self.arbiter.on_message(
+            name, device, self.now, lambda: read_twist(linear, angular)))
 
 
 def ready(**options):
@@ -62,15 +66,8 @@ def test_a_velocity_that_is_no_number_is_refused(vector, place, value):
     vectors = [[0.0] * 3, [0.0] * 3]
     vectors[vector][place] = value
     with pytest.raises(JoyRefused):
-        rig.arbiter.on_twist('cmd', *vectors, '/steering', rig.now)
+        rig.vectors(*vectors)
     assert rig.arbiter.refused == {'not_finite': 1}
-
-
-def test_a_joy_of_a_source_of_velocities_is_refused():
-    rig = ready()
-    with pytest.raises(JoyRefused, match='type twist'):
-        rig.joy(FORWARD, name='cmd')
-    assert rig.arbiter.refused == {'type': 1} and rig.arbiter.state == READY
 
 
 def test_a_zero_that_is_said_once_stays_neutral_for_as_long_as_its_publisher_is_there():

@@ -25,10 +25,10 @@ they have already been sent): one at once, more at :data:`REPEAT_HZ` for
 """
 import collections
 import math
-from typing import Callable, Counter, Dict, FrozenSet, Iterable, Optional, Sequence, Tuple
+from typing import Callable, Counter, Dict, FrozenSet, Iterable, Optional, Tuple
 
 from mhri.core.driving.limits import Velocity, ZERO, speed_limit_problem
-from mhri.core.driving.profile import JoyRefused, Profile, Stick, Wanted, read_twist
+from mhri.core.driving.profile import JoyRefused, Stick, Wanted
 from mhri.core.driving.sources import MuxConfig, Source
 
 STOPPED = 'stopped'
@@ -64,8 +64,8 @@ class Arbiter:
         self._selected: FrozenSet[str] = frozenset()
         self._enabling, self._enabled_at = config.enabling, -math.inf
         self._automatic = config.automatic_switching
-        self._rested: Dict[str, object] = {}
-        self._resting: Dict[str, Tuple[Wanted, object]] = {}
+        # The last word of every source that was listened to, and of which device.
+        self._last: Dict[str, Tuple[Wanted, object]] = {}
         self._zeros_until = now + ZEROS_S
         self._next_repeat = now
         self.refused: Counter[str] = collections.Counter()
@@ -122,38 +122,23 @@ class Arbiter:
         """The event that last led to WAIT_NEUTRAL or STOPPED, e.g. 'stale', 'mode', 'start'."""
         return self._cause
 
-    def on_joy(self, name: str, axes: Sequence[float], buttons: Sequence[int], device: object,
-               now: float, profile: Optional[Profile] = None) -> Optional[Velocity]:
-        """Take in one Joy message of a source.
+    def on_message(self, name: str, device: object, now: float, read: Callable[[], Wanted],
+                   pressed: bool = False) -> Optional[Velocity]:
+        """Take in one message of a source.
 
         :param name: the source that sent it
         :param device: identifies the publisher (its ROS name); another publisher counts as a newly
             connected device
-        :param profile: :class:`Profile` of the device; default: that of the source
+        :param read: returns what the message asks for; not called if that does not matter
+        :param pressed: whether its first button is, for the enabling pedal
         :returns: the velocity to send now, or None
-        :raises JoyRefused: the message cannot be used; only the counters change
+        :raises JoyRefused: ``read`` did; only the counters change
         :raises KeyError: no such source
         """
-        chosen = profile or self._sources[name].profile
         if name == self._enabling:
-            return self._on_enabling(bool(buttons and buttons[0]), now)
-
-        def read() -> Wanted:
-            if chosen is None:
-                raise JoyRefused('type', 'a Joy message for a source of type twist')
-            return chosen.read(axes, buttons)
-        return self._on_message(name, device, now, read)
-
-    def on_twist(self, name: str, linear: Sequence[float], angular: Sequence[float],
-                 device: object, now: float) -> Optional[Velocity]:
-        """Take in one Twist of a source, as vectors [m/s], [rad/s]; else as :meth:`on_joy`."""
-        return self._on_message(name, device, now, lambda: read_twist(linear, angular))
-
-    def _on_message(self, name: str, device: object, now: float,
-                    read: Callable[[], Wanted]) -> Optional[Velocity]:
-        """Take in one message; ``read`` returns what it asks for, or raises JoyRefused."""
-        active, rests = name == self._mode, self._sources[name].rests
-        if not (active or rests or self._automatic):
+            return self._on_enabling(pressed, now)
+        active = name == self._mode
+        if not (active or self._sources[name].rests or self._automatic):
             self.ignored[name] += 1
             return None
         try:
@@ -161,12 +146,14 @@ class Arbiter:
         except JoyRefused as refusal:
             self.refused[refusal.kind] += 1
             raise
-        if rests:
-            self._resting[name] = (stick, device)
+        before, self._last[name] = self._last.get(name, (_UNHEARD, None)), (stick, device)
         if active:
             return self._on_active(stick, device, now)
-        if self._automatic:
-            return self._on_other(name, stick, device, now)
+        still = self._state in (READY, WAIT_NEUTRAL) and now >= self._zeros_until
+        touched = before[0].neutral and before[1] == device and not stick.neutral
+        if self._automatic and still and touched:
+            # It must be seen at neutral once more before it moves anything.
+            return self.on_mode(name, now)
         self.ignored[name] += 1
         return None
 
@@ -178,7 +165,7 @@ class Arbiter:
         if self._state == STOPPED:
             return None
         if self._state != WAIT_NEUTRAL and (exchanged or not was_fresh):
-            zero = self._interlock('device' if exchanged else 'stale', now)
+            zero = self.on_hold('device' if exchanged else 'stale', now)
             return self._follow(stick, now) or zero
         if self._state == READY and stick.held and not before.held and not stick.neutral:
             # Pressing the button must not set robots in motion.
@@ -210,7 +197,7 @@ class Arbiter:
         """
         was, self._enabled_at = self.enabled(now), now if pressed else -math.inf
         if not pressed and self._state == DRIVING:
-            return self._interlock('enabling', now)
+            return self.on_hold('enabling', now)
         if pressed and not was and self._state == READY and not self._stick.neutral:
             self._enter(WAIT_NEUTRAL, 'enabling')
         return None
@@ -218,20 +205,6 @@ class Arbiter:
     def enabled(self, now: float) -> bool:
         """Tell whether the enabling pedal allows motion; without one, it is always allowed."""
         return self._enabling is None or now - self._enabled_at < ENABLING_TIMEOUT_S
-
-    def _on_other(self, name: str, stick: Wanted, device: object, now: float) -> Optional[Velocity]:
-        """Switch to a source that somebody touches while everything stands still.
-
-        It must be seen at neutral first, and once more before it moves anything. A source deflected
-        while another one drives must be let go before it counts.
-        """
-        still = self._state in (READY, WAIT_NEUTRAL) and now >= self._zeros_until
-        if stick.neutral:
-            self._rested[name] = device
-        elif self._rested.pop(name, None) == device and still:
-            return self.on_mode(name, now)
-        self.ignored[name] += 1
-        return None
 
     def on_selection(self, names: Iterable[str], now: float) -> Optional[Velocity]:
         """Take note of the selected robots.
@@ -243,7 +216,7 @@ class Arbiter:
         """
         before, self._selected = self._selected, frozenset(names)
         if self._selected - before and self._state == DRIVING:
-            return self._interlock('selection', now)
+            return self.on_hold('selection', now)
         return None
 
     def on_mode(self, name: str, now: float) -> Optional[Velocity]:
@@ -258,39 +231,39 @@ class Arbiter:
         if name == self._mode:
             return None
         self._mode = name
-        self._rested.clear()
-        self._stick, self._device = self._resting.get(name, (_UNHEARD, None))
-        self._stick_at = now if name in self._resting else -math.inf
-        return self._interlock('mode', now)
+        rests = self.source.rests and name in self._last
+        self._stick, self._device = self._last[name] if rests else (_UNHEARD, None)
+        self._stick_at = now if rests else -math.inf
+        return self.on_hold('mode', now)
 
     def on_lost(self, name: str, cause: str, now: float) -> Optional[Velocity]:
         """Take note that a source was suspended or its device lost (cause 'suspended' or 'lost').
 
         :returns: the velocity to send now, or None if the source is not the active one
         """
-        self._resting.pop(name, None)
-        self._rested.pop(name, None)
+        self._last.pop(name, None)
         if name != self._mode:
             return None
         self._stick, self._stick_at, self._device = _UNHEARD, -math.inf, None
-        return self._interlock(cause, now)
+        return self.on_hold(cause, now)
 
     def on_hung(self, now: float) -> Optional[Velocity]:
         """Forget what every source has said: this mux was asleep, so all of it is old.
 
         :returns: the zero to send now
         """
-        self._resting.clear()
-        self._rested.clear()
+        self._last.clear()
         self._enabled_at = -math.inf
         return self.on_lost(self._mode, 'hung', now)
 
     def on_hold(self, cause: str, now: float) -> Velocity:
-        """Hold everything until the stick is centred, for a cause outside the sources.
+        """Stop what moves, and demand neutral before anything moves.
 
-        :returns: the velocity to send now
+        :returns: the zero to send now
         """
-        return self._interlock(cause, now)
+        if self._state != STOPPED:
+            self._enter(WAIT_NEUTRAL, cause)
+        return self._zeros(now)
 
     def engage_stop_all(self, now: float) -> Velocity:
         """Stop everything until :meth:`release_stop_all`; repeating it is safe.
@@ -336,9 +309,9 @@ class Arbiter:
         :returns: the velocity to send now, or None
         """
         if self._state == DRIVING and not self._fresh(now):
-            return self._interlock('stale', now)
+            return self.on_hold('stale', now)
         if self._state == DRIVING and not self.enabled(now):
-            return self._interlock('enabling', now)
+            return self.on_hold('enabling', now)
         if self._state == WAIT_NEUTRAL and self._rests():
             return self._follow(self._stick, now)
         if self._state == READY and not self._fresh(now):
@@ -378,12 +351,6 @@ class Arbiter:
         self._state = state
         if cause:
             self._cause = cause
-
-    def _interlock(self, cause: str, now: float) -> Velocity:
-        """Demand neutral before anything moves, and stop what moves."""
-        if self._state != STOPPED:
-            self._enter(WAIT_NEUTRAL, cause)
-        return self._zeros(now)
 
     def _zeros(self, now: float) -> Velocity:
         """Begin the zeros."""

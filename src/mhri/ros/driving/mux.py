@@ -36,7 +36,7 @@ from std_srvs.srv import SetBool, SetBoolResponse
 from mhri.core.driving.arbiter import Arbiter, DRIVING, READY, REPEAT_HZ, ZEROS_S
 from mhri.core.driving.buttons import ButtonEdges
 from mhri.core.driving.profile import (
-    JoyRefused, MARK, NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL, STOP_ALL)
+    is_pressed, JoyRefused, MARK, NEXT_ROBOT, PREVIOUS_ROBOT, read_twist, SELECT_ALL, STOP_ALL)
 from mhri.core.driving.pulse import Pulse
 from mhri.core.driving.sources import TWIST
 from mhri.msg import ControlMode, PanelRequest, RobotSelect
@@ -196,13 +196,13 @@ class Mux:
         name, refusal = topic.source.name, ''
         device, frame, lost = topic.device_of(message)
         try:
-            offer, pressed = self._read(topic.source, message, device, frame)
+            read, pressed, enables = self._read(topic.source, message, frame)
             with self._changed:
                 before, now = self._arbiter.mode, self._clock()
                 counts = self._awake(now) and topic.admits(message)
                 self._press(name, device, pressed, counts)
                 if counts:
-                    self._send(offer(now))
+                    self._send(self._arbiter.on_message(name, device, now, read, enables))
                     if lost and name == self._arbiter.mode:
                         self._send(self._arbiter.on_hold('lost', now))
                 switched = self._arbiter.mode != before
@@ -216,20 +216,19 @@ class Mux:
         if switched:
             rospy.loginfo('driving with %s, which was touched', name)
 
-    def _read(self, source, message, device, frame):
-        """Return (function of the time that gives a message to the arbiter, pressed actions).
+    def _read(self, source, message, frame):
+        """Return (function that reads what it asks for, pressed actions, first button is down).
 
         :raises JoyRefused: its profile is unusable
         """
         if source.kind == TWIST:
             vectors = [(vector.x, vector.y, vector.z)
                        for vector in (message.linear, message.angular)]
-            return lambda now: self._arbiter.on_twist(
-                source.name, *vectors, device, now), frozenset()
+            return partial(read_twist, *vectors), frozenset(), False
         profile = self._profiles.of(source.name, frame) or source.profile
-        return lambda now: self._arbiter.on_joy(
-            source.name, message.axes, message.buttons, device, now,
-            profile), profile.pressed(message.buttons)
+        buttons = message.buttons
+        return (partial(profile.read, message.axes, buttons), profile.pressed(buttons),
+                is_pressed(buttons, 0))
 
     def _press(self, name, device, pressed, counts):
         """Act on newly pressed buttons (with the lock held).
