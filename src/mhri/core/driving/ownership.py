@@ -1,12 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Which of several publishers of one topic to listen to."""
-import collections
-from typing import Container, Counter, Optional
-
-# Further names than this are counted together.
-_MOST_NAMES = 20
-OTHERS = 'others'
+from typing import Container, Optional
 
 
 class Ownership:
@@ -15,10 +10,9 @@ class Ownership:
     def __init__(self) -> None:
         self.owner: Optional[str] = None
         self._claimed: Optional[str] = None
-        self.refused: Counter[str] = collections.Counter()
 
     def admits(self, caller: str, connected: Container[str]) -> bool:
-        """Tell whether a message counts; count it under its sender's name if it does not.
+        """Tell whether a message counts.
 
         :param caller: the node that sent it
         :param connected: all nodes that are connected as publishers
@@ -27,11 +21,7 @@ class Ownership:
             self.owner = self._claimed
         elif self.owner is None or self.owner not in connected:
             self.owner = caller
-        if caller == self.owner:
-            return True
-        known = caller in self.refused or len(self.refused) < _MOST_NAMES
-        self.refused[caller if known else OTHERS] += 1
-        return False
+        return caller == self.owner
 
     def take(self, caller: str) -> bool:
         """Make a node the owner as soon as it is connected, and for as long.

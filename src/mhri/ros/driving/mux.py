@@ -44,7 +44,7 @@ from mhri.ros.convert import packed_twist, to_twist
 from mhri.ros.devices.device_profiles import DeviceProfiles
 from mhri.ros.graph.master_api import MasterError
 from mhri.ros.graph.master_watch import MasterWatch
-from mhri.ros.driving.in_force import STOP_SERVICE
+from mhri.ros.driving.in_force import STOP_SERVICE, Strangers
 from mhri.ros.driving.mux_advice import Advice
 from mhri.ros.driving.mux_diagnostics import MuxDiagnostics
 from mhri.ros.driving.mux_gates import GatesWatch
@@ -110,16 +110,18 @@ class Mux:
                  'suspend_service': source.suspend_service or ''} for source in config.sources]},
             period_s=MASTER_PERIOD_S, patience_s=MASTER_PATIENCE_S)
         self._config = config
-        self._topics = {source.name: SourceTopic(source, clock) for source in config.sources}
+        strangers = Strangers(clock)
+        self._topics = {source.name: SourceTopic(source, strangers, clock)
+                        for source in config.sources}
         self._remembering = threading.Lock()
         self._gates = GatesWatch(self._on_gates, lambda: self._arbiter.stop_all,
-                                 lambda: self._hold('gates'), clock)
+                                 lambda: self._hold('gates'), strangers, clock)
         self._tasks = TaskMux(self._changed, self._task_allowed)
         self._advice = Advice(self._facts)
         self._diagnostics = MuxDiagnostics(
             self._arbiter, self._changed, clock, config, self._topics,
             {'gates': self._gates.words, 'suspend': self._suspender.state,
-             'tasks': self._tasks.counts, 'strangers': self._gates.strangers.words})
+             'tasks': self._tasks.counts, 'strangers': strangers.words})
 
     def start(self, stopped):
         """Start publishing, subscribing and serving.
@@ -249,13 +251,11 @@ class Mux:
         self._send(self._arbiter.engage_stop_all(self._clock()))
         self._stop.publish(data=True)
 
-    def _on_gates(self, must_stop, another, operator):
+    def _on_gates(self, must_stop, operator):
         """Take in the state of the gates."""
         with self._changed:
             if must_stop:
                 self._engage_stop()
-            elif another:
-                self._send(self._arbiter.on_hold('gates', self._clock()))
             for topic in self._topics.values() if operator else ():
                 if topic.ownership and topic.ownership.take(operator):
                     self._send(self._arbiter.on_lost(topic.source.name, 'operator', self._clock()))

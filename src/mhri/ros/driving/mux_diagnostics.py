@@ -83,15 +83,7 @@ class MuxDiagnostics:
             if service:
                 words += '; {}: {}'.format(service, self._words['suspend'](service))
             status.add(source.name, words)
-            self._owner(status, source.name)
+            ownership = self._topics[source.name].ownership
+            if ownership and ownership.owner:
+                status.add(source.name + ': listened to', ownership.owner)
         return status
-
-    def _owner(self, status, name):
-        """Add who owns an exclusive source, and who was refused."""
-        with self._lock:
-            ownership = self._topics[name].ownership
-            owner, refused = (ownership.owner, dict(ownership.refused)) if ownership else (None, {})
-        if owner:
-            status.add(name + ': listened to', owner)
-        for caller, count in sorted(refused.items()):
-            status.add('{}: refused from {}'.format(name, caller), count)

@@ -6,29 +6,28 @@ import rospy
 from mhri.core.driving.pulse import Neighbour
 from mhri.core.driving.stop_echo import StopEcho
 from mhri.msg import GatesState
-from mhri.ros.driving.in_force import InForce, Strangers, TAKE_SERVICE
-from mhri.ros.graph.rospy_inside import caller_of, link_of
+from mhri.ros.driving.in_force import InForce, TAKE_SERVICE
+from mhri.ros.graph.rospy_inside import caller_of
 
 
 class GatesWatch:
     """Subscribes ``/gates/state`` (``mhri/GatesState``), and believes only the gates in force.
 
-    :param on_state: called on rospy's threads with (the mux must stop, these are new gates,
-        operator or '')
+    :param on_state: called on rospy's threads with (the mux must stop, operator or '')
     :param is_stopped: returns whether the mux is stopped
-    :param on_silent: called by :meth:`look` when the gates have been silent for 0.9 s
+    :param hold: called when the gates are others than before, and by :meth:`look` when they have
+        been silent for 0.9 s
+    :param strangers: :class:`mhri.ros.driving.in_force.Strangers`, for who poses as the gates
     """
 
-    def __init__(self, on_state, is_stopped, on_silent, clock):
+    def __init__(self, on_state, is_stopped, hold, strangers, clock):
         self._on_state = on_state
         self._is_stopped = is_stopped
         self._clock = clock
         self._echo = StopEcho()
-        self._link = None
         self._operator = ''
-        self.strangers = Strangers()
-        self._force = InForce(TAKE_SERVICE, self.strangers.refuse)
-        self._on_silent = on_silent
+        self._force = InForce(TAKE_SERVICE, strangers.refuse, lambda caller: hold())
+        self._hold = hold
         self._neighbour = Neighbour('the gates')
 
     def start(self):
@@ -53,7 +52,7 @@ class GatesWatch:
         """Look whether the gates are heard; call it at least every 0.4 s."""
         news = self._neighbour.look(now)
         if news and self._neighbour.silent:
-            self._on_silent()
+            self._hold()
         if news:
             rospy.logwarn('%s', news)
 
@@ -63,9 +62,7 @@ class GatesWatch:
 
     def _on_message(self, message):
         self._neighbour.beat(caller_of(message), self._clock())
-        link = link_of(message)
-        another, self._link = self._link is not link, link
         took, self._operator = message.operator != self._operator, message.operator
         self._on_state(
             self._echo.must_stop(message.stop_all, self._is_stopped(), self._clock()),
-            another, message.operator if took else '')
+            message.operator if took else '')

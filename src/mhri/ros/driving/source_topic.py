@@ -22,11 +22,13 @@ class SourceTopic:
     """Subscribes a source's topic (``sensor_msgs/Joy`` or ``geometry_msgs/Twist``).
 
     :param source: :class:`mhri.core.driving.sources.Source`
+    :param strangers: :class:`mhri.ros.driving.in_force.Strangers`, for further publishers
     :param clock: function returning seconds that never go back
     """
 
-    def __init__(self, source, clock=time.monotonic):
+    def __init__(self, source, strangers, clock=time.monotonic):
         self.source = source
+        self._strangers = strangers
         self.ownership = Ownership() if source.exclusive else None
         self._clock = clock
         self._subscriber = None
@@ -53,6 +55,7 @@ class SourceTopic:
         # Its own connection may not be in rospy's list yet.
         if self.ownership and not self.ownership.admits(caller, self.connected() | {caller}):
             self._rival = (self._clock(), caller)
+            self._strangers.refuse(caller, self.source.topic)
             return False
         self._heard = caller
         return True
