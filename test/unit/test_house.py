@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The rules of the house that a machine can check, over every file; and over wrong samples."""
 import ast
+import functools
 from pathlib import Path
 import sys
 
@@ -21,6 +22,10 @@ MESSAGES = {'mhri.msg', 'mhri.srv', 'cv_bridge', 'genpy', 'rosbag'}
 # The files that join ROS and Qt; every other file keeps to its room.
 JOINING = {'mhri_plugin.py', 'standalone.py'}
 JOINING_ROOMS = {'nodes', 'presenters'}
+
+
+# Each rule looks at the same text, one after the other.
+parsed = functools.lru_cache(4)(ast.parse)
 
 
 def stdlib_modules():
@@ -126,7 +131,7 @@ def import_problems(relative, text):
     if allowed is None:
         return []
     return ['line {}: {} may not import {}'.format(line, relative.parts[0], module)
-            for line, module in imports(ast.parse(text)) if not allowed(module)]
+            for line, module in imports(parsed(text)) if not allowed(module)]
 
 
 def call_problems(relative, text):
@@ -134,7 +139,7 @@ def call_problems(relative, text):
     if relative.parts[0] != 'core':
         return []
     return ['line {}: core does no I/O: {}()'.format(node.lineno, node.func.id)
-            for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)
+            for node in ast.walk(parsed(text)) if isinstance(node, ast.Call)
             and isinstance(node.func, ast.Name) and node.func.id in {'open', 'print', 'input'}]
 
 
@@ -147,7 +152,7 @@ def size_problems(relative, text):
     """Files over 400 lines, functions over 60."""
     lines = len(text.splitlines())
     found = ['{} lines, more than 400'.format(lines)] if lines > 400 else []
-    for node in functions(ast.parse(text)):
+    for node in functions(parsed(text)):
         length = node.end_lineno - node.lineno + 1
         if length > 60:
             found.append('line {}: {}() has {} lines, more than 60'.format(
@@ -158,7 +163,7 @@ def size_problems(relative, text):
 def complexity_problems(relative, text):
     """Functions with a cyclomatic complexity over 10."""
     visitor = mccabe.PathGraphingAstVisitor()
-    visitor.preorder(ast.parse(text), visitor)
+    visitor.preorder(parsed(text), visitor)
     return ['line {}: {} has complexity {}, more than 10'.format(
         graph.lineno, graph.entity, graph.complexity())
         for graph in visitor.graphs.values() if graph.complexity() > 10]
@@ -174,7 +179,7 @@ def spdx_problems(relative, text):
 def swallow_problems(relative, text):
     """Exceptions of every kind that are caught and forgotten."""
     return ['line {}: catches everything and says nothing'.format(node.lineno)
-            for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ExceptHandler)
+            for node in ast.walk(parsed(text)) if isinstance(node, ast.ExceptHandler)
             and (not node.type or getattr(node.type, 'id', '') in {'Exception', 'BaseException'})
             and all(isinstance(item, ast.Pass) for item in node.body)]
 
@@ -182,7 +187,7 @@ def swallow_problems(relative, text):
 def constructor_problems(relative, text):
     """A widget's constructor that does not call ``_build``, ... where the class has one."""
     found = []
-    for node in ast.walk(ast.parse(text)):
+    for node in ast.walk(parsed(text)):
         if not isinstance(node, ast.ClassDef) or relative.parts[0] != 'gui':
             continue
         methods = {item.name: item for item in node.body if isinstance(item, ast.FunctionDef)}
@@ -204,7 +209,7 @@ def public_docstrings(text):
 
     A function inside a function is no public name; neither is what begins with an underscore.
     """
-    tree = ast.parse(text)
+    tree = parsed(text)
     nodes = [tree]
     for parent in [tree] + [node for node in tree.body if isinstance(node, ast.ClassDef)
                             and not node.name.startswith('_')]:

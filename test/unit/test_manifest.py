@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What is imported is named in package.xml, and what is named there is used."""
 import ast
+import functools
 from pathlib import Path
 import re
 import sys
@@ -43,6 +44,7 @@ def is_python(path):
         rb'#!.*python', path.read_bytes()[:64]) is not None
 
 
+@functools.lru_cache(None)
 def imported(*trees):
     """Return the top names of all modules that the files of some folders import, but their own."""
     files = [path for tree in trees for path in sorted((REPO / tree).rglob('*'))
