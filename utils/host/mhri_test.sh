@@ -28,9 +28,9 @@ and nothing failed.
 
   --only GROUP   run one group only (may be repeated): lint, unit, oldest, scripts, rostest,
                  gui, faults, bench, or fast
-  --jobs N       run at most N files at once: of those that drive robots three (two if N is below 5,
+  --jobs N       run at most N files at once: of those that drive robots three (two if N is below 6,
                  one below 3), of nodes that are timed two, and of what else measures time one, beside
-                 one that takes what is left (default: three more than there are processors, at most 6)
+                 one that takes what is left (default: four more than there are processors, at most 7)
   --bench        run the benchmarks (test/bench) in full instead of their short form
   --once         do not run a second time what failed (see below)
   -h, --help     this text
@@ -79,8 +79,8 @@ parse_arguments() {
   done
   if [ "$BENCH" = full ]; then TIMED+=(bench); else CALM=(bench "${CALM[@]}"); fi
   [ "${#ONLY[@]}" -gt 0 ] || ONLY=("${GROUPS_IN_ORDER[@]}")
-  if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 3 ? $(nproc) + 3 : 6)); fi
-  PAIR=$((JOBS > 4 ? 3 : JOBS > 2 ? 2 : 1))
+  if [ -z "$JOBS" ]; then JOBS=$(($(nproc) < 3 ? $(nproc) + 4 : 7)); fi
+  PAIR=$((JOBS > 5 ? 3 : JOBS > 2 ? 2 : 1))
 }
 
 # Installs in the workspace, at fixed versions, the tools that Debian and Ubuntu do not package.
