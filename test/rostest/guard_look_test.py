@@ -23,7 +23,7 @@ from support.velocity import VelocityEnd  # noqa: E402
 
 GUARD = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', '..', 'utils', 'remote',
                      'mhri_guard')
-AFTER_S = 3.0
+AFTER_S = 2.0
 CRAWL_MPS = 0.1
 
 
@@ -116,7 +116,7 @@ class GuardLook(GatesCase):
         self.assertGreater(self.state.robot('bot1').sent.linear.x, 0.2, 'the gates do not brake')
         hand.let_go()
         self.mux.say(0.0)
-        self.drive_to(10.4, -0.25)
+        self.drive_to(10.9, -0.25)
         group.publish(brake=False)
         self.state.wait(lambda state: not state.brake, 'the wish to be taken back')
 
@@ -145,7 +145,7 @@ class GuardLook(GatesCase):
             halves.live[half] = True
             self.hall.rests()
             self.centre('bot1', self.end)
-        self.drive_to(10.4, 0.2 if self.hall.places.last() < 10.4 else -0.2)
+        self.drive_to(self.hall.places.last() + 0.1, 0.2)
 
     def far_robot(self):
         """Drive away from where the robot begins; return where it is then [m], and the hand."""
@@ -153,7 +153,7 @@ class GuardLook(GatesCase):
         self.state.wait_robot('bot1', lambda gate: gate.back_after_s == AFTER_S,
                               'what it would do', PATIENCE_S)
         start, hand = self.hall.places.last(), self.hold(-0.2)
-        return self.hall.places.wait(lambda x: x < start - 0.8, time.monotonic(),
+        return self.hall.places.wait(lambda x: x < start - 0.5, time.monotonic(),
                                      PATIENCE_S).value, hand
 
     def test_it_goes_back_while_it_is_not_heard_and_stops_when_it_is(self):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A recorded bag against what was published. ``MHRI_LONG=1``: a minute instead of ten seconds."""
+"""A recorded bag against what was published. ``MHRI_LONG=1``: a minute instead of four seconds."""
 import hashlib
 import json
 import os
@@ -26,7 +26,7 @@ from mhri.core.recording.recording import ENDED, RECORDING  # noqa: E402
 from mhri.ros.recording.recorder import Recorder  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
-SECONDS = 60.0 if os.environ.get('MHRI_LONG') == '1' else 10.0
+SECONDS = 60.0 if os.environ.get('MHRI_LONG') == '1' else 4.0
 ROBOTS = ['bot{}'.format(number + 1) for number in range(4)]
 
 

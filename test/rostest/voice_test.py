@@ -43,13 +43,13 @@ class Lifecycle(VoiceTest):
     def test_starts_suspended_and_costs_nothing(self):
         """Nothing is opened and no process begun; listening to a quiet room costs little."""
         self.assertIn('suspended', self.node.words())
-        spent = self.node.spent_cpu(3.0)
+        spent = self.node.spent_cpu(1.5)
         print('MEASURED suspended: {:.2f} % of a core'.format(100.0 * spent))
         self.assertLess(spent, 0.05)
         self.assertEqual(self.node.listeners(), [])
         self.assertEqual(self.node.joys.since(0.0), [])
         self._resume()
-        spent = self.node.spent_cpu(3.0)
+        spent = self.node.spent_cpu(1.5)
         print('MEASURED listening to a quiet room: {:.2f} % of a core'.format(100.0 * spent))
         self.assertLess(spent, 0.5)
         self.assertTrue(self.node.suspend().success)

@@ -44,6 +44,18 @@ class BlackHole:
             item.close()
 
 
+def forget(master, node):
+    """Take a dead node off a master."""
+    uri = master.lookupNode(node)
+    publishers, subscribers, services = master.getSystemState()
+    for topic in [name for name, nodes in publishers if node in nodes]:
+        master.handle.unregisterPublisher(node, topic, uri)
+    for topic in [name for name, nodes in subscribers if node in nodes]:
+        master.handle.unregisterSubscriber(node, topic, uri)
+    for name in [name for name, nodes in services if node in nodes]:
+        master.handle.unregisterService(node, name, master.lookupService(name))
+
+
 class Clinic:
     """A master with what a test starts around it; ``seeded`` is forgotten after each test."""
 
@@ -164,14 +176,7 @@ class Clinic:
 
     def forget(self, node):
         """Take a dead node off the master."""
-        uri = self.master.lookupNode(node)
-        publishers, subscribers, services = self.master.getSystemState()
-        for topic in [name for name, nodes in publishers if node in nodes]:
-            self.master.handle.unregisterPublisher(node, topic, uri)
-        for topic in [name for name, nodes in subscribers if node in nodes]:
-            self.master.handle.unregisterSubscriber(node, topic, uri)
-        for name in [name for name, nodes in services if node in nodes]:
-            self.master.handle.unregisterService(node, name, self.master.lookupService(name))
+        forget(self.master, node)
 
     def begin(self, *arguments):
         """Start the real mhri_doctor; return the process."""
