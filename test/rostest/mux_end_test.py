@@ -22,6 +22,13 @@ from std_srvs.srv import SetBool
 from mhri.msg import ControlMode
 
 SERVICE = '/mux/set_stop_all'
+# Commands are 50 ms apart: none for so long, and none comes any more [s].
+SILENCE_S = 0.4
+# What a file says, None where there is none, and what is said of it beside its name.
+BROKEN = (
+    (b'sources:\n  - {name: joy, topic: /mux_in/joy, profile: virtual, tiemout: 1}\n'
+     b'speed_limit: {linear_mps: 0.5, angular_rad_s: 1.5}\n', 'sources[0].tiemout', 'unknown key'),
+    (b'sources: [', 'is not valid YAML'), (b'sources: [\xfc]\n', 'UTF-8'), (None,))
 
 
 class MuxEnd(unittest.TestCase):
@@ -98,7 +105,7 @@ class MuxEnd(unittest.TestCase):
         self._start()
         self.twists.wait(rests, begun)
         self.waits.wait(lambda _: self.waits.last() == 'neutral')
-        self.twists.wait_silence(0.7)
+        self.twists.wait_silence(SILENCE_S)
         self.assertFalse([item for item in self.twists.since(begun) if moves(item.value)])
 
     def test_stop_all_survives_a_killed_and_restarted_mux(self):
@@ -115,7 +122,7 @@ class MuxEnd(unittest.TestCase):
         self.assertEqual({item.value for item in self.stops.since(begun)}, {True})
         self.stick.hold(FORWARD)
         self.assertFalse(set_stop(False).success)
-        self.twists.wait_silence(0.7)
+        self.twists.wait_silence(SILENCE_S)
         self.assertFalse([item for item in self.twists.since(begun) if moves(item.value)])
         self.stick.hold(NEUTRAL)
         wait_until(lambda: set_stop(False).success, 'not released at neutral')
@@ -155,7 +162,7 @@ class MuxEnd(unittest.TestCase):
         measured('older mux gone after', time.monotonic() - begun)
         zero = self.twists.wait(rests, begun)
         self.waits.wait(lambda _: self.waits.last() == 'neutral', begun)
-        self.twists.wait_silence(0.7)
+        self.twists.wait_silence(SILENCE_S)
         self.assertFalse([item for item in self.twists.since(zero.at) if moves(item.value)])
         self._drive()
         start = time.monotonic()
@@ -178,21 +185,22 @@ class MuxEnd(unittest.TestCase):
 
         Then no mux would be left (ros_comm#2018).
         """
-        for age_s in (0.1, 0.3, 0.5, 0.7):
+        for age_s in (0.1, 0.5):
             self._start()
             ready = time.monotonic()
             wait_until(lambda: time.monotonic() - ready > age_s, 'no time passes')
             newer = self._start()
             self.muxes[-2].wait()
+            # Told to end just before, it would have said its zeros for half a second by then.
             checked = time.monotonic()
-            wait_until(lambda: not newer.running() or time.monotonic() - checked > 1.5, 'no end')
+            wait_until(lambda: not newer.running() or time.monotonic() - checked > 1.2, 'no end')
             self.assertTrue(newer.running(), 'no mux is left; the older was {} s old'.format(age_s))
             newer.end()
 
     def test_stop_all_survives_a_mux_killed_right_after_its_answer(self):
         """The stop is written down before the answer is given."""
         set_stop = rospy.ServiceProxy(SERVICE, SetBool)
-        for _ in range(8):
+        for _ in range(4):
             rospy.set_param('/mux/stop_all', False)
             mux = self._start()
             self.assertTrue(set_stop(True).success)
@@ -207,7 +215,7 @@ class MuxEnd(unittest.TestCase):
         older.send(signal.SIGSTOP)
         begun = time.monotonic()
         self._start()
-        self.twists.wait_silence(0.7)
+        self.twists.wait_silence(SILENCE_S)
         woken = older.send(signal.SIGCONT)
         older.wait()
         measured('hung mux gone after', time.monotonic() - woken)
@@ -221,7 +229,7 @@ class MuxEnd(unittest.TestCase):
             wait_until(select.get_num_connections, 'the mux does not listen')
             select.publish(source='ps3joy')
             asked = time.monotonic()
-            wait_until(lambda: time.monotonic() - asked > 3.0, 'no time passes')
+            wait_until(lambda: time.monotonic() - asked > 2.2, 'no time passes')
             logs = ''
             for name in os.listdir(folder):
                 with open(os.path.join(folder, name), encoding='utf-8') as stream:
@@ -281,36 +289,24 @@ class MuxEnd(unittest.TestCase):
             os.close(reading)
             os.close(writing)
 
-    def _broken(self, text, *words):
-        with tempfile.NamedTemporaryFile('wb', suffix='.yaml') as stream:
-            stream.write(text)
-            stream.flush()
-            mux = start_mux('__name:=mux_with_a_broken_file', '_config:=' + stream.name)
-            self.muxes.append(mux)
-            self.assertEqual(mux.wait(), 1)
-            for word in (stream.name,) + words:
-                self.assertIn(word, mux.said())
-            self.assertNotIn('Traceback', mux.said())
-
     def test_a_broken_file_ends_with_1_and_names_file_and_key(self):
-        """The slip, not a traceback."""
-        self._broken(b'sources:\n'
-                     b'  - {name: joy, topic: /mux_in/joy, profile: virtual, tiemout: 1}\n'
-                     b'speed_limit: {linear_mps: 0.5, angular_rad_s: 1.5}\n',
-                     'sources[0].tiemout', 'unknown key')
-        self._broken(b'sources: [', 'is not valid YAML')
-
-    def test_a_missing_file_ends_with_1_and_is_named(self):
-        """Most often a slip in a launch file."""
-        path = os.path.join(tempfile.gettempdir(), 'no', 'such', 'mux.yaml')
-        mux = start_mux('_config:=' + path)
-        self.muxes.append(mux)
-        self.assertEqual(mux.wait(), 1)
-        self.assertIn(path, mux.said())
-
-    def test_a_file_that_is_not_utf_8_is_named(self):
-        """An editor of another age."""
-        self._broken(b'sources: [\xfc]\n', 'UTF-8')
+        """The slip, not a traceback: of a hand, of a launch file, of an editor of another age."""
+        with tempfile.TemporaryDirectory() as folder:
+            started = []
+            for number, (text, *words) in enumerate(BROKEN):
+                path = os.path.join(folder, 'mux{}.yaml'.format(number))
+                if text is not None:
+                    with open(path, 'wb') as stream:
+                        stream.write(text)
+                # None of them gets as far as to take its name.
+                mux = start_mux('__name:=mux_with_a_broken_file', '_config:=' + path)
+                self.muxes.append(mux)
+                started.append((mux, [path] + words))
+            for mux, words in started:
+                self.assertEqual(mux.wait(), 1)
+                for word in words:
+                    self.assertIn(word, mux.said())
+                self.assertNotIn('Traceback', mux.said())
 
     def test_a_broken_file_does_not_end_the_mux_that_runs(self):
         """The file is read before the name is taken."""

@@ -70,7 +70,7 @@ class MuxLab(unittest.TestCase):
         first = self.twists.wait(rests, begun)
         self.assertLess(measured('first zero after the dead-man button', first.at - begun), 0.05)
         self.waits.wait(lambda _: self.waits.last() == 'dead_man')
-        self.twists.wait_silence(0.7)
+        self.twists.wait_silence(0.4)
         again = self.pad.hold(FORWARD, HELD)
         self.waits.wait(lambda value: value == 'neutral', again)
         wait_until(lambda: self.pad.last_sent > again + 0.5, 'nothing sent')
@@ -109,13 +109,13 @@ class MuxLab(unittest.TestCase):
         self.assertFalse([item for item in self.twists.since(start) if moves(item.value)])
 
     def test_unusable_messages_are_logged_at_most_once_a_second(self):
-        """Fifty a second for three seconds: a full log hides what matters."""
+        """Fifty a second for more than two seconds: a full log hides what matters."""
         start = self.pad.hold((float('inf'), 0.0), HELD)
-        self.diagnostics.wait(lambda _: time.monotonic() - start > 3.0, start + 3.0)
+        self.diagnostics.wait(lambda _: time.monotonic() - start > 2.2, start + 2.2)
         self.pad.hold(NEUTRAL, HELD)
         said = [item for item in self.log.since(start)
                 if item.value[0] == '/mux' and 'refused' in item.value[2]]
-        self.assertTrue(1 <= len(said) <= 6, said)
+        self.assertTrue(2 <= len(said) <= 4, said)
         gaps = [later.at - sooner.at for sooner, later in zip(said, said[1:])]
         self.assertTrue(all(gap > 0.95 for gap in gaps), gaps)
 

@@ -22,6 +22,8 @@ from mhri.msg import ControlMode
 UP = (0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 REST = (0.0,) * 8
 LB = 4
+# A source without "holds" would have fallen silent twice; no command comes any more [s].
+LONG_S, SILENCE_S = 1.2, 0.6
 
 
 class Speaker:
@@ -77,11 +79,11 @@ class MuxSources(unittest.TestCase):
         buttons = [int(number == LB) for number in range(11)]
         pad.say(REST, buttons)
         self.waits.wait(lambda _: self.waits.last() == '')
-        self.twists.wait_silence(2.0)
+        self.twists.wait_silence(LONG_S)
         self.assertEqual(self.waits.last(), '', 'at rest in silence')
         start = pad.say(UP, buttons)
         self.twists.wait(moves, start)
-        self.assert_moves_only((0.4, 0.0), 2.0, start)
+        self.assert_moves_only((0.4, 0.0), LONG_S, start)
         begun = pad.say(REST, buttons)
         zero = self.twists.wait(rests, begun)
         self.assertLess(measured('joy_node: let go to zero', zero.at - begun), 0.05)
@@ -96,14 +98,14 @@ class MuxSources(unittest.TestCase):
         steering = self.start('steering', 'twist', '/steering/cmd_vel', 'rqt_gui_robot_steering')
         steering.say((0.0, 0.0))
         self.waits.wait(lambda _: self.waits.last() == '')
-        self.twists.wait_silence(2.0)
+        self.twists.wait_silence(LONG_S)
         start = steering.say((0.8, 1.0), rate_hz=10.0)
         self.twists.wait(moves, start)
-        self.assert_moves_only((0.4, 0.5), 1.5, start)
+        self.assert_moves_only((0.4, 0.5), LONG_S, start)
         begun = steering.say((0.0, 0.0))
         zero = self.twists.wait(rests, begun)
         self.assertLess(measured('steering: let go to zero', zero.at - begun), 0.05)
-        self.twists.wait_silence(1.0)
+        self.twists.wait_silence(SILENCE_S)
         start = steering.say((-0.2, 0.0), rate_hz=10.0)
         self.twists.wait(lambda value: value == (-0.2, 0.0), start)
         begun = steering.say((-0.2, 0.0))
@@ -112,7 +114,7 @@ class MuxSources(unittest.TestCase):
         self.advice.wait(lambda words: 'has fallen silent' in words, begun)
         start = steering.say((-0.2, 0.0), rate_hz=10.0)
         self.waits.wait(lambda value: value == 'neutral', start)
-        self.twists.wait_silence(0.7)
+        self.twists.wait_silence(SILENCE_S)
         self.assertFalse([item for item in self.twists.since(zero.at) if moves(item.value)])
 
     def test_teleop_twist_joy_behind_that_joy_node(self):
@@ -122,7 +124,7 @@ class MuxSources(unittest.TestCase):
         self.waits.wait(lambda _: self.waits.last() == '')
         start = teleop.say((0.3, 0.2))
         self.twists.wait(moves, start)
-        self.assert_moves_only((0.3, 0.2), 2.0, start)
+        self.assert_moves_only((0.3, 0.2), LONG_S, start)
         self.twists.wait(rests, teleop.say((0.0, 0.0)))
 
     def test_a_pad_that_falls_silent_is_told_its_remedy(self):

@@ -166,9 +166,9 @@ class Stick:
     def _run(self):
         with self._changed:
             while not rospy.is_shutdown():
-                if self._held is not None:
+                changed = self._changed.wait(None if self._held is None else 0.02)
+                if self._held is not None and not changed:
                     self._send(*self._held)
-                self._changed.wait(None if self._held is None else 0.02)
 
     def _send(self, axes, buttons):
         self.last_sent = time.monotonic()
@@ -188,9 +188,12 @@ class Stick:
     def hold(self, axes, buttons=None):
         """Hold the stick like this from now on; return the time of it."""
         with self._changed:
+            now = time.monotonic()
             self._held = (axes, self._buttons if buttons is None else buttons)
+            # Here, not by the thread: what is held for no time at all has been said as well.
+            self._send(*self._held)
             self._changed.notify()
-            return time.monotonic()
+            return now
 
     def silence(self):
         """Send nothing from now on; return when the last message was sent."""
