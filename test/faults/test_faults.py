@@ -48,9 +48,12 @@ class Bench:
         wait_for(lambda: all(witness.live() for witness in self.witnesses), 30, 'the robots')
 
     def start_robot(self, name, number):
-        return self.system.launch(
-            'turtlebot.launch', 'name:=' + name, 'x:={}'.format(2.0 + 2.0 * number), 'y:=1.5',
-            'type:=' + ('turtlebot2', 'turtlebot3_burger')[number])
+        """Start the node that turtlebot.launch starts; roslaunch itself would take seconds."""
+        import rospy
+        rospy.set_param('/' + name, ({'robot_type': 'turtlebot2'}, {
+            'robot_type': 'turtlebot3', 'robot_model': 'burger'})[number])
+        return self.system.node('sim_robot', '__name:=base', '__ns:=/' + name,
+                                '_x:={}'.format(2.0 + 2.0 * number), '_y:=1.5')
 
     def start_panel(self):
         return self.system.node('panel', '--fresh', '--select', ' '.join(ROBOTS),

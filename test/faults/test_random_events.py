@@ -4,7 +4,7 @@
 
 Master, mux and gates are the real ones; two robots have the real guard; each has a computer of its
 own, whose link can be cut. ``MHRI_SEED`` repeats a run, ``MHRI_EVENTS`` is the number of events
-(default 40, for 75 s at most; ``MHRI_SECONDS`` for more), ``MHRI_KEEP`` a folder that stays
+(default 30, for 75 s at most; ``MHRI_SECONDS`` for more), ``MHRI_KEEP`` a folder that stays
 with all logs::
 
     MHRI_EVENTS=1000 MHRI_SEED=7 python3 -m pytest -s test/faults/test_random_events.py
@@ -28,12 +28,12 @@ from support.lag import LagMeter  # noqa: E402
 from support.random_world import JOY, OPERATORS, PAD, ROBOTS, World  # noqa: E402
 from support.reference_model import DRIVE, ReferenceModel, STAND  # noqa: E402
 
-EVENTS = int(os.environ.get('MHRI_EVENTS') or 40)
+EVENTS = int(os.environ.get('MHRI_EVENTS') or 30)
 # The short form is the same every time; a long one is new, unless it repeats one.
 SEED = int(os.environ.get('MHRI_SEED') or (
     random.SystemRandom().randrange(10 ** 6) if 'MHRI_EVENTS' in os.environ else 30))
 # No event is begun after so long [s].
-LIMIT_S = float(os.environ.get('MHRI_SECONDS') or (75 if EVENTS == 40 else 'inf'))
+LIMIT_S = float(os.environ.get('MHRI_SECONDS') or (75 if EVENTS == 30 else 'inf'))
 # The model is asked so often [s]; what a computer may be late by beside what is measured [s].
 GRID_S, SLACK_S = 0.02, 0.3
 # What is told was done at most so long before [s]: take-over is told when its answer has come.
@@ -160,8 +160,8 @@ class Events:
         """Hang until long after another process has taken over."""
         self.calm()
         self.done.append((time.monotonic(), 'SIGSTOP'))
-        self.world.hang(key, 6.0)
-        self.world.wait(5.0)
+        self.world.hang(key, 4.5)
+        self.world.wait(3.8)
 
     def cut(self):
         return self.world.cut(self.dice.choice(list(ROBOTS)), self._for())

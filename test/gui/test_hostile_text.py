@@ -128,7 +128,8 @@ def test_a_tool_tip_says_what_the_text_says(text, whole):
         assert document.toPlainText() == text
 
 
-@pytest.mark.parametrize('text', ['e' + '\u0301' * 300_000, 'a' * 1_000_000, '\n' * 1_000_000])
+@pytest.mark.parametrize('text', ['e' + '\u0301' * 300_000, 'a' * 1_000_000, '\n' * 1_000_000],
+                         ids=['accents', 'letters', 'lines'])
 def test_a_long_text_costs_nothing(panel, operator, ui_dir, text):
     begun = time.monotonic()
     furnish(panel, ui_dir, tidy_text(text), operator)

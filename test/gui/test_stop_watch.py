@@ -45,7 +45,8 @@ def watching():
             and any('stop_watch' in word for word in process.cmdline())]
 
 
-def test_it_is_started_again_and_ends_with_the_screen(operator, watch):
+def test_it_is_started_again_and_ends_with_the_screen(operator, watch, monkeypatch):
+    monkeypatch.setattr(stop_watch, '_AGAIN_AFTER', 5)
     operator.wait_until(watching, 30.0)
     first, = watching()
     first.kill()
