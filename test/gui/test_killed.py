@@ -25,8 +25,11 @@ def test_the_robots_stand_still_within_600_ms():
         rospy.init_node('killed_test', disable_signals=True)
         system.node('mux', '__name:=mux')
         system.node('gates')
-        system.launch('sim.launch', 'n:=2')
         robots = [Witness('bot1'), Witness('bot2')]
+        rospy.set_param('/bot1', {'robot_type': 'turtlebot2'})
+        rospy.set_param('/bot2', {'robot_type': 'turtlebot3', 'robot_model': 'burger'})
+        for robot in robots:
+            system.node('sim_robot', '__name:=base', '__ns:=/' + robot.name)
         panel = system.node('panel', '--fresh', '--select', 'bot1 bot2')
         window = wait_for(lambda: xdotool('search', '--onlyvisible', '--name', '^mhri'), 60,
                           'the window of the panel', poll_s=0.1)[0]
@@ -40,6 +43,7 @@ def test_the_robots_stand_still_within_600_ms():
                 time.sleep(0.01)
             return False
 
+        wait_for(lambda: all(robot.live() for robot in robots), 40, 'the robots')
         wait_for(press, 40, 'the key to drive both robots')
         since = time.monotonic()
         system.kill(panel, family=False)

@@ -203,7 +203,7 @@ def path_m(rows, since):
     return sum(math.hypot(b[3] - a[3], b[4] - a[4]) for a, b in zip(rows, rows[1:]))
 
 
-def latencies_ms(operator, rows, turns=100):
+def latencies_ms(operator, rows, turns=30):
     """Return how long each of so many changes of the stick took to a robot's command topic [ms].
 
     A change that is not there when the next one is due counts as of the time until then.
@@ -224,8 +224,8 @@ def latencies_ms(operator, rows, turns=100):
 
 
 def say_latencies(name, when, times):
-    print('MEASURED stick to {}, {}: p50 {:.1f} ms, p99 {:.1f} ms, {} changes'.format(
-        name, when, times[len(times) // 2], times[len(times) * 99 // 100], len(times)))
+    print('MEASURED stick to {}, {}: p50 {:.1f} ms, longest {:.1f} ms, {} changes'.format(
+        name, when, times[len(times) // 2], times[-1], len(times)))
 
 
 @pytest.mark.parametrize('name, other', [('bot1', 'bot2'), ('bot2', 'bot1')])
@@ -292,7 +292,9 @@ def test_what_an_outage_brings_back_moves_nothing(lab, operator, outage_s):
     for name, seen in rows.items():
         wait_for(lambda: first_standstill(seen(), cut[name]), 20, name + ' to stop', poll_s=0.05)
         wait_for(operator.witnesses[name].live, START_S, 'word of ' + name, poll_s=0.05)
-    wait_for(lambda: time.monotonic() > max(mended.values()) + 4.0, 20, 'the rest of the backlog')
+    # TCP tries again after 0.2 s and each time after twice as long: within the outage's own length.
+    backlog_s = min(4.0, 1.0 + 1.5 * outage_s)
+    wait_for(lambda: time.monotonic() > max(mended.values()) + backlog_s, 20, 'the backlog')
     for name, seen in rows.items():
         stopped = first_standstill(seen(), cut[name])
         strayed = path_m(seen(), stopped)
