@@ -22,6 +22,8 @@ from support.ros_system import wait_for  # noqa: E402
 
 GUARD = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', '..', 'utils', 'remote',
                      'mhri_guard')
+# Longer than a guard obeys what was said: a second [s].
+STALL_S = 1.5
 
 
 class GatesGuardTest(GatesCase):
@@ -104,7 +106,7 @@ class GatesGuardTest(GatesCase):
                    if before[1:] != ZERO)
 
     def stalled_robot(self, back_too):
-        """Stall the link of a guarded robot for 2 s with the stick held; return how it moved."""
+        """Stall the link of a guarded robot with the stick held; return how it moved."""
         delay = Delay()
         (name, receiver), = self.robots(1)
         self.behind_a_network('/mhri_gates', delay, '/{}/mhri_guard/command'.format(name),
@@ -120,14 +122,14 @@ class GatesGuardTest(GatesCase):
         self.hold_stick(0.3, 0.5)
         delay.stall()
         stalled = time.monotonic()
-        self.hold_stick(0.3, 2.0)
+        self.hold_stick(0.3, STALL_S)
         zero = next(at for at, *value in receiver.after(stalled) if tuple(value) == ZERO)
         measured('link stalled: the guard says zero', zero - stalled)
         back = time.monotonic()
         delay.go_on()
         self.hold_stick(0.0, 1.0)
-        moved_s = measured('link stalled for 2 s{}: the guarded robot moves afterwards for'.format(
-            '' if back_too else ', one way'), self.motion_s(receiver, back))
+        moved_s = measured('link stalled for {} s{}: the guarded robot moves afterwards for'.format(
+            STALL_S, '' if back_too else ', one way'), self.motion_s(receiver, back))
         self.centre(name, receiver)
         wait_for(lambda: self.drive(receiver, 0.2) == (0.2, 0.0), what='it to be driven again')
         return moved_s
