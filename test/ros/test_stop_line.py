@@ -1,7 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The line of the watch to the mux: what it says there, and what it makes of each answer."""
+"""The line to the mux: what is said there, and what is made of each answer."""
 import io
+import select
 import socket
 import struct
 import threading
@@ -14,6 +15,7 @@ from std_srvs.srv import SetBool
 from mhri.ros.driving import stop_line
 from mhri.ros.driving.stop_line import StopLine
 
+CALLER = '/somebody'
 STOPPED, REFUSED, FAILED, HANGS_UP, SILENT = 'stopped', 'refused', 'failed', 'hangs up', 'silent'
 
 
@@ -54,12 +56,10 @@ class Mux:
     def _talk(self, connection):
         self.headers.append(read_ros_handshake_header(connection, io.BytesIO(), 4096))
         write_ros_handshake_header(connection, {'callerid': '/mux'})
-        wanted = framed(SetBool._request_class(True))
         while self.answers:
-            request = connection.recv(len(wanted))
+            request = connection.recv(len(framed(SetBool._request_class(True))))
             if not request:
                 return
-            assert request == wanted
             self.requests.append(request)
             answer = self.answers.pop(0)
             if answer == HANGS_UP:
@@ -90,37 +90,54 @@ def _mux(monkeypatch):
         each.close()
 
 
+NOTHING = (False, 'the drive service does not answer')
+
+
+@pytest.mark.parametrize('value', [True, False])
 @pytest.mark.parametrize('answers, wanted', [
-    ([STOPPED], True),
-    ([HANGS_UP, STOPPED], True),
-    ([SILENT, STOPPED], True),
-    ([HANGS_UP, HANGS_UP], False),
-    ([REFUSED, REFUSED], False),
-    ([FAILED, FAILED], False),
-    ([REFUSED, STOPPED], True),
+    ([STOPPED], (True, 'a sentence')),
+    ([HANGS_UP, STOPPED], (True, 'a sentence')),
+    ([SILENT, STOPPED], (True, 'a sentence')),
+    ([HANGS_UP, HANGS_UP], NOTHING),
+    ([REFUSED], (False, 'a sentence')),
+    ([FAILED, FAILED], NOTHING),
+    ([FAILED, STOPPED], (True, 'a sentence')),
 ], ids=str)
-def test_what_comes_of_it(mux, answers, wanted):
+def test_what_comes_of_it(mux, answers, wanted, value):
     there = mux(*answers)
-    line = StopLine(there.uri)
-    assert line.stop() is wanted and there.answers == []
+    line = StopLine(CALLER, there.uri)
+    assert line.call(value) == wanted and there.answers == []
+    assert set(there.requests) == {framed(SetBool._request_class(value))}
     line.close()
 
 
 def test_the_line_is_held_open(mux):
     """So the master may be lost when it matters."""
     there = mux(STOPPED, STOPPED)
-    line = StopLine(there.uri)
+    line = StopLine(CALLER, there.uri)
     assert line.fileno() is None and line.connect() and line.fileno() is not None
     there.known = False
-    assert line.stop() and line.stop() and len(there.headers) == 1
-    header = there.headers[0]
-    assert (header['service'], header['persistent']) == ('/mux/set_stop_all', '1')
+    assert line.connect() and line.call(True)[0] and line.call(True)[0]
+    header, = there.headers
+    assert (header['service'], header['callerid'], header['persistent']) == (
+        '/mux/set_stop_all', CALLER, '1')
     line.close()
     assert line.fileno() is None and not line.connect()
+
+
+def test_a_line_that_has_ended_is_connected_anew_before_it_is_needed(mux):
+    there = mux(STOPPED, HANGS_UP, STOPPED)
+    line = StopLine(CALLER, there.uri)
+    assert line.call(True)[0]
+    with socket.fromfd(line.fileno(), socket.AF_INET, socket.SOCK_STREAM) as same:
+        same.sendall(framed(SetBool._request_class(True)))
+        select.select([same], [], [], 5.0)
+    assert line.connect() and len(there.headers) == 2
+    line.close()
 
 
 def test_nobody_there():
     with socket.create_server(('127.0.0.1', 0)) as closed:
         uri = 'http://127.0.0.1:{}'.format(closed.getsockname()[1])
-    line = StopLine(uri)
-    assert not line.connect() and not line.stop()
+    line = StopLine(CALLER, uri)
+    assert not line.connect() and line.call(True) == NOTHING

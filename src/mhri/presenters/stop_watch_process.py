@@ -18,6 +18,8 @@ from mhri.core.screen.hang import PressWatch
 from mhri.gui.driving.x_presses import XError, XPresses
 from mhri.ros.driving.stop_line import StopLine
 
+# Its caller id; not a node's name.
+_CALLER = '/mhri_stop_watch'
 _PACKET_BYTES = 1 << 18
 _RETRY_S = 0.25
 # How often to look for a missing mux.
@@ -77,7 +79,7 @@ class StopWatchProcess:
     def _try(self):
         """Stop if a press asks for it; else keep the line up for that moment."""
         if self._asking:
-            self._asking = not self._line.stop()
+            self._asking = not self._line.call(True)[0]
             if not self._asking or not self._told:
                 self._told = True
                 tell(self._screen, said=UNCONFIRMED if self._asking else STOPPED)
@@ -118,7 +120,7 @@ def main():
     screen = socket.socket(fileno=sys.stdin.fileno())
     screen.setblocking(False)
     try:
-        StopWatchProcess(screen, XPresses(), StopLine(sys.argv[1])).run()
+        StopWatchProcess(screen, XPresses(), StopLine(_CALLER, sys.argv[1])).run()
     except XError as error:
         tell(screen, cannot=str(error))
         # Ending with unread beats would destroy that message: the screen ends this process.

@@ -8,7 +8,7 @@ Publishes ``/mux_in/mode_select`` (``mhri/ControlMode``) and ``/mux_in/speed_lim
 Subscribes ``/mux/mode``, ``/mux/speed_limit``, ``/mux/waits_for``, ``/mux/pushed``,
 ``/mux/advice``, ``/mux/dead_man``, ``/robot_controller/stop_all``, ``/robot_controller/twist``, and
 believes only the mux in force (:mod:`mhri.ros.driving.in_force`). Calls ``/mux/set_stop_all`` on a
-thread of its own.
+thread of its own, over a line that is open before it is needed.
 """
 import threading
 import time
@@ -17,18 +17,17 @@ from geometry_msgs.msg import Twist
 import rospy
 from sensor_msgs.msg import Joy
 from std_msgs.msg import Bool, String
-from std_srvs.srv import SetBool
 
 from mhri.core.driving.limits import speed_limit_problem
 from mhri.core.screen.text import tidy_text
 from mhri.msg import ControlMode, RobotSelect
 from mhri.ros.convert import to_twist
 from mhri.ros.driving.in_force import InForce, STOP_SERVICE, Strangers
+from mhri.ros.driving.stop_line import LOOK_S, StopLine
 from mhri.ros.graph.prompt import PromptPublisher
 from mhri.ros.graph.rospy_inside import publishers
 from mhri.ros.worker import Worker
 
-RETRY_S = 0.5
 # The mux repeats a command at 20 Hz: an older one is over.
 ASKED_S = 0.3
 
@@ -61,7 +60,8 @@ class MuxClient:
         self.pushed = False
         self._pressed = pressed
         self._stopped = False
-        self._proxy = None
+        self._line = StopLine(rospy.get_name())
+        self._stopper = Worker('stop_all', self._keep_stopping, LOOK_S)
         self._wheel = None
         # Held while publishing, so that nothing is unregistered while in use.
         self._wheel_lock = threading.Lock()
@@ -70,7 +70,9 @@ class MuxClient:
             self._select_mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
             self._speed = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=1, latch=True)
         self.strangers = Strangers()
-        self._force = InForce(STOP_SERVICE, self.strangers.refuse)
+        # An older mux may keep its end of the line.
+        self._force = InForce(STOP_SERVICE, self.strangers.refuse,
+                              lambda caller: self._stopper.do(self._line.close))
         self._heard, *heard = [
             self._force.subscribe(name, kind, hear, queue_size=10, tcp_nodelay=True)
             for name, kind, hear in (
@@ -84,7 +86,7 @@ class MuxClient:
                 ('/robot_controller/twist', Twist, self._on_twist)) if speaks or kind != Twist]
         self._topics = list(filter(None, (self._heard, self._select_mode, self._speed, *heard)))
         self._force.start()
-        self._stopper = Worker('stop_all', self._keep_stopping, RETRY_S).start()
+        self._stopper.start()
         if pressed:
             self._stopper.do(self._engage)
 
@@ -203,8 +205,12 @@ class MuxClient:
 
     def close(self):
         """Stop the worker; returns at once."""
-        self._stopper.stop()
+        self._stopper.do(self._hang_up)
         self._force.stop()
+
+    def _hang_up(self):
+        self._line.close()
+        self._stopper.stop()
 
     def unregister(self):
         """Unregister every topic (blocking: it asks the master)."""
@@ -212,29 +218,10 @@ class MuxClient:
             topic.unregister()
         self.leave_wheel()
 
-    def _call(self, value):
-        """Call the mux over a connection kept open, so that it works without a master."""
-        if self._proxy is None:
-            self._proxy = rospy.ServiceProxy(STOP_SERVICE, SetBool, persistent=True)
-        try:
-            return self._proxy(value)
-        except (rospy.ServiceException, rospy.ROSException, OSError):
-            self._proxy.close()
-            self._proxy = None
-            raise
-
-    def _try(self, value):
-        """Call, and once more over a new connection if the old one is dead."""
-        try:
-            return self._call(value)
-        except (rospy.ServiceException, rospy.ROSException, OSError):
-            return self._call(value)
-
     def _engage(self):
-        try:
-            self._try(True)
-        except (rospy.ServiceException, rospy.ROSException, OSError):
-            self._on_answer('NOT STOPPED yet: the drive service does not answer; asking again')
+        done, words = self._line.call(True)
+        if not done:
+            self._on_answer('NOT STOPPED yet: {}; asking again'.format(words))
             return
         with self._lock:
             if self._stopped:
@@ -245,17 +232,16 @@ class MuxClient:
         """Ask the mux again until it confirms a press: it may be restarting."""
         if self._pressed:
             self._engage()
+        else:
+            # A press must not need the master.
+            self._line.connect()
 
     def _release(self):
-        try:
-            answer = self._try(False)
-        except (rospy.ServiceException, rospy.ROSException, OSError):
-            self._on_answer('not released: the drive service does not answer')
-            return
-        if answer.success:
+        done, words = self._line.call(False)
+        if done:
             with self._lock:
                 self._pressed = False
-        self._on_answer('' if answer.success else 'not released: ' + answer.message)
+        self._on_answer('' if done else 'not released: ' + words)
 
 
 class Wheel:

@@ -1,12 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""STOP ALL for a small process that is not a node: a line to the mux, kept open.
+"""STOP ALL, and its release: a line to the mux, kept open.
 
-Calls ``/mux/set_stop_all`` (``std_srvs/SetBool``, true) by TCPROS itself
+Calls ``/mux/set_stop_all`` (``std_srvs/SetBool``) by TCPROS itself
 (http://wiki.ros.org/ROS/TCPROS), with a time limit on each step, and without the time and memory
-that loading rospy and the messages takes. Kept open, it needs no master when it matters.
+that loading rospy and the messages takes: also for a small process that is not a node. Connected
+ahead, it needs no master when it matters.
 """
 import io
+import select
 import socket
 import struct
 from urllib.parse import urlsplit
@@ -17,14 +19,15 @@ from rosgraph.network import (
 from mhri.ros.graph.master_api import MasterApi, MasterError
 
 STOP_SERVICE = '/mux/set_stop_all'
-# The caller id of the watch; not a node's name.
-CALLER = '/mhri_stop_watch'
+# How often to look whether a line has to be connected anew [s].
+LOOK_S = 0.5
 # A mux that cannot reach the master answers late.
 _TIMEOUT_S = 2.0
-# SetBool's request, true, and its answer: whether the call succeeded and, in the answer's own
-# length, "success" before the message.
-_REQUEST = struct.pack('<IB', 1, 1)
+# SetBool's request behind its length, and what comes before its answer: whether the call succeeded,
+# and the length of the rest: "success", and the message behind its own length.
+_REQUEST = struct.Struct('<IB')
 _ANSWER = struct.Struct('<BI')
+_NO_ANSWER = 'the drive service does not answer'
 _FAILURES = (OSError, MasterError, ROSHandshakeException, LookupError, ValueError, TypeError,
              struct.error)
 
@@ -32,11 +35,13 @@ _FAILURES = (OSError, MasterError, ROSHandshakeException, LookupError, ValueErro
 class StopLine:
     """The line; every call ends within a few seconds.
 
-    :param master_uri: the master, which knows the mux's address
+    :param caller: the caller id; a node's name, or none's
+    :param master_uri: the master, which knows the mux's address; default ``ROS_MASTER_URI``
     """
 
-    def __init__(self, master_uri):
-        self._master = MasterApi(CALLER, _TIMEOUT_S, master_uri)
+    def __init__(self, caller, master_uri=None):
+        self._caller = caller
+        self._master = MasterApi(caller, _TIMEOUT_S, master_uri)
         self._socket = None
 
     def fileno(self):
@@ -45,6 +50,8 @@ class StopLine:
 
     def connect(self):
         """Connect the line if it is down; return whether it is up."""
+        if self._has_ended():
+            self.close()
         if self._socket is None:
             try:
                 self._open(urlsplit(self._master.call('lookupService', STOP_SERVICE)))
@@ -52,31 +59,48 @@ class StopLine:
                 self.close()
         return self._socket is not None
 
+    def _has_ended(self):
+        """Tell whether there is news on the line: between calls that can only be its end."""
+        if self._socket is None:
+            return False
+        poll = select.poll()
+        poll.register(self._socket, select.POLLIN)
+        return bool(poll.poll(0))
+
     def _open(self, place):
         """Connect and shake hands."""
         self._socket = socket.create_connection((place.hostname, place.port), _TIMEOUT_S)
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         write_ros_handshake_header(self._socket, {
-            'service': STOP_SERVICE, 'callerid': CALLER, 'md5sum': '*', 'persistent': '1'})
+            'service': STOP_SERVICE, 'callerid': self._caller, 'md5sum': '*', 'persistent': '1'})
         found = read_ros_handshake_header(self._socket, io.BytesIO(), 4096)
         if 'error' in found:
             raise ValueError(found['error'])
 
-    def stop(self):
-        """Stop all robots; return whether the mux has confirmed it."""
-        # The line may have died unnoticed: try again over a new one.
-        return any(self.connect() and self._ask() for _ in range(2))
+    def call(self, value):
+        """Stop all robots, or release them; return (whether the mux did so, words).
 
-    def _ask(self):
-        """Call the service over the line as it is."""
+        :returns: the words are the mux's own, or say that it does not answer
+        """
+        # The line may have died unnoticed: try again over a new one.
+        for _ in range(2):
+            answer = self.connect() and self._ask(value)
+            if answer:
+                return answer
+        return False, _NO_ANSWER
+
+    def _ask(self, value):
+        """Call the service over the line as it is; return its answer, None if there is none."""
         try:
-            self._socket.sendall(_REQUEST)
+            self._socket.sendall(_REQUEST.pack(1, value))
             done, size = _ANSWER.unpack(self._read(_ANSWER.size))
             answer = self._read(size)
-            return done == 1 and answer[:1] == b'\x01'
+            if done != 1:
+                raise ValueError(answer)
+            return answer[:1] == b'\x01', answer[5:].decode(errors='replace')
         except _FAILURES:
             self.close()
-            return False
+            return None
 
     def _read(self, size):
         """Read exactly this many bytes."""

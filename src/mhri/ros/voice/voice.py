@@ -18,7 +18,6 @@ import time
 
 import rospy
 from std_msgs.msg import Bool
-from std_srvs.srv import SetBool
 
 from mhri.core.driving.seat import MOST_ROBOTS
 from mhri.core.robots.names import name_problem
@@ -26,6 +25,7 @@ from mhri.core.voice.grammar import MODE, PANEL, STOP
 from mhri.core.voice.names import in_places
 from mhri.msg import ControlMode, Heard, PanelRequest, RobotSelect
 from mhri.ros.driving.in_force import InForce, STOP_SERVICE
+from mhri.ros.driving.stop_line import LOOK_S, StopLine
 from mhri.ros.graph.live_parameter import LiveParameter
 from mhri.ros.worker import Worker
 
@@ -60,8 +60,9 @@ class VoiceLink:
         self._heard = rospy.Publisher('~heard', Heard, queue_size=10)
         self._request = rospy.Publisher('/panel_in/request', PanelRequest, queue_size=10)
         self._mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
-        self._stop = None
-        self._stopper = Worker('stop_all').start()
+        self._line = StopLine(rospy.get_name())
+        # A stop that is heard must not need the master.
+        self._stopper = Worker('stop_all', self._line.connect, LOOK_S).start()
 
     def start(self, reader, wanted):
         """Start listening to the graph.
@@ -71,8 +72,9 @@ class VoiceLink:
         """
         self._reader = reader
         rospy.Subscriber('~push_to_talk', Bool, self._on_push, queue_size=10, tcp_nodelay=True)
-        InForce(STOP_SERVICE).start().subscribe('/mux/mode', ControlMode, self._on_mode,
-                                                queue_size=10)
+        # An older mux may keep its end of the line.
+        force = InForce(STOP_SERVICE, on_new=lambda caller: self._stopper.do(self._line.close))
+        force.start().subscribe('/mux/mode', ControlMode, self._on_mode, queue_size=10)
         rospy.Subscriber('/robot_controller/robot_select', RobotSelect, self._on_selection,
                          queue_size=1)
         LiveParameter(NUMBERS_PARAMETER, {}, self._on_numbers, wanted).start()
@@ -128,23 +130,10 @@ class VoiceLink:
         wait_s = 0.0
         while not rospy.is_shutdown():
             time.sleep(wait_s)
-            try:
-                self._call_stop()
+            done, words = self._line.call(True)
+            if done:
                 return
-            except (rospy.ServiceException, rospy.ROSException, OSError) as error:
-                if self._clock() > deadline:
-                    rospy.logerr('a stop was heard, but %s does not answer: %s', STOP_SERVICE,
-                                 error)
-                    return
-                wait_s = _RETRY_S
-
-    def _call_stop(self):
-        """Call the mux over a connection kept open, so that it works without a master."""
-        if self._stop is None:
-            self._stop = rospy.ServiceProxy(STOP_SERVICE, SetBool, persistent=True)
-        try:
-            self._stop(True)
-        except (rospy.ServiceException, rospy.ROSException, OSError):
-            self._stop.close()
-            self._stop = None
-            raise
+            if self._clock() > deadline:
+                rospy.logerr('a stop was heard, but not taken: %s', words)
+                return
+            wait_s = _RETRY_S
