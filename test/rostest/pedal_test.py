@@ -110,7 +110,7 @@ class FootSwitch(PedalTest):
         """No device is taken from the desktop, SDL is not loaded, and nothing is polled."""
         switch = self.node.plug()
         self.assertIn('suspended', self.node.words())
-        spent = spent_cpu(self.node.pid, 3.0)
+        spent = spent_cpu(self.node.pid, 1.5)
         print('MEASURED suspended: {:.2f} % of a core'.format(100.0 * spent))
         self.assertLess(spent, 0.05)
         with open('/proc/{}/maps'.format(self.node.pid), encoding='utf-8') as maps:

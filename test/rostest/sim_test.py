@@ -299,49 +299,45 @@ class SimTest(unittest.TestCase):
         self.assertFalse(self.witnesses['bot2'].moved_since(since))
         self.assertTrue(self.witnesses['bot2'].live())
 
-    def test_two_robots_see_each_other(self):
-        self.start('here', HERE)
-        self.start('there', THERE)
-        gap = THERE[0] - HERE[0] - BURGER_RADIUS_M
-        for name, ray in (('here', 0), ('there', 180)):
-            scan = self.hear('/{}/scan'.format(name), LaserScan).newest(
-                lambda message, ray=ray: message.ranges[ray] < 1.2)
-            self.assertAlmostEqual(scan.ranges[ray], gap, delta=0.05)
-
-    def test_killed_it_is_gone_but_its_body_stays_until_it_is_back(self):
+    def test_what_another_sees_of_it_from_start_to_end(self):
+        """It is seen, killed, back elsewhere, replaced by one of its name, and switched off."""
         self.start('here', HERE)
         killed = self.start('there', THERE)
         scans = self.hear('/here/scan', LaserScan)
         odometry = self.hear('/there/odom', Odometry)
+        self.they_see_each_other(scans)
+        first = self.killed_its_body_stays_until_it_is_back(killed, scans, odometry)
+        leaver = self.second_of_one_name_ends_the_first_and_is_seen(first, scans)
+        self.system.kill(leaver, 15)
+        scans.newest(lambda message: message.ranges[0] > 1.2)
+        with open(leaver.log) as stream:
+            self.assertNotIn('Traceback', stream.read(), 'its body is carried away')
+
+    def they_see_each_other(self, scans):
+        gap = THERE[0] - HERE[0] - BURGER_RADIUS_M
+        for heard, ray in ((scans, 0), (self.hear('/there/scan', LaserScan), 180)):
+            scan = heard.newest(lambda message, ray=ray: message.ranges[ray] < 1.2)
+            self.assertAlmostEqual(scan.ranges[ray], gap, delta=0.05)
+
+    def killed_its_body_stays_until_it_is_back(self, killed, scans, odometry):
+        """Return the one that is back, to the left of where it was."""
         odometry.newest()
-        scans.newest(lambda message: message.ranges[0] < 1.2)
         self.system.kill(killed)
         wait_for(lambda: odometry.silent_for(0.3), 2.0, 'its topics to fall silent')
         self.assertLess(max(message.ranges[0] for _, message in scans.wait(10)), 1.2)
-        self.start('there', (THERE[0], THERE[1] + 1.0, 0.0))
+        back = self.start('there', (THERE[0], THERE[1] + 1.0, 0.0))
         odometry.newest()
         scans.newest(lambda message: message.ranges[0] > 1.2)
         self.assertAlmostEqual(scans.newest().ranges[45], math.sqrt(2.0) - BURGER_RADIUS_M,
                                delta=0.05)
+        return back
 
-    def test_switched_off_its_body_is_carried_away(self):
-        self.start('here', HERE)
-        leaver = self.start('there', THERE)
-        scans = self.hear('/here/scan', LaserScan)
-        scans.newest(lambda message: message.ranges[0] < 1.2)
-        self.system.kill(leaver, 15)
-        scans.newest(lambda message: message.ranges[0] > 1.2)
-        with open(leaver.log) as stream:
-            self.assertNotIn('Traceback', stream.read())
-
-    def test_second_of_one_name_ends_the_first_and_is_seen(self):
-        self.start('here', HERE)
-        first = self.start('there', THERE)
-        scans = self.hear('/here/scan', LaserScan)
-        scans.newest(lambda message: message.ranges[0] < 1.2)
-        self.start('there', (THERE[0], THERE[1] + 1.0, 0.0))
+    def second_of_one_name_ends_the_first_and_is_seen(self, first, scans):
+        """Return the second, where the one that was killed stood."""
+        second = self.start('there', THERE)
         first.wait(PATIENCE_S)
-        scans.newest(lambda message: message.ranges[0] > 1.2 and message.ranges[45] < 1.4)
+        scans.newest(lambda message: message.ranges[0] < 1.2 and message.ranges[45] > 1.4)
+        return second
 
     def test_restarted_master_knows_it_again(self):
         before = {name: process_id('/{}/base'.format(name)) for name in ROBOTS}
@@ -374,7 +370,6 @@ class SimTest(unittest.TestCase):
                  ("no template 'turtelbot2'", {'robot_type': 'turtelbot2'}),
                  ("no simulated body for 'turtlebot3'", {'robot_type': 'turtlebot3'}),
                  ("no model 'large'", {'robot_type': 'turtlebot3', 'robot_model': 'large'}),
-                 ("no simulated body for 'turtlesim'", {'robot_type': 'turtlesim'}),
                  ('/{}/base/x: expected a number', good, None, '_x:=left'),
                  ('cannot stand at', good, None, '_x:=nan'),
                  ('cannot stand at', good, None, '_x:=0.05', '_y:=1.0'),
