@@ -26,7 +26,7 @@ from rospy.impl import tcpros_base, tcpros_pubsub
 from rospy.impl.registration import get_topic_manager
 from rospy.impl.tcpros_pubsub import check_if_still_publisher
 
-from mhri.ros.graph.rospy_inside import meet_publishers
+from mhri.ros.graph.rospy_inside import meet_publishers, require
 
 LIMIT_S = 10.0
 # A header is a few hundred bytes. One that claims more is no header: "GET " is 541 million.
@@ -40,31 +40,11 @@ _LENGTH = struct.Struct('<I')
 _LOG = logging.getLogger('rosout')
 
 
-def _check():
-    """Make sure that rospy is as this module assumes.
-
-    :raises ImportError: it is not
-    """
-    accepts = getattr(getattr(tcpros_base, 'TCPServer', None), 'run', None)
-    reads = getattr(getattr(tcpros_base, 'TCPROSServer', None), '_tcp_server_callback', None)
-    header = getattr(getattr(tcpros_base, 'TCPROSTransport', None), 'read_header', None)
-    connects = getattr(tcpros_pubsub, 'robust_connect_subscriber', None)
-    wanted = ((connects, ('conn', 'dest_addr', 'dest_port', 'pub_uri', 'receive_cb',
-                          'resolved_topic_name'), {'connect', 'receive_loop'}),
-              (accepts, ('self',), {'accept', 'inbound_handler'}),
-              (header, ('self',), {'read_buff', 'read_ros_handshake_header'}),
-              (reads, ('self', 'sock', 'client_addr'), {'read_ros_handshake_header'}))
-    for function, arguments, used in wanted:
-        code = getattr(function, '__code__', None)
-        if code is None or code.co_varnames[:code.co_argcount] != arguments \
-                or not used <= set(code.co_names):
-            raise ImportError('rospy.impl is not that of ROS Noetic (TCPServer.run, TCPROSServer.'
-                              '_tcp_server_callback, TCPROSTransport.read_header or '
-                              'robust_connect_subscriber): mhri.ros.graph.handshake has to be '
-                              'adapted to it')
-
-
-_check()
+require([], [
+    (tcpros_base.TCPServer.run, ('accept', 'inbound_handler')),
+    (tcpros_base.TCPROSServer._tcp_server_callback, ('read_ros_handshake_header',)),
+    (tcpros_base.TCPROSTransport.read_header, ('read_buff', 'read_ros_handshake_header')),
+    (tcpros_pubsub.robust_connect_subscriber, ('connect', 'receive_loop'))])
 
 
 class Doorman:
