@@ -13,9 +13,6 @@ import rospy
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.rospy_inside import meet_publishers, never_ask_for, registrations
 
-PRESENT = 'present'
-LOST = 'lost'
-
 
 def log_without_master():
     """Keep rospy from asking the master for every line it logs; call it after ``rospy.init_node``.
@@ -32,11 +29,11 @@ def log_without_master():
 class MasterWatch:
     """Asks the master again and again whether it lives and knows this node.
 
-    It calls ``on_lost(reason)`` once when the master refused two calls in a row, or did not answer
-    one for ``patience_s``: at most ``period_s`` plus ``patience_s`` after it hung. It calls
-    ``on_back(forgotten)`` once when the master answers again (``forgotten``: it is another master
-    process that did not know this node; it now has the registrations and ``parameters`` again). A
-    master restarted between two calls counts as lost and back. Both run on the watch's own thread.
+    It calls ``on_lost(reason)``, on its own thread, once when the master refused two calls in a
+    row, or did not answer one for ``patience_s``: at most ``period_s`` plus ``patience_s`` after it
+    hung. A master restarted between two calls counts as lost, too. Another master process, which
+    did not know this node, gets its registrations and ``parameters``. ``lost`` tells whether the
+    master is lost now.
 
     :param parameters: {absolute name: value} that this node owns and restores
     :param period_s: the time between two calls [s]
@@ -44,16 +41,15 @@ class MasterWatch:
         so allow about one second at least for a busy computer
     """
 
-    def __init__(self, on_lost=None, on_back=None, parameters=None, period_s=0.5,
+    def __init__(self, on_lost=lambda reason: None, parameters=None, period_s=0.5,
                  patience_s=1.0):
-        self._on_lost = on_lost or (lambda reason: None)
-        self._on_back = on_back or (lambda forgotten: None)
+        self._on_lost = on_lost
         self.parameters = dict(parameters or {})
         self._period_s = period_s
         self._patience_s = patience_s
         self._api = MasterApi(rospy.get_name(), timeout_s=patience_s)
         self._misses = 0
-        self.state = PRESENT
+        self.lost = False
         self._done = threading.Event()
         self._thread = threading.Thread(target=self._run, name='master_watch', daemon=True)
 
@@ -72,11 +68,8 @@ class MasterWatch:
     def set_parameter(self, name, value):
         """Set a parameter now (blocking, so never on the GUI thread) and after every restart."""
         self.parameters[name] = value
-        self._api_once().call('setParam', name, value)
-
-    def _api_once(self):
-        """Return a proxy for threads other than the watch's own."""
-        return MasterApi(rospy.get_name(), timeout_s=1.0)
+        # Not the watch's own proxy, which is its thread's.
+        MasterApi(rospy.get_name(), timeout_s=1.0).call('setParam', name, value)
 
     def _run(self):
         while not self._done.wait(self._period_s) and not rospy.is_shutdown():
@@ -108,22 +101,20 @@ class MasterWatch:
             # This node itself has taken back what the master no longer knows.
             return
         if uri is None:
-            if self.state == PRESENT:
+            if not self.lost:
                 self._lose('the ROS master was restarted')
             self._register()
             rospy.loginfo('the ROS master had forgotten %s: registered again', rospy.get_name())
-        if self.state == LOST:
-            self.state = PRESENT
-            self._on_back(uri is None)
+        self.lost = False
 
     def _miss(self, reason, hangs):
         """Count a call without an answer; two in a row, or one that hangs, mean a lost master."""
         self._misses += 2 if hangs else 1
-        if self._misses >= 2 and self.state == PRESENT:
+        if self._misses >= 2 and not self.lost:
             self._lose(reason)
 
     def _lose(self, reason):
-        self.state = LOST
+        self.lost = True
         self._on_lost(reason)
         rospy.logwarn('ROS master lost: %s', reason)
 

@@ -28,7 +28,7 @@ from mhri.ros.driving.gates_client import GatesClient
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.log import start_screen_node
 from mhri.ros.graph.master_api import MasterApi, MasterError
-from mhri.ros.graph.master_watch import LOST, MasterWatch
+from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.graph.rospy_inside import is_initialised
 from mhri.ros.driving.mux_client import MuxClient
 from mhri.ros.screen.panel_diagnostics import PanelDiagnostics
@@ -129,7 +129,7 @@ class ScreenBackend:
 
     def _supervise(self):
         """Fill in what is missing: the sources of the mux, the links and types of robots."""
-        if self._watch.state != LOST:
+        if not self._watch.lost:
             self._meet_mux()
             self._jobs.settle_parameters(self.selection.numbered() if self.drives() else None)
             self.recordings.limits = self.settings.recording_limits()
@@ -330,7 +330,7 @@ class ScreenBackend:
         """Return the state of the connection, one of ``ROS_*``."""
         if self._mux is not None and rospy.is_shutdown():
             return ROS_CUT_OFF
-        lost = self._ros == ROS_CONNECTED and self._watch.state == LOST
+        lost = self._ros == ROS_CONNECTED and self._watch.lost
         return ROS_NO_MASTER if lost else self._ros
 
     def _control(self):
