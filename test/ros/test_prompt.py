@@ -261,7 +261,7 @@ def test_a_connection_that_rospy_is_adding_meanwhile_is_taken_over(monkeypatch):
     publisher = PromptPublisher('/bot1/cmd_vel', Twist)
     go_on.set()
     adding[0].join(20.0)
-    publisher.publish_urgent(Twist())
+    publisher.publish(Twist(), urgent=True)
     found = len(publisher.links())
     wrapper[0]._thread.join(20.0)
     assert not wrapper[0]._thread.is_alive(), 'nothing would end it: the program could not end'

@@ -58,7 +58,7 @@ class PowerTopic:
         self._links = self._publisher.links()
         if first_obeying(self._robot, [listeners(self._links)]) is None:
             raise NotTold('no robot listens to {}'.format(self._publisher.resolved_name))
-        self._publisher.publish_urgent(self._messages[cut])
+        self._publisher.publish(self._messages[cut], urgent=True)
 
     def has_news(self):
         """Tell whether there are listeners that have not been told."""

@@ -382,10 +382,10 @@ class Mux:
             if self._closing:
                 return
             self._closing = True
-            self._twist.publish(zero)
+            self._twist.publish(zero, urgent=True)
             self._changed.notify()
         for part in (self._diagnostics, self._memory, self._watch, self._gates, self._advice):
             part.stop()
         for _ in range(int(ZEROS_S * REPEAT_HZ)):
             time.sleep(1.0 / REPEAT_HZ)
-            self._twist.publish(zero)
+            self._twist.publish(zero, urgent=True)

@@ -79,7 +79,8 @@ class RobotGate:
         self._guard = GuardLink(session)
         self._guarded = False
         self._heard_at = None
-        self._round_trip_s = math.nan
+        #: round-trip time to a node of the robot [s], NaN if unknown
+        self.round_trip_s = math.nan
         self._publishers = [PromptPublisher('/{}/mhri_guard/command'.format(name), TwistStamped)]
         self._publishers += [PromptPublisher(topic_of(name, topic), Twist)
                              for topic in robot_type.command[:MOST_TOPICS]]
@@ -108,12 +109,7 @@ class RobotGate:
         return next((uri for uri in map(publisher_uri, self._odometry + [self._echo]) if uri), None)
 
     def _on_round_trip(self, round_trip_s):
-        self._round_trip_s = math.nan if round_trip_s is None else round_trip_s
-
-    @property
-    def round_trip_s(self):
-        """Round-trip time to a node of the robot [s], NaN if unknown."""
-        return self._round_trip_s
+        self.round_trip_s = math.nan if round_trip_s is None else round_trip_s
 
     def _on_odometry(self, message):
         first, self._heard_at = self._heard_at is None, self._clock()
@@ -220,7 +216,7 @@ class RobotGate:
 
     def leave(self):
         """Tell the guard that this is the end: who is left on purpose does not go back alone."""
-        self._heard.publish_urgent(String())
+        self._heard.publish(String(), urgent=True)
 
     def _lost(self, now):
         """Tell whether the robot is not heard or its link confirms nothing."""
@@ -252,10 +248,6 @@ class RobotGate:
             self._listened.publish_packed(
                 packed_twist(velocity.linear_mps, velocity.angular_rad_s))
 
-    def _chosen(self):
-        """Return the publisher to use for commands, None if nobody listens."""
-        return self._publishers[0] if self._guarded else self._listened
-
     def _send_to_guard(self, velocity):
         guard = self._publishers[0]
         if not guard.links():
@@ -263,7 +255,7 @@ class RobotGate:
         message = TwistStamped(twist=to_twist(velocity.linear_mps, velocity.angular_rad_s))
         message.header.frame_id = self._guard.next_id(self.rule.state == STOPPED)
         message.header.stamp = rospy.Time.from_sec(time.time())
-        (guard.publish_urgent if velocity.is_zero() else guard.publish)(message)
+        guard.publish(message, urgent=velocity.is_zero())
 
     def unheard(self, now):
         """Return the (topic, type) to which nobody listens though the robot is there, as a list."""
@@ -273,7 +265,8 @@ class RobotGate:
 
     def message(self):
         """Return the ``mhri/RobotGate`` of this moment."""
-        rule, chosen, sent = self.rule, self._chosen(), self.rule.sent
+        rule, sent = self.rule, self.rule.sent
+        chosen = self._publishers[0] if self._guarded else self._listened
         brake, way_m, on_robot = self.brake()
         return RobotGateMessage(
             name=self.name, obeys=rule.obeys,
@@ -281,7 +274,7 @@ class RobotGate:
             topic=chosen.resolved_name if chosen else '', guarded=self._guarded,
             stop_confirmed=self._guarded and self._guard.stop_confirmed,
             sent=to_twist(sent.linear_mps, sent.angular_rad_s), power=self.power.state,
-            round_trip_s=self._round_trip_s, brake=brake, free_way_m=way_m,
+            round_trip_s=self.round_trip_s, brake=brake, free_way_m=way_m,
             brake_on_robot=on_robot,
             back_after_s=self._guard_state.back_after_s if self._guarded else 0.0)
 

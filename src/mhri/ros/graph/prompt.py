@@ -224,21 +224,19 @@ class PromptPublisher(rospy.Publisher):
             # A waiting robot may have connected since the topic was registered, above.
             impl.connections = [_prompt(link, queue_size) for link in impl.connections]
 
-    def publish(self, message):
-        """Publish a message."""
-        self.publish_packed(self._packed(message))
+    def publish(self, message, urgent=False):
+        """Publish a message.
 
-    def publish_urgent(self, message):
-        """Publish what may be late but must not be dropped: the word to stop.
-
-        It goes even into a stalled link, behind the little already in it: whatever happens to this
-        program meanwhile, the robot hears it before anything newer.
+        :param urgent: it may be late but must not be dropped: the word to stop. It goes even into
+            a stalled link, behind the little already in it: whatever happens to this program
+            meanwhile, the robot hears it before anything newer
         """
-        self.publish_packed(self._packed(message), urgent=True)
+        self.publish_packed(self._packed(message), urgent)
 
     def publish_packed(self, data, urgent=False):
         """Publish a message as it goes over the line, its length before it.
 
+        :param urgent: see :meth:`publish`
         :raises rospy.ROSException: this publisher was unregistered
         """
         impl = self.impl

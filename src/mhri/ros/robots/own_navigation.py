@@ -31,7 +31,7 @@ class OwnNavigation:
             self._told_at = -math.inf
         elif now - self._told_at >= AGAIN_S:
             self._told_at = now
-            self._cancel.publish_urgent(GoalID())
+            self._cancel.publish(GoalID(), urgent=True)
 
     def close(self):
         """Unregister (blocking: it asks the master)."""
