@@ -40,8 +40,8 @@ LOST = ' lost'
 # Silence after it [s], for listeners that go by time alone.
 SILENCE_S = 1.0
 HANGING_S = 2.0
-# rospy writes on one thread per connection: a published message needs this to leave the process.
-FLUSH_S = 0.1
+# A driver that hangs keeps the node from ending for so long at most [s].
+END_S = 0.1
 # How soon an idle node is found again after a restart of the master [s].
 MASTER_PERIOD_S = 2.0
 
@@ -96,16 +96,12 @@ class InputNode:
         with self._changed:
             if self._state == CLOSED:
                 return
-            spoke = self._last is not None
             self._enter(CLOSED)
         if self._diagnostics:
             self._diagnostics.set()
         self._watch.stop()
-        if spoke:
-            time.sleep(FLUSH_S)
         if self._thread.is_alive():
-            # A hanging driver must not keep the node from ending.
-            self._thread.join(FLUSH_S)
+            self._thread.join(END_S)
 
     def words(self):
         """Return the state of the device, as in the service's answer."""
@@ -160,18 +156,19 @@ class InputNode:
     def _neutral(self):
         """Send the one neutral Joy that ends the stream; call it with the lock held."""
         if self._last is not None:
-            self._publish(self._last.neutral(), LOST)
+            self._publish(self._last.neutral(), last=True)
             self._silent_until = self._clock() + SILENCE_S
         self._last = None
         self._pacer = Pacer()
 
-    def _publish(self, reading, suffix=''):
+    def _publish(self, reading, last=False):
         """Publish one reading; call it with the lock held, so that nothing overtakes a neutral."""
         message = Joy(axes=reading.axes, buttons=reading.buttons)
         message.header.stamp = rospy.Time.now()
         message.header.frame_id = (
-            'profile:' + reading.profile if reading.profile else '') + suffix
-        self._joy.publish(message)
+            'profile:' + reading.profile if reading.profile else '') + (LOST if last else '')
+        # The last word may be late, but must not be dropped.
+        self._joy.publish(message, urgent=last)
         self._published += 1
 
     def _run(self):
