@@ -6,6 +6,7 @@ import time
 
 import rospy
 
+from mhri.core.driving.seat import MOST_ROBOTS
 from mhri.core.robots.names import name_problem
 from mhri.core.robots.robot_types import resolve_robot_type, Seen
 from mhri.ros.graph.look import robot_facts
@@ -18,7 +19,6 @@ DRIVEN_PARAMETER = '/mhri_gates/robots'
 PERIOD_S = 1.0
 # How often a robot that is heard but does not listen is told again about its topics [s].
 ANNOUNCE_S = 5.0
-MOST_ROBOTS = 64
 
 
 def _names(value):

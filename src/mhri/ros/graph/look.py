@@ -44,7 +44,6 @@ class Found:
     leftovers: Tuple = ()
     refused: Tuple = ()
     facts: dict = None
-    took_s: float = 0.0
 
 
 def knock(uris, timeout_s=KNOCK_S):
@@ -89,7 +88,6 @@ def look_for_robots(caller_id, ignore, known=(), api=None, types=None):
     :returns: :class:`Found`
     :raises MasterError: the master cannot be reached
     """
-    begun = time.monotonic()
     api = api or MasterApi(caller_id, timeout_s=5.0)
     state, topic_types, parameters = api.call_many(
         [('getSystemState',), ('getTopicTypes',), ('getParam', '/')])
@@ -111,8 +109,7 @@ def look_for_robots(caller_id, ignore, known=(), api=None, types=None):
                         if item.problem is None and item.name not in alive),
         refused=tuple(item for item in candidates if item.problem),
         facts={item.name: Facts(parameters_of(item.name, parameters, item.seen.at_root), item.seen)
-               for item in candidates},
-        took_s=time.monotonic() - begun)
+               for item in candidates})
 
 
 def shipped_ignore_list():

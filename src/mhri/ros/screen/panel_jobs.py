@@ -6,12 +6,10 @@ import time
 
 import rospy
 
-from mhri.core.robots.discovery import parse_ignore_list
 from mhri.core.screen.settings import NAMESPACE, PanelSettings, parse_settings
 from mhri.ros.doctor.examination import examine
-from mhri.ros.graph.look import look_for_robots
+from mhri.ros.graph.look import look_for_robots, shipped_ignore_list
 from mhri.ros.graph.master_api import MasterApi, MasterError
-from mhri.ros.resources import read_resource, resource_path
 
 # The robots in the panel's list, in its order: gates, voice and pad read it.
 ROBOTS_PARAMETER = '/mhri/robots'
@@ -62,10 +60,8 @@ class PanelJobs:
         :param known: names that are in the list
         """
         try:
-            ignore = parse_ignore_list(read_resource('discovery.yaml'),
-                                       resource_path('discovery.yaml'))
             self._events.put(('found', look_for_robots(
-                rospy.get_name(), ignore, known, types=self._types)))
+                rospy.get_name(), shipped_ignore_list(), known, types=self._types)))
         except (MasterError, ValueError, OSError) as error:
             self._events.put(('look_failed', str(error)))
 
