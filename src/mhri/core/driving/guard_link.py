@@ -93,6 +93,8 @@ class GuardLink:
         self._number = 0
         self._token = ''
         self._echo_at: Optional[float] = None
+        #: the session of the newest echo
+        self.speaker = ''
         self.obeyed_number = 0
         self.displaced = False
         self.stop_confirmed = False
@@ -102,10 +104,10 @@ class GuardLink:
         echo = parse_id(frame_id)
         if echo is None or not echo[2]:
             return False
-        session, number, self._token, self.stop_confirmed = echo
+        self.speaker, number, self._token, self.stop_confirmed = echo
         self._echo_at = now
-        ours = session == self._session
-        self.displaced = not ours and session != _NOBODY and (
+        ours = self.speaker == self._session
+        self.displaced = not ours and self.speaker != _NOBODY and (
             self.displaced or self.obeyed_number > 0)
         self.obeyed_number = number if ours else 0
         return True

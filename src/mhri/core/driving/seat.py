@@ -59,14 +59,15 @@ class ControlSeat:
         if self._operator and caller != self._operator:
             return False
         if not self._operator:
-            self._sit(caller, now)
+            self.take(caller, now)
         self._chosen = tuple(names)[:MOST_ROBOTS]
         self._repeated_at, self._lapsed = now, False
         return True
 
     def take(self, caller: str, now: float) -> None:
         """Put the caller in control; only what it selects from now on counts."""
-        self._sit(caller, now)
+        self._operator, self._chosen, self._lapsed = caller, (), False
+        self._repeated_at = self.since = now
 
     def on_gone(self, caller: str) -> None:
         """Take note that a publisher of the selection has gone."""
@@ -81,7 +82,3 @@ class ControlSeat:
     def next_tick(self) -> Optional[float]:
         """Return when to call :meth:`tick` next [s], or None for never."""
         return self._repeated_at + LEASE_S if self.state == LEASED else None
-
-    def _sit(self, caller: str, now: float) -> None:
-        self._operator, self._chosen, self._lapsed = caller, (), False
-        self._repeated_at = self.since = now

@@ -10,7 +10,7 @@ import rospy
 from std_msgs.msg import String
 
 from mhri.core.driving.gate import GateRule, STOPPED
-from mhri.core.driving.guard_link import GuardLink, GuardState, parse_id, read_state
+from mhri.core.driving.guard_link import GuardLink, GuardState, read_state
 from mhri.core.driving.limits import ZERO
 from mhri.core.robots.link import link_state
 from mhri.core.robots.listeners import obeying
@@ -141,8 +141,8 @@ class RobotGate:
         with self._lock:
             if not self._guard.on_echo(message.header.frame_id, now):
                 return
-            session, _, _, stopped = parse_id(message.header.frame_id)
-            ours = session.startswith(self._session)
+            stopped = self._guard.stop_confirmed
+            ours = self._guard.speaker.startswith(self._session)
             if stopped and not ours and self.rule.state != STOPPED:
                 self._on_foreign_stop(self.name)
             self._look_at_guard(now)
