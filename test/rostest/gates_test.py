@@ -92,7 +92,7 @@ class GatesTest(GatesCase):
         self.operator.fall_silent()
         other = Process([sys.executable, os.path.join(os.path.dirname(__file__),
                                                       'operator_process.py')],
-                        stdin=subprocess.PIPE)
+                        {'ROS_HOSTNAME': 'localhost'}, stdin=subprocess.PIPE)
         self.addCleanup(other.end)
         other.stdin.write('{}\n'.format(name).encode())
         other.stdin.flush()
@@ -101,10 +101,11 @@ class GatesTest(GatesCase):
         self.assertEqual(self.state.message.operator, rospy.get_name())
         caller = next(line for line in self.state.message.refused
                       if 'operator_process' in line).split(':')[0]
-        # As its own screen would ask for it.
-        subprocess.check_call([sys.executable, '-c', TAKE.format(caller)])
-        self.state.wait(lambda state: state.operator == caller and state.computer,
-                        'the other one in control')
+        # As its own screen would ask for it; and one that selects nothing.
+        for taker, computer in (('/nobody', ''), (caller, 'localhost')):
+            subprocess.check_call([sys.executable, '-c', TAKE.format(taker)])
+            self.state.wait(lambda state: (state.operator, state.computer) == (taker, computer),
+                            'the other one in control')
         self.state.wait_robot(name, lambda gate: gate.obeys == 'operator',
                               'the selection of the other one')
         self.centre(name, receiver)

@@ -18,6 +18,7 @@ Everything runs on ROS threads and one thread of its own; a single lock guards a
 """
 import threading
 import time
+from urllib.parse import urlsplit
 
 import rospy
 from std_msgs.msg import Bool
@@ -34,7 +35,7 @@ from mhri.ros.driving.in_force import InForce, STOP_SERVICE, Strangers, TAKE_SER
 from mhri.ros.driving.robot_gate import RobotGate
 from mhri.ros.driving.roster import Roster
 from mhri.ros.graph.prompt import hear_promptly
-from mhri.ros.graph.rospy_inside import caller_of, link_of, on_publisher_gone
+from mhri.ros.graph.rospy_inside import caller_of, link_of, on_publisher_gone, publisher_uri
 from mhri.ros.map.tf_feed import TfFeed
 
 TICK_S = 0.05
@@ -58,6 +59,7 @@ class Gates:
         self._wake = threading.Condition(self._lock)
         self._gates = {}
         self._seat = ControlSeat()
+        self._select = None
         # None: the mux in force has not said it yet.
         self._stop = None
         self._stop_links = []
@@ -79,9 +81,9 @@ class Gates:
         nodelay = dict(queue_size=1, tcp_nodelay=True)
         self._mux.start()
         self._roster.start()
-        select = rospy.Subscriber('/robot_controller/robot_select', RobotSelect, self._on_select,
-                                  **nodelay)
-        on_publisher_gone(select, self._on_operator_gone)
+        self._select = rospy.Subscriber('/robot_controller/robot_select', RobotSelect,
+                                        self._on_select, **nodelay)
+        on_publisher_gone(self._select, self._on_operator_gone)
         twist = hear_promptly(rospy.Subscriber(
             '/robot_controller/twist', PlanarTwist, self._on_twist, **nodelay))
         on_publisher_gone(twist, self._on_mux_gone)
@@ -96,11 +98,14 @@ class Gates:
     def read(self):
         """Return the content of ``/gates/state``, as keyword arguments of the message.
 
-        The operator's computer is missing, since only the master knows it; ``since`` is [s] of this
-        object's clock, None for nobody.
+        The operator's computer is known while the selection comes from there; ``since`` is [s] of
+        this object's clock, None for nobody.
         """
         with self._lock:
-            return dict(operator=self._seat.operator, since=self._seat.since,
+            operator = self._seat.operator
+            uri = publisher_uri(self._select, operator) or ''
+            return dict(operator=operator, since=self._seat.since,
+                        computer=urlsplit(uri).hostname or '',
                         leased=self._seat.state == 'leased', mux=self._mux.caller,
                         stop_all=bool(self._stop), together=self._together, share=self._share,
                         brake=self._brake, refused=self._strangers.words(REFUSED_S),

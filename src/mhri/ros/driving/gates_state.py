@@ -3,14 +3,12 @@
 """What the gates say about themselves: ``/gates/state`` and ``/diagnostics``."""
 import threading
 import time
-from urllib.parse import urlsplit
 
 from diagnostic_msgs.msg import DiagnosticStatus
 import rospy
 
 from mhri.msg import GatesState
 from mhri.ros.diagnostics import publish_diagnostics
-from mhri.ros.graph.master_api import MasterApi, MasterError
 
 PERIOD_S = 0.5
 # Changes in quick succession are told together.
@@ -31,7 +29,6 @@ class GatesSpeaker:
         self._beat = beat
         self._clock = clock
         self._changed = threading.Event()
-        self._computers = {}
         self._publisher = rospy.Publisher('/gates/state', GatesState, queue_size=1, latch=True,
                                           tcp_nodelay=True)
 
@@ -65,25 +62,7 @@ class GatesSpeaker:
         message.mux_heard = self._mux_heard()
         if message.operator:
             message.since = rospy.Time.from_sec(now - (self._clock() - since))
-            message.computer = self._computer(message.operator)
         return message
-
-    def _computer(self, operator):
-        """Return the computer of a node as the master knows it, '' until it has answered."""
-        if operator not in self._computers:
-            self._computers = {operator: ''}
-            threading.Thread(target=self._ask, args=(operator,), name='computer of ' + operator,
-                             daemon=True).start()
-        return self._computers[operator]
-
-    def _ask(self, operator):
-        try:
-            uri = MasterApi(rospy.get_name()).node_uri(operator)
-        except MasterError as error:
-            rospy.logdebug('the computer of %s is not known: %s', operator, error)
-            return
-        self._computers = {operator: (urlsplit(uri).hostname or '') if uri else ''}
-        self._changed.set()
 
     def _diagnose(self, status):
         """Fill the diagnostic status of the gates."""

@@ -43,11 +43,14 @@ def publishers(subscriber):
     return {link.callerid_pub for link in (impl.connections if impl else ())}
 
 
-def publisher_uri(subscriber):
-    """Return the XML-RPC address of a node that publishes the subscribed topic, or None."""
+def publisher_uri(subscriber, caller=None):
+    """Return the XML-RPC address of a node that publishes the subscribed topic, or None.
+
+    :param caller: the caller id of that node; default: any
+    """
     impl = subscriber.impl
     return next((link.endpoint_id for link in (impl.connections if impl else ())
-                 if link.endpoint_id), None)
+                 if link.endpoint_id and caller in (None, link.callerid_pub)), None)
 
 
 def on_publisher_gone(subscriber, call):
