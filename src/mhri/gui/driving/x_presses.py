@@ -10,6 +10,8 @@ import collections
 import ctypes
 import struct
 
+from mhri.gui.driving.x_server import load, XError, XServer
+
 _RAW_KEY, _RAW_KEY_UP, _RAW_BUTTON, _RAW_TOUCH = 13, 14, 15, 22
 _MASK = 1 << _RAW_KEY | 1 << _RAW_KEY_UP | 1 << _RAW_BUTTON | 1 << _RAW_TOUCH
 _ALL_MASTERS = 1
@@ -23,14 +25,6 @@ _POINTER_ROOT = 1
 _DEPTH = 20
 
 
-class XError(Exception):
-    """The X server cannot be watched; the text says why."""
-
-
-class _Cookie(ctypes.Structure):
-    _fields_ = [('sequence', ctypes.c_uint)]
-
-
 class _Screens(ctypes.Structure):
     """``xcb_screen_iterator_t`` of xcb/xproto.h; a screen begins with its root window."""
 
@@ -41,33 +35,16 @@ class _Screens(ctypes.Structure):
 _Pointer = collections.namedtuple('_Pointer', 'child x y mask')
 
 
-def _load():
-    """Return (libxcb, libxcb-xinput): Qt's own plugin for X11 needs both.
-
-    :raises XError: they are not there
-    """
-    try:
-        xcb, xinput = ctypes.CDLL('libxcb.so.1'), ctypes.CDLL('libxcb-xinput.so.0')
-        xcb.xcb_connect.restype = ctypes.c_void_p
-        xcb.xcb_get_setup.restype = ctypes.c_void_p
-        xcb.xcb_setup_roots_iterator.restype = _Screens
-        xcb.xcb_poll_for_event.restype = ctypes.c_void_p
-    except (OSError, AttributeError) as error:
-        raise XError(str(error))
-    return xcb, xinput
-
-
-class XPresses:
+class XPresses(XServer):
     """The buttons and keys of one X server, that of ``DISPLAY``.
 
     :raises XError: there is none, or it cannot tell
     """
 
     def __init__(self):
-        self._xcb, self._xinput = _load()
-        self._connection = ctypes.c_void_p(self._xcb.xcb_connect(None, None))
-        if self._xcb.xcb_connection_has_error(self._connection):
-            raise XError('no X server answers')
+        super().__init__()
+        self._xcb.xcb_get_setup.restype = ctypes.c_void_p
+        self._xcb.xcb_setup_roots_iterator.restype = _Screens
         setup = ctypes.c_void_p(self._xcb.xcb_get_setup(self._connection))
         self._root = self._xcb.xcb_setup_roots_iterator(setup).data[0]
         self._shifts_down = set()
@@ -76,31 +53,17 @@ class XPresses:
 
     def _select(self):
         """Ask for the raw events."""
-        version = self._ask(self._xinput, 'xcb_input_xi_query_version', 2, 2)
+        xinput = load('libxcb-xinput.so.0')
+        version = self.ask('xcb_input_xi_query_version', 2, 2, library=xinput)
         if version is None or struct.unpack_from('=HH', version, 8) < (2, 1):
             raise XError('the X server is too old (XInput 2.1 is needed)')
         mask = struct.pack('=HHI', _ALL_MASTERS, 1, _MASK)
-        self._xinput.xcb_input_xi_select_events(self._connection, self._root, 1, mask)
+        xinput.xcb_input_xi_select_events(self._connection, self._root, 1, mask)
         self._xcb.xcb_flush(self._connection)
-
-    def _ask(self, library, function, *arguments):
-        """Return the bytes of an answer, None where there is none (a window that has gone)."""
-        send, answer = getattr(library, function), getattr(library, function + '_reply')
-        send.restype, answer.restype = _Cookie, ctypes.c_void_p
-        place = answer(self._connection, send(self._connection, *arguments), None)
-        return None if not place else self._take(place, 32 + 4 * struct.unpack_from(
-            '=I', ctypes.string_at(place, 8), 4)[0])
-
-    @staticmethod
-    def _take(place, size):
-        """Copy what xcb has allocated, and free it."""
-        data = ctypes.string_at(place, size)
-        ctypes.CDLL(None).free(ctypes.c_void_p(place))
-        return data
 
     def _read_keyboard(self):
         """Learn which keys are the space bar and Shift."""
-        answer = self._ask(self._xcb, 'xcb_get_keyboard_mapping', _FIRST_KEY, _KEYS)
+        answer = self.ask('xcb_get_keyboard_mapping', _FIRST_KEY, _KEYS)
         if answer is None:
             raise XError('the X server does not tell its keys')
         width = answer[1]
@@ -113,10 +76,6 @@ class XPresses:
             elif first in (_SHIFT_L, _SHIFT_R):
                 self._shifts.add(_FIRST_KEY + key)
 
-    def fileno(self):
-        """Return the descriptor to wait for."""
-        return self._xcb.xcb_get_file_descriptor(self._connection)
-
     def stops(self, places):
         """Tell whether STOP has been pressed since the last call: a button of it, or Shift+Space.
 
@@ -125,19 +84,14 @@ class XPresses:
         """
         found = False
         while True:
-            event = self._next()
+            event = self.next_event()
             if event is None:
                 break
             # Each is looked at: the state of Shift follows from all of them.
             found = self._is_stop(event, places) or found
-        if self._xcb.xcb_connection_has_error(self._connection):
+        if self.has_gone():
             raise XError('the X server has gone')
         return found
-
-    def _next(self):
-        """Return the next event, None where there is none."""
-        place = self._xcb.xcb_poll_for_event(self._connection)
-        return None if not place else self._take(place, 32)
 
     def _is_stop(self, event, places):
         """Tell whether one event is a press of STOP."""
@@ -162,7 +116,7 @@ class XPresses:
 
     def _pointer(self, window=None):
         """Return where the pointer is in a window, and in which child of it."""
-        answer = self._ask(self._xcb, 'xcb_query_pointer', window or self._root)
+        answer = self.ask('xcb_query_pointer', window or self._root)
         return _Pointer(0, 0, 0, 0) if answer is None else _Pointer(
             *struct.unpack_from('=I4xhhH', answer, 12))
 
@@ -187,17 +141,13 @@ class XPresses:
 
     def _has_keyboard(self, places):
         """Tell whether keys go to one of the windows."""
-        answer = self._ask(self._xcb, 'xcb_get_input_focus')
+        answer = self.ask('xcb_get_input_focus')
         window = struct.unpack_from('=I', answer, 8)[0] if answer else 0
         if window == _POINTER_ROOT:
             return any(each in places for each, _, _ in self._under_pointer())
         for _ in range(_DEPTH):
             if window in places:
                 return True
-            answer = self._ask(self._xcb, 'xcb_query_tree', window) if window else None
+            answer = self.ask('xcb_query_tree', window) if window else None
             window = struct.unpack_from('=I', answer, 12)[0] if answer else 0
         return False
-
-    def close(self):
-        """End the connection."""
-        self._xcb.xcb_disconnect(self._connection)
