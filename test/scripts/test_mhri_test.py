@@ -54,6 +54,8 @@ BAD_TESTS = {
     'rostest/crash.test': ROSTEST.format(name='crash'),
     'rostest/crash.py': NODE_TEST.format('os._exit(3)', 'crash'),
 }
+# Each run compiles anew what it imports, into a folder of its own: here all runs share one.
+COMPILED_ONCE = 'import sys\n\nif sys.pycache_prefix:\n    sys.pycache_prefix = {!r}\n'
 GROUPS = [word for group in ('unit', 'rostest', 'gui', 'faults') for word in ('--only', group)]
 
 
@@ -64,14 +66,27 @@ def package(tmp_path_factory):
                     stand_ins=('dpkg-query', 'apt-get', 'sudo'))
     shutil.copytree(str(REPO / 'src'), str(made.root / 'src'))
     shutil.copy(str(REPO / 'plugin.xml'), str(made.root))
+    cmake = made.root / 'CMakeLists.txt'
+    cmake.write_text(with_one_message(cmake.read_text()))
     made.environment['DISPLAY'] = ''
     made.environment['CI'] = 'true'
+    start = tmp_path_factory.mktemp('python')
+    (start / 'sitecustomize.py').write_text(COMPILED_ONCE.format(str(start / 'compiled')))
+    made.environment['PYTHONPATH'] = str(start)
     # The library of the link, which the small tests do not need.
     library = re.search('eclipse-zenoh==[0-9.]+', (REPO / 'utils/host/common.sh').read_text())
     (made.root / 'build/.ws/link').mkdir(parents=True)
     (made.root / 'build/.ws/link/installed').write_text(library.group())
     write_tests(made, SMALL_TESTS)
     return made
+
+
+def with_one_message(text):
+    """Return a CMakeLists.txt with the one message of the small tests: others only take time."""
+    text, cut = re.subn(r'add_(message|service|action)_files\([^)]*\)\n', '', text)
+    assert cut == 3 and text.count('generate_messages(') == 1
+    return text.replace('generate_messages(',
+                        'add_message_files(FILES RobotSelect.msg)\ngenerate_messages(')
 
 
 def write_tests(package, tests):
@@ -140,6 +155,25 @@ def test_what_failed_runs_once_more_and_stays_in_the_count(package):
     assert (output.splitlines()[-1], status) == ('2 passed, 1 failed, 1 failed at first', 1)
 
 
+def test_interrupted_run_leaves_nothing(package):
+    write_tests(package, {
+        'gui/test_one.py': 'import time\n\n\ndef test_long():\n'
+                           '    print("up", flush=True)\n    time.sleep(600)\n'})
+    # Several at once print what they say when they have ended.
+    process = package.start('--only', 'gui', '--jobs', '1',
+                            script=package.script.with_name('mhri_test.sh'))
+    for line in process.stdout:
+        if line.strip().endswith('up'):
+            break
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60)
+    assert process.returncode == 130
+    end = time.monotonic() + 60.0
+    while children_with(str(package.calls_file)):
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
 MEETING = '''import os
 import pathlib
 import time
@@ -192,25 +226,6 @@ def test_fast_group_builds_and_installs_nothing(fast, text, status, count):
     done, output = fast(text)
     assert output.splitlines()[-1] == count, output
     assert done == status and 'mhri: times: fast ' in output
-
-
-def test_interrupted_run_leaves_nothing(package):
-    write_tests(package, {
-        'gui/test_long.py': 'import time\n\n\ndef test_long():\n'
-                            '    print("up", flush=True)\n    time.sleep(600)\n'})
-    # Several at once print what they say when they have ended.
-    process = package.start('--only', 'gui', '--jobs', '1',
-                            script=package.script.with_name('mhri_test.sh'))
-    for line in process.stdout:
-        if line.strip().endswith('up'):
-            break
-    process.send_signal(signal.SIGINT)
-    process.communicate(timeout=60)
-    assert process.returncode == 130
-    end = time.monotonic() + 60.0
-    while children_with(str(package.calls_file)):
-        assert time.monotonic() < end
-        time.sleep(0.02)
 
 
 @pytest.mark.parametrize('arguments, said', [

@@ -53,8 +53,24 @@ def start(tmp_path):
 @pytest.fixture
 def master():
     """Return (address, proxy) of a master that the script will start."""
+    return new_master()
+
+
+def new_master():
     uri = 'http://127.0.0.1:{}'.format(free_port())
     return uri, xmlrpc.client.ServerProxy(uri)
+
+
+@pytest.fixture(scope='module')
+def running(tmp_path_factory):
+    """Return (address, proxy) of a master on which the script runs, without a panel and robots."""
+    uri, proxy = new_master()
+    run = Run(tmp_path_factory.mktemp('running'), ['gui:=none', '--master', uri])
+    try:
+        wait_for(lambda: publishers(proxy, '/robot_controller/twist'), 'the first mux')
+        yield uri, proxy
+    finally:
+        run.end()
 
 
 def node_uri(proxy, node):
@@ -148,10 +164,8 @@ def is_script(pid):
         return str(SCRIPT) in file.read()
 
 
-def test_second_host_on_one_master_is_refused(start, master):
-    uri, proxy = master
-    start('gui:=none', '--master', uri)
-    wait_for(lambda: publishers(proxy, '/robot_controller/twist'), 'the first mux')
+def test_second_host_on_one_master_is_refused(start, running):
+    uri, proxy = running
     first = node_uri(proxy, '/mux')
     second = start('--sim', '1', '--master', uri)
     assert second.wait(120) == 1, second.output
@@ -160,10 +174,17 @@ def test_second_host_on_one_master_is_refused(start, master):
     assert publishers(proxy, '/bot1/odom') == []
 
 
-def test_two_hosts_on_one_master_do_not_fight(start, master):
+def test_mux_that_was_killed_comes_back(running):
+    _, proxy = running
+    wait_for(lambda: node_uri(proxy, '/mux'), 'the mux')
+    first = node_uri(proxy, '/mux')
+    os.kill(xmlrpc.client.ServerProxy(first).getPid('/test')[2], signal.SIGKILL)
+    wait_for(lambda: node_uri(proxy, '/mux') not in (None, first), 'the mux to come back')
+
+
+def test_two_hosts_on_one_master_do_not_fight(start, running):
     """Started past the script, the newer mux takes over, and the older one stays away."""
-    uri, proxy = master
-    start('gui:=none', '--master', uri)
+    uri, proxy = running
     wait_for(lambda: node_uri(proxy, '/mux'), 'the first mux')
     first = node_uri(proxy, '/mux')
     start('mhri', 'mhri.launch', 'gui:=none', script='roslaunch',
@@ -178,12 +199,3 @@ def test_two_hosts_on_one_master_do_not_fight(start, master):
     # None: this call came while the master was busy with another.
     assert seen - {None} == {second}
     assert len(publishers(proxy, '/robot_controller/twist')) == 1
-
-
-def test_mux_that_was_killed_comes_back(start, master):
-    uri, proxy = master
-    start('gui:=none', '--master', uri)
-    wait_for(lambda: node_uri(proxy, '/mux'), 'the mux')
-    first = node_uri(proxy, '/mux')
-    os.kill(xmlrpc.client.ServerProxy(first).getPid('/test')[2], signal.SIGKILL)
-    wait_for(lambda: node_uri(proxy, '/mux') not in (None, first), 'the mux to come back')
