@@ -1,19 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Who drives, where it is not this screen: one line, and two steps to take control."""
-from python_qt_binding.QtCore import Qt, QTimer, Signal
-from python_qt_binding.QtWidgets import QBoxLayout, QHBoxLayout, QPushButton, QSizePolicy, QWidget
+from python_qt_binding.QtCore import QTimer, Signal
 
 from mhri.core.screen.views import ControlView
-from mhri.gui.screen import theme
-from mhri.gui.screen.labels import Sign, TextLine
+from mhri.gui.driving.asking_bar import AskingBar
 
 CONFIRM_WITHIN_S = 5.0
 TAKE = 'Take control'
 SURE = 'Their robots stop, and nothing moves before your stick is centred.'
 
 
-class ControlBar(QWidget):
+class ControlBar(AskingBar):
     """Hidden while this screen drives.
 
     "Take control" asks for a second step beside it; where it was, there is "Cancel" then, so that a
@@ -31,38 +29,16 @@ class ControlBar(QWidget):
 
     def _build(self):
         """Make and place the parts."""
-        self._sign = Sign(self)
-        self._sign.show_sign((theme.TRIANGLE, theme.ATTENTION))
-        self._line = TextLine(self)
-        self._line.setObjectName('control_label')
-        self.confirm_button = self._button('take_confirm_button', 'Take it')
-        self.take_button = self._button('take_button', TAKE)
-        row = self._row = QBoxLayout(QBoxLayout.LeftToRight, self)
-        row.setContentsMargins(2, 0, 2, 0)
-        told = QHBoxLayout()
-        told.addWidget(self._sign)
-        told.addWidget(self._line, 1)
-        row.addLayout(told, 1)
-        row.addWidget(self.confirm_button)
-        row.addWidget(self.take_button)
-        self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
+        self.confirm_button, self.take_button = super()._build(
+            'control_label', ('take_confirm_button', 'Take it', '', TAKE), ('take_button', TAKE))
         self._countdown = QTimer(self)
         self._countdown.setSingleShot(True)
         self._countdown.setInterval(round(CONFIRM_WITHIN_S * 1000))
 
     def show_narrow(self, narrow):
         """Have the buttons below the words, where there is little width."""
-        self._row.setDirection(QBoxLayout.TopToBottom if narrow else QBoxLayout.LeftToRight)
+        super().show_narrow(narrow)
         self._line.set_wrapped(narrow)
-
-    def _button(self, name, text):
-        """Make a button for fingers, as wide as the widest of its words."""
-        button = QPushButton(text, self)
-        button.setObjectName(name)
-        button.setFocusPolicy(Qt.TabFocus)
-        button.setMinimumSize(theme.text_width(button.font(), TAKE) + theme.touch_size(self),
-                              theme.touch_size(self))
-        return button
 
     def _connect(self):
         """Wire buttons and timer."""

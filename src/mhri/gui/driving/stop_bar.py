@@ -8,7 +8,7 @@ stopped, it cuts the power of the motors of those robots that offer it.
 from python_qt_binding.QtCore import QElapsedTimer, Qt, QTimer, Signal
 from python_qt_binding.QtGui import QPainter
 from python_qt_binding.QtWidgets import (
-    QBoxLayout, QHBoxLayout, QPushButton, QSizePolicy, QStackedLayout, QVBoxLayout, QWidget)
+    QBoxLayout, QHBoxLayout, QSizePolicy, QStackedLayout, QVBoxLayout, QWidget)
 
 from mhri.core.screen.stop_words import NOBODY_HEARD
 from mhri.gui.screen import theme
@@ -153,9 +153,7 @@ class StopBar(QWidget):
 
     def _button(self, name, text):
         """Make one of the buttons of the second page, wide enough for any of its words."""
-        button = QPushButton(text, self._stopped_page)
-        button.setObjectName(name)
-        button.setFocusPolicy(Qt.TabFocus)
+        button = theme.finger_button(self._stopped_page, name, text)
         button.setMinimumSize(round(1.3 * theme.text_width(button.font(), text)) + 16,
                               theme.touch_size(self) + 8)
         return button

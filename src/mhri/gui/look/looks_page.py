@@ -3,7 +3,7 @@
 """The page of the drawer that says how the screen looks: layout, colours, numbers, full screen."""
 from python_qt_binding.QtCore import Qt, Signal
 from python_qt_binding.QtWidgets import (
-    QButtonGroup, QFrame, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget)
+    QButtonGroup, QFrame, QLabel, QScrollArea, QVBoxLayout, QWidget)
 
 from mhri.core.screen.arrangement import ALIKE, AUTO, ONE
 from mhri.gui.driving.drive_keys import keep_arrows
@@ -55,20 +55,13 @@ class LooksPage(QScrollArea):
         self.numbers_box.setObjectName('numbers_box')
         self.map_box = SwitchBox('Map (M)', self)
         self.map_box.setObjectName('map_box')
-        self.full_screen_button = self._button('Full screen (F11)')
-        self.full_screen_button.setObjectName('full_screen_button')
+        self.full_screen_button = theme.finger_button(
+            self, 'full_screen_button', 'Full screen (F11)')
         column.addSpacing(self.fontMetrics().height() // 2)
         column.addWidget(self.numbers_box)
         column.addWidget(self.map_box)
         column.addWidget(self.full_screen_button, 0, Qt.AlignLeft)
         column.addStretch(1)
-
-    def _button(self, text):
-        """Make a button for fingers."""
-        button, touch = QPushButton(text, self), theme.touch_size(self)
-        button.setFocusPolicy(Qt.TabFocus)
-        button.setMinimumSize(theme.text_width(button.font(), text) + touch, touch)
-        return button
 
     def _choices(self, column, head, prefix, texts):
         """Place a heading and a radio button for each of some texts; return them by key."""
@@ -98,7 +91,7 @@ class LooksPage(QScrollArea):
 
     def add_part(self, title, part):
         """Give the page a further part, above the others; return the button that shows it."""
-        button = self._button(title)
+        button = theme.finger_button(self, '', title)
         button.setCheckable(True)
         column = self.widget().layout()
         column.insertWidget(0, button, 0, Qt.AlignLeft)

@@ -9,7 +9,7 @@ font, so that a 4K screen with a larger font is a larger panel and not a finer o
 from python_qt_binding.QtCore import QPointF, QRectF, Qt
 from python_qt_binding.QtGui import (
     QColor, QFont, QFontDatabase, QFontMetrics, QPainterPath, QPalette, QPen, QPolygonF)
-from python_qt_binding.QtWidgets import QApplication
+from python_qt_binding.QtWidgets import QApplication, QPushButton
 
 from mhri.core.events import events
 from mhri.core.screen import battery, views
@@ -206,6 +206,19 @@ def text_width(font, *samples):
     """Return the width [px] that the widest of the samples needs."""
     metrics = QFontMetrics(font)
     return max(metrics.horizontalAdvance(sample) for sample in samples) + 2
+
+
+def finger_button(parent, name, text, tip='', also=''):
+    """Return a button for fingers; Tab comes to it, but a click takes the keyboard from nothing.
+
+    :param also: what else it will say; it is wide enough for that, too
+    """
+    button, touch = QPushButton(text, parent), touch_size(parent)
+    button.setObjectName(name)
+    button.setToolTip(tip)
+    button.setFocusPolicy(Qt.TabFocus)
+    button.setMinimumSize(text_width(button.font(), text, also) + touch, touch)
+    return button
 
 
 def fitting_text(metrics, texts, width):

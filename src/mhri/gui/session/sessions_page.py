@@ -4,8 +4,7 @@
 from python_qt_binding.QtCore import QAbstractListModel, QModelIndex, QRect, QSize, Qt, Signal
 from python_qt_binding.QtGui import QPalette
 from python_qt_binding.QtWidgets import (
-    QHBoxLayout, QListView, QProgressBar, QPushButton, QStyledItemDelegate, QStyle, QVBoxLayout,
-    QWidget)
+    QHBoxLayout, QListView, QProgressBar, QStyledItemDelegate, QStyle, QVBoxLayout, QWidget)
 
 from mhri.gui.driving.drive_keys import keep_arrows
 from mhri.gui.look.wide_scroll_bar import WideScrollBar
@@ -126,10 +125,11 @@ class SessionsPage(QWidget):
         self.progress = QProgressBar(self)
         self.progress.setObjectName('report_progress')
         self.progress.setFormat('report %p %')
-        self.replay_button = self._button('replay_button', 'Replay', 'on a screen of its own')
-        self.report_button = self._button('report_button', 'Report',
-                                          'a page to print or send, and a map')
-        self.cancel_button = self._button('cancel_button', 'Cancel report', '')
+        self.replay_button = theme.finger_button(
+            self, 'replay_button', 'Replay', 'on a screen of its own')
+        self.report_button = theme.finger_button(
+            self, 'report_button', 'Report', 'a page to print or send, and a map')
+        self.cancel_button = theme.finger_button(self, 'cancel_button', 'Cancel report')
         buttons = QHBoxLayout()
         for button in (self.replay_button, self.report_button, self.cancel_button):
             buttons.addWidget(button)
@@ -141,16 +141,6 @@ class SessionsPage(QWidget):
         column.addWidget(self.progress)
         column.addWidget(self.note)
         column.addLayout(buttons)
-
-    def _button(self, name, text, tip):
-        """Make a button for fingers."""
-        button = QPushButton(text, self)
-        button.setObjectName(name)
-        button.setToolTip(tip)
-        button.setFocusPolicy(Qt.TabFocus)
-        touch = theme.touch_size(self)
-        button.setMinimumSize(theme.text_width(button.font(), text) + touch, touch)
-        return button
 
     def _connect(self):
         """Wire buttons and list."""

@@ -4,7 +4,7 @@
 from datetime import datetime
 
 from python_qt_binding.QtCore import Qt, Signal
-from python_qt_binding.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from python_qt_binding.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from mhri.core.session.playing import other_speed, SPEEDS
 from mhri.core.session.timeline import duration_text, TimeLine
@@ -47,17 +47,17 @@ class TimeLineBar(QWidget):
         """Make and place the parts."""
         self.setObjectName('time_line_bar')
         self.setFont(theme.base_font(self.font()))
-        self.previous_button = self._button('previous_button', 'Previous', 'Page Up')
-        self.play_button = self._button('play_button', PLAY, 'Space')
-        self.next_button = self._button('next_button', 'Next', 'Page Down')
-        self.slower_button = self._button('slower_button', '\u2212', '-')
-        self.faster_button = self._button('faster_button', '+', '+')
+        # Their keys are in the tool tips.
+        self.previous_button = theme.finger_button(self, 'previous_button', 'Previous', 'Page Up')
+        self.play_button = theme.finger_button(self, 'play_button', PLAY, 'Space', also=PAUSE)
+        self.next_button = theme.finger_button(self, 'next_button', 'Next', 'Page Down')
+        self.slower_button = theme.finger_button(self, 'slower_button', '\u2212', '-')
+        self.faster_button = theme.finger_button(self, 'faster_button', '+', '+')
         for button, name in ((self.previous_button, 'to the mark or event before'),
                              (self.next_button, 'to the next mark or event'),
                              (self.slower_button, 'slower'), (self.faster_button, 'faster')):
             button.setAccessibleName(name)
-        self.play_button.setMinimumWidth(theme.text_width(self.font(), PLAY, PAUSE)
-                                         + theme.touch_size(self))
+            button.setFixedWidth(button.minimumWidth())
         numbers = theme.number_font(self.font())
         self.speed_label, self.clock_label = TextLine(self), TextLine(self)
         self.tick_label, self.replay_label = TextLine(self), TextLine(self)
@@ -88,19 +88,8 @@ class TimeLineBar(QWidget):
         column.addLayout(row)
         column.addWidget(self.canvas)
 
-    def _button(self, name, text, key):
-        """Make a button for fingers, with its key in the tool tip."""
-        button = QPushButton(text, self)
-        button.setObjectName(name)
-        button.setToolTip(key)
-        button.setFocusPolicy(Qt.TabFocus)
-        button.setMinimumHeight(theme.touch_size(self))
-        button.setFixedWidth(theme.text_width(button.font(), text) + theme.touch_size(self))
-        return button
-
     def _connect(self):
         """Wire the buttons."""
-        self.play_button.setMaximumWidth(16777215)
         self.play_button.clicked.connect(self.toggle)
         self.previous_button.clicked.connect(self.go_back)
         self.next_button.clicked.connect(self.go_on)
