@@ -16,7 +16,7 @@ CALM=(scripts_calm rostest_calm faults_calm gui_calm)
 PAIRED=(rostest_paired gui_paired faults_paired scripts_paired)
 LIGHT=(rostest_timed)
 TIMED=(scripts_timed faults_timed gui_timed)
-MODEST=(oldest unit lint)
+MODEST=(oldest unit scripts_modest faults_modest lint)
 
 help_text() {
   cat <<'HELP'
@@ -30,7 +30,7 @@ and nothing failed.
                  gui, faults, bench, or fast
   --jobs N       run at most N files at once: of those that drive robots three (two if N is below 6,
                  one below 3), of nodes that are timed two, and of what else measures time one, beside
-                 one that takes what is left (default: four more than there are processors, at most 7)
+                 two that take what is left (default: four more than there are processors, at most 7)
   --bench        run the benchmarks (test/bench) in full instead of their short form
   --once         do not run a second time what failed (see below)
   -h, --help     this text
@@ -168,7 +168,7 @@ run_timed() {
   local started=$SECONDS modest_pid='' target
   if [ "$JOBS" -gt 2 ] && [ "$BENCH" = short ] && [ "${#LIGHT[@]}${#TIMED[@]}" != 00 ] &&
     [ "${#MODEST[@]}" -gt 0 ]; then
-    begin 1 15 "${MODEST[@]}"
+    begin 2 15 "${MODEST[@]}"
     modest_pid=$RUN_PID
   elif [ "${#MODEST[@]}" -gt 0 ]; then
     run "$JOBS" "${MODEST[@]}"
