@@ -114,7 +114,8 @@ class Measurement(LiveScreen):
         self._hands.hold_stick(0.2, 0.6)
         print(row('tiles with graphs, driving all', self.watch_for(self._seconds)), flush=True)
         self.choose('imu', 'rgb')
-        self.until(lambda: all(self.picture_hz(name) > 20.0 for name in NAMES), 'pictures')
+        enough_hz = 0.0 if '--short' in sys.argv else 20.0
+        self.until(lambda: all(self.picture_hz(name) > enough_hz for name in NAMES), 'pictures')
         self.watch_for(2.0)
         begun = self.used()
         gaps = self.watch_for(self._seconds)
