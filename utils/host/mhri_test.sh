@@ -16,7 +16,7 @@ CALM=(scripts_calm rostest_calm faults_calm gui_calm)
 PAIRED=(rostest_paired gui_paired faults_paired scripts_paired)
 LIGHT=(rostest_timed)
 TIMED=(scripts_timed faults_timed gui_timed)
-MODEST=(oldest unit scripts_modest faults_modest lint)
+MODEST=(oldest unit scripts_modest faults_modest gui_modest lint)
 
 help_text() {
   cat <<'HELP'
