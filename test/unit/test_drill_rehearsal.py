@@ -16,7 +16,7 @@ from mhri.core.drill.referee import ALL_FOUND  # noqa: E402
 from mhri.sim.rehearsal import Rehearsal  # noqa: E402
 from support.drills import drill, NAMES  # noqa: E402
 
-DELAYS_S = (0.0, 0.2, 0.4)
+DELAYS_S = (0.0, 0.4)
 
 
 @functools.lru_cache(None)
@@ -30,9 +30,9 @@ def test_every_drill_is_passed_and_takes_longer_with_delay(name):
     results = [rehearsed(name, delay_s) for delay_s in DELAYS_S]
     times = [result['time_s'] for result in results]
     print('MEASURED', name, *('{:.1f} s'.format(each) for each in times))
-    assert [result['ended'] for result in results] == [ALL_FOUND] * 3
-    assert times[0] < times[1] < times[2]
-    assert [result['contacts'] for result in results] == [0] * 3
+    assert [result['ended'] for result in results] == [ALL_FOUND] * 2
+    assert times[0] < times[1]
+    assert [result['contacts'] for result in results] == [0] * 2
 
 
 @pytest.mark.parametrize('name', ['lost_link', 'two_corridors'])
