@@ -64,7 +64,7 @@ def measure(seconds):
     received = []
     rospy.Subscriber('/mux_in/ps3joy', Joy, received.append, queue_size=1000, tcp_nodelay=True)
     with PadProcess() as node:
-        rospy.wait_for_service(SERVICE, 30.0)
+        rospy.wait_for_service(SERVICE, 120.0)
         set_suspended = rospy.ServiceProxy(SERVICE, SetSuspended)
         meter = Meter(node.pid, seconds, received)
         meter.measure('suspended, never resumed')

@@ -48,7 +48,7 @@ def set_suspended(suspended):
     """Call the service; return its message."""
     import rospy
     from mhri.srv import SetSuspended
-    rospy.wait_for_service(SERVICE, 30.0)
+    rospy.wait_for_service(SERVICE, 120.0)
     return rospy.ServiceProxy(SERVICE, SetSuspended)(suspended).message
 
 

@@ -19,6 +19,7 @@ from mhri.gui.driving.stop_button import StopButton  # noqa: E402
 from mhri.gui.screen import theme  # noqa: E402
 from mhri.gui.screen.labels import TextLine  # noqa: E402
 from mhri.gui.screen.torn_off import TornOff  # noqa: E402
+from support.ros_system import wait_for  # noqa: E402
 from support.scenes import colour_at, KINDS  # noqa: E402
 
 SMALL, LARGE = (1280, 720), (1920, 1080)
@@ -258,8 +259,7 @@ def test_what_grows_in_the_drawer_does_not_close_it(scene):
     screen = made.show()
     assert screen.drawer.isVisible()
     screen.robots_side.setMinimumWidth(LARGE[0] // 2)
-    made.show()
-    assert screen.splitter.sizes()[0] >= LARGE[0] // 2
+    wait_for(lambda: made.show().splitter.sizes()[0] >= LARGE[0] // 2, what='a wider drawer')
     assert screen.drawer.isVisible()
 
 
