@@ -105,13 +105,15 @@ class TasksMoreCase(unittest.TestCase):
                                   not gate.stands, 'the gate of ' + name, 60.0)
 
     def tearDown(self):
-        """Whatever a test that failed has left to do is ended."""
-        self.client.cancel_all_goals()
+        """End a route that a test which failed has left."""
         self.navigation.end('aborted')
 
     def start(self, robots, task, parameters=''):
-        """Start a task; return its handle."""
-        return self.client.send_goal(RunTaskGoal(task, robots.split(), parameters))
+        """Start a task; return its handle. At the end of the test it is cancelled."""
+        goal = self.client.send_goal(RunTaskGoal(task, robots.split(), parameters))
+        # By its id: a cancel of everything could come after the next test's goal.
+        self.addCleanup(goal.cancel)
+        return goal
 
     def ends(self, goal):
         """Wait for the end; return [(state, sentence)] of its robots."""
