@@ -2,14 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Speeds: a command in SI units, the operator's limits on it, and a robot's own limits."""
 import math
-from dataclasses import dataclass
-from typing import Optional, Tuple
+from typing import NamedTuple, Optional, Tuple
 
 from mhri.core.robots.robot_types import Limits
 
 
-@dataclass(frozen=True)
-class Velocity:
+class Velocity(NamedTuple):
     """A planar velocity command: linear along x [m/s], angular about z [rad/s] (REP-103)."""
 
     linear_mps: float = 0.0

@@ -3,7 +3,7 @@
 """Profiles: which axis and button of a device means what."""
 import math
 from dataclasses import dataclass, replace
-from typing import FrozenSet, Optional, Sequence, Tuple, Union
+from typing import FrozenSet, NamedTuple, Optional, Sequence, Tuple, Union
 
 from mhri.core.config import Section, parse_yaml
 from mhri.core.driving.limits import Velocity, within_limits
@@ -47,8 +47,7 @@ class Axis:
         return max(-1.0, min(1.0, travel * self.scale))
 
 
-@dataclass(frozen=True)
-class Stick:
+class Stick(NamedTuple):
     """What the operator asks for, as fractions of the speed limits.
 
     ``forward`` and ``turn`` (left +) are in [-1, 1] and already zero while the dead-man button is
