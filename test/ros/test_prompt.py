@@ -199,6 +199,16 @@ def test_a_link_that_confirms_nothing_has_stalled(what, steps, rtt_ms, stalled):
     assert found == stalled
 
 
+def test_the_system_is_not_asked_while_the_link_cannot_have_stalled():
+    now, asked, peer = [100.0], [], Peer()
+    flow, plain, peer.ack_ms = Flow(peer, lambda: now[0]), peer.getsockopt, 40
+    peer.unacked, peer.getsockopt = 1, lambda *words: asked.append(now[0]) or plain(*words)
+    for _ in range(100):
+        now[0] += 0.013
+        assert not flow.stalled()
+    assert 1.3 / 0.11 < len(asked) < 1.3 / 0.05
+
+
 def test_the_flow_of_a_real_connection_is_read():
     with socket.socket() as server:
         server.bind(('127.0.0.1', 0))

@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The shorter way in gives what rospy's would: whole messages, in order, and errors as before."""
 import io
+import queue
 import socket
 import struct
+import threading
 import types
 
 import pytest
@@ -14,70 +16,91 @@ import genpy  # noqa: E402
 from geometry_msgs.msg import Twist  # noqa: E402
 from mhri.ros.convert import packed_twist, PlanarTwist, ShortJoy, to_twist  # noqa: E402
 from mhri.ros.graph.prompt import hear_promptly  # noqa: E402
-from rospy.exceptions import TransportException, TransportTerminated  # noqa: E402
 from rospy.impl.tcpros_base import TCPROSTransport  # noqa: E402
 from rospy.impl.tcpros_pubsub import TCPROSSub  # noqa: E402
 from sensor_msgs.msg import Joy  # noqa: E402
 
 
+class Link:
+    """A connection of a subscriber that hears promptly, with the publisher's end of it."""
+
+    def __init__(self):
+        ours, self.publisher = socket.socketpair()
+        self.connection = TCPROSTransport(TCPROSSub('/twist', PlanarTwist, queue_size=1), '/twist')
+        self.connection.set_socket(ours, 'mux')
+        self.connection.header = {'callerid': '/mux'}
+        self.messages, self.ended = queue.Queue(), threading.Event()
+        impl = types.SimpleNamespace(
+            connections=[], add_connection=lambda added: True,
+            receive_callback=lambda messages, _: [self.messages.put(one) for one in messages])
+        hear_promptly(types.SimpleNamespace(impl=impl))
+        assert impl.add_connection(self.connection)
+        self._hear = impl.receive_callback
+        self._thread = threading.Thread(target=self._receive, daemon=True)
+        self._thread.start()
+
+    def _receive(self):
+        """Do as rospy's thread does."""
+        self.connection.receive_loop(self._hear)
+        self.ended.set()
+
+    def heard(self):
+        """Return the next message."""
+        return self.messages.get(timeout=20.0)
+
+    def close(self):
+        """End the thread."""
+        self.publisher.close()
+        assert self.ended.wait(20.0)
+
+
 @pytest.fixture(name='link')
 def _link():
-    """Return (a connection of a subscriber that hears promptly, the publisher's end)."""
-    ours, theirs = socket.socketpair()
-    connection = TCPROSTransport(TCPROSSub('/twist', PlanarTwist, queue_size=1), '/twist')
-    connection.set_socket(ours, 'mux')
-    connection.header = {'callerid': '/mux'}
-    impl = types.SimpleNamespace(connections=[], add_connection=lambda added: True)
-    hear_promptly(types.SimpleNamespace(impl=impl))
-    assert impl.add_connection(connection)
-    yield connection, theirs
-    connection.close()
-    theirs.close()
-
-
-def speeds(connection):
-    return [message.velocity.linear_mps for message in connection.receive_once()]
+    found = Link()
+    yield found
+    found.close()
 
 
 def test_a_whole_message_is_read_and_counted(link):
-    connection, publisher = link
     for number in range(3):
-        publisher.sendall(packed_twist(number, 0.5))
-        message, = connection.receive_once()
+        link.publisher.sendall(packed_twist(number, 0.5))
+        message = link.heard()
         assert message.velocity.linear_mps == number and message.velocity.angular_rad_s == 0.5
-        assert message._connection_header is connection.header
-    assert connection.stat_num_msg == 3 and connection.stat_bytes == 3 * 52
+        assert message._connection_header is link.connection.header
+    assert link.connection.stat_num_msg == 3 and link.connection.stat_bytes == 3 * 52
 
 
 def test_of_several_at_once_the_newest_counts(link):
-    connection, publisher = link
-    publisher.sendall(packed_twist(1.0, 0.0) + packed_twist(2.0, 0.0) + packed_twist(3.0, 0.0))
-    assert speeds(connection) == [3.0]
-    publisher.sendall(packed_twist(4.0, 0.0))
-    assert speeds(connection) == [4.0]
+    link.publisher.sendall(packed_twist(1.0, 0.0) + packed_twist(2.0, 0.0) + packed_twist(3.0, 0.0))
+    assert link.heard().velocity.linear_mps == 3.0
+    link.publisher.sendall(packed_twist(4.0, 0.0))
+    assert link.heard().velocity.linear_mps == 4.0
+    assert link.messages.empty()
 
 
 @pytest.mark.parametrize('cut', [1, 3, 4, 5, 51])
 def test_a_message_in_two_parts_is_joined(link, cut):
-    connection, publisher = link
-    publisher.sendall(packed_twist(1.0, 0.0) + packed_twist(2.0, 0.0)[:cut])
-    assert speeds(connection) == [1.0]
-    publisher.sendall(packed_twist(2.0, 0.0)[cut:])
-    assert speeds(connection) == [2.0]
-    publisher.sendall(packed_twist(3.0, 0.0))
-    assert speeds(connection) == [3.0]
+    link.publisher.sendall(packed_twist(1.0, 0.0) + packed_twist(2.0, 0.0)[:cut])
+    assert link.heard().velocity.linear_mps == 1.0
+    link.publisher.sendall(packed_twist(2.0, 0.0)[cut:])
+    assert link.heard().velocity.linear_mps == 2.0
+    link.publisher.sendall(packed_twist(3.0, 0.0))
+    assert link.heard().velocity.linear_mps == 3.0
 
 
-def test_who_hangs_up_or_sends_garbage_ends_the_connection(link):
-    connection, publisher = link
-    publisher.sendall(struct.pack('<I', 7) + b'garbage')
-    with pytest.raises(TransportException):
-        connection.receive_once()
-    publisher.close()
-    connection.read_buff.seek(0)
-    connection.read_buff.truncate()
-    with pytest.raises(TransportTerminated):
-        connection.receive_once()
+def test_garbage_drops_the_connection_as_in_rospy(link):
+    link.publisher.sendall(struct.pack('<I', 7) + b'garbage')
+    link.publisher.settimeout(20.0)
+    assert link.publisher.recv(1) == b'', 'rospy hangs up and connects anew'
+    assert link.messages.empty()
+    link.connection.close()
+
+
+def test_who_hangs_up_ends_the_connection(link):
+    link.publisher.sendall(packed_twist(1.0, 0.0))
+    link.publisher.close()
+    assert link.heard().velocity.linear_mps == 1.0
+    assert link.ended.wait(20.0) and link.connection.done
 
 
 def packed(message):

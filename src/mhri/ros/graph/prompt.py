@@ -49,7 +49,7 @@ class Flow:
     def __init__(self, end, clock=time.monotonic):
         self._end = end
         self.clock = clock
-        self.clear_at = clock()
+        self._alive_at = clock()
         self._option = getattr(socket, 'TCP_INFO', None) if end.family in (
             socket.AF_INET, socket.AF_INET6) else None
 
@@ -66,15 +66,18 @@ class Flow:
         except (OSError, struct.error):
             return 0.0
         now = self.clock()
-        if not unacked:
-            self.clear_at = now
-            return 0.0
-        quiet_s = min(now - self.clear_at, ack_ms * 1e-3)
+        self._alive_at = max(self._alive_at, now - ack_ms * 1e-3) if unacked else now
+        quiet_s = now - self._alive_at
         return quiet_s if quiet_s > 2e-6 * rtt_us + _CONFIRMS_WITHIN_S else 0.0
 
     def stalled(self):
-        """Tell whether nothing has been confirmed for :data:`LEAST_STALL_S`, or two round trips."""
-        return self.quiet_s() > LEAST_STALL_S
+        """Tell whether nothing has been confirmed for :data:`LEAST_STALL_S`, or two round trips.
+
+        Less than that after it was alive it cannot be: most commands need not wait for the system's
+        answer, which takes longer than the rest of their way out.
+        """
+        return (self.clock() - self._alive_at > LEAST_STALL_S
+                and self.quiet_s() > LEAST_STALL_S)
 
 
 class PromptConnection(QueuedConnection):
@@ -276,32 +279,41 @@ class PromptPublisher(rospy.Publisher):
         return impl.connections if impl else ()
 
 
-def _receive_once(connection):
-    """Return the next messages of a connection: rospy's way, but shorter for one that comes whole.
+def _receive(connection, hear):
+    """Pass messages on as long as each comes whole and alone; return what else comes.
 
+    :param hear: called with a list of one message and the connection, as rospy would
     :raises TransportTerminated: the publisher has hung up
     """
     end, begun, protocol = connection.socket, connection.read_buff, connection.protocol
     if end is None or begun is None or begun.tell() or connection.is_latched:
         return TCPROSTransport.receive_once(connection)
-    try:
-        data = end.recv(protocol.buff_size)
-    except OSError as error:
-        raise TransportTerminated(str(error))
-    if not data:
-        raise TransportTerminated('the publisher has hung up')
-    connection.stat_bytes += len(data)
+    while not rospy.is_shutdown():
+        try:
+            data = end.recv(protocol.buff_size)
+        except OSError as error:
+            raise TransportTerminated(str(error))
+        if not data:
+            raise TransportTerminated('the publisher has hung up')
+        connection.stat_bytes += len(data)
+        message = _whole(data, protocol.recv_data_class)
+        if message is None:
+            begun.write(data)
+            return TCPROSTransport.receive_once(connection)
+        message._connection_header = connection.header
+        connection.stat_num_msg += 1
+        hear([message], connection)
+    return []
+
+
+def _whole(data, message_class):
+    """Return the one message that some bytes are, None if they are no such thing."""
     if len(data) > _LENGTH.size and _LENGTH.unpack_from(data)[0] == len(data) - _LENGTH.size:
         try:
-            message = protocol.recv_data_class().deserialize(data[_LENGTH.size:])
+            return message_class().deserialize(data[_LENGTH.size:])
         except genpy.DeserializationError:
-            pass  # below, rospy says so and connects anew
-        else:
-            message._connection_header = connection.header
-            connection.stat_num_msg += 1
-            return [message]
-    begun.write(data)
-    return TCPROSTransport.receive_once(connection)
+            pass  # rospy says so and connects anew
+    return None
 
 
 def hear_promptly(subscriber):
@@ -309,22 +321,26 @@ def hear_promptly(subscriber):
     impl = subscriber.impl
     plain = impl.add_connection
 
+    def shorten(connection):
+        """Let a connection receive in our own way."""
+        connection.receive_once = functools.partial(_receive, connection, impl.receive_callback)
+
     def add_connection(connection):
-        """Add the connection, which receives in our own way."""
-        connection.receive_once = functools.partial(_receive_once, connection)
+        """Add the connection, shortened."""
+        shorten(connection)
         return plain(connection)
 
     impl.add_connection = add_connection
     for connection in impl.connections:
         # One message may still come in rospy's way.
-        connection.receive_once = functools.partial(_receive_once, connection)
+        shorten(connection)
     return subscriber
 
 
 require(
     [(rospy.topics._PublisherImpl, ('add_connection', 'set_queue_size')),
      (rospy.topics._TopicImpl, ('add_connection',)),
-     (rospy.topics._SubscriberImpl, ('add_connection',)),
+     (rospy.topics._SubscriberImpl, ('add_connection', 'receive_callback')),
      (TCPROSTransport, ('set_cleanup_callback', 'write_data', 'close', 'receive_once')),
      (QueuedConnection, ('write_data', '_run', '_closed_connection_callback'))],
     [(rospy.topics._TopicImpl.__init__, ('connections', 'closed')),
