@@ -9,7 +9,7 @@ import unittest
 from geometry_msgs.msg import Twist
 from rostest_tools import (
     FORWARD, measured, moves, NEUTRAL, Recorder, rests, Stick, StickProcess, twist_recorder,
-    wait_until)
+    velocity, wait_until)
 import rospy
 import rostest
 from sensor_msgs.msg import Joy
@@ -33,6 +33,7 @@ class MuxPromises(unittest.TestCase):
         cls.modes = Recorder('/mux/mode', ControlMode, lambda message: message.source)
         cls.stops = Recorder('/robot_controller/stop_all', Bool, lambda message: message.data)
         cls.waits = Recorder('/mux/waits_for', String, lambda message: message.data)
+        cls.asked = Recorder('/mux/asked', Twist, velocity)
         cls.advice = Recorder('/mux/advice', String, lambda message: message.data)
         cls.stick, cls.pedal = (Stick('/mux_in/' + name) for name in ('joy', 'pedal'))
         cls.select = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
@@ -43,7 +44,7 @@ class MuxPromises(unittest.TestCase):
             stick.wait_listener()
         wait_until(lambda: cls.select.get_num_connections() and cls.limit.get_num_connections(),
                    'the mux does not listen')
-        for recorder in (cls.twists, cls.modes, cls.stops):
+        for recorder in (cls.twists, cls.asked, cls.modes, cls.stops):
             recorder.wait_publisher()
 
     def setUp(self):
@@ -114,6 +115,21 @@ class MuxPromises(unittest.TestCase):
         self.assertTrue(8 <= len(repeats) <= 10, repeats)
         gaps = [later - sooner for sooner, later in zip(repeats, repeats[1:])]
         self.assertLess(measured('longest gap between repetitions', max(gaps)), 0.075)
+
+    def test_screens_are_told_the_command_but_not_each_time(self):
+        """At the begin and the end at once, between them often enough to show."""
+        begun = self._drive()
+        self.asked.wait(moves, begun - 0.1)
+        moved = self.stick.silence()
+        for number in range(100):
+            self.stick.once((0.0, 0.5 + number / 250.0))
+            self.twists.wait(lambda value: abs(value[0] - 0.25 - number / 500.0) < 1e-6, moved)
+        told = self.asked.since(moved)
+        self.assertLess(len(told), 5 + 20 * (time.monotonic() - moved))
+        self.assertLess(len(told), len(self.twists.since(moved)))
+        self.asked.wait(lambda value: abs(value[0] - 0.448) < 1e-6, moved)
+        released = self.stick.hold(NEUTRAL)
+        measured('screens told of the end', self.asked.wait(rests, released).at - released)
 
     def test_silent_source_zero_within_550_ms(self):
         """Counted from its last message."""

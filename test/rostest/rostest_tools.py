@@ -119,8 +119,12 @@ class Recorder:
 
 def twist_recorder():
     """Return a recorder of the one velocity command, as (m/s, rad/s)."""
-    return Recorder('/robot_controller/twist', Twist,
-                    lambda twist: (twist.linear.x, twist.angular.z))
+    return Recorder('/robot_controller/twist', Twist, velocity)
+
+
+def velocity(twist):
+    """Return a Twist as (m/s, rad/s)."""
+    return twist.linear.x, twist.angular.z
 
 
 def moves(value):

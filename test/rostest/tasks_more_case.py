@@ -13,7 +13,7 @@ from geometry_msgs.msg import PoseStamped, Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseResult
 from nav_msgs.msg import Odometry
 import rospy
-from rostest_tools import NEUTRAL, Recorder, Stick, wait_until
+from rostest_tools import NEUTRAL, Recorder, Stick, velocity, wait_until
 from std_srvs.srv import SetBool
 
 HERE = os.path.dirname(os.path.realpath(__file__))
@@ -26,11 +26,6 @@ from turtlesim.msg import Pose as TurtlePose  # noqa: E402
 
 PATIENCE_S = 120.0
 ROBOTS = ('bot1', 'bot2', 'bot3', 'pond')
-
-
-def velocity(twist):
-    """Return what a command says, as (m/s, rad/s)."""
-    return (twist.linear.x, twist.angular.z)
 
 
 class FakeMoveBase:

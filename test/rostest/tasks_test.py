@@ -20,7 +20,7 @@ import rospkg
 import rospy
 import rostest
 from rostest_tools import (
-    measured, moves, NEUTRAL, Process, Recorder, rests, Stick, wait_until)
+    measured, moves, NEUTRAL, Process, Recorder, rests, Stick, velocity, wait_until)
 from std_srvs.srv import SetBool
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
@@ -35,11 +35,6 @@ PATIENCE_S = 120.0
 # Where bot2 begins.
 BOT2 = (2.0, 1.0)
 COMMANDS = {'bot1': '/bot1/teleop/input', 'bot2': '/bot2/cmd_vel'}
-
-
-def velocity(twist):
-    """Return what a command says, as (m/s, rad/s)."""
-    return (twist.linear.x, twist.angular.z)
 
 
 def place(message):

@@ -15,6 +15,7 @@ Interfaces (all global names; units SI):
   latched), ``/mux/speed_limit`` (``geometry_msgs/Twist``, latched), ``/mux/waits_for``
   (``std_msgs/String``, latched: '' or one of release, source, neutral, enabling, dead_man),
   ``/mux/pushed`` (``std_msgs/Bool``, latched: whether the active source's stick is held),
+  ``/mux/asked`` (``geometry_msgs/Twist``: the command as screens show it, at most 20 Hz),
   ``/mux/advice`` (``std_msgs/String``, latched: a sentence, or ''), ``/mux/dead_man``
   (``std_msgs/Bool``, latched: whether dead-man buttons must be held) and ``/panel_in/request``
   (``mhri/PanelRequest``: what the pad's buttons ask of the panel)
@@ -35,6 +36,7 @@ from std_srvs.srv import SetBool, SetBoolResponse
 
 from mhri.core.driving.arbiter import Arbiter, DRIVING, READY, REPEAT_HZ, ZEROS_S
 from mhri.core.driving.buttons import ButtonEdges
+from mhri.core.driving.limits import ZERO
 from mhri.core.driving.profile import (
     is_pressed, JoyRefused, MARK, NEXT_ROBOT, PREVIOUS_ROBOT, read_twist, SELECT_ALL, STOP_ALL)
 from mhri.core.driving.pulse import Pulse
@@ -85,6 +87,7 @@ class Mux:
         self._changed = threading.Condition(threading.RLock())
         # What it waits for, and whether the stick is held, as it was said last.
         self._said = None, None
+        self._sent = self._told = ZERO  # the last command, and what the screens were told
         self._driving = self._closing = False
         self._twist = PromptPublisher('/robot_controller/twist', Twist)
         self._mode = rospy.Publisher('/mux/mode', ControlMode, queue_size=10, latch=True)
@@ -92,6 +95,8 @@ class Mux:
         self._limit = rospy.Publisher('/mux/speed_limit', Twist, queue_size=10, latch=True)
         self._waits = rospy.Publisher('/mux/waits_for', String, queue_size=10, latch=True)
         self._pushed = rospy.Publisher('/mux/pushed', Bool, queue_size=1, latch=True)
+        # Not the command itself: a screen that hears that would keep this processor from the gates.
+        self._asked = rospy.Publisher('/mux/asked', Twist, queue_size=1)
         self._dead_man = rospy.Publisher('/mux/dead_man', Bool, queue_size=1, latch=True)
         self._ask = rospy.Publisher('/panel_in/request', PanelRequest, queue_size=10,
                                     tcp_nodelay=True)
@@ -168,6 +173,7 @@ class Mux:
         if self._closing:
             return
         if velocity is not None:
+            self._sent = velocity
             self._twist.publish_packed(packed_twist(
                 velocity.linear_mps, velocity.angular_rad_s), urgent=velocity.is_zero())
         was_driving, self._driving = self._driving, self._arbiter.state == DRIVING
@@ -175,12 +181,15 @@ class Mux:
             self._tell(self._clock())
 
     def _tell(self, now):
-        """Publish what the mux waits for, and let the timer look when it is due (lock held)."""
+        """Publish what screens show, and let the timer look when it is due (lock held)."""
         said = self._said
         self._said = self._arbiter.waits_for(now), self._arbiter.pushed(now)
         for topic, word, before in zip((self._waits, self._pushed), self._said, said):
             if word != before:
                 topic.publish(data=word)
+        told, self._told = self._told, self._sent
+        if not (told.is_zero() and self._sent.is_zero()):
+            self._asked.publish(to_twist(*self._sent))
         if self._arbiter.next_tick(now) < self._due:
             self._changed.notify()
 

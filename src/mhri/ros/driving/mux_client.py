@@ -6,9 +6,9 @@ Publishes ``/mux_in/mode_select`` (``mhri/ControlMode``) and ``/mux_in/speed_lim
 (``geometry_msgs/Twist``, latched); while this screen drives also ``/mux_in/joy``
 (``sensor_msgs/Joy``) and ``/robot_controller/robot_select`` (``mhri/RobotSelect``, latched).
 Subscribes ``/mux/mode``, ``/mux/speed_limit``, ``/mux/waits_for``, ``/mux/pushed``,
-``/mux/advice``, ``/mux/dead_man``, ``/robot_controller/stop_all``, ``/robot_controller/twist``, and
-believes only the mux in force (:mod:`mhri.ros.driving.in_force`). Calls ``/mux/set_stop_all`` on a
-thread of its own, over a line that is open before it is needed.
+``/mux/advice``, ``/mux/dead_man``, ``/mux/asked`` and ``/robot_controller/stop_all``, and believes
+only the mux in force (:mod:`mhri.ros.driving.in_force`). Calls ``/mux/set_stop_all`` on a thread of
+its own, over a line that is open before it is needed.
 """
 import threading
 import time
@@ -28,7 +28,7 @@ from mhri.ros.graph.prompt import PromptPublisher
 from mhri.ros.graph.rospy_inside import publishers
 from mhri.ros.worker import Worker
 
-# The mux repeats a command at 20 Hz: an older one is over.
+# The mux tells a command at least ten times a second: an older one is over.
 ASKED_S = 0.3
 
 
@@ -83,7 +83,7 @@ class MuxClient:
                 ('/mux/advice', String, self._on_advice),
                 ('/mux/dead_man', Bool, self._on_dead_man),
                 ('/robot_controller/stop_all', Bool, self._hear_stop),
-                ('/robot_controller/twist', Twist, self._on_twist)) if speaks or kind != Twist]
+                ('/mux/asked', Twist, self._on_asked)) if speaks or kind != Twist]
         self._topics = list(filter(None, (self._heard, self._select_mode, self._speed, *heard)))
         self._force.start()
         self._stopper.start()
@@ -124,7 +124,7 @@ class MuxClient:
         with self._lock:
             self._waits_for = tidy_text(message.data)
 
-    def _on_twist(self, message):
+    def _on_asked(self, message):
         self._asked, self._asked_at = (message.linear.x, message.angular.z), time.monotonic()
 
     def asked(self):
