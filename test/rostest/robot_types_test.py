@@ -278,6 +278,9 @@ class RobotTypesTest(unittest.TestCase):
         process = self.start('drive/velocity', 'odom', '--halfway', namespace='/half')
         self.assertEqual(self.add('half', self.found('half')['half']).command, ('cmd_vel',))
         process.send(signal.SIGUSR1)
+        # What the gates learn first is no reason for the screen not to look.
+        wait_for(lambda: getattr(self.gates.robot('half'), 'topic', ''), PATIENCE_S,
+                 'the gates to know it')
 
         def known():
             self.fleet.supervise()

@@ -8,6 +8,7 @@ from dataclasses import replace
 import rospy
 
 from mhri.core.robots.link_quality import LinkQuality
+from mhri.core.robots.names import topic_of
 from mhri.core.robots.robot_types import resolve_robot_type, Seen
 from mhri.core.screen.views import GONE, RobotView, WAITING
 from mhri.ros.robots.bot_feeds import BotFeeds
@@ -127,9 +128,13 @@ class Fleet:
             link.listen_to_guard()
 
     def _is_reached(self, name):
-        """Tell whether the gates have somewhere to send a robot's commands."""
+        """Tell whether the gates send a robot's commands to where this screen thinks it listens.
+
+        If they send them elsewhere, they have looked later.
+        """
         gate = self._gates.robot(name)
-        return gate is not None and bool(gate.topic)
+        return gate is not None and (gate.guarded or gate.topic in [
+            topic_of(name, topic) for topic in self._links[name].robot_type.command])
 
     def on_stop(self, stopped, now):
         """Begin or end the proof of a stop for every robot."""
