@@ -72,8 +72,8 @@ def test_20000_names_and_the_operator_is_killed(fire):
                          'the operator to be in control')[0]
         assert len(state.robots) <= 64 and all(len(robot.name) <= 64 for robot in state.robots)
         push(fire)
-        os.kill(fire.operator.pid, signal.SIGKILL)
         since = time.monotonic()
+        os.kill(fire.operator.pid, signal.SIGKILL)
         took.append(last_word(fire, since))
         fire.operator.wait(5)
         fire.check_stands(since + took[-1])

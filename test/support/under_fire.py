@@ -117,6 +117,7 @@ class UnderFire:
                 print('--- {} ({}):\n{}'.format(process.name, process.popen.poll(),
                                                 process.tail()))
         rospy.signal_shutdown('done')
+        self.stick.kill()  # it does not end with what it is told by
         for speaker in (self.stick, getattr(self, 'operator', None)):
             if speaker is not None:
                 speaker.stdin.close()
