@@ -6,6 +6,7 @@ import signal
 import sys
 
 import pytest
+import rosgraph
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
@@ -57,6 +58,20 @@ threading.Thread(target=signal_to_another_thread).start()
 time.sleep(60.0)
 '''
 
+# Slow where rospy has told the master that it goes, but not yet itself.
+WATCHED = '''
+import time
+import rospy
+from mhri.ros.ending import init_node
+from mhri.ros.graph.master_watch import MasterWatch
+
+init_node('watched')
+MasterWatch(period_s=0.01).start()
+rospy.core.add_preshutdown_hook(lambda reason: time.sleep(0.5))
+print('ready', flush=True)
+rospy.spin()
+'''
+
 
 @pytest.fixture(scope='module')
 def system():
@@ -85,6 +100,15 @@ def test_a_signal_that_does_not_wake_the_main_thread_is_heard(system):
     process = system.start(sys.executable, '-c', ASLEEP)
     assert process.wait(60) == 0, text(process)
     assert text(process).splitlines()[-1] == 'said'
+
+
+def test_a_node_that_goes_does_not_register_again(system):
+    process = system.start(sys.executable, '-c', WATCHED)
+    wait_for(lambda: 'ready' in text(process), 60.0, lambda: text(process))
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(60) == 0 and 'registered again' not in text(process), text(process)
+    with pytest.raises(rosgraph.MasterError):
+        rosgraph.Master('/test', system.env['ROS_MASTER_URI']).lookupNode('/watched')
 
 
 def test_without_a_master_a_signal_ends_it(system):

@@ -11,7 +11,8 @@ import time
 import rospy
 
 from mhri.ros.graph.master_api import MasterApi, MasterError
-from mhri.ros.graph.rospy_inside import meet_publishers, never_ask_for, registrations
+from mhri.ros.graph.rospy_inside import (
+    is_ending, meet_publishers, never_ask_for, registrations)
 
 
 def log_without_master():
@@ -97,7 +98,7 @@ class MasterWatch:
             rospy.logwarn('another node has taken over the name %s: this one ends',
                           rospy.get_name())
             return
-        if rospy.is_shutdown():
+        if is_ending():
             # This node itself has taken back what the master no longer knows.
             return
         if uri is None:

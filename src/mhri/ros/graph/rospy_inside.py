@@ -123,6 +123,11 @@ def answer_late(wait):
     ROSHandler.getPid = get_pid
 
 
+def is_ending():
+    """Tell whether this node ends: its registrations go before ``is_shutdown`` says so."""
+    return rospy.core.is_shutdown_requested()
+
+
 def registrations():
     """Return this node's registrations: ([(topic, type)], [(service, URI)], [(topic, type)]).
 
@@ -157,6 +162,7 @@ def require(methods, names):
 
 
 require([(ROSHandler, ('getPid',)), (rospy.topics._SubscriberImpl, ('remove_connection',)),
-         (rospy.core, ('add_preshutdown_hook', 'is_initialized'))],
+         (rospy.core, ('add_preshutdown_hook', 'is_initialized',
+                       'is_shutdown_requested'))],
         [(rospy.topics._TopicImpl.__init__, ('connections', 'connection_poll', 'closed')),
          (TCPROSTransport.__init__, ('callerid_pub', 'endpoint_id'))])
