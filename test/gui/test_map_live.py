@@ -78,7 +78,8 @@ def test_robots_drive_on_the_map_and_their_lasers_see_its_walls(session):
     session.until(lambda: math.hypot(session.robot('bot1').pose.x_m - first.x_m,
                                      session.robot('bot1').pose.y_m - first.y_m) > 0.3,
                   what='it to drive')
-    assert len(session.robot('bot1').trail) > 3
+    # A busy machine takes in fewer places on the same way.
+    session.until(lambda: len(session.robot('bot1').trail) > 3, what='its trail')
     assert session.robot('bot3').pose is None
 
 
