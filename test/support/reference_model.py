@@ -278,9 +278,6 @@ class ReferenceModel:
                     names |= {name for name in self.chosen if self.parts['operator', name].well}
         return names
 
-    def _part_of(self, stick):
-        return self.parts['pad' if stick == PAD else ('operator', stick)]
-
     def _asked(self, name, now):
         """Yield (words, limit) of everything that keeps a robot from moving."""
         if self.stopped:
@@ -309,11 +306,14 @@ class ReferenceModel:
         return {'killed': killed, 'hung': hung, 'ended': AT_ONCE_S}
 
     def _sticks_ask(self, now):
-        speakers = self._speakers(now)
-        if not any(self._part_of(stick).well for stick in speakers):
-            yield 'no stick is there', SILENT_S
-        elif not any(self.sticks[stick].out and (stick != PAD or self.sticks[PAD].held)
-                     for stick in speakers if self._part_of(stick).well):
+        speakers = {stick: self.parts['pad' if stick == PAD else ('operator', stick)].well
+                    for stick in self._speakers(now)}
+        out = [well for stick, well in speakers.items()
+               if self.sticks[stick].out and (stick != PAD or self.sticks[PAD].held)]
+        # Another's centred stick does not end the drive of one that falls silent.
+        if not any(out or speakers.values()):
+            yield 'no stick that is out is there', SILENT_S
+        elif not out:
             yield 'the stick is centred', AT_ONCE_S
 
     def _look(self, now):

@@ -125,6 +125,16 @@ def test_a_second_operator_changes_nothing_until_it_takes_control():
     assert says(model, 42.0) == STAND
 
 
+def test_a_second_operators_stick_does_not_shorten_what_a_silent_one_may_take():
+    """Beside gates that are new, both may be in control; the one that drives is hung."""
+    model = driven()
+    model.tell(28.0, 'mend', ('operator', 'b'))
+    model.tell(29.0, 'fail', 'gates', 'killed')
+    model.tell(29.5, 'mend', 'gates')
+    model.tell(30.0, 'fail', ('operator', 'a'), 'hung')
+    assert [says(model, when) for when in (30.6, 30.7)] == [EITHER, STAND]
+
+
 def test_nobody_knows_whether_a_stop_is_in_force():
     model = driven()
     model.tell(30.0, 'unknown')
