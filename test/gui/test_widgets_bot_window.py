@@ -154,6 +154,9 @@ def test_numbers_change_four_times_a_second_at_most(window):
     assert window.hud.lines[0].startswith('0.31 m/s')
     window.show_view(replace(VIEW, linear_mps=0.5, link=views.SILENT, age_s=1.2))
     assert window.link_label.text() == 'silent 1.2 s', 'a state never waits'
+    window.show_view(replace(VIEW, linear_mps=0.4))
+    window.show_view(replace(VIEW, linear_mps=0.0, angular_rad_s=0.0, proof=CONFIRMED))
+    assert window.hud.lines[0].startswith('0.00 m/s'), 'beside "stopped" stands no older speed'
 
 
 def test_no_dead_controls(window):

@@ -107,6 +107,10 @@ def test_numbers_wait_for_their_turn_but_states_do_not(robots):
     assert (row.linear.text(), row.age.text()) == ('0.50 m/s', '99 ms')
     robots.show_robots([replace(faster, link=views.SILENT, age_s=1.1)], numbers=False)
     assert (row.link.text(), row.age.text()) == ('silent', '1.1 s')
+    proof = ProofView(views.PROOF_STOPPED, 'stopped in 180 ms')
+    robots.show_robots([LIVE], numbers=False)
+    robots.show_robots([replace(LIVE, linear_mps=0.0, proof=proof)], numbers=False)
+    assert row.linear.text() == '0.00 m/s'
 
 
 def test_a_sentence_that_is_too_long_says_first_what_to_do(robots, operator):

@@ -136,6 +136,11 @@ class RobotView:
         """Whether it drives by itself, or is about to."""
         return not self.selected and (self.obeys == 'task' or self.task is not None)
 
+    @property
+    def changed_with(self) -> Tuple[str, str]:
+        """The states with which its numbers change at once, so that both say the same."""
+        return self.link, self.proof.state if self.proof else ''
+
 
 @dataclass(frozen=True)
 class StateView:

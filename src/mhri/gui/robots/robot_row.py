@@ -83,7 +83,7 @@ class RobotRow(QWidget):
         self.name = name
         self._tone = None
         self._current = False
-        self._link = None
+        self._changed_with = None
         self._trouble_shown = None
         self._build()
         self._connect()
@@ -211,8 +211,8 @@ class RobotRow(QWidget):
         :param checked: whether the box is ticked
         :param numbers: whether numbers may change now; a changed state always shows at once
         """
-        numbers = numbers or view.link != self._link
-        self._link = view.link
+        numbers = numbers or view.changed_with != self._changed_with
+        self._changed_with = view.changed_with
         self._show_number(view.number)
         self.box.setChecked(checked)
         self.kind.show_text(words.type_text(view), theme.MUTED, (view.type_label, ''))

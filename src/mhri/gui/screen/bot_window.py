@@ -63,7 +63,7 @@ class BotWindow(QWidget):
         self.full_rate = True
         self._drive = None
         self._trouble = None
-        self._link = None
+        self._changed_with = None
         self._looked_at = self._stopped = self._cut_off = False
         self._wanted = self._arranged = set()
         self._offered = frozenset()
@@ -268,8 +268,8 @@ class BotWindow(QWidget):
 
         :param stop_all: whether stop-all is in force; a proof in the view says so, too
         """
-        numbers = self._numbers.due() or view.link != self._link
-        self._link = view.link
+        numbers = self._numbers.due() or view.changed_with != self._changed_with
+        self._changed_with = view.changed_with
         self.header.show_view(view, numbers)
         self._show_drive_state(view, stop_all or view.proof is not None)
         self._show_sentence(view)
