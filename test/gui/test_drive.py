@@ -3,6 +3,7 @@
 """The panel as an operator uses it: real clicks and keys, a real master, simulated robots."""
 import os
 import signal
+import subprocess
 import sys
 import time
 
@@ -14,6 +15,7 @@ from python_qt_binding.QtWidgets import QApplication, QWidget
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from mhri.presenters.demo import Grip  # noqa: E402
+from support.graph import SELECT  # noqa: E402
 from support.ros_system import processes_with, System, wait_for  # noqa: E402
 
 ROBOTS = ('bot1', 'bot2', 'bot3')
@@ -98,6 +100,13 @@ class Session:
         until(lambda: self.operator.view().status.endswith('ready') or not names,
               what=lambda: 'the panel to be ready: ' + self.operator.view().status)
 
+    def look_first_at_another(self, name):
+        """Have the tile of this robot small, and another one large."""
+        self.host.screen.stage.set_style('one')
+        self.host.screen.look_at(next(other for other in ROBOTS if other != name))
+        until(lambda: all(other in self.host.windows for other in ROBOTS), what='the tiles')
+        until(lambda: not self.host.windows[name].header.large, what='a small tile')
+
     def release(self):
         """Give up stop-all as a person does: where the mux has not seen the stick let go, again."""
         tried_at = [-10.0]
@@ -160,6 +169,25 @@ def test_two_of_three_drive_alike_and_stand_still_when_the_stick_is_let_go(sessi
           for name in ('bot1', 'bot3'))))
     assert driven['bot2'] == 0.0
     assert driven['bot3'] == pytest.approx(driven['bot1'], rel=0.15)
+
+
+def test_a_double_click_drives_the_robot_of_its_first_press_though_the_tiles_change_places(session):
+    from mhri.msg import RobotSelect
+    wished = []
+    subscriber = session._rospy.Subscriber(
+        SELECT, RobotSelect, lambda message: wished.append(tuple(message.robots)), queue_size=10)
+    session.select('bot1')
+    for name in ('bot2', 'bot3', 'bot1', 'bot3'):
+        session.look_first_at_another(name)
+        tile = session.host.windows[name]
+        before, place = tile.geometry(), tile.mapToGlobal(tile.rect().center())
+        del wished[:]
+        subprocess.run(['xdotool', 'mousemove', str(place.x()), str(place.y()), 'click', '--repeat',
+                        '2', '--delay', '120', '1'], check=True, timeout=30)
+        until(lambda: len(wished) > 2, what='the wish')
+        assert tile.geometry() != before, 'nothing has moved under the pointer'
+        assert set(wished) <= {(name,), wished[0]} and wished[-1] == (name,)
+    subscriber.unregister()
 
 
 def test_staying_together_slows_the_quick_one(session):

@@ -184,8 +184,16 @@ def test_a_click_looks_and_a_double_click_drives(window, operator, heard):
     picture = window.view('rgb').picture
     operator.click(picture)
     assert (clicked, driven) == (['bot1'], [])
+    QTest.mousePress(picture, Qt.LeftButton)
     QTest.mouseDClick(picture, Qt.LeftButton)
     assert driven == ['bot1']
+
+
+def test_a_double_click_that_began_beside_the_tile_drives_nobody(window, operator, heard):
+    driven = heard(window.drive_requested)
+    operator.click(operator.show(QWidget()))
+    QTest.mouseDClick(window, Qt.LeftButton)
+    assert driven == []
 
 
 def test_a_small_tile_shows_its_picture_alone_and_a_tiny_one_its_name(window, operator):

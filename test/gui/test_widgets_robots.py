@@ -4,7 +4,7 @@
 from dataclasses import replace
 
 import pytest
-from python_qt_binding.QtCore import Qt
+from python_qt_binding.QtCore import QPoint, Qt
 from python_qt_binding.QtTest import QTest
 
 from mhri.core.link.control import ASK_FOR, TAKE_IT
@@ -238,9 +238,23 @@ def test_click_highlights_and_double_click_opens_without_selecting(robots, opera
     activated, opened = heard(robots.activated), heard(robots.open_requested)
     asked = heard(robots.selection_requested)
     operator.click(robots.row('bot3').title)
+    QTest.mousePress(robots.row('bot4'), Qt.LeftButton)
     QTest.mouseDClick(robots.row('bot4'), Qt.LeftButton)
-    assert activated[0] == 'bot3' and opened == ['bot4'] and asked == []
-    assert robots.current == 'bot3'
+    assert activated == ['bot3', 'bot4'] and opened == ['bot4'] and asked == []
+    assert robots.current == 'bot4'
+
+
+def test_a_double_click_is_for_the_row_of_its_first_press_though_a_row_above_has_gone(
+        robots, operator, heard, four_robots):
+    opened = heard(robots.open_requested)
+    place = robots.row('bot2').mapToGlobal(QPoint(10, 10))
+    QTest.mousePress(robots.row('bot2'), Qt.LeftButton, Qt.NoModifier, QPoint(10, 10))
+    robots.show_robots(four_robots.robots[1:])
+    operator.settle()
+    under = robots.row('bot3')
+    assert under.rect().contains(under.mapFromGlobal(place))
+    QTest.mouseDClick(under, Qt.LeftButton, Qt.NoModifier, under.mapFromGlobal(place))
+    assert opened == ['bot2']
 
 
 @pytest.mark.parametrize('keys, current', [

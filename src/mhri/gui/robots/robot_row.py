@@ -11,6 +11,7 @@ from mhri.core.screen import views
 from mhri.core.screen.brake_view import brake_words, guard_words
 from mhri.core.screen.task_words import interrupted_line, task_lines
 from mhri.gui.screen import theme, words
+from mhri.gui.screen.first_press import first_press
 from mhri.gui.screen.labels import BatteryLine, Pill, plain_tip, Sign, TextLine
 
 DRIVING, ON_TASK = 'DRIVING', 'ON TASK'
@@ -69,9 +70,9 @@ class RobotRow(QWidget):
 
     #: the check box was clicked: name, checked
     checked = Signal(str, bool)
-    #: the row was clicked
+    #: a click: the robot that is meant
     clicked = Signal(str)
-    #: the row was double-clicked
+    #: a double click: the robot that had the first press
     opened = Signal(str)
     #: it shall go on with the task that it was taken from
     carry_on_requested = Signal(str)
@@ -330,13 +331,15 @@ class RobotRow(QWidget):
 
     def mousePressEvent(self, event):  # noqa: N802
         """Highlight."""
-        if event.button() == Qt.LeftButton:
-            self.clicked.emit(self.name)
+        name = first_press.of(self.name, event) if event.button() == Qt.LeftButton else ''
+        if name:
+            self.clicked.emit(name)
 
     def mouseDoubleClickEvent(self, event):  # noqa: N802
-        """Open."""
-        if event.button() == Qt.LeftButton:
-            self.opened.emit(self.name)
+        """Open; the list may have scrolled since the first press."""
+        name = first_press.of_double_click(event) if event.button() == Qt.LeftButton else ''
+        if name:
+            self.opened.emit(name)
 
     def paintEvent(self, event):  # noqa: N802
         """Paint ground, edge and divider."""

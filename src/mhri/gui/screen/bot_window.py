@@ -15,6 +15,7 @@ from mhri.gui.look.tile_layers import EDGE_PX, TileLayers, wants_inset
 from mhri.gui.look.tile_words import sentence_of
 from mhri.gui.recording.recording_row import RecordingRow
 from mhri.gui.screen import theme, words
+from mhri.gui.screen.first_press import first_press
 from mhri.gui.screen.forms import load_form
 from mhri.gui.look.hud import Hud
 from mhri.gui.screen.labels import TextLine
@@ -46,9 +47,9 @@ class BotWindow(QWidget):
     stop_requested = Signal()
     #: another set of views is :meth:`wanted`
     views_changed = Signal()
-    #: a click on it: name of its robot
+    #: a click: name of the robot that is meant
     clicked = Signal(str)
-    #: a double click: this robot and no other
+    #: a double click: this robot, which had the first press, and no other
     drive_requested = Signal(str)
     #: it shall go into a window of its own, or back
     tear_requested = Signal(str)
@@ -373,14 +374,16 @@ class BotWindow(QWidget):
 
     def mousePressEvent(self, event):  # noqa: N802
         """Look at this robot."""
-        if event.button() == Qt.LeftButton:
-            self.clicked.emit(self.name)
+        name = first_press.of(self.name, event) if event.button() == Qt.LeftButton else ''
+        if name:
+            self.clicked.emit(name)
         super().mousePressEvent(event)
 
     def mouseDoubleClickEvent(self, event):  # noqa: N802
-        """Drive this robot and no other."""
-        if event.button() == Qt.LeftButton:
-            self.drive_requested.emit(self.name)
+        """Drive this robot and no other; where another one had the first press, that one."""
+        name = first_press.of_double_click(event) if event.button() == Qt.LeftButton else ''
+        if name:
+            self.drive_requested.emit(name)
 
     def paintEvent(self, event):  # noqa: N802
         """Paint the edge: a stop, trouble, else who drives; a line around it if looked at."""
