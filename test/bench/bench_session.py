@@ -137,8 +137,8 @@ class Stick:
                                  latch=True)
         self.receiver = Receiver(['/{}/teleop/input'.format(name) for name in names])
         mode.publish('pedal')
-        select.publish(names)
-        self._lease = rospy.Timer(rospy.Duration(0.4), lambda _: select.publish(names))
+        select.publish(robots=names)
+        self._lease = rospy.Timer(rospy.Duration(0.4), lambda _: select.publish(robots=names))
         wait_for(lambda: self._joy.get_num_connections(), 60, 'the mux')
         wait_for(self._comes_through, 60, 'a command at every robot')
 

@@ -221,7 +221,7 @@ def test_memory_is_bounded(field):
     select = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=10)
     wait_for(select.get_num_connections, 10.0, 'the voice to listen')
     for number in range(30 * FACTOR):
-        select.publish(['r{}_{}'.format(number, name) for name in range(20000)])
+        select.publish(robots=['r{}_{}'.format(number, name) for name in range(20000)])
         time.sleep(0.1)
     for name, size in field.sizes().items():
         assert size - before[name] <= GROWTH_MB, '{}: {:.0f} MB more'.format(

@@ -127,12 +127,12 @@ class MuxGates(unittest.TestCase):
         self._drive()
         start = time.monotonic()
         for number in range(10):
-            select.publish(['stranger{}'.format(number)])
+            select.publish(robots=['stranger{}'.format(number)])
             rospy.rostime.wallsleep(0.05)
         self.assertFalse([item for item in self.twists.since(start) if rests(item.value)])
         self.gates.say(operator='/mux_gates')
         rospy.rostime.wallsleep(0.2)
-        select.publish(['newcomer'])
+        select.publish(robots=['newcomer'])
         self.twists.wait(rests, start)
         select.unregister()
 

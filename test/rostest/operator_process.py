@@ -28,7 +28,7 @@ def main():
         changed.wait(0.5)
         changed.clear()
         if chosen[0] is not None:
-            publisher.publish(chosen[0])
+            publisher.publish(robots=chosen[0])
 
 
 if __name__ == '__main__':

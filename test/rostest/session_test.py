@@ -111,7 +111,7 @@ class SessionTest(unittest.TestCase):
         folder = self.record()
         selector = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1,
                                    latch=True)
-        selector.publish(['bot1'])
+        selector.publish(robots=['bot1'])
         wait_for(lambda: any(event.kind == 'selection' for event in self.events(folder)),
                  PATIENCE_S, 'the selection among the events')
         wait_for(self.are_placed, PATIENCE_S, 'both robots on the map')

@@ -177,7 +177,7 @@ class Operator:
         number, due = 0, time.monotonic()
         while True:
             if number % 10 == 0:
-                self._select.publish(self.robots)
+                self._select.publish(robots=self.robots)
             number += 1
             with self._lock:
                 stick = (0.0, 0.0)

@@ -62,7 +62,7 @@ class FakeOperator:
         """Check exactly these robots; return when [s, monotonic]."""
         self._names = list(names)
         when = time.monotonic()
-        self.select.publish(self._names)
+        self.select.publish(robots=self._names)
         return when
 
     def fall_silent(self):
@@ -79,7 +79,7 @@ class FakeOperator:
         while not rospy.is_shutdown():
             self._changed.wait(0.5)
             if self._names is not None:
-                self.select.publish(self._names)
+                self.select.publish(robots=self._names)
 
 
 class StateEar:

@@ -44,7 +44,7 @@ class Operator:
 
     def _run(self, ended):
         while not ended():
-            self._select.publish(['bot1'])
+            self._select.publish(robots=['bot1'])
             time.sleep(0.3)
 
 

@@ -98,7 +98,8 @@ def rows_between(begin_s, end_s):
                               (STOPPED, '/robot_controller/stop_all', Bool),
                               (SELECTED, '/robot_controller/robot_select', RobotSelect)):
         for time_s in {begin_s, *(since for since, _ in rows if begin_s < since < end_s)}:
-            latched(time_s, topic, kind(at(rows, time_s)))
+            value = at(rows, time_s)
+            latched(time_s, topic, kind(robots=value) if kind is RobotSelect else kind(value))
     for second in range(max(6, round(begin_s)), min(25, round(end_s))):
         latched(float(second), '/mhri_drill/state', drill_state(float(second)))
     for step in range(round(10 * begin_s), round(10 * end_s)):

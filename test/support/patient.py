@@ -86,8 +86,9 @@ def main():
     if options.select:
         panel = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1,
                                 latch=True)
-        panel.publish(RobotSelect([options.select]))
-        rospy.Timer(rospy.Duration(0.5), lambda _: panel.publish(RobotSelect([options.select])))
+        wish = RobotSelect(robots=[options.select])
+        panel.publish(wish)
+        rospy.Timer(rospy.Duration(0.5), lambda _: panel.publish(wish))
     kind = Changed if options.changed else Odometry
     publisher = options.odometry and rospy.Publisher(options.odometry, kind, queue_size=1)
     print('ready', flush=True)

@@ -89,7 +89,7 @@ def operator(name):
     def take(word, *rest):
         if word == 'select':
             state['chosen'] = list(rest)
-            select.publish(state['chosen'])
+            select.publish(robots=state['chosen'])
         elif word == 'stick':
             state['out'] = rest[0] == 'out'
             joy.publish(axes=[OUT[1], OUT[0]] if state['out'] else [0.0, 0.0])
@@ -98,10 +98,10 @@ def operator(name):
                 rospy.ServiceProxy('/gates/take_control', Trigger)()
             except rospy.ServiceException:
                 return
-            select.publish(state['chosen'])
+            select.publish(robots=state['chosen'])
             print('taken', flush=True)
 
-    select.publish([])
+    select.publish(robots=[])
     print('ready', flush=True)
     told(take)
     count = 0
@@ -109,7 +109,7 @@ def operator(name):
         count += 1
         joy.publish(axes=[OUT[1], OUT[0]] if state['out'] else [0.0, 0.0])
         if count % 10 == 0:
-            select.publish(state['chosen'])
+            select.publish(robots=state['chosen'])
         time.sleep(PERIOD_S)
 
 

@@ -138,5 +138,5 @@ class ScriptedHands:
         now = time.monotonic()
         if act.robot != self._chosen or now - self._leased_at >= LEASE_S:
             self._chosen, self._leased_at = act.robot, now
-            self._select.publish([act.robot] if act.robot else [])
+            self._select.publish(robots=[act.robot] if act.robot else [])
         self._joy.publish(Joy(axes=[act.turn, act.forward]))
