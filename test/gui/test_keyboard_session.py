@@ -13,6 +13,7 @@ from python_qt_binding.QtWidgets import QApplication, QWidget
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from mhri.gui.robots.remove_steps import SETTLED_S  # noqa: E402
+from support.graph import STICK  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
 ROBOTS = ('bot1', 'bot2')
@@ -187,6 +188,26 @@ def test_3_select_and_drive(session):
     assert session.screen.stage.looked_at == 'bot2' and session.screen.stage.large == ('bot2',)
     session.hold('Left', session.witnesses['bot2'].moving, 'bot2 to turn')
     session.rests()
+
+
+def test_3_shift_and_the_number_pad_drive_nothing(session):
+    import rospy
+    from sensor_msgs.msg import Joy
+    session.to_the_pictures()
+    heard = []
+    subscriber = rospy.Subscriber(STICK, Joy, lambda message: heard.append(tuple(message.axes)),
+                                  queue_size=50)
+    # What X11 makes of Shift and a digit depends on Num Lock.
+    for _ in range(2):
+        for place in ('80', '83', '85', '88'):
+            session.xdotool('keydown', 'shift', 'keydown', place)
+            del heard[:]
+            session.until(lambda: len(heard) > 3, 'the stick to be told')
+            session.xdotool('keyup', place, 'keyup', 'shift')
+            assert not any(any(axes) for axes in heard)
+        session.key('Num_Lock')
+    assert session.selected == ('bot2',) and session.witnesses['bot2'].at_rest()
+    subscriber.unregister()
 
 
 def test_4_tab_looks_and_enter_drives_the_one_looked_at(session):

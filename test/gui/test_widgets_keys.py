@@ -116,6 +116,22 @@ def test_a_release_counts_even_if_a_modifier_changed_the_key(panel, operator):
     assert panel.stick() == (0.0, 0.0)
 
 
+@pytest.mark.parametrize('more', [Qt.NoModifier, Qt.ControlModifier])
+@pytest.mark.parametrize('key, scan', [
+    # Num Lock on: X11 reports what is below the digit; off: the digit.
+    (Qt.Key_Left, 83), (Qt.Key_Up, 80), (Qt.Key_4, 83), (Qt.Key_0, 90), (Qt.Key_Down, 0)])
+def test_the_number_pad_with_shift_does_nothing(panel, operator, heard, key, scan, more):
+    moved, switched = heard(panel.stick_moved), [heard(signal) for signal in (
+        panel.drive_keys.robot_pressed, panel.drive_keys.all_pressed,
+        panel.drive_keys.alone_pressed)]
+    modifiers = Qt.KeypadModifier | Qt.ShiftModifier | more
+    operator.hit(panel, key, scan, modifiers)
+    # Shift is let go first: what repeats then is a digit, and no press.
+    operator.press(panel, key, scan, modifiers)
+    operator.press(panel, Qt.Key_4, scan, Qt.KeypadModifier, repeat=True)
+    assert moved == [] and switched == [[], [], []]
+
+
 @pytest.mark.parametrize('modifier', [Qt.ControlModifier, Qt.AltModifier, Qt.MetaModifier])
 def test_with_a_command_modifier_nothing_drives(panel, operator, heard, modifier):
     moved, selected = heard(panel.stick_moved), heard(panel.selection_requested)

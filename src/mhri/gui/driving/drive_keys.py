@@ -24,6 +24,9 @@ _LETTERS = {int(Qt.Key_W): _AHEAD, int(Qt.Key_S): _BACK, int(Qt.Key_A): _LEFT,
 # Where W, A, S, D are on a keyboard of any language: evdev key code + 8, as X11 and Wayland count.
 _POSITIONS = {25: _AHEAD, 39: _BACK, 38: _LEFT, 40: _RIGHT}
 _DIGIT_POSITIONS = {code: (code - 9) % 10 for code in range(10, 20)}
+# With Shift its keys mean arrows or digits as Num Lock says: neither is what a hand means that
+# reaches for Shift and a digit.
+_NUMBER_PAD = frozenset(range(79, 92))
 _DIGITS = {int(Qt.Key_0) + digit: digit for digit in range(10)}
 _ENTER = (int(Qt.Key_Return), int(Qt.Key_Enter))
 _SPACE = int(Qt.Key_Space)
@@ -82,6 +85,12 @@ def _digit(event):
     return _DIGITS.get(event.key())
 
 
+def _is_shifted_number_pad(event):
+    """Tell whether a key is on the number pad, and pressed with Shift."""
+    return bool(event.modifiers() & Qt.ShiftModifier) and bool(
+        event.modifiers() & Qt.KeypadModifier or event.nativeScanCode() in _NUMBER_PAD)
+
+
 def _identity(event):
     """Return what a press and its release have in common, even if a modifier changed between."""
     return event.nativeScanCode() or event.key()
@@ -100,8 +109,9 @@ class DriveKeys(QObject):
     the keys held then are dead until released. T held is push-to-talk. Digits are the switches of
     the robots. Return activates the focused button, since space never does. Without effect while a
     text field has the focus or a list is open, and with Ctrl, Alt or Meta; but Shift+Space stops
-    everything, always, and held for 2 s cuts the power. A key acts once, however long it is held,
-    and counts as let go when it is (:mod:`mhri.gui.driving.key_state`).
+    everything, always, and held for 2 s cuts the power. With Shift the number pad does nothing. A
+    key acts once, however long it is held, and counts as let go when it is
+    (:mod:`mhri.gui.driving.key_state`).
 
     :param panel: the panel; a key that no widget has the focus for is its own
     :param keys: :class:`mhri.gui.driving.key_state.KeyState`
@@ -231,8 +241,7 @@ class DriveKeys(QObject):
         if self._typed == _identity(event) or not self._listens(watched, focus) \
                 or event.modifiers() & (Qt.AltModifier | Qt.MetaModifier):
             return False
-        action = self._action_with_ctrl(event) if event.modifiers() & Qt.ControlModifier \
-            else self._action(event, focus)
+        action = self._action(event, focus)
         if action is None:
             return False
         if kind == QEvent.ShortcutOverride:
@@ -305,6 +314,14 @@ class DriveKeys(QObject):
 
     def _action(self, event, focus):
         """Return what a press has to do, or None where the key is not ours."""
+        if _is_shifted_number_pad(event):
+            return None if self._keeps_arrows(focus) else lambda: None
+        if event.modifiers() & Qt.ControlModifier:
+            return self._action_with_ctrl(event)
+        return self._action_alone(event, focus)
+
+    def _action_alone(self, event, focus):
+        """Return what a press without Ctrl has to do, or None."""
         key = event.key()
         if key == _SPACE:
             return self.centre_pressed.emit
