@@ -83,7 +83,8 @@ def parse(words):
     parser.add_argument('--namespace', help='on the robot: its namespace on its own master, by '
                         'default its name; / for a robot without one')
     parser.add_argument('--shared-frames', default=' '.join(SHARED_FRAMES),
-                        help='on the robot: frames that do not get its name (default: %(default)s)')
+                        help='frames that do not get its name, the same on both sides (default: '
+                        '%(default)s)')
     parser.add_argument('--keys', default=AUTO, metavar='FOLDER',
                         help='where the keys are, or off; by default where mhri_keys.sh puts '
                         'them, and without any: off')
@@ -136,6 +137,14 @@ def call(options):
     return keys, Carrier(*ends, secrets=secrets, place=place, own=keys.keys.own if keys else '')
 
 
+def known_types():
+    """Return {name: RobotType} of those that are installed here; the log names what is wrong."""
+    types, errors = robot_types()
+    for error in errors:
+        rospy.logwarn('robot type left out: %s', error)
+    return types
+
+
 def robot_side(options, carrier, own):
     """Return what lets hosts in on the robot.
 
@@ -144,12 +153,9 @@ def robot_side(options, carrier, own):
     # Packs pictures with OpenCV, 28 MB that the host's side, one for each robot, does without.
     from mhri.ros.link.reception import Reception
     keeper_of(options.name).most_mb = options.keep_mb
-    types, errors = robot_types()
-    for error in errors:
-        rospy.logwarn('robot type left out: %s', error)
     namespace = tidy_name(options.namespace if options.namespace is not None else options.name)
-    return Reception(options.name, carrier, own, '/' + namespace if namespace else '', types,
-                     split_frames(options.shared_frames))
+    return Reception(options.name, carrier, own, '/' + namespace if namespace else '',
+                     known_types(), split_frames(options.shared_frames))
 
 
 def route(options):
@@ -203,7 +209,8 @@ def main():
     if options.side == 'host':
         host = own or marked(options.host, facts())
         side = HostSide(options.name, carrier.between(options.name, host), watch.set_parameter,
-                        host, bool(keys), options.keep)
+                        host, bool(keys), known_types(), split_frames(options.shared_frames),
+                        options.keep)
         title = 'link to ' + options.name
         note.follow(side, watch, bool(keys))
     else:

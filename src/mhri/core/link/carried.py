@@ -6,7 +6,6 @@ Commands go down through the guard on the robot alone: its lease is the one rule
 A velocity topic itself is not carried, so that nothing drives around the guard.
 """
 from dataclasses import dataclass
-import re
 from typing import Collection, Dict, List, Tuple
 
 from mhri.core.robots.robot_types import RobotType
@@ -34,11 +33,6 @@ FRAME_NAMES = {'nav_msgs/Odometry': 2, 'sensor_msgs/Imu': 1, 'sensor_msgs/LaserS
                'sensor_msgs/BatteryState': 1, 'sensor_msgs/Image': 1,
                'sensor_msgs/CompressedImage': 1, 'sensor_msgs/PointCloud2': 1}
 _PACKED = ('/compressed', '/compressedDepth')
-_TYPE = re.compile(r'[A-Za-z][A-Za-z0-9_]{0,99}/[A-Za-z][A-Za-z0-9_]{0,99}\Z')
-_TOPIC = re.compile(r'/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*\Z')
-MOST_LETTERS = 250
-# Of a robot's parameters these are carried up.
-PARAMETERS = ('robot_type', 'robot_model', 'mhri')
 
 
 @dataclass(frozen=True)
@@ -107,17 +101,6 @@ def key_of(robot: str, host: str, way: str, topic: str) -> str:
     :param way: ``up`` or ``down``
     """
     return 'mhri/{}/{}/{}/{}'.format(robot, host, way, topic.lstrip('/'))
-
-
-def valid_topic(topic: object) -> bool:
-    """Tell whether what a peer says is the name of a topic in a robot's namespace, or tf."""
-    return (isinstance(topic, str) and len(topic) <= MOST_LETTERS and bool(_TOPIC.match(topic))
-            and (topic in (TF, TF_STATIC) or not topic.startswith('/')))
-
-
-def valid_type(kind: object) -> bool:
-    """Tell whether what a peer says is the name of a ROS type."""
-    return isinstance(kind, str) and bool(_TYPE.match(kind))
 
 
 class Pace:

@@ -21,6 +21,7 @@ from typing import Callable, Dict, List, Tuple
 
 from mhri.core.link.frames import FrameError, read_rows
 from mhri.core.link.keys import called, is_host
+from mhri.core.screen.text import tidy_text
 
 FREE, HELD, ASKED = 'free', 'held', 'asked'
 # So long unheard, and a host has control no more [s]; the radio may have a gap.
@@ -32,6 +33,8 @@ REFUSED_S = 5.0
 # What the button of a robot in another host's control says at each of the two steps.
 ASK_FOR, TAKE_IT = 'Ask for control', 'Take control'
 _TWIST = struct.Struct('<6d')
+# So often nobody asks.
+_MAX_ASKED = 1 << 31
 
 
 class Control:
@@ -201,12 +204,7 @@ def unpack_standing(body: bytes) -> Standing:
     """
     row = read_rows(body)
     kinds = [type(value) for value in astuple(Standing())]
-    if [type(value) for value in row] != kinds or any(
+    if [type(value) for value in row] != kinds or not 0 <= row[4] <= _MAX_ASKED or any(
             owner and not is_host(owner) for owner in row[:2]):
         raise FrameError('no word on who has control')
-    return Standing(row[0], row[1], row[2], tidy(row[3]), row[4], tidy(row[5]))
-
-
-def tidy(text: str) -> str:
-    """Return what is fit to be shown of a text that a peer has sent."""
-    return ''.join(char for char in text[:200] if char.isprintable())
+    return Standing(row[0], row[1], row[2], tidy_text(row[3]), row[4], tidy_text(row[5]))

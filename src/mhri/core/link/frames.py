@@ -14,17 +14,14 @@ import struct
 from typing import Any, Deque, Dict, List, Mapping, Optional, Tuple
 import zlib
 
-from mhri.core.link.carried import valid_topic, valid_type
+from mhri.core.link.robot_claims import MAX_STATE_BYTES, MAX_TOPICS
 
 VERSION = 4
 _HEAD = struct.Struct('>2sBBIId')
 _MAGIC = b'mh'
-MOST_TOPICS = 100
 MOST_BYTES = 65536
 # How a body is packed: as it is, by zlib, or as a piece of a picture (pieces.py).
 PLAIN, DEFLATED, PIECE = 0, 1, 2
-# No state is larger, however it was packed [bytes].
-_MOST_INFLATED = 1 << 22
 # Of replaced sessions so many are known, so that their late messages count for nothing.
 _RETIRED = 16
 
@@ -78,7 +75,7 @@ def unpack(data: bytes) -> Frame:
 def _inflated(body: bytes) -> bytes:
     inflater = zlib.decompressobj()
     try:
-        found = inflater.decompress(body, _MOST_INFLATED)
+        found = inflater.decompress(body, MAX_STATE_BYTES)
     except zlib.error:
         raise FrameError('a body that cannot be unpacked') from None
     if not inflater.eof:
@@ -177,7 +174,7 @@ def unpack_beat(body: bytes) -> Beat:
         raise FrameError('no beat')
     echo, about, wanted, heard, thinned = found
     echo = None if echo is None else _numbers(echo, 2)
-    if len(wanted) > MOST_TOPICS or not all(type(place) is int for place in wanted):
+    if len(wanted) > MAX_TOPICS or not all(type(place) is int for place in wanted):
         raise FrameError('a beat with wrong topics')
     return Beat(echo and (echo[0], echo[1]), about[:40], tuple(wanted),
                 None if heard is None else Heard(*_numbers(heard, 3)),
@@ -186,7 +183,10 @@ def unpack_beat(body: bytes) -> Beat:
 
 @dataclass(frozen=True)
 class About:
-    """What a robot says of itself: its parameters, and its topics with their ROS types."""
+    """What a robot says of itself: its parameters, and its topics with their ROS types.
+
+    How much of it is believed is in :mod:`mhri.core.link.robot_claims`.
+    """
 
     parameters: Mapping[str, object]
     topics: Tuple[Tuple[str, str], ...]
@@ -216,9 +216,8 @@ def unpack_about(body: bytes) -> About:
     if len(found) != 2 or not isinstance(found[0], dict) or not isinstance(found[1], list):
         raise FrameError('no description of a robot')
     topics: List[Tuple[str, str]] = []
-    for row in found[1][:MOST_TOPICS]:
-        if not (isinstance(row, list) and len(row) == 2 and valid_topic(row[0])
-                and valid_type(row[1])):
+    for row in found[1][:MAX_TOPICS]:
+        if not (isinstance(row, list) and [type(word) for word in row] == [str, str]):
             raise FrameError('a robot with a topic that none can have')
         topics.append((row[0], row[1]))
     parameters: Dict[str, object] = found[0]

@@ -6,7 +6,7 @@ On its own master a robot calls its frames ``odom`` and ``base_link``; beside ot
 ``bot1/odom`` and ``bot1/base_link``. Bytes are as ROS writes them (http://wiki.ros.org/msg).
 """
 import struct
-from typing import Callable, Dict, Iterator, Optional, Tuple
+from typing import Callable, Collection, Dict, Iterator, Optional, Tuple
 
 from mhri.core.link.carried import SHARED_FRAMES
 
@@ -95,7 +95,9 @@ def rewritten(data: bytes, number: int, names: int, rename: Rename) -> bytes:
         frame, at = _text(data, at)
         frame = rename(frame)
         parts += [_LENGTH.pack(len(frame)), frame]
-    return b''.join(parts) + data[at:]
+    head = b''.join(parts)
+    # Most pictures that come have their names already: no copy of those.
+    return data if head == data[:at] else head + data[at:]
 
 
 def transforms(data: bytes, rename: Rename) -> Iterator[Tuple[bytes, bytes]]:
@@ -121,6 +123,11 @@ def transforms(data: bytes, rename: Rename) -> Iterator[Tuple[bytes, bytes]]:
         at += _TRANSFORM
 
 
+def packed_transforms(rows: Collection[bytes]) -> bytes:
+    """Return the tf message of what :func:`transforms` yields."""
+    return _LENGTH.pack(len(rows)) + b''.join(rows)
+
+
 class Transforms:
     """The newest transform of each frame, since several nodes speak on ``/tf``.
 
@@ -143,7 +150,7 @@ class Transforms:
         """Return a tf message of what is there, None if there is nothing."""
         if not self._newest:
             return None
-        data = _LENGTH.pack(len(self._newest)) + b''.join(self._newest.values())
+        data = packed_transforms(self._newest.values())
         if not self._keep:
             self._newest = {}
         return data

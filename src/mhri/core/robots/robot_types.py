@@ -19,7 +19,8 @@ _HARDWARE: Dict[str, Callable[[Section], Any]] = {
 # http://wiki.ros.org/Names, without "~": no topic of a robot is private to us.
 _TOPIC = re.compile(r'/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*\Z')
 _MOST_LETTERS = 250
-_TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'cloud', 'scan', 'battery')
+# The keys of a template that list topics.
+TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'cloud', 'scan', 'battery')
 
 
 @dataclass(frozen=True)
@@ -120,7 +121,7 @@ class RobotType:
         """Return this type with absolute topics, for a robot without a namespace."""
         changes: Dict[str, Any] = {
             key: tuple('/' + topic.lstrip('/') for topic in getattr(self, key))
-            for key in _TOPIC_KEYS}
+            for key in TOPIC_KEYS}
         changes.update((key, getattr(self, key).at_root()) for key in _HARDWARE
                        if getattr(self, key))
         return replace(self, **changes)
@@ -135,7 +136,7 @@ class RobotType:
             raise ValueError('robot type {} has no instance'.format(self.name))
         own = len(self.instance)
         changes: Dict[str, Any] = {
-            key: tuple(place + topic[own:] for topic in getattr(self, key)) for key in _TOPIC_KEYS}
+            key: tuple(place + topic[own:] for topic in getattr(self, key)) for key in TOPIC_KEYS}
         return replace(self, **changes)
 
     def with_model(self, model: object) -> 'RobotType':
@@ -189,7 +190,7 @@ def _check_instance(section: Section, robot_type: RobotType) -> None:
     """Refuse an instance that is not the first segment of everything."""
     if robot_type.instance is None:
         return
-    topics = [topic for key in _TOPIC_KEYS for topic in getattr(robot_type, key)]
+    topics = [topic for key in TOPIC_KEYS for topic in getattr(robot_type, key)]
     for topic in topics + list(robot_type.known_by):
         if topic.partition('/')[0] != robot_type.instance:
             raise section.error('instance', '{} does not begin with {}/'.format(
@@ -244,7 +245,7 @@ def _topics(section: Section, key: str) -> Tuple[str, ...]:
 
 def _all_topics(section: Section) -> Dict[str, Any]:
     """Read every list of topics, by its key."""
-    return {key: _topics(section, key) for key in _TOPIC_KEYS}
+    return {key: _topics(section, key) for key in TOPIC_KEYS}
 
 
 def _known_by(section: Section) -> Dict[str, str]:
@@ -330,7 +331,7 @@ def _overridden(robot_type: RobotType, overrides: object, origin: str) -> RobotT
     """Return the type with the values of a robot's ``mhri`` parameters."""
     section = Section(overrides, origin, 'mhri')
     changes: Dict[str, Any] = {
-        key: _topics(section, key) for key in _TOPIC_KEYS if key in section}
+        key: _topics(section, key) for key in TOPIC_KEYS if key in section}
     if 'odometry_type' in section:
         changes['odometry_type'] = _odometry_type(section)
     changes.update((key, read(section)) for key, read in _HARDWARE.items() if key in section)

@@ -12,11 +12,11 @@ import rospy
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, SetBoolResponse
 
-from mhri.core.link.carried import FRAME_NAMES, GUARD_COMMAND, TF, TF_STATIC
+from mhri.core.link.carried import GUARD_COMMAND
 from mhri.core.link.records import (
     ASK, crc_of, Fetch, FETCHING, IN_SESSIONS, OFFER, pack_ask, PART, PICTURES, piece_of, RECORD,
     unpack_offer, unpack_part)
-from mhri.core.link.renaming import renamer, rewritten, Transforms
+from mhri.core.link.robot_claims import OwnFrames
 from mhri.core.recording.recording import ros_home
 from mhri.msg import SessionState
 from mhri.ros.link.keeper import folder_of
@@ -34,7 +34,7 @@ def join(robot, paths, target, topics):
     :param topics: what is carried of the robot, as in :class:`mhri.core.link.carried.Stream`
     :raises OSError, rosbag.ROSBagException: a piece cannot be read, or the bag not be written
     """
-    rename = renamer(robot)
+    frames = OwnFrames(robot)
     recent, written = collections.OrderedDict(), 0
     with rosbag.Bag(target, 'w') as bag:
         for path in paths:
@@ -53,7 +53,10 @@ def join(robot, paths, target, topics):
                         # Commands go through this program, too.
                         time.sleep(REST_S)
                     name = on_host(robot, name, topics)
-                    data = renamed(name, kind, data, rename)
+                    try:
+                        data = frames.of(name, kind, data)
+                    except ValueError:
+                        continue
                     bag.write(name, (kind, data, md5, message_class), when, raw=True)
 
 
@@ -61,18 +64,6 @@ def on_host(robot, topic, topics):
     """Return the name on the host of a topic on the robot."""
     own = [name for name in topics if topic.endswith('/' + name)]
     return '/{}/{}'.format(robot, max(own, key=len)) if own else topic
-
-
-def renamed(topic, kind, data, rename):
-    """Return a message with the names that its frames have on the host."""
-    try:
-        if topic in (TF, TF_STATIC):
-            moved = Transforms(rename, False)
-            moved.add(data)
-            return moved.take() or data
-        return rewritten(data, int.from_bytes(data[:4], 'little'), FRAME_NAMES.get(kind, 0), rename)
-    except ValueError:
-        return data
 
 
 class HostRecord:

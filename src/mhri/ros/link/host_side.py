@@ -8,15 +8,17 @@ import rospy
 from std_msgs.msg import String
 
 from mhri.core.link.carried import (
-    COMMAND, DOWN, full_topic, GUARD_COMMAND, GUARD_ECHO, GUARD_HEARD, PARAMETERS, PICTURE, STATE,
-    TF, TF_STATIC, TF_TYPE)
+    COMMAND, DOWN, full_topic, GUARD_COMMAND, GUARD_ECHO, GUARD_HEARD, PICTURE, STATE, TF_STATIC)
 from mhri.core.link.control import unpack_standing
 from mhri.core.link.figures import FIGURES, figures_words, RadioFigures
-from mhri.core.link.frames import About, Thinned, unpack_about
+from mhri.core.link.frames import About, FrameError, Thinned, unpack_about
 from mhri.core.link.keys import called
 from mhri.core.link.peer import held_s
 from mhri.core.link.records import IN_SESSIONS
 from mhri.core.link.renaming import stamp_of
+from mhri.core.link.robot_claims import (
+    believed, fits, is_offer, MAX_TOPICS, OwnFrames, PARAMETERS, PICTURE_TYPES)
+from mhri.core.screen.text import tidy_text
 from mhri.ros.graph.master_api import MasterError
 from mhri.ros.link.host_record import HostRecord
 from mhri.ros.link.host_control import HostControl
@@ -26,7 +28,8 @@ from mhri.ros.messages import bytes_of, message_class, MessageMissing
 QUEUE = 5
 # The figures of the link are told so often [s].
 TELL_S = 1.0
-PICTURE_TYPES = ('sensor_msgs/Image', 'sensor_msgs/CompressedImage', 'sensor_msgs/PointCloud2')
+# What a robot says of itself is taken in not more often [s].
+NEWS_S = 1.0
 LATCHED = (TF_STATIC, 'mhri_guard/state')
 # That the gates end on purpose is said once: a radio may lose it. So long it is said again [s].
 PARTING_S, PARTING = 1.5, bytes(4)
@@ -38,21 +41,27 @@ class HostSide(Side):
     Publishes the topics that the robot's side offers, with their types, and ``/tf``, ``/tf_static``
     (``tf2_msgs/TFMessage``); subscribes ``/<robot>/mhri_guard/command``
     (``geometry_msgs/TwistStamped``) and ``/<robot>/mhri_guard/heard`` (``std_msgs/String``) once
-    the robot has a guard. Sets ``/<robot>/robot_type``, ``robot_model`` and ``mhri``.
+    the robot has a guard. Sets ``/<robot>/robot_type``, ``robot_model`` and ``mhri``, as far as
+    :mod:`mhri.core.link.robot_claims` lets a robot say so.
 
+    :param types: {name: RobotType} that are installed here
+    :param shared: frames that are everybody's
     :param set_parameter: called with (name, value), blocking
     :param host: what this computer is called on the link
     :param secret: with keys
     :param keep: what the robot keeps of what is missed here, see :mod:`mhri.core.link.records`
     """
 
-    def __init__(self, name, carrier, set_parameter, host, secret, keep=IN_SESSIONS, **options):
+    def __init__(self, name, carrier, set_parameter, host, secret, types, shared,
+                 keep=IN_SESSIONS, **options):
         super().__init__(name, carrier, 'down', **options)
         self._control = HostControl(
             name, host, secret, lambda body: self.send(CONTROL, COMMAND, body))
         self._set_parameter = set_parameter
+        self._types, self._frames = types, OwnFrames(name, shared)
         self._about = About({}, ())
-        self._news = None
+        self._believed = {}
+        self._news, self._news_at = None, -math.inf
         self._less = Thinned()
         self._told_at = 0.0
         self._figures = rospy.Publisher('/{}/{}'.format(name, FIGURES), String, queue_size=1,
@@ -61,7 +70,8 @@ class HostSide(Side):
         self._unusable = set()
         self._down = []
         self._parting_until = 0.0
-        self._record = HostRecord(self, lambda: dict(self._about.topics), keep)
+        self._record = HostRecord(self, lambda: [row[0] for row in self._about.topics
+                                                 if is_offer(*row)], keep)
 
     def start(self):
         """Begin, and fetch what was missed."""
@@ -95,8 +105,10 @@ class HostSide(Side):
             kind = publisher.type
             self.note_age(COMMAND if topic == GUARD_ECHO else
                           PICTURE if kind in PICTURE_TYPES else STATE, frame, now)
+            if not fits(kind, frame.body):
+                raise FrameError('{} bytes are too many for {}'.format(len(frame.body), kind))
             message = publisher.data_class()
-            message._buff = frame.body
+            message._buff = self._frames.of(publisher.resolved_name, kind, frame.body)
             publisher.publish(message)
 
     def work(self, now):
@@ -106,13 +118,11 @@ class HostSide(Side):
         if now < self._parting_until:
             self.send(GUARD_HEARD, COMMAND, PARTING)
         news = self._news
-        if news is None or news == self._about:
+        if news is None or news == self._about or now - self._news_at < NEWS_S:
             return
+        self._news_at = now
         try:
-            for key in PARAMETERS:
-                value = news.parameters.get(key)
-                if value is not None and value != self._about.parameters.get(key):
-                    self._set_parameter('/{}/{}'.format(self.name, key), value)
+            self._set_parameters(news.parameters)
         except MasterError as error:
             rospy.logwarn_throttle(10.0, '{}: {}'.format(self.name, error))
             return
@@ -123,18 +133,32 @@ class HostSide(Side):
         with self.lock:
             self._about = news
 
+    def _set_parameters(self, said):
+        """Set at the master what is believed of a robot's parameters.
+
+        :raises MasterError: it cannot be reached
+        """
+        found, left_out = believed(self.name, said, self._types)
+        for key in PARAMETERS:
+            if key in found and found[key] != self._believed.get(key):
+                self._set_parameter('/{}/{}'.format(self.name, key), found[key])
+        if left_out and found != self._believed:
+            rospy.logwarn('%s: of what it says of itself: %s', self.name, tidy_text(left_out, 300))
+        self._believed = found
+
     def _advertise(self, topic, kind):
-        """Publish one of the robot's topics, if its type is known here."""
+        """Publish one of the robot's topics, if it may have that, and its type is known here."""
         key = topic.lstrip('/')
-        if key in self._publishers or topic in self._unusable:
+        if key in self._publishers or topic in self._unusable \
+                or len(self._publishers) + len(self._unusable) >= MAX_TOPICS:
             return
         try:
-            if topic in (TF, TF_STATIC) and kind != TF_TYPE:
-                raise MessageMissing('{} is no {}'.format(kind, TF_TYPE))
+            if not is_offer(topic, kind):
+                raise MessageMissing('a robot has no such topic of type ' + tidy_text(kind, 60))
             found = bytes_of(message_class(kind))
         except MessageMissing as error:
             self._unusable.add(topic)
-            rospy.logwarn('%s: %s is not carried: %s', self.name, topic, error)
+            rospy.logwarn('%s: %s is not carried: %s', self.name, tidy_text(topic, 60), error)
             return
         publisher = rospy.Publisher(
             full_topic('/' + self.name, topic), found, queue_size=QUEUE, tcp_nodelay=True,
@@ -163,7 +187,7 @@ class HostSide(Side):
     def versions(self):
         """Return the versions that the robot tells of its side, see :mod:`mhri.ros.link.note`."""
         said = self._about.parameters.get('link')
-        return {key: str(said.get(key, ''))[:40] for key in ('mhri', 'zenoh')} \
+        return {key: tidy_text(str(said.get(key, '')), 40) for key in ('mhri', 'zenoh')} \
             if isinstance(said, dict) else {}
 
     def fill(self, status):

@@ -6,13 +6,14 @@ import rospy
 from mhri.core.driving.guard_link import parse_id
 from mhri.core.link.bearing import Bearing
 from mhri.core.link.carried import (
-    DOWN, FRAME_NAMES, full_topic, GUARD_COMMAND, Pace, PARAMETERS, PICTURE, TF, TF_STATIC,
+    DOWN, FRAME_NAMES, full_topic, GUARD_COMMAND, Pace, PICTURE, TF, TF_STATIC,
     up_streams, worth_carrying)
 from mhri.core.link.control import moves
 from mhri.core.link.frames import About, DEFLATED, pack_about, PIECE, PLAIN, Thinned
 from mhri.core.link.peer import may_pass
 from mhri.core.link.records import ASK
 from mhri.core.link.renaming import first_text, renamer, rewritten, Transforms
+from mhri.core.link.robot_claims import PARAMETERS
 from mhri.core.link.shares import Flow, shares
 from mhri.core.robots.robot_types import resolve_robot_type
 from mhri.ros.graph.master_api import MasterApi, MasterError

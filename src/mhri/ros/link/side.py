@@ -14,10 +14,14 @@ from mhri.core.link.frames import (
     Beat, FrameError, Newest, pack, pack_beat, PIECE, PLAIN, Thinned, unpack, unpack_beat)
 from mhri.core.link.peer import BEAT_S, Peer
 from mhri.core.link.pieces import Gathered
+from mhri.core.link.robot_claims import MAX_TOPICS
+from mhri.core.screen.text import tidy_text
 from mhri.ros.link.clock import boot_clock
 
 # Streams of the link itself; no topic begins with an underscore.
 BEAT, ABOUT, CONTROL = '_beat', '_about', '_control'
+# Of streams that the link has itself there are no more.
+_OWN_TOPICS = 20
 # So many ages of each class are kept for the diagnostics.
 _AGES = 2000
 # Over so long they are told [s].
@@ -112,15 +116,15 @@ class Side:
                     self.on_frame(topic, frame, now)
         except ValueError as error:
             self.refused += 1
-            rospy.logwarn_throttle(1.0, '{}: refused a message of {:.60}: {}'.format(
-                self.name, topic, error))
+            rospy.logwarn_throttle(1.0, '{}: refused a message of {}: {}'.format(
+                self.name, tidy_text(topic, 60), tidy_text(str(error))))
         except rospy.ROSException:
             # The topics are closed while the node is being ended.
             if not rospy.is_shutdown():
                 raise
 
     def _newest_of(self, topic):
-        if topic not in self._newest and len(self._newest) > 300:
+        if topic not in self._newest and len(self._newest) >= MAX_TOPICS + _OWN_TOPICS:
             raise FrameError('too many topics')
         return self._newest[topic]
 

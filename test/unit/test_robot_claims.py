@@ -1,0 +1,198 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a robot may say to the host over its link: core/link/robot_claims.py."""
+import pathlib
+import struct
+
+import pytest
+
+from mhri.core.link.renaming import first_text, transforms
+from mhri.core.link.robot_claims import believed, fits, is_offer, MAX_TOPICS_EACH, OwnFrames
+from mhri.core.robots.robot_types import parse_robot_type, resolve_robot_type
+
+TYPES = {kind.name: kind for kind in (
+    parse_robot_type(path.read_text(), path.name)
+    for path in pathlib.Path(__file__, '..', '..', '..', 'resource', 'robots').resolve()
+    .glob('*.yaml'))}
+# A lab's own type, for a robot without a namespace on the host's master.
+TYPES['arm'] = parse_robot_type('''
+name: arm
+window: lab.window.Arm
+limits: {linear_mps: 0.3, angular_rad_s: 1.0}
+command: [/base/cmd_vel]
+odometry: [/base/odom]
+motor_power: {service: /base/power}
+hardware_stop: {topic: /base/stopped}
+''', 'arm.yaml')
+ODOMETRY = 'nav_msgs/Odometry'
+
+
+def seen_by_host(said, robot='bot1'):
+    """Return the robot type that nodes of the host work with, after the link."""
+    found, _ = believed(robot, said, TYPES)
+    kind, errors = resolve_robot_type(TYPES, robot, found)
+    return kind, errors
+
+
+def names(kind):
+    """Return all names on the graph that a robot type leads to."""
+    found = [topic for key in ('command', 'imu', 'odometry', 'rgb', 'depth', 'cloud', 'scan',
+                               'battery') for topic in getattr(kind, key)]
+    return found + [part.name for part in (kind.motor_power, kind.hardware_stop) if part]
+
+
+@pytest.mark.parametrize('said', [
+    {'mhri': {'command': ['/bot2/cmd_vel']}},
+    {'mhri': {'command': '/bot2/cmd_vel', 'odometry': ['/bot2/odom', '//bot2/odom2'][:1]}},
+    {'robot_type': 'turtlebot3', 'mhri': {'motor_power': {'topic': '/bot2/motor_power'}}},
+    {'robot_type': 'turtlebot3', 'mhri': {'motor_power': {'service': '/mux/set_stop_all'}}},
+    {'mhri': {'hardware_stop': {'topic': '/bot2/stopped'}}},
+    {'mhri': {key: ['/bot2/x'] for key in ('imu', 'rgb', 'depth', 'cloud', 'scan', 'battery')}},
+    {'robot_type': 'arm'},
+    {'robot_type': 'arm', 'mhri': {'limits': {'linear_mps': 0.1}}}])
+def test_no_name_of_a_linked_robot_is_outside_its_own(said):
+    kind, errors = seen_by_host(said)
+    assert not errors
+    assert names(kind) and not [name for name in names(kind) if name.startswith('/')]
+
+
+def test_its_own_names_written_out_are_its_own():
+    kind, _ = seen_by_host({'mhri': {'command': ['/bot1/cmd_vel'], 'scan': ['/bot12/scan']}})
+    assert kind.command == ('cmd_vel',) and kind.scan == ('bot12/scan',)
+
+
+@pytest.mark.parametrize('said, linear, angular', [
+    ({'linear_mps': 0.1}, 0.1, 1.82), ({'linear_mps': 5.0}, 0.22, 1.82),
+    ({'linear_mps': 5.0, 'angular_rad_s': 1.0}, 0.22, 1.0), ({'angular_rad_s': 50.0}, 0.22, 1.82)])
+def test_limits_only_fall(said, linear, angular):
+    kind, _ = seen_by_host({'robot_type': 'turtlebot3', 'mhri': {'limits': said}})
+    assert (kind.limits.linear_mps, kind.limits.angular_rad_s) == (linear, angular)
+
+
+def test_limits_are_those_of_the_model_at_most():
+    said = {'robot_type': 'turtlebot3', 'robot_model': 'waffle'}
+    most = seen_by_host(said)[0].limits
+    assert most == TYPES['turtlebot3'].models['waffle']
+    kind, _ = seen_by_host(dict(said, mhri={'limits': {'linear_mps': 0.25}}))
+    assert kind.limits.linear_mps == 0.25
+
+
+def test_what_is_its_own_affair_stays():
+    overrides = {'odometry': ['odometry/filtered'], 'silent_after_s': 3.0, 'radius_m': 0.4,
+                 'laser_x_m': 0.1, 'label': 'Crawler',
+                 'hardware_stop': {'topic': 'estop', 'stopped': [True]},
+                 'motor_power': {'topic': 'power', 'type': 'std_msgs/Int8', 'powered': 1,
+                                 'cut': 0}}
+    plain, errors = resolve_robot_type(TYPES, 'bot1', {'mhri': overrides})
+    assert not errors and seen_by_host({'mhri': overrides})[0] == plain
+
+
+@pytest.mark.parametrize('said', [
+    {}, {'robot_type': 'turtlebot2'}, {'robot_type': 'turtlebot3', 'robot_model': 'waffle'}])
+def test_a_robot_that_asks_for_nothing_gets_its_type(said):
+    assert believed('bot1', said, TYPES) == (said, '')
+
+
+@pytest.mark.parametrize('said', [
+    {'robot_type': 7}, {'robot_type': 'x' * 65}, {'robot_type': 'a\nb'}, {'robot_type': ['arm']},
+    {'mhri': 7}, {'mhri': [1]}, {'mhri': {'command': []}}, {'mhri': {'command': ['../x']}},
+    {'mhri': {'limits': {'linear_mps': -1.0}}}, {'mhri': {'nonsense': 1}},
+    {'mhri': {'radius_m': 1e9}}, {'window': 'os'}, {'mhri_motor_power_cut': True}])
+def test_nonsense_sets_nothing(said):
+    assert believed('bot1', said, TYPES)[0] == {}
+
+
+def test_why_something_is_left_out_is_said():
+    assert 'bot2' in believed('bot1', {'mhri': {'command': ['/bot2/cmd_vel']}}, TYPES)[1]
+    assert 'limits' in believed('bot1', {'mhri': {'limits': {'linear_mps': 9.0}}}, TYPES)[1]
+    assert 'nonsense' in believed('bot1', {'mhri': {'nonsense': 1}}, TYPES)[1]
+
+
+@pytest.mark.parametrize('window, taken', [
+    ('antigravity.Window', 'turtlebot'), ('os', 'turtlebot'), ('lab.window.Arm', 'lab.window.Arm')])
+def test_a_window_is_one_of_an_installed_type(window, taken):
+    assert seen_by_host({'mhri': {'window': window}})[0].window == taken
+
+
+def test_no_module_is_loaded_that_a_robot_names():
+    """A message's class is found by importing its package."""
+    for key in ('motor_power', 'hardware_stop'):
+        kind, _ = seen_by_host({'robot_type': 'turtlebot3', 'mhri': {
+            key: {'topic': 'x', 'type': 'antigravity/Bool'}}})
+        assert getattr(kind, key) == getattr(TYPES['turtlebot3'], key)
+
+
+def test_it_has_few_topics_of_each_kind_and_a_short_label():
+    kind, _ = seen_by_host({'mhri': {'odometry': ['odom{}'.format(n) for n in range(6000)],
+                                     'label': 'a\x1b[2J' + 'b' * 500}})
+    assert len(kind.odometry) == MAX_TOPICS_EACH
+    assert kind.label.isprintable() and len(kind.label) <= 40
+
+
+@pytest.mark.parametrize('topic, kind, may', [
+    ('odom', ODOMETRY, True), ('camera/rgb/image_raw', 'sensor_msgs/Image', True),
+    ('/tf', 'tf2_msgs/TFMessage', True), ('/tf_static', 'tf2_msgs/TFMessage', True),
+    ('mhri_guard/echo', 'geometry_msgs/TwistStamped', True),
+    ('mhri_guard/state', 'std_msgs/String', True), ('turtle1/pose', 'turtlesim/Pose', True),
+    ('mhri_guard/echo', 'std_msgs/String', False), ('/tf', ODOMETRY, False),
+    ('mhri_guard/command', 'geometry_msgs/TwistStamped', False),
+    ('mhri_guard/heard', 'std_msgs/String', False),
+    ('mhri_link/state', 'mhri/LinkControl', False), ('mhri_link/figures', 'std_msgs/String', False),
+    ('cmd_vel', 'geometry_msgs/Twist', False), ('/cmd_vel', 'geometry_msgs/Twist', False),
+    ('/bot2/odom', ODOMETRY, False), ('../x', ODOMETRY, False), ('a//b', ODOMETRY, False),
+    ('', ODOMETRY, False), ('a' * 300, ODOMETRY, False), (7, ODOMETRY, False),
+    (None, ODOMETRY, False), ('_beat', ODOMETRY, False), ('odom\n', ODOMETRY, False),
+    ('odom', 'antigravity/Odometry', False), ('odom', '*', False), ('odom', 3, False)])
+def test_topics_that_a_robot_may_have_on_the_host(topic, kind, may):
+    assert is_offer(topic, kind) is may
+
+
+@pytest.mark.parametrize('kind, size, may', [
+    (ODOMETRY, 1 << 22, True), (ODOMETRY, (1 << 22) + 1, False),
+    ('sensor_msgs/PointCloud2', 640 * 480 * 32, True), ('sensor_msgs/Image', 1 << 26, False)])
+def test_sizes(kind, size, may):
+    assert fits(kind, bytes(size)) is may
+
+
+# --- frames
+
+def text(words):
+    return struct.pack('<I', len(words)) + words.encode()
+
+
+def headed(frame, *rest):
+    return struct.pack('<III', 7, 11, 22) + text(frame) + b''.join(rest)
+
+
+def tf_message(*pairs):
+    return struct.pack('<I', len(pairs)) + b''.join(
+        headed(parent, text(child), bytes(56)) for parent, child in pairs)
+
+
+@pytest.mark.parametrize('topic', ['/tf', '/tf_static'])
+def test_a_robot_says_where_its_own_frames_are_and_no_others(topic):
+    said = tf_message(('bot1/odom', 'bot1/base_link'), ('map', 'bot1/odom'), ('world', 'map'),
+                      ('bot2/odom', 'bot2/base_link'), ('map', '/bot2/odom'))
+    children = [child for child, _ in transforms(
+        OwnFrames('bot1').of(topic, 'tf2_msgs/TFMessage', said), lambda name: name)]
+    assert children == [b'bot1/base_link', b'bot1/odom', b'bot1/bot2/base_link', b'bot1/bot2/odom']
+
+
+@pytest.mark.parametrize('said, frame', [
+    ('bot1/odom', 'bot1/odom'), ('bot2/odom', 'bot1/bot2/odom'), ('map', 'map'),
+    ('/bot2/odom', 'bot1/bot2/odom')])
+def test_a_message_is_in_one_of_its_own_frames(said, frame):
+    data = OwnFrames('bot1').of('/bot1/odom', ODOMETRY, headed(said, text('bot2/base'), b'rest'))
+    assert first_text(data) == frame and b'bot1/bot2/base' in data and data.endswith(b'rest')
+
+
+def test_a_message_with_its_own_frames_is_left_as_it_is():
+    data = headed('bot1/odom', text('bot1/base_link'), b'rest')
+    assert OwnFrames('bot1').of('/bot1/odom', ODOMETRY, data) is data
+
+
+@pytest.mark.parametrize('topic, kind', [
+    ('/tf', 'tf2_msgs/TFMessage'), ('/bot1/odom', ODOMETRY)])
+def test_bytes_that_are_no_message(topic, kind):
+    with pytest.raises(ValueError):
+        OwnFrames('bot1').of(topic, kind, b'\xff' * 9)
