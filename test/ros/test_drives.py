@@ -57,7 +57,7 @@ def test_a_topic_that_is_not_there_is_named(bag, topics, words):
 
 @pytest.mark.parametrize('data, words', [
     (None, 'cannot be read: No such file'), (b'', 'cannot be read'),
-    (b'#ROSBAG V2.0\n', 'cannot be read|rosbag reindex'), (b'no bag at all\n', 'cannot be read')])
+    (b'#ROSBAG V2.0\n', 'cannot be read|no bag'), (b'no bag at all\n', 'cannot be read')])
 def test_a_file_that_is_no_bag_is_said(tmp_path, data, words):
     path = tmp_path / 'x.bag'
     if data is not None:
@@ -66,15 +66,14 @@ def test_a_file_that_is_no_bag_is_said(tmp_path, data, words):
         read_drive(str(path), ['/bot1/odom'])
 
 
-def test_a_bag_that_was_not_closed_names_the_remedy(bag):
+def test_a_bag_that_was_not_closed_is_read(bag):
     path = bag(odom=Odometry)
     with open(path, 'r+b') as stream:
         data = stream.read()
         at = data.index(b'index_pos=') + len(b'index_pos=')
         stream.seek(at)
         stream.write(bytes(8))
-    with pytest.raises(DriveError, match='rosbag reindex'):
-        read_drive(path, ['/bot1/odom'])
+    assert len(read_drive(path, ['/bot1/odom'])) == 10
 
 
 @pytest.mark.parametrize('seed', range(40))

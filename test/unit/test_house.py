@@ -200,8 +200,17 @@ def constructor_problems(relative, text):
     return found
 
 
+def bag_problems(relative, text):
+    """A bag that is opened to be read anywhere but in the one reader: rosbag runs what is in it."""
+    if relative.as_posix() == 'ros/session/bag_set.py':
+        return []
+    return ['line {}: opens a bag to read it'.format(node.lineno) for node in ast.walk(parsed(text))
+            if isinstance(node, ast.Call) and getattr(node.func, 'attr', '') == 'Bag'
+            and not any(getattr(one, 'value', '') in ('w', 'a') for one in node.args)]
+
+
 RULES = (import_problems, call_problems, size_problems, complexity_problems, spdx_problems,
-         swallow_problems, constructor_problems)
+         swallow_problems, constructor_problems, bag_problems)
 
 
 def public_docstrings(text):
@@ -303,6 +312,7 @@ GOOD = '{}x\n{}\n"""Text."""\n'.format(*SPDX)
     ('core/a.py', 'from . import b\n', 'may not import relative import'),
     ('core/a.py', 'open("x")\n', 'no I/O: open()'),
     ('core/a.py', 'print("x")\n', 'no I/O: print()'),
+    ('ros/a.py', 'import rosbag\nrosbag.Bag(path)\n', 'opens a bag'),
     ('inputs/a.py', 'import rospy\n', 'may not import rospy'),
     ('inputs/a.py', 'from python_qt_binding import QtCore\n', 'may not import python_qt_binding'),
     ('inputs/a.py', 'from mhri.ros.convert import x\n', 'may not import mhri.ros.convert'),

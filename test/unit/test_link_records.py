@@ -8,8 +8,8 @@ import pytest
 
 from mhri.core.link.frames import FrameError
 from mhri.core.link.records import (
-    Ask, AGAIN_S, crc_of, Fetch, MOST_PARTS, pack_ask, pack_offer, pack_part, PART_BYTES, Piece,
-    piece_of, too_many, unpack_ask, unpack_offer, unpack_part)
+    AGAIN_S, ALL_THERE_S, Ask, crc_of, Fetch, MOST_PARTS, pack_ask, pack_offer, pack_part,
+    PART_BYTES, Piece, piece_of, too_many, unpack_ask, unpack_offer, unpack_part)
 
 FILES = {3: bytes(range(256)) * 500, 4: b'x' * 70000, 7: b'y'}
 
@@ -44,7 +44,7 @@ def fetched(loss, fetch, robot, came, until=600.0, spoil=None):
     while now < until:
         now += 0.01
         if int(now * 100) % 100 == 0:
-            fetch.on_offer(unpack_offer(pack_offer(robot.kept.values())))
+            fetch.on_offer(unpack_offer(pack_offer(robot.kept.values())), now)
         ask = fetch.ask(now)
         for number, offset, data in robot.answer(unpack_ask(pack_ask(ask))) if ask else ():
             if fetch.on_part(number, offset, data, now):
@@ -62,7 +62,7 @@ def fetched(loss, fetch, robot, came, until=600.0, spoil=None):
 @pytest.mark.parametrize('loss', [0.0, 0.05, 0.3])
 def test_all_comes_whole_whatever_is_lost(loss):
     robot, came = Robot(random.Random(1), loss), {}
-    fetched(loss, Fetch(), robot, came)
+    fetched(loss, Fetch(asked=True), robot, came)
     assert came == FILES and robot.kept == {}
     # What is lost is not sent many times over.
     assert robot.sent < (1.0 + 12.0 * loss) * sum(map(len, FILES.values())) + 1
@@ -71,19 +71,19 @@ def test_all_comes_whole_whatever_is_lost(loss):
 def test_it_goes_on_where_it_had_got_to():
     robot = Robot(random.Random(1), 0.0)
     came = {3: FILES[3][:100000]}
-    fetched(0.0, Fetch({3: 100000}), robot, came)
+    fetched(0.0, Fetch({3: 100000}, asked=True), robot, came)
     assert came == FILES and robot.sent == sum(map(len, FILES.values())) - 100000
 
 
 def test_a_piece_that_came_wrong_is_fetched_once_more():
     robot, came = Robot(random.Random(1), 0.0), {}
-    fetched(0.0, Fetch(), robot, came, spoil=lambda data: b'?' * len(data))
+    fetched(0.0, Fetch(asked=True), robot, came, spoil=lambda data: b'?' * len(data))
     assert came == FILES
 
 
 def test_an_outage_only_asks_for_less():
-    fetch = Fetch(window=MOST_PARTS)
-    fetch.on_offer(pieces())
+    fetch = Fetch(window=MOST_PARTS, asked=True)
+    fetch.on_offer(pieces(), 0.0)
     counts, now = [], 0.0
     for _ in range(6):
         counts.append(fetch.ask(now).count)
@@ -93,19 +93,44 @@ def test_an_outage_only_asks_for_less():
 
 
 def test_it_says_how_far_it_is():
-    fetch = Fetch({3: 64000})
+    fetch = Fetch({3: 64000}, asked=True)
     assert fetch.words('bot1') == ''
-    fetch.on_offer(pieces())
+    fetch.on_offer(pieces(), 0.0)
     assert fetch.words('bot1') == 'fetching 5 of 30 s from bot1'
 
 
 @pytest.mark.parametrize('offset', [1, PART_BYTES, 10 ** 9])
 def test_a_part_that_does_not_follow_is_not_taken(offset):
-    fetch = Fetch()
-    fetch.on_offer(pieces())
+    fetch = Fetch(asked=True)
+    fetch.on_offer(pieces(), 0.0)
     fetch.ask(0.0)
     assert not fetch.on_part(3, offset, b'x', 0.1)
     assert not fetch.on_part(4, 0, b'x', 0.1)
+
+
+def test_what_nobody_asked_for_is_not_fetched():
+    fetch = Fetch()
+    for now in (0.0, 10.0, 20.0):
+        fetch.on_offer(pieces(), now)
+        assert fetch.wanted() is None and fetch.ask(now).number == -1 and fetch.unasked == 3
+        assert not fetch.on_part(3, 0, FILES[3], now)
+    fetch.keep = True
+    assert fetch.ask(30.0).keep
+    fetch.keep = False
+    fetch.on_offer(pieces(), 31.0)
+    assert fetch.ask(32.0).number == 3 and fetch.unasked == 0
+
+
+def test_what_was_asked_for_is_fetched_until_there_is_no_more_of_it():
+    fetch = Fetch(asked=True)
+    for now in (0.0, 0.9 * ALL_THERE_S):
+        fetch.on_offer([], now)
+    fetch.on_offer(pieces(), now + 1.0)
+    assert fetch.ask(now + 2.0).number == 3
+    for since in (2.0, 3.0 + ALL_THERE_S):
+        fetch.on_offer([], now + since)
+    fetch.on_offer(pieces(), now + 4.0 + ALL_THERE_S)
+    assert fetch.wanted() is None and not fetch.asked
 
 
 @pytest.mark.parametrize('most, numbers', [(10 ** 9, []), (100000, [3]), (0, [3, 4, 7])])
@@ -151,5 +176,5 @@ def test_pictures_are_asked_for_with_all_else():
     fetch = Fetch()
     fetch.keep = fetch.pictures = True
     assert fetch.ask(0.0) == Ask(True, pictures=True)
-    fetch.on_offer(pieces())
+    fetch.on_offer(pieces(), 0.0)
     assert fetch.ask(10.0) == Ask(True, (), 3, 0, 1, True)

@@ -54,6 +54,15 @@ def test_a_link_is_bad_until_it_is_good():
         '', 'weak: 12 % lost', '']
 
 
+def test_who_was_selected_is_known_without_any_message():
+    lines = [SessionEvent(at_s, at_s, kind, '', data=data) for at_s, kind, data in (
+        (1.0, 'start', {'selected': ['bot2']}), (2.0, 'selection', {'robots': ['bot1', 'bot2']}),
+        (3.0, 'selection', {'robots': []}), (4.0, 'mode', {}))]
+    recalled = Recalled(lines)
+    assert [recalled.selected(now) for now in (0.5, 1.5, 2.5, 4.5)] == [
+        None, ('bot2',), ('bot1', 'bot2'), ()]
+
+
 def test_nothing_is_newest_of_nothing():
     assert newest((), 1.0) is None and newest([(2.0, 'a')], 1.0) is None
 

@@ -30,6 +30,8 @@ MOST_PARTS, ASK_S = 16, 0.05
 AGAIN_S = 1.0
 # Who has nothing to fetch says so every so often [s].
 IDLE_S = 1.0
+# What a host asked a robot to keep is all there once it has nothing to offer for so long [s].
+ALL_THERE_S = 30.0
 MOST_PIECES, MOST_OFFERED = 2000, 200
 _HEAD = struct.Struct('>IQ')
 _NAME = re.compile(r'(\d{6,10})_(\d{1,15})_(\d{1,9})\.bag\Z')
@@ -160,11 +162,17 @@ class Fetch:
     :param got: {number: bytes that are there already} of pieces that came in part
     :param done: pieces that came whole and wait for the rest
     :param window: how many parts are asked for at first
+    :param asked: whether this host has asked the robot, in an earlier run, to keep something
     """
 
     def __init__(self, got: Optional[Dict[int, int]] = None, window: int = 1,
-                 done: Collection[Piece] = ()) -> None:
+                 done: Collection[Piece] = (), asked: bool = False) -> None:
         self.keep = self.pictures = False
+        #: whether the robot may have something that this host asked it to keep; remember it
+        self.asked = asked
+        #: how many pieces the robot offers that this host never asked for
+        self.unasked = 0
+        self._empty_since: Optional[float] = None
         self._got = dict(got or {})
         self._told = False
         self._offered: Dict[int, Piece] = {}
@@ -173,10 +181,17 @@ class Fetch:
         self._until = 0
         self._window = window
 
-    def on_offer(self, pieces: Collection[Piece]) -> None:
-        """Take in what there is to fetch."""
-        self._offered = {piece.number: piece for piece in pieces}
+    def on_offer(self, pieces: Collection[Piece], now: float) -> None:
+        """Take in what there is to fetch; nothing, unless this host asked the robot to keep it."""
+        self.unasked = 0 if self.asked else len(pieces)
+        self._offered = {piece.number: piece for piece in pieces} if self.asked else {}
         self._told = True
+        if pieces or self.keep:
+            self._empty_since = None
+        elif self._empty_since is None:
+            self._empty_since = now
+        elif now - self._empty_since >= ALL_THERE_S:
+            self.asked = False
 
     def on_part(self, number: int, offset: int, data: bytes, now: float) -> bool:
         """Take in a part; return whether it is the next one, and to be written."""
@@ -209,6 +224,7 @@ class Fetch:
 
     def ask(self, now: float) -> Optional[Ask]:
         """Return what to ask now, None for nothing."""
+        self.asked = self.asked or self.keep
         piece = self.wanted()
         base = Ask(self.keep, tuple(sorted(set(self._done) & set(self._offered))),
                    pictures=self.pictures)

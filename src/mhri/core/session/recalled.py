@@ -12,6 +12,7 @@ from mhri.core.screen.task_words import ended_as, STARTED
 from mhri.core.screen.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED, ProofView
 from mhri.core.session.folder import SessionEvent
 from mhri.core.session.lines import link_notes
+from mhri.core.session.timeline import selected_from
 from mhri.core.tasks.base import RESUMES
 
 _PROVED = (('stopped in ', PROOF_STOPPED), ('standstill seen ', PROOF_STOPPED),
@@ -43,6 +44,9 @@ class Recalled:
         self._stops: _Rows[bool] = []
         self._proofs: Dict[str, _Rows[ProofView]] = {}
         self._tasks: Dict[str, _Rows[str]] = {}
+        self._selected: _Rows[Tuple[str, ...]] = [
+            (event.ros, names) for event in events
+            for names in [selected_from(event)] if names is not None]
         for event in events:
             if event.kind == 'stop':
                 self._see_stop(event)
@@ -66,6 +70,10 @@ class Recalled:
             rows.append((event.ros, label if goes_on else ''))
         elif event.text.endswith(STARTED):
             rows.append((event.ros, ''))
+
+    def selected(self, now: float) -> Optional[Tuple[str, ...]]:
+        """Return the robots that were selected, None if no line says it."""
+        return newest(self._selected, now)
 
     def link_note(self, robot: str, now: float) -> str:
         """Return the words on a bad link of a robot, '' while it was good."""

@@ -102,7 +102,7 @@ def read_time_line(events: Iterable[SessionEvent], start: float, length_s: float
             text = notes.get(event.ros, event.text) if kind == MARK else event.text
             ticks.append(Tick(place(event), kind, text, event.severity, event.robot))
     return TimeLine(start, length_s, tuple(events), tuple(ticks),
-                    _driven([(place(event), _selected(event)) for event in events], length_s),
+                    _driven([(place(event), selected_from(event)) for event in events], length_s),
                     _stopped([(place(event), _stops(event)) for event in events], length_s))
 
 
@@ -115,8 +115,8 @@ def _tick_kind(event: SessionEvent) -> str:
     return EVENT if event.severity != INFO else ''
 
 
-def _selected(event: SessionEvent) -> Optional[Tuple[str, ...]]:
-    """Return who is selected from a line on, None for a line that does not say it."""
+def selected_from(event: SessionEvent) -> Optional[Tuple[str, ...]]:
+    """Return the robots selected from a line on, None for a line that does not say it."""
     if event.kind == 'start' and isinstance(event.data.get('selected'), list):
         return tuple(map(str, event.data['selected']))
     if event.kind != 'selection':

@@ -9,7 +9,6 @@ import time
 from dataclasses import replace
 import xmlrpc.client
 
-import genpy.message
 import rosgraph
 import rospkg
 
@@ -28,6 +27,7 @@ from mhri.ros.doctor.masters import look_elsewhere, parse_uri
 from mhri.ros.doctor.probe import Probe
 from mhri.ros.graph.look import shipped_ignore_list
 from mhri.ros.graph.master_api import MasterApi, MasterError
+from mhri.ros.messages import message_class, MessageMissing
 from mhri.ros.resources import robot_types
 
 # Deadlines for asking the nodes and for asking again, counted from the start [s]; an examination
@@ -183,10 +183,9 @@ def _ask_nodes(facts, robots, uris, deadline):
 def _own_md5(kind):
     """Return the md5 sum of a message type on this computer, None if the type is not here."""
     try:
-        found = genpy.message.get_message_class(kind)
-    except (ImportError, ValueError):
+        return message_class(kind)._md5sum
+    except MessageMissing:
         return None
-    return found._md5sum if found is not None else None
 
 
 def _look_again(facts, robots, api, wanted):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """On the host: fetches what the robot kept while the link was gone, and makes one bag of it."""
 import collections
+import contextlib
 from datetime import datetime
 import os
 import threading
@@ -12,52 +13,80 @@ import rospy
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, SetBoolResponse
 
-from mhri.core.link.carried import GUARD_COMMAND
+from mhri.core.link.carried import GUARD_COMMAND, TF, TF_STATIC
 from mhri.core.link.records import (
     ASK, crc_of, Fetch, FETCHING, IN_SESSIONS, OFFER, pack_ask, PART, PICTURES, piece_of, RECORD,
     unpack_offer, unpack_part)
 from mhri.core.link.robot_claims import OwnFrames
 from mhri.core.recording.recording import ros_home
+from mhri.core.session.folder import NotASession
 from mhri.msg import SessionState
 from mhri.ros.link.keeper import folder_of
+from mhri.ros.messages import installed_class
+from mhri.ros.session.bag_set import BagSet, DAMAGED
 
 WAIT_S = 0.1
 # Pieces overlap a little: of so many messages it is remembered that they are in the bag.
 REMEMBERED = 5000
 # After so many messages others have their turn for so long [s].
 AT_ONCE, REST_S = 50, 0.005
+_NS = 10 ** 9
 
 
 def join(robot, paths, target, topics):
     """Write one bag of pieces, with the names that everything has on the host.
 
+    A piece is what a robot says: what is not the robot's own, or of a type that is not installed
+    here, is left out.
+
     :param topics: what is carried of the robot, as in :class:`mhri.core.link.carried.Stream`
-    :raises OSError, rosbag.ROSBagException: a piece cannot be read, or the bag not be written
+    :returns: sentences about what is left out
+    :raises OSError: the bag cannot be written
     """
     frames = OwnFrames(robot)
-    recent, written = collections.OrderedDict(), 0
+    recent, written, strange, problems = collections.OrderedDict(), 0, set(), []
     with rosbag.Bag(target, 'w') as bag:
-        for path in paths:
-            with rosbag.Bag(path) as piece:
-                for name, raw, when in piece.read_messages(raw=True):
-                    kind, data, md5, _, message_class = raw
-                    # Not the message: with pictures that many take gigabytes.
-                    key = name, len(data), hash(data)
-                    if key in recent:
-                        continue
-                    recent[key] = None
-                    if len(recent) > REMEMBERED:
-                        recent.popitem(last=False)
-                    written += 1
-                    if written % AT_ONCE == 0:
-                        # Commands go through this program, too.
-                        time.sleep(REST_S)
-                    name = on_host(robot, name, topics)
-                    try:
-                        data = frames.of(name, kind, data)
-                    except ValueError:
-                        continue
-                    bag.write(name, (kind, data, md5, message_class), when, raw=True)
+        for recorded in _messages(paths, problems):
+            kind, data = recorded.connection.kind, recorded.data
+            name = on_host(robot, recorded.connection.topic, topics)
+            if not _of(robot, name):
+                strange.add(name)
+                continue
+            # Not the message: with pictures that many take gigabytes.
+            key = name, len(data), hash(data)
+            if key in recent:
+                continue
+            recent[key] = None
+            if len(recent) > REMEMBERED:
+                recent.popitem(last=False)
+            written += 1
+            if written % AT_ONCE == 0:
+                # Commands go through this program, too.
+                time.sleep(REST_S)
+            try:
+                data = frames.of(name, kind, data)
+            except ValueError:
+                continue
+            found = installed_class(kind, recorded.connection.md5sum)
+            bag.write(name, (kind, data, found._md5sum, found),
+                      rospy.Time(*divmod(recorded.time_ns, _NS)), raw=True)
+    return problems + ['topics that are not of {}: {}'.format(
+        robot, ', '.join(sorted(strange)[:5]))] * bool(strange)
+
+
+def _messages(paths, problems):
+    """Yield the messages of pieces, as far as they can be read; add why others cannot."""
+    for path in paths:
+        try:
+            with contextlib.closing(BagSet([path])) as piece:
+                problems.extend(piece.problems)
+                yield from piece.after(piece.start_ns - 1)
+        except (NotASession,) + DAMAGED as error:
+            problems.append('{}: {}'.format(os.path.basename(path), error))
+
+
+def _of(robot, topic):
+    return topic in (TF, TF_STATIC) or topic.startswith('/{}/'.format(robot))
 
 
 def on_host(robot, topic, topics):
@@ -85,6 +114,7 @@ class HostRecord:
         self._topics = topics
         self._folder = folder_of(side.name, 'fetched')
         self._part = os.path.join(self._folder, 'part')
+        self._asked = os.path.join(self._folder, 'asked')
         self._came = collections.deque()
         self._work = threading.Event()
         self._fetch = None
@@ -136,14 +166,15 @@ class HostRecord:
             os.makedirs(self._folder, exist_ok=True)
             # Those of an earlier run; what came in part goes by the name that it gets when whole.
             self._fetch = Fetch(done=[piece for piece in map(piece_of, os.listdir(self._folder))
-                                      if piece is not None])
+                                      if piece is not None],
+                                asked=os.path.exists(self._asked))
         fetch = self._fetch
         fetch.pictures = self._pictures
         fetch.keep = self._keep or self._session is not None and self._session.recording
         while self._came:
             topic, body = self._came.popleft()
             if topic == OFFER:
-                fetch.on_offer(unpack_offer(body))
+                fetch.on_offer(unpack_offer(body), now)
             else:
                 self._on_part(*unpack_part(body), now)
         whole = fetch.whole()
@@ -154,8 +185,20 @@ class HostRecord:
             self._finish(done)
         self._say(fetch.words(self._side.name) or self.text)
         ask = fetch.ask(now) if self._side.peer.heard(now) else None
+        self._remember(fetch)
         if ask is not None:
             self._side.send(ASK, RECORD, pack_ask(ask))
+
+    def _remember(self, fetch):
+        """Remember over a restart that the robot was asked, before it is."""
+        if fetch.asked != os.path.exists(self._asked):
+            if fetch.asked:
+                open(self._asked, 'wb').close()
+            else:
+                os.unlink(self._asked)
+        if fetch.unasked:
+            rospy.logwarn_throttle(60.0, '{}: {} recordings are not fetched: this host has not '
+                                   'asked for any'.format(self._side.name, fetch.unasked))
 
     def _path(self, piece):
         return os.path.join(self._folder, piece.name)
@@ -185,7 +228,10 @@ class HostRecord:
         paths = [self._path(piece) for piece in pieces]
         # Never over another file.
         os.close(os.open(target, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
-        join(self._side.name, paths, target, list(self._topics()) + [GUARD_COMMAND])
+        left_out = join(self._side.name, paths, target,
+                        list(self._topics()) + [GUARD_COMMAND])
+        for sentence in left_out:
+            rospy.logwarn('%s: left out: %s', os.path.basename(target), sentence)
         for path in paths:
             os.unlink(path)
         self.text = 'fetched {:.0f} s from {}: {}'.format(

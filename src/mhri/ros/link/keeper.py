@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """On the robot: records while a host wants it, and keeps the pieces which that host missed."""
+import contextlib
 import functools
 import os
 import shutil
@@ -12,13 +13,16 @@ import rospy
 
 from mhri.core.link.records import crc_of, Piece, PIECE_S, piece_of, too_many
 from mhri.core.recording.recording import ACTIVE, MB, RECORDING, ros_home
+from mhri.core.session.folder import NotASession
 from mhri.ros.recording.recorder import Recorder
+from mhri.ros.session.bag_set import BagSet, DAMAGED
 
 MOST_MB = 500
 # No piece takes more than this share of that: of what there is room for the newest is kept.
 PIECE_SHARE = 0.1
 # A host is missed this much later than it has gone [s].
 LATE_S = 2.5
+_NS = 10 ** 9
 
 
 def folder_of(robot, side):
@@ -203,10 +207,10 @@ class Keeper:
             with rosbag.Bag(path, 'a', allow_unindexed=True) as bag:
                 for _ in bag.reindex():
                     pass
-            with rosbag.Bag(path) as bag:
-                begun, ended = bag.get_start_time(), bag.get_end_time()
+            with contextlib.closing(BagSet([path])) as bags:
+                begun, ended = bags.start_ns / _NS, bags.end_ns / _NS
             self._keep(path, begun, ended)
-        except (OSError, rosbag.ROSBagException) as error:
+        except (NotASession,) + DAMAGED as error:
             rospy.logwarn('%s: %s cannot be saved: %s', self._robot, path, error)
 
     def _remove(self, path):

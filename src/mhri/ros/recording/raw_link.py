@@ -6,12 +6,12 @@ import socket
 import struct
 import xmlrpc.client
 
-import genpy.message
 from rosgraph.network import (
     read_ros_handshake_header, ROSHandshakeException, write_ros_handshake_header)
 
 from mhri.core.recording.frames import FrameSplitter
 from mhri.ros.graph.master_api import ERRORS, TimedTransport
+from mhri.ros.messages import installed_class, MessageMissing
 
 _SMALL, _LARGE = 64 * 1024, 1024 * 1024
 # A robot that loses power says no goodbye: probe it after 5 s of silence, give up after 5 more.
@@ -71,7 +71,7 @@ class RawLink:
         self._early = rest.getvalue()
         self._socket.setblocking(False)
         fields = {'topic': topic, 'type': found['type'], 'md5sum': found['md5sum'],
-                  'message_definition': found.get('message_definition') or _definition(found),
+                  'message_definition': _definition(found),
                   'callerid': found.get('callerid', '')}
         if found.get('latching') == '1':
             fields['latching'] = '1'
@@ -128,6 +128,11 @@ class RawLink:
 
 
 def _definition(found):
-    """Return the definition of a type whose publisher did not send it, '' if unknown here."""
-    known = genpy.message.get_message_class(found['type'])
-    return known._full_text if known is not None and known._md5sum == found['md5sum'] else ''
+    """Return the definition of a type: as installed here, else as its publisher says, or ''.
+
+    Programs that read the bag later compile what it says.
+    """
+    try:
+        return installed_class(found['type'], found['md5sum'])._full_text
+    except MessageMissing:
+        return found.get('message_definition', '')

@@ -1,10 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The bags of a session as one: what was newest at a moment, and what came next.
+"""The one reader of bags: what was newest at a moment, and what came next.
 
 Read by ``rosbag.Bag``. Beneath its public interface are used, here alone: its connections, its
-indexes (for the newest message before a time it offers nothing but reading all) and the reading of
-one message. A bag that was never closed is indexed in memory; nothing is ever written.
+table of types, its indexes (for the newest message before a time it offers nothing but reading
+all) and the reading of one message. A bag that was never closed is indexed in memory; nothing is
+ever written.
+
+``rosbag`` compiles the definitions in a bag, to read it raw as well, and a definition can be any
+Python. So nothing but types that are installed here, in the very version, is left in a bag that
+was opened, with their own definitions; see :func:`keep_installed`.
 """
 from bisect import bisect_right
 from collections import OrderedDict
@@ -13,21 +18,30 @@ import io
 import itertools
 import os
 import struct
+from types import SimpleNamespace
 from typing import NamedTuple
 
+import genpy
 import numpy as np
 import rosbag
-from rosbag.bag import ROSBagException
+import rosbag.bag
+from rosbag.bag import ROSBagException, ROSBagUnindexedException
 
-from mhri.core.recording.recording import ACTIVE
 from mhri.core.session.folder import (
     bags_of, EVENTS_JSONL, NotASession, read_events, read_info, robots_of, SESSION_YAML)
+from mhri.ros.messages import installed_class, MessageMissing
 
 # Open at once: the one that plays, its neighbours, and those that a seek looks into.
 MOST_OPEN = 6
 # A seek looks for what was last heard of a topic in so many earlier bags at most.
 MOST_LOOKED_INTO = 3
+# So many topics that are left out are named.
+MOST_NAMED = 5
+#: what the bytes of a damaged file lead ``rosbag`` to
+DAMAGED = (ROSBagException, OSError, EOFError, ValueError, KeyError, IndexError, TypeError,
+           struct.error, MemoryError, OverflowError, RuntimeError, genpy.DeserializationError)
 _NS = 10 ** 9
+_VERSION = 200
 # Of an index record: lengths, the field with the number of its connection, and what it consists of.
 _LENGTH, _CONN = struct.Struct('<I'), b'conn='
 _ENTRY = np.dtype([('s', '<u4'), ('n', '<u4'), ('offset', '<u4')])
@@ -49,6 +63,14 @@ class Recorded(NamedTuple):
     time_ns: int
     connection: Connection
     data: bytes
+
+    def message(self):
+        """Return the message.
+
+        :raises MessageMissing, genpy.DeserializationError, ValueError: it cannot be read
+        """
+        return installed_class(self.connection.kind, self.connection.md5sum)().deserialize(
+            self.data)
 
 
 class _Place(NamedTuple):
@@ -72,31 +94,37 @@ class BagSet:
         self._paths, self._starts, self._ends = [], [], []
         self._kinds, self._there = [], []
         self._open = OrderedDict()
-        #: sentences about files that are left out
+        #: sentences about what is left out
         self.problems = []
+        left_out = {}
         for path in paths:
-            self._meet(path)
+            self._meet(path, left_out)
+        if left_out:
+            self.problems.append(_left_out(left_out))
         if not self._paths:
             raise NotASession('; '.join(self.problems) or 'there is no bag in it')
         order = sorted(range(len(self._paths)), key=lambda index: self._starts[index])
         for name in ('_paths', '_starts', '_ends', '_kinds', '_there'):
             setattr(self, name, [getattr(self, name)[index] for index in order])
 
-    def _meet(self, path):
+    def _meet(self, path, left_out):
         """Take in what a bag holds, without its index."""
         try:
-            with _opened(path) as bag:
-                if path.endswith(ACTIVE):
-                    self.problems.append('{} was never closed: its last second may be missing'
+            opened = _opened(path)
+            with opened.bag as bag:
+                if not opened.whole:
+                    self.problems.append('{} was never closed, or cut off: its end may be missing'
                                          .format(os.path.basename(path)))
+                left_out.update(opened.left_out)
                 if not bag._chunks:
                     return
                 self._starts.append(min(chunk.start_time.to_nsec() for chunk in bag._chunks))
                 self._ends.append(max(chunk.end_time.to_nsec() for chunk in bag._chunks))
                 self._kinds.append({number: _connection(found)
                                     for number, found in bag._connections.items()})
-        except (ROSBagException, OSError, ValueError, KeyError) as error:
-            self.problems.append('{} cannot be read: {}'.format(os.path.basename(path), error))
+        except DAMAGED as error:
+            self.problems.append('{} cannot be read: {}'.format(
+                os.path.basename(path), _reason(error)))
             return
         self._paths.append(path)
         self._there.append({kind.topic for kind in self._kinds[-1].values()})
@@ -120,7 +148,7 @@ class BagSet:
         if index in self._open:
             self._open.move_to_end(index)
             return self._open[index]
-        bag = _opened(self._paths[index])
+        bag = _opened(self._paths[index]).bag
         self._open[index] = bag, index_of(bag)
         while len(self._open) > MOST_OPEN:
             self._open.popitem(last=False)[1][0].close()
@@ -128,8 +156,16 @@ class BagSet:
 
     def _read(self, place):
         bag, _ = self._bag(place.bag)
-        message = bag._read_message((place.chunk, place.offset), raw=True)
-        return Recorded(place.time_ns, self._kinds[place.bag][place.number], message.message[1])
+        kind = self._kinds[place.bag][place.number]
+        try:
+            found = bag._read_message((place.chunk, place.offset), raw=True).message
+        except DAMAGED as error:
+            raise ROSBagException(_reason(error))
+        # The record says of whom it is, too, and both may lie.
+        if (found[0], found[2]) != (kind.kind, kind.md5sum):
+            raise ROSBagException('its index is damaged: a {} for a {}'.format(
+                found[0], kind.kind))
+        return Recorded(place.time_ns, kind, found[1])
 
     def newest(self, time_ns, wanted=lambda connection: True):
         """Return the newest message of each topic at a time, the oldest first.
@@ -148,8 +184,18 @@ class BagSet:
                                            and kind.topic in missing), **found}
             if looked == MOST_LOOKED_INTO:
                 break
-        return [self._read(place) for place in sorted(
-            found.values(), key=lambda place: (place.time_ns, place.bag))]
+        return list(self._readable(sorted(
+            found.values(), key=lambda place: (place.time_ns, place.bag))))
+
+    def _readable(self, places):
+        for place in places:
+            try:
+                yield self._read(place)
+            except ROSBagException as error:
+                problem = '{} is damaged: {}'.format(
+                    os.path.basename(self._paths[place.bag]), error)
+                if problem not in self.problems:
+                    self.problems.append(problem)
 
     def _newest_in(self, index, time_ns, wanted):
         """Return {topic: where its newest message in a bag is}."""
@@ -164,7 +210,10 @@ class BagSet:
         return found
 
     def after(self, time_ns, wanted=lambda connection: True):
-        """Yield every message after a time, in order."""
+        """Yield every message after a time, in order.
+
+        :raises: one of :data:`DAMAGED`: what follows cannot be read
+        """
         first = max(0, bisect_right(self._starts, time_ns) - 1)
         # The bag before may end a moment after this one begins.
         for index in range(max(0, first - 1), len(self._paths)):
@@ -249,14 +298,37 @@ def _told(bag):
                                            for entry in of_chunk], _ENTRY)
 
 
+class _Opened(NamedTuple):
+    """A bag to read: whether it was closed by its writer, and {topic: why it is left out}."""
+
+    bag: rosbag.Bag
+    whole: bool
+    left_out: dict
+
+
 def _opened(path):
     """Open a bag to read, without its index unless it was never closed.
 
-    :raises ROSBagException, OSError, ValueError, KeyError: it cannot be read
+    :raises: one of :data:`DAMAGED`
     """
-    if not path.endswith(ACTIVE):
-        return rosbag.Bag(path, 'r', skip_index=True)
-    bag = rosbag.Bag(path, 'r', allow_unindexed=True, skip_index=True)
+    try:
+        bag, whole = rosbag.Bag(path, 'r', skip_index=True), True
+    except ROSBagUnindexedException:
+        bag, whole = rosbag.Bag(path, 'r', allow_unindexed=True, skip_index=True), False
+    try:
+        if bag.version != _VERSION:
+            raise ROSBagException('it is of version {}: "rosbag fix" makes a new one of it'.format(
+                bag.version))
+        if not whole:
+            _index(bag)
+        return _Opened(bag, whole, keep_installed(bag))
+    except BaseException:
+        bag.close()
+        raise
+
+
+def _index(bag):
+    """Index a bag in memory."""
     try:
         for _ in bag.reindex():
             pass
@@ -266,7 +338,58 @@ def _opened(path):
     for number, entries in bag._connection_indexes.items():
         bag._connection_indexes[number] = [
             entry for entry in entries if entry.chunk_pos in whole]
-    return bag
+
+
+def keep_installed(bag):
+    """Leave in an opened bag only types that are installed here; nothing in it gets compiled.
+
+    A message is read by the connection that its own record names, whatever an index says: what is
+    not among the connections any more cannot be read.
+
+    :returns: {topic: why it is left out}
+    """
+    left_out = {}
+    for number, found in list(bag._connections.items()):
+        try:
+            kind = installed_class(found.datatype, found.md5sum)
+        except MessageMissing as error:
+            left_out[found.topic] = str(error)
+            del bag._connections[number]
+            continue
+        found.msg_def = found.header['message_definition'] = kind._full_text
+        rosbag.bag._message_types[found.md5sum] = kind
+    return left_out
+
+
+def _check_rosbag():
+    """Make sure that ``rosbag`` looks into its table of types before it compiles.
+
+    :raises ImportError: this version does it otherwise
+    """
+    table, probe = rosbag.bag._message_types, SimpleNamespace(
+        md5sum='mhri', datatype='mhri/Probe', msg_def='not a definition')
+    table[probe.md5sum] = probe
+    try:
+        if rosbag.bag._get_message_type(probe) is not probe:
+            raise ImportError('this version of rosbag compiles what is in a bag')
+    finally:
+        del table[probe.md5sum]
+
+
+_check_rosbag()
+
+
+def _left_out(reasons):
+    """Return a sentence about topics that are left out."""
+    named = ['{} ({})'.format(topic, reason)
+             for topic, reason in sorted(reasons.items())[:MOST_NAMED]]
+    more = len(reasons) - len(named)
+    return 'types that are not installed here: {}{}'.format(
+        ', '.join(named), ' and {} more'.format(more) if more else '')
+
+
+def _reason(error):
+    return str(getattr(error, 'strerror', None) or error) or type(error).__name__
 
 
 def _connection(found):
@@ -309,7 +432,7 @@ def _open_folder(path, foreign):
     name = os.path.basename(path)
     info = os.path.join(path, SESSION_YAML)
     if not os.path.exists(info):
-        return Kept(name, opened, (), *foreign(_kinds(opened), name))
+        return _open_foreign(name, opened, foreign)
     events = tuple(read_events(_text(os.path.join(path, EVENTS_JSONL))))
     return Kept(name, opened, events, robots_of(read_info(_text(info)), events), '')
 
@@ -318,12 +441,16 @@ def _open_file(path, foreign):
     if not os.path.exists(path):
         raise NotASession('there is no such file or folder')
     name = os.path.splitext(os.path.basename(path))[0]
-    opened = BagSet([path])
-    return Kept(name, opened, (), *foreign(_kinds(opened), name))
+    return _open_foreign(name, BagSet([path]), foreign)
 
 
-def _kinds(bags):
-    return {connection.topic: connection.kind for connection in bags.connections()}
+def _open_foreign(name, bags, foreign):
+    try:
+        robots, prefix = foreign({connection.topic: connection.kind
+                                  for connection in bags.connections()}, name)
+    except NotASession as error:
+        raise NotASession('; '.join([str(error)] + bags.problems))
+    return Kept(name, bags, (), robots, prefix)
 
 
 def _text(path):

@@ -22,6 +22,7 @@ from mhri.core.session.foreign import may_be_replayed
 from mhri.core.session.playing import age_groups, Playing, RUN_UP_S
 from mhri.msg import ReplayState
 from mhri.ros.driving.in_force import STOP_SERVICE, TAKE_SERVICE
+from mhri.ros.session.bag_set import DAMAGED
 from mhri.ros.tasks.tasks_client import SERVICE as TASKS_SERVICE
 from mhri.srv import (
     ControlReplay, ControlReplayRequest, ControlReplayResponse, SetPlace, SetPlaceResponse)
@@ -254,7 +255,7 @@ class Player:
         """Publish what is due; return how long the next message can wait [s, real time]."""
         while self._aim is None:
             if self._next is None:
-                self._next = next(self._coming, None)
+                self._next = self._following()
             if self._next is None:
                 break
             if self._next.time_ns > time_ns:
@@ -265,6 +266,15 @@ class Player:
                 self._say(recorded)
         self._stage.go_to(time_ns)
         return STATE_S
+
+    def _following(self):
+        """Return the next message, None at the end and where the bag is damaged."""
+        try:
+            return next(self._coming, None)
+        except DAMAGED as error:
+            self._coming = iter(())
+            rospy.logwarn('a bag is damaged, what follows is missing: %s', error)
+            return None
 
     def _seek(self, position_s):
         """Go to a position: what was newest a moment before it, then, fast, what came since.
@@ -326,7 +336,8 @@ class Player:
         begun = self._clock()
         speed = max(1.0, min(RUN_UP_SPEED, RUN_UP_LATE_S / self._lag_s))
         self._tell(begin_s, speed, True, end_s)
-        for recorded in self._bags.after(self._ns(begin_s), _small(self._plays)):
+        self._coming = self._bags.after(self._ns(begin_s), _small(self._plays))
+        for recorded in iter(self._following, None):
             if recorded.time_ns > self._ns(end_s) or self._aim is not None:
                 return
             due_s = ((recorded.time_ns - self._start_ns) / _NS - begin_s) / speed

@@ -113,7 +113,9 @@ class ReplayBackend(ScreenBackend):
 
     def view(self):
         """Return the :class:`PanelView` of this moment of the session."""
-        self.selection.check(self._selected)
+        # The message of an older mhri cannot be read any more; the lines of its session can.
+        selected = self.recalled.selected(self.clock.wall())
+        self.selection.check(self._selected if selected is None else selected)
         view = super().view()
         if self._gates.expected or view.ros != ROS_CONNECTED:
             return view

@@ -6,7 +6,6 @@ import os
 from typing import NamedTuple
 
 import genpy
-from rosbag.bag import ROSBagException
 
 from mhri.core.config import ConfigError, short
 from mhri.core.drill.results import FILE as DRILL_FILE, read_result, rows_of
@@ -19,8 +18,8 @@ from mhri.core.session.survey import RobotSurvey
 from mhri.core.session.timeline import read_time_line
 from mhri.ros.convert import motion_from_odometry, motion_from_turtle_pose
 from mhri.ros.map.map_feed import grid_of_message, MAP_TOPIC
-from mhri.ros.messages import message_class, MessageMissing
-from mhri.ros.session.bag_set import BagSet
+from mhri.ros.messages import MessageMissing
+from mhri.ros.session.bag_set import BagSet, DAMAGED
 
 GATES, PLACES = '/gates/state', '/mhri_tasks/places'
 _MOTIONS = {'nav_msgs/Odometry': motion_from_odometry, 'turtlesim/Pose': motion_from_turtle_pose}
@@ -132,7 +131,7 @@ class Teller:
 
     def __init__(self, session):
         self._session = session
-        self._classes, self._refused = {}, set()
+        self._refused = set()
         bags = session.bags
         self.start = bags.start_ns / _NS if bags else min(
             [session.info.started] + [event.ros for event in session.events])
@@ -161,7 +160,7 @@ class Teller:
                     self._take(recorded)
                     progress((recorded.time_ns - session.bags.start_ns) // _NS,
                              max(1, round(self.line.length_s)))
-            except (ROSBagException, OSError, ValueError, KeyError) as error:
+            except DAMAGED as error:
                 session.problems.append('a bag is damaged, what follows is missing: {}'.format(
                     error))
         for survey in self._surveys.values():
@@ -222,17 +221,8 @@ class Teller:
 
     def message(self, recorded):
         """Return a recorded message, None where it cannot be read here; that is said once."""
-        kind = recorded.connection.kind
         try:
-            if kind not in self._classes:
-                self._classes[kind] = message_class(kind)
-            if self._classes[kind]._md5sum != recorded.connection.md5sum:
-                self._refuse('{} is of another version of {}'.format(
-                    recorded.connection.topic, kind))
-                return None
-            message = self._classes[kind]()
-            message.deserialize(recorded.data)
-            return message
+            return recorded.message()
         except (MessageMissing, genpy.DeserializationError, ValueError) as error:
             self._refuse('{} cannot be read: {}'.format(recorded.connection.topic, error))
             return None

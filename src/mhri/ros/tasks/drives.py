@@ -3,13 +3,14 @@
 """Drives in bags: where a robot was, by its odometry or by motion capture."""
 import os
 
-import rosbag
 import rospkg
 
 from mhri.core.robots.mocap import Pose
+from mhri.core.session.folder import NotASession
 from mhri.core.tasks.replay import MOST_PLACES, thinned
 from mhri.ros.convert import yaw_of
 from mhri.ros.robots.robot_link import ODOMETRY_READERS
+from mhri.ros.session.bag_set import BagSet
 
 POSE = 'geometry_msgs/PoseStamped'
 READABLE = tuple(ODOMETRY_READERS) + (POSE,)
@@ -30,28 +31,34 @@ def read_drive(path, topics):
     """
     path = os.path.join(rospkg.get_ros_home(), os.path.expanduser(path))
     try:
-        with rosbag.Bag(path) as bag:
-            return _read(bag, path, topics)
-    except rosbag.ROSBagUnindexedException:
-        raise DriveError('{}: was not closed: rosbag reindex mends it'.format(path))
+        bags = BagSet([path])
+    except NotASession as error:
+        raise DriveError('{}: {}'.format(path, error))
+    try:
+        return _read(bags, path, topics)
     except DriveError:
         raise
     except Exception as error:  # whatever the bytes of a damaged file may lead rosbag to
         raise DriveError('{}: cannot be read: {}'.format(
             path, getattr(error, 'strerror', None) or error))
+    finally:
+        bags.close()
 
 
-def _read(bag, path, topics):
-    found = {name: info.msg_type for name, info in bag.get_type_and_topic_info().topics.items()
-             if info.msg_type in READABLE}
+def _read(bags, path, topics):
+    found = {connection.topic: connection.kind for connection in bags.connections()
+             if connection.kind in READABLE}
     topic = next((topic for topic in topics if topic in found), None)
     if topic is None:
-        raise DriveError('{}: it has no {}; topic could be: {}'.format(
-            path, ' or '.join(topics) or 'odometry', ', '.join(sorted(found)) or 'none of it'))
+        raise DriveError('; '.join(['{}: it has no {}; topic could be: {}'.format(
+            path, ' or '.join(topics) or 'odometry', ', '.join(sorted(found)) or 'none of it')]
+            + bags.problems))
     read = _pose_of(found[topic])
     poses = []
-    for number, (_, message, _) in enumerate(bag.read_messages(topics=[topic])):
-        pose = read(message)
+    wanted = bags.after(bags.start_ns - 1, lambda one: (one.topic, one.kind) == (
+        topic, found[topic]))
+    for number, recorded in enumerate(wanted):
+        pose = read(recorded.message())
         if pose is not None:
             poses.append(pose)
         if number >= MOST_MESSAGES:
