@@ -14,13 +14,13 @@ from mhri.core.map.tf_tree import TfTree
 from mhri.core.robots.mocap import Pose
 from mhri.ros.resources import robot_types
 from mhri.ros.sensors.beams import read_beams
-from mhri.ros.sensors.mounts import Mounts
+from mhri.ros.sensors.mounts import Mounts, NoPlace
 
 KIND = replace(robot_types()[0]['turtlebot3'], laser_x_m=-0.05, depth_x_m=0.1, depth_z_m=0.2)
 LEVEL, OVER, TILTED = (0.0, 0.0, 0.0, 1.0), (1.0, 0.0, 0.0, 0.0), (0.0, 0.5, 0.0, math.sqrt(0.75))
 
 
-def mounts(*edges, base='bot1/base_footprint', kind=KIND):
+def mounts(*edges, base='bot1/base_footprint', kind=KIND, odometry=''):
     """Return the mounts of a robot whose tf says (parent, child, x, quaternion)."""
     tree = TfTree()
     for parent, child, x, turn in edges:
@@ -29,8 +29,10 @@ def mounts(*edges, base='bot1/base_footprint', kind=KIND):
     def matrix(frame, other):
         found = tree.matrix(frame, other)
         return found and found[0]
-    made = Mounts(kind, SimpleNamespace(matrix=matrix))
-    made.see_odometry(Odometry(child_frame_id=base))
+    made = Mounts(kind, SimpleNamespace(matrix=matrix, child_above=tree.child_above))
+    message = Odometry(child_frame_id=base)
+    message.header.frame_id = odometry
+    made.see_odometry(message)
     return made
 
 
@@ -53,6 +55,34 @@ def test_where_a_laser_sits(edges, base, pose, over):
     assert (found.x_m, found.y_m, found.heading_rad) == pytest.approx(
         (pose.x_m, pose.y_m, pose.heading_rad))
     assert turned_over == over
+
+
+# As stage_ros says it: all on /tf, and no child_frame_id.
+STAGE = (('robot_0/odom', 'robot_0/base_footprint', 7.0, LEVEL),
+         ('robot_0/base_footprint', 'robot_0/base_link', 0.01, LEVEL),
+         ('robot_0/base_link', 'robot_0/base_laser_link_1', -0.2, (0.0, 0.0, 1.0, 0.0)))
+
+
+@pytest.mark.parametrize('base', ['', 'base_footprint'])
+def test_a_base_that_odometry_does_not_name_is_the_child_of_its_frame(base):
+    found, _ = mounts(*STAGE, base=base, odometry='/robot_0/odom').laser(
+        'robot_0/base_laser_link_1')
+    assert (found.x_m, abs(found.heading_rad)) == pytest.approx((-0.19, math.pi))
+
+
+@pytest.mark.parametrize('edges', [(), STAGE])
+def test_of_several_lasers_none_looks_ahead_because_nobody_knows_better(edges):
+    twins = replace(KIND, scan=('scan', 'rear_scan'))
+    for number in (0, 1):
+        with pytest.raises(NoPlace):
+            mounts(*edges, kind=twins).laser('robot_0/base_laser_link_1', number)
+
+
+def test_the_type_says_where_each_of_several_lasers_sits():
+    twins = replace(KIND, scan=('scan', 'rear_scan'),
+                    lasers=((0.2, 0.0, 0.0), (-0.2, 0.1, math.pi)))
+    assert [mounts(kind=twins).laser('', number)[0] for number in (0, 1)] == [
+        Pose(0.2, 0.0, 0.0), Pose(-0.2, 0.1, math.pi)]
 
 
 def test_where_a_camera_sits():

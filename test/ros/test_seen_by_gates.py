@@ -70,7 +70,7 @@ def test_every_reason_to_stand_has_words():
 
 def test_the_words_of_the_brake_are_those_of_its_rule():
     assert WORDS == ('', RobotGate.BRAKE_ON, RobotGate.BRAKE_SLOWS, RobotGate.BRAKE_UNSEEN,
-                     RobotGate.BRAKE_NO_SCAN, RobotGate.BRAKE_CANNOT)
+                     RobotGate.BRAKE_NO_SCAN, RobotGate.BRAKE_NO_PLACE, RobotGate.BRAKE_CANNOT)
 
 
 def test_what_is_not_known_is_none():

@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 
+from nav_msgs.msg import Odometry
 import rospy
 import rostest
 from sensor_msgs.msg import LaserScan
@@ -19,9 +20,12 @@ from gates_case import GatesCase, ZERO  # noqa: E402
 from mhri.core.driving.brake import CRAWL_MPS  # noqa: E402
 from mhri.msg import GroupSpeed, RobotGate  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
+from support.two_lasers import TwoLasers  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
 
 SPEED_MPS = 0.6
+# How often a robot is driven backwards at a wall.
+TIMES = int(os.environ.get('MHRI_TIMES', '1'))
 
 
 class Brake(GatesCase):
@@ -137,6 +141,80 @@ class Brake(GatesCase):
         self.ask(True)
         self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_CANNOT, 'the word')
         self.assertEqual(self.drive(end, 0.2), (0.2, 0.0))
+
+    def two_lasers(self, ahead_m, behind_m, tf=True, **kind):
+        """Return the (name, receiving end) of a robot with a laser ahead and one behind."""
+        name = 'gate{}'.format(GatesCase.number + 1)
+        rospy.set_param('/{}/mhri'.format(name), dict(TwoLasers.TYPE, **kind))
+        scan, rests = LaserScan(range_min=0.05, range_max=20.0), Odometry()
+        scan.ranges = [ahead_m] + [float('inf')] * 179 + [behind_m] + [float('inf')] * 179
+        rests.pose.pose.orientation.w = 1.0
+        self.addCleanup(TwoLasers(name, lambda: (scan, rests), tf).let_go)
+        (name, end), = self.robots(1, 'turtlebot3')
+        self.ask(True)
+        return name, end
+
+    def obeys(self, name, end, linear, expected):
+        """Hold the stick, and see what the robot gets; no more than that comes before."""
+        self.centre(name, end)
+        when = time.monotonic()
+        hand = self.hold(linear, 0.1)
+        wait_for(lambda: len(end.after(when)) > 5 and end.values()[-1] == (expected, 0.1),
+                 PATIENCE_S, lambda: '{}, got {}'.format(expected, end.values()[-1]))
+        hand.let_go()
+        self.assertLessEqual(max(abs(entry[1]) for entry in end.after(when)), abs(expected))
+        self.mux.say(0.0)
+
+    def test_a_rear_laser_that_tf_alone_places_looks_back(self):
+        """All on /tf, and odometry that does not name the robot's frame, as of stage_ros."""
+        for behind, back, ahead, forward in ((0.25, 0.0, 9.0, 0.2), (9.0, -0.2, 0.25, 0.0)):
+            name, end = self.two_lasers(ahead, behind)
+            self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_ON, 'tf')
+            self.obeys(name, end, -0.2, back)
+            self.obeys(name, end, 0.2, forward)
+
+    def test_lasers_that_nobody_places_let_it_turn_alone_and_it_is_said(self):
+        name, end = self.two_lasers(9.0, 0.25, tf=False)
+        self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_NO_PLACE, 'the word')
+        self.obeys(name, end, -0.2, 0.0)
+        self.obeys(name, end, 0.2, 0.0)
+
+    def test_its_type_places_lasers_that_tf_does_not(self):
+        name, end = self.two_lasers(9.0, 0.25, tf=False, lasers=[[0, 0, 0], [0, 0, 180]])
+        self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_ON, 'its lasers')
+        self.obeys(name, end, -0.2, 0.0)
+        self.obeys(name, end, 0.2, 0.2)
+
+    def test_no_wall_behind_is_met_that_its_rear_laser_sees(self):
+        """A simulated robot with its back to the wall, driven at it and away again."""
+        seen = {}
+        rospy.Subscriber('/bot2/scan', LaserScan, lambda scan: seen.update(scan=scan))
+        rospy.Subscriber('/bot2/odom', Odometry, lambda odometry: seen.update(odometry=odometry))
+        wait_for(lambda: len(seen) == 2, PATIENCE_S, 'bot2')
+        rospy.set_param('/bot2/mhri', TwoLasers.TYPE)
+        self.addCleanup(TwoLasers('bot2', lambda: (seen['scan'], seen['odometry'])).let_go)
+        hall, end = Hall('bot2', 0.177), VelocityEnd('/bot2/teleop/input')
+        self.operator.check('bot2')
+        self.ask(True)
+        self.state.wait_robot('bot2', lambda gate: gate.obeys == 'operator'
+                              and gate.brake == RobotGate.BRAKE_ON, 'bot2', PATIENCE_S)
+        for _ in range(TIMES):
+            self.centre('bot2', end)
+            begun = time.monotonic()
+            hand = self.hold(-SPEED_MPS)
+            hall.places.wait(lambda x: x > 11.3, begun, PATIENCE_S)
+            within = hall.rests()
+            hand.let_go()
+            nearest = hall.least_gap(begun)
+            print('MEASURED gap to the wall behind: {:.3f} m, never less than {:.3f} m'.format(
+                within, nearest))
+            self.assertGreater(nearest, 0.03)
+            self.mux.say(0.0)
+            self.centre('bot2', end)
+            hand = self.hold(0.4)
+            hall.places.wait(lambda x: x < 10.8, time.monotonic(), PATIENCE_S)
+            hand.let_go()
+            self.mux.say(0.0)
 
 
 class Scans:

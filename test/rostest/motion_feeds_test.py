@@ -2,11 +2,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The feeds of graph and scan against real publishers: values, preference, toggled."""
+from dataclasses import replace
 import math
 import os
 import sys
 import threading
-from types import SimpleNamespace
 import unittest
 
 from geometry_msgs.msg import TransformStamped
@@ -20,8 +20,10 @@ from tf2_msgs.msg import TFMessage
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
+from mhri.core.map.tf_tree import OdometryFrames  # noqa: E402
 from mhri.gui.sensors.scan_view import scan_points  # noqa: E402
 from mhri.ros.map.map_feed import MapScans  # noqa: E402
+from mhri.ros.resources import robot_types  # noqa: E402
 from mhri.ros.sensors.imu_feed import ImuFeed  # noqa: E402
 from mhri.ros.sensors.lasers import Lasers  # noqa: E402
 from mhri.ros.sensors.scan_feed import ScanFeed  # noqa: E402
@@ -160,11 +162,12 @@ class MotionFeedsTest(unittest.TestCase):
         scans = MapScans(lambda job: job())
         self.addCleanup(scans.close)
         self.talk('/mounted/rear_scan', scan())
-        scans.want({'mounted': SimpleNamespace(scan=('scan', 'rear_scan'), laser_x_m=-0.1)})
+        scans.want({'mounted': replace(robot_types()[0]['turtlebot3'], scan=('scan', 'rear_scan'),
+                                       lasers=((-0.1, 0.0, 0.0), (-0.2, 0.0, 0.0)))})
         found, lasers = [], set()
 
         def sits(x_m):
-            taken = scans.take('mounted', 'mounted/base')
+            taken = scans.take('mounted', OdometryFrames('mounted/base'))
             lasers.update(taken)
             found.extend(filter(None, [taken.get(0)]))
             return found and abs(found[-1][2][0].x_m - x_m) < 1e-6
@@ -180,20 +183,18 @@ class MotionFeedsTest(unittest.TestCase):
         """The one behind is turned about; what it saw goes when it falls silent."""
         ahead, behind = (LaserScan(range_min=0.1, range_max=3.5, angle_increment=0.01,
                                    ranges=[distance]) for distance in (2.0, 1.0))
-        behind.header.frame_id = 'twin/rear'
+        ahead.header.frame_id, behind.header.frame_id = 'twin/base', 'twin/rear'
         self.talk('/twin/scan', ahead)
         rear = self.talk('/twin/rear_scan', behind)
         mount = TransformStamped(child_frame_id='twin/rear')
         mount.header.frame_id = 'twin/base'
         mount.transform.rotation.z = 1.0
-        static = rospy.Publisher('/tf_static', TFMessage, queue_size=1, latch=True)
-        self.addCleanup(static.unregister)
-        static.publish([mount])
-        lasers, seen = self.feed(Lasers('twin', SimpleNamespace(
-            scan=('scan', 'rear_scan'), laser_x_m=0.0))), {}
+        self.talk('/tf', TFMessage([mount]))
+        lasers, seen = self.feed(Lasers('twin', replace(
+            robot_types()[0]['turtlebot3'], scan=('scan', 'rear_scan')))), {}
 
         def sees(*wanted):
-            found = lasers.take('twin/base')
+            found = lasers.take(OdometryFrames('twin/base'))
             if found is not None:
                 x, y, _ = scan_points(*found[:3])
                 seen['points'] = sorted(zip(np.round(x, 1), np.round(y, 1)))

@@ -79,7 +79,7 @@ def test_limits_are_those_of_the_model_at_most():
 
 def test_what_is_its_own_affair_stays():
     overrides = {'odometry': ['odometry/filtered'], 'silent_after_s': 3.0, 'radius_m': 0.4,
-                 'laser_x_m': 0.1, 'label': 'Crawler',
+                 'laser_x_m': 0.1, 'lasers': [[0.1, 0, 0]], 'label': 'Crawler',
                  'hardware_stop': {'topic': 'estop', 'stopped': [True]},
                  'motor_power': {'topic': 'power', 'type': 'std_msgs/Int8', 'powered': 1,
                                  'cut': 0}}

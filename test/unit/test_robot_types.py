@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Robot types: the shipped templates, the parameters over them, and slips in both."""
 import glob
+import math
 import os
 
 import pytest
@@ -300,3 +301,32 @@ def test_broken_export_is_left_out_and_named(key):
     assert [str(error).startswith('package bad_robot: /bad/x.yaml: {}'.format(key))
             for error in errors] == [True]
     assert 'mend it there' in str(errors[0])
+
+
+TWO = GOOD + 'scan: [front, rear]\n'
+
+
+def test_where_each_of_several_lasers_sits():
+    placed = parse_robot_type(TWO + 'lasers: [[0.2, 0, 0], [-0.2, 0.1, 180]]\n', 'crawler.yaml')
+    assert placed.laser_place(1) == (-0.2, 0.1, math.pi)
+    nobody_says = parse_robot_type(TWO + 'laser_x_m: 0.3\n', 'crawler.yaml')
+    assert nobody_says.laser_place(0) is nobody_says.laser_place(1) is None
+    alone = parse_robot_type(GOOD + 'scan: scan\nlaser_x_m: 0.3\n', 'crawler.yaml')
+    assert alone.laser_place(0) == (0.3, 0.0, 0.0)
+    # Other topics in a robot's parameters are other lasers.
+    types = dict(shipped(), crawler=placed)
+    for over, place in (({'scan': ['rear', 'front']}, None),
+                        ({'scan': ['a', 'b'], 'lasers': [[1, 0, 0], [0, 1, 90]]},
+                         (0.0, 1.0, math.pi / 2.0)), ({}, (-0.2, 0.1, math.pi))):
+        kind, errors = resolve_robot_type(types, 'bot1', {'robot_type': 'crawler', 'mhri': over})
+        assert (kind.laser_place(1), errors) == (place, [])
+
+
+@pytest.mark.parametrize('value', [
+    '[[0.2, 0, 0]]', '[[0.2, 0], [0, 0]]', '7', '{front: [0, 0, 0]}', '[[a, 0, 0], [0, 0, 0]]',
+    '[[.nan, 0, 0], [0, 0, 0]]', '[[11, 0, 0], [0, 0, 0]]', '[[0, 0, 361], [0, 0, 0]]',
+    '[[0, 0, true], [0, 0, 0]]', "''"])
+def test_places_of_lasers_that_cannot_be(value):
+    with pytest.raises(ConfigError) as caught:
+        parse_robot_type(TWO + 'lasers: {}\n'.format(value), 'crawler.yaml')
+    assert caught.value.key == 'lasers'

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The brake for the stick: what it allows, what it says of itself, and what a gate makes of it."""
+from dataclasses import replace
 import math
 
 import numpy as np
@@ -9,7 +10,8 @@ import pytest
 from mhri.core.driving.brake import braked, CRAWL_MPS, Scan
 from mhri.core.driving.gate import GateRule, JOINING, OPERATOR, TASK
 from mhri.core.driving.limits import Velocity, ZERO
-from mhri.core.driving.stick_brake import CANNOT, NO_SCAN, OFF, ON, SLOWS, StickBrake, UNSEEN
+from mhri.core.driving.stick_brake import (
+    CANNOT, NO_PLACE, NO_SCAN, OFF, ON, SLOWS, StickBrake, UNSEEN)
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.robot_types import Limits
 
@@ -66,6 +68,26 @@ def test_what_nothing_looks_at_is_backed_into_at_a_crawl_and_said(brake):
     assert brake.allow(Velocity(-0.5, 0.0), 1.0) == Velocity(-CRAWL_MPS, 0.0)
     assert brake.state(1.0)[0] == UNSEEN and math.isnan(brake.state(1.0)[1])
     assert brake.allow(FAST, 1.0) == FAST and brake.state(1.0)[0] == ON
+
+
+def test_where_a_laser_looks_nobody_knows_where_it_does_not_even_crawl(brake):
+    back = Velocity(-0.5, 0.0)
+    brake.hear_unplaced('rear', 1.0)
+    assert brake.allow(back, 1.0) == brake.allow(Velocity(0.5, 0.0), 1.0) == ZERO
+    assert brake.allow(Velocity(0.0, 1.0), 1.0) == Velocity(0.0, 1.0)
+    assert brake.state(1.0)[0] == NO_PLACE
+    half = Scan(np.full(181, np.nan), -math.pi / 2, math.pi / 180, 0.12, 10.0)
+    brake.see(half, 1.0, laser='front')
+    assert brake.allow(back, 1.0) == ZERO and brake.state(1.0)[0] == NO_PLACE
+    assert brake.allow(FAST, 1.0) == FAST and brake.state(1.0)[0] == NO_PLACE
+    brake.see(replace(half, mount=Pose(0.0, 0.0, math.pi)), 1.1, laser='rear')
+    assert brake.allow(back, 1.1) == back and brake.state(1.1)[0] == ON
+
+
+def test_a_laser_without_a_place_that_has_fallen_silent_is_no_laser(brake):
+    brake.hear_unplaced('rear', 1.0)
+    assert brake.allow(Velocity(-0.5, 0.0), 1.4) == Velocity(-CRAWL_MPS, 0.0)
+    assert brake.state(1.4)[0] == NO_SCAN
 
 
 def test_nothing_is_said_to_slow_what_nobody_drives(brake):

@@ -238,6 +238,19 @@ def test_no_scan_no_way_and_it_is_said():
     assert robot.run.state == BLOCKED
 
 
+def test_no_way_where_a_laser_looks_nobody_knows_where():
+    world = World()
+    robot = world.add('bot1')
+    robot.begin(BY_KEY['goto'], '{x: 3, y: 0}', 0.0)
+    for _ in range(40):
+        world.step()
+    robot.blind = True
+    for _ in range(10):
+        world.step(unplaced=True)
+    assert robot.last.linear_mps == 0.0 and robot.run.state == WAITING
+    assert 'place' in robot.run.text
+
+
 def test_nothing_moves_before_its_gate_obeys_the_task():
     world = World()
     robot = world.add('bot1')

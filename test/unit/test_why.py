@@ -131,6 +131,7 @@ def test_it_is_said_once_it_has_been_so_for_a_moment():
     (BrakeView('slows'), 'brake: slows for something ahead'),
     (BrakeView('no_scan'), 'brake: no laser or depth data, no way forward'),
     (BrakeView('unseen'), 'brake: slow, it does not see that way'),
+    (BrakeView('no_place'), 'brake: place of a laser unknown, no way that no other sees'),
     (BrakeView('cannot'), 'no brake: it has no laser or depth camera')])
 def test_what_the_brake_does_in_words(brake, words):
     assert brake_words(brake) == words

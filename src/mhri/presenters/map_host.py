@@ -18,6 +18,7 @@ from mhri.core.map.met import Met
 from mhri.core.map.places import composed
 from mhri.core.map.scene import goals_of, in_frame, map_robot, own_pose, Scene
 from mhri.core.map.spread import has_room, spread
+from mhri.core.map.tf_tree import OdometryFrames
 from mhri.core.map.track import Track
 from mhri.core.map.trail import link_grade, Trail
 from mhri.core.robots.mocap import Pose
@@ -175,7 +176,7 @@ class MapHost(QObject):
         feeds = self._operator.feeds(name)
         met, track = self._met.setdefault(name, Met()), self._tracks.get(name)
         for laser, (scan, age_s, (mount, turned_over)) in self._scans.take(
-                name, feeds.base if feeds is not None else '').items():
+                name, feeds.frames if feeds is not None else OdometryFrames()).items():
             ahead, left, _ = scan_points(*scan[:3])
             seen = in_frame(mount, np.column_stack((ahead, -left if turned_over else left)))
             then = track.at(now - age_s) if track is not None else None

@@ -77,7 +77,7 @@ class TileHost:
         for key in self._wanted():
             feed = feeds.get(key)
             if key == SCAN and feed is not None:
-                self._draw_scan(feed, feeds.base)
+                self._draw_scan(feed, feeds.frames)
             elif feed is not None:
                 self._draw_view(key, feed)
         self._draw_state(view, feeds)
@@ -117,9 +117,9 @@ class TileHost:
             if status.thinned:
                 self._held_back = self._held_back or 'point cloud ' + status.thinned
 
-    def _draw_scan(self, lasers, base):
+    def _draw_scan(self, lasers, frames):
         """Take note of the nearest thing, and show the scan where its view is on show."""
-        scan = lasers.take(base)
+        scan = lasers.take(frames)
         if scan is not None:
             self._nearest = nearest(*scan[:3])
         if SCAN in self.window.wanted():

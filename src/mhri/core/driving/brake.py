@@ -109,6 +109,28 @@ class _Seen:
     points: np.ndarray
 
 
+class Unplaced:
+    """The lasers that are heard while nobody says where they sit: where they look is unknown.
+
+    A robot that has one does not crawl where no other laser looks: it may see what is there.
+    """
+
+    def __init__(self) -> None:
+        self._heard: Dict[str, float] = {}
+
+    def hear(self, laser: str, at_s: float) -> None:
+        """Take in that a laser without a place was heard."""
+        self._heard[laser] = at_s
+
+    def place(self, laser: str) -> None:
+        """Take in that it has a place."""
+        self._heard.pop(laser, None)
+
+    def any(self, now: float) -> bool:
+        """Tell whether there are any, as far as they were heard of late."""
+        return any(now - at_s <= SCAN_OLD_S for at_s in list(self._heard.values()))
+
+
 class Surroundings:
     """What a robot's lasers have met: the newest scan of each, and what they no longer look at.
 
@@ -264,15 +286,18 @@ def fronts(velocity: Velocity, radius_m: float, delay_s: float) -> np.ndarray:
     return found
 
 
-def seen_speed(velocity: Velocity, radius_m: float, delay_s: float, looks: Looks) -> float:
+def seen_speed(velocity: Velocity, radius_m: float, delay_s: float, looks: Looks,
+               crawl_mps: float = CRAWL_MPS) -> float:
     """Return how fast [m/s] a disc may go to stand before it comes where nothing looks.
 
     Not at all where nothing looks ahead; a crawl where nothing looks back, to get away by.
+
+    :param crawl_mps: how fast that is; 0 where a laser looks nobody knows where
     """
     speed = velocity.linear_mps
     if looks is everywhere:
         return speed
-    least = 0.0 if speed > 0.0 else max(speed, -CRAWL_MPS)
+    least = 0.0 if speed > 0.0 else max(speed, -crawl_mps)
     for share in _SLOWER:
         slower = Velocity(share * speed, velocity.angular_rad_s)
         if looks(fronts(slower, radius_m, delay_s)).all():
@@ -291,7 +316,8 @@ def reach_of(speed_mps: float, radius_m: float, age_s: float) -> float:
 
 
 def braked(velocity: Velocity, points: np.ndarray, radius_m: float,
-           age_s: Optional[float], looks: Looks = everywhere) -> Velocity:
+           age_s: Optional[float], looks: Looks = everywhere,
+           crawl_mps: float = CRAWL_MPS) -> Velocity:
     """Return the velocity that a robot may have; turning on the spot is always allowed.
 
     :param velocity: what is wanted
@@ -300,13 +326,14 @@ def braked(velocity: Velocity, points: np.ndarray, radius_m: float,
     :param age_s: of the newest scan [s], None before the first: no way forward then, and a crawl
         backward
     :param looks: where its laser looks, see :func:`seen_speed`
+    :param crawl_mps: likewise
     """
     wanted, turn = velocity.linear_mps, velocity.angular_rad_s
     if wanted == 0.0:
         return velocity
     if age_s is None or age_s > SCAN_OLD_S:
-        return Velocity(min(0.0, max(wanted, -CRAWL_MPS)), turn)
-    wanted = seen_speed(velocity, radius_m + MARGIN_M, REACTION_S + age_s, looks)
+        return Velocity(min(0.0, max(wanted, -crawl_mps)), turn)
+    wanted = seen_speed(velocity, radius_m + MARGIN_M, REACTION_S + age_s, looks, crawl_mps)
     points = within_reach(points, reach_of(wanted, radius_m, age_s))
     # Slower with the same turn is another arc: looked at once more.
     for _ in range(2):

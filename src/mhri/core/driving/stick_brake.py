@@ -5,15 +5,18 @@ import math
 from typing import Optional, Tuple
 
 from mhri.core.driving.brake import (
-    braked, free_way, MARGIN_M, REACTION_S, reach_of, Scan, SCAN_OLD_S, seen_speed, Surroundings)
+    braked, CRAWL_MPS, free_way, MARGIN_M, REACTION_S, reach_of, Scan, SCAN_OLD_S, seen_speed,
+    Surroundings, Unplaced)
 from mhri.core.driving.limits import Velocity, ZERO
 from mhri.core.robots.mocap import Pose
 
 # What it does. UNSEEN: nothing looks that way, so it crawls back, or does not go; NO_SCAN: nothing
-# fresh from laser or depth camera, so no way forward; CANNOT: robots of this type have neither, it
-# is driven without a brake.
-OFF, ON, SLOWS, UNSEEN, NO_SCAN, CANNOT = '', 'on', 'slows', 'unseen', 'no_scan', 'cannot'
-WORDS = (OFF, ON, SLOWS, UNSEEN, NO_SCAN, CANNOT)
+# fresh from laser or depth camera, so no way forward; NO_PLACE: nobody says where a laser sits, so
+# it goes only where others look; CANNOT: robots of this type have neither, it is driven without a
+# brake.
+OFF, ON, SLOWS, UNSEEN = '', 'on', 'slows', 'unseen'
+NO_SCAN, NO_PLACE, CANNOT = 'no_scan', 'no_place', 'cannot'
+WORDS = (OFF, ON, SLOWS, UNSEEN, NO_SCAN, NO_PLACE, CANNOT)
 _SLOWER_MPS = 0.005
 # A gate asks at least so often while its robot is driven [s].
 _ASKS_S = 0.3
@@ -34,6 +37,7 @@ class StickBrake:
         self._has_eye = has_eye
         self._asked = False
         self._seen = Surroundings()
+        self._unplaced = Unplaced()
         self._pose: Optional[Pose] = None
         self._scan_at: Optional[float] = None
         self._wanted = ZERO
@@ -69,12 +73,17 @@ class StickBrake:
         :param pose: where the robot was then; None: where it was heard last
         :param laser: which one made it, on a robot that has several
         """
+        self._unplaced.place(laser)
         pose = (pose or self._pose) if self._pose is not None else None
         if pose is None:
             # Without odometry nothing can be remembered: it would move along with the robot.
             self._seen = Surroundings()
         self._seen.see(scan, pose or _HERE, at_s, laser)
         self._scan_at = at_s if self._scan_at is None else max(at_s, self._scan_at)
+
+    def hear_unplaced(self, laser: str, now: float) -> None:
+        """Take in that a laser was heard of which nobody says where it sits."""
+        self._unplaced.hear(laser, now)
 
     def allow(self, velocity: Velocity, now: float) -> Velocity:
         """Return what is left of a command; turning on the spot always is."""
@@ -85,10 +94,12 @@ class StickBrake:
         looks = self._seen.looks(here)
         points = self._seen.around(
             here, reach_of(velocity.linear_mps, self._radius_m, age_s or 0.0))
-        allowed = braked(velocity, points, self._radius_m, age_s, looks)
+        crawl_mps = 0.0 if self._unplaced.any(now) else CRAWL_MPS
+        allowed = braked(velocity, points, self._radius_m, age_s, looks, crawl_mps)
         if age_s is not None and abs(velocity.linear_mps) - abs(allowed.linear_mps) > _SLOWER_MPS:
             self._slowed_at = now
-            seen_mps = seen_speed(velocity, self._radius_m + MARGIN_M, REACTION_S + age_s, looks)
+            seen_mps = seen_speed(velocity, self._radius_m + MARGIN_M, REACTION_S + age_s, looks,
+                                  crawl_mps)
             self._unseen = abs(seen_mps) - abs(allowed.linear_mps) <= _SLOWER_MPS
         return allowed
 
@@ -99,12 +110,12 @@ class StickBrake:
         if not self._has_eye:
             return CANNOT, math.nan
         age_s = self._age(now)
-        if age_s is None or age_s > SCAN_OLD_S:
-            return NO_SCAN, math.nan
-        if now - self._slowed_at > _ASKS_S:
-            return ON, math.nan
-        if self._unseen:
-            return UNSEEN, math.nan
+        fresh = age_s is not None and age_s <= SCAN_OLD_S
+        slows = fresh and now - self._slowed_at <= _ASKS_S
+        if not slows or self._unseen:
+            if self._unplaced.any(now):
+                return NO_PLACE, math.nan
+            return (UNSEEN if slows else ON) if fresh else NO_SCAN, math.nan
         # From the robot itself: the brake keeps a margin around it.
         points = self._seen.around(self._pose or _HERE)
         return SLOWS, free_way(points, self._radius_m + MARGIN_M, self._wanted) + MARGIN_M

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The newest transform to each frame of tf, and where one frame lies in another."""
 import math
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -19,6 +19,25 @@ _Edge = Tuple[str, Sequence[float], Optional[float]]
 def frame_name(name: str) -> str:
     """Return the name of a frame without the slash that tf began with in its first years."""
     return name.strip('/')
+
+
+class OdometryFrames(NamedTuple):
+    """The frames that a robot's odometry names, '' where it names none.
+
+    ``base`` is the robot's own frame (``child_frame_id``), ``odometry`` the one that its pose is
+    given in. Some drivers, such as stage_ros, leave ``base`` empty: tf knows it, as the child of
+    the other.
+    """
+
+    base: str = ''
+    odometry: str = ''
+
+    @classmethod
+    def of(cls, message: Any) -> 'OdometryFrames':
+        """Return those of an odometry message of any type."""
+        header = getattr(message, 'header', None)
+        return cls(frame_name(getattr(message, 'child_frame_id', '')),
+                   frame_name(getattr(header, 'frame_id', '')))
 
 
 class TfTree:
@@ -40,6 +59,13 @@ class TfTree:
     def knows(self, frame: str) -> bool:
         """Tell whether anything was said of a frame."""
         return frame in self._edges or any(edge[0] == frame for edge in self._edges.values())
+
+    def child_above(self, parent: str, frame: str) -> str:
+        """Return the child of a frame on the way up from another one; '' where it is not on it."""
+        for name, edge in self._to_root(frame) or ():
+            if edge is not None and edge[0] == parent:
+                return name
+        return ''
 
     def find(self, frame: str, other: str) -> Optional[Tuple[Pose, Optional[float]]]:
         """Return (pose of a frame in another one, when the oldest part was heard); None: unknown.

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Robot types: the topics, limits and tile of each kind of robot, as validated data."""
+import math
 import re
 from dataclasses import dataclass, field, replace
 from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Tuple
@@ -19,6 +20,8 @@ _HARDWARE: Dict[str, Callable[[Section], Any]] = {
 # http://wiki.ros.org/Names, without "~": no topic of a robot is private to us.
 _TOPIC = re.compile(r'/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*\Z')
 _MOST_LETTERS = 250
+#: Ahead of the robot's middle, to the left [m], turned to the left [rad].
+LaserPlace = Tuple[float, float, float]
 # The keys of a template that list topics.
 TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'cloud', 'scan', 'battery')
 
@@ -87,7 +90,8 @@ class RobotType:
     says nothing (it sends odometry only in motion). ``motor_power`` and ``hardware_stop`` are None
     if there is no such thing. ``radius_m`` is the radius of the disc around all of it [m].
     Where tf does not say it, ``laser_x_m`` and ``depth_x_m`` are how far ahead of its middle laser
-    and depth camera sit, ``depth_z_m`` how high the camera sits [m], 0: nobody knows.
+    and depth camera sit, ``depth_z_m`` how high the camera sits [m], 0: nobody knows; ``lasers``
+    is where each laser of ``scan`` sits: ahead, to the left [m], turned to the left [rad].
     ``instance`` is the first segment of all its topics if one node may
     have several such robots, each with its own first segment.
     """
@@ -111,11 +115,22 @@ class RobotType:
     silent_after_s: float = SILENT_AFTER_S
     radius_m: float = RADIUS_M
     laser_x_m: float = 0.0
+    lasers: Tuple[LaserPlace, ...] = ()
     depth_x_m: float = 0.0
     depth_z_m: float = 0.0
     motor_power: Optional[MotorPowerSpec] = None
     hardware_stop: Optional[HardwareStopSpec] = None
     instance: Optional[str] = None
+
+    def laser_place(self, number: int) -> Optional[LaserPlace]:
+        """Return where the laser of ``scan[number]`` sits by its type, None: unknown.
+
+        Of several lasers none is taken to look ahead: one that looks back would have the robot
+        drive into what it sees.
+        """
+        if self.lasers:
+            return self.lasers[number]
+        return (self.laser_x_m, 0.0, 0.0) if len(self.scan) == 1 else None
 
     def at_root(self) -> 'RobotType':
         """Return this type with absolute topics, for a robot without a namespace."""
@@ -181,6 +196,7 @@ def parse_robot_type(text: str, origin: str) -> RobotType:
         **_places(section),
         **{key: read(section) for key, read in _HARDWARE.items()},
         instance=section.text('instance', None), **_all_topics(section))
+    robot_type = replace(robot_type, lasers=_lasers(section, len(robot_type.scan)))
     _check_instance(section, robot_type)
     section.close()
     return robot_type
@@ -229,6 +245,25 @@ def _places(section: Section) -> Dict[str, Any]:
     """Read where laser and depth camera sit on the robot, as far as that is given."""
     rows = ('laser_x_m', -10.0), ('depth_x_m', -10.0), ('depth_z_m', 0.0)
     return {key: section.number(key, least, 10.0) for key, least in rows if key in section}
+
+
+def _lasers(section: Section, count: int) -> Tuple[LaserPlace, ...]:
+    """Read where each of so many lasers sits, as far as that is given."""
+    rows = section.take('lasers', [])
+    if not rows and isinstance(rows, list):
+        return ()
+    if not isinstance(rows, list) or len(rows) != count or not all(map(_is_place, rows)):
+        raise section.error('lasers', 'expected where each of the {} topics of scan sits: ahead, '
+                            'to the left [m], turned to the left [degrees], such as '
+                            '[[0.2, 0, 0], [-0.2, 0, 180]], got {}'.format(count, shown(rows)))
+    return tuple((float(x), float(y), math.radians(turn)) for x, y, turn in rows)
+
+
+def _is_place(row: object) -> bool:
+    """Tell whether this is where a laser may sit: two distances [m] and an angle [degrees]."""
+    return isinstance(row, list) and len(row) == 3 and all(
+        isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= most
+        for value, most in zip(row, (10.0, 10.0, 360.0)))
 
 
 def _topics(section: Section, key: str) -> Tuple[str, ...]:
@@ -340,6 +375,9 @@ def _overridden(robot_type: RobotType, overrides: object, origin: str) -> RobotT
     if 'radius_m' in section:
         changes['radius_m'] = _radius_m(section)
     changes.update(_places(section))
+    if 'lasers' in section or 'scan' in changes:
+        # Other topics are other lasers.
+        changes['lasers'] = _lasers(section, len(changes.get('scan', robot_type.scan)))
     changes.update((key, section.text(key)) for key in ('label', 'window') if key in section)
     if 'limits' in section:
         limits = section.section('limits')

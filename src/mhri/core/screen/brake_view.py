@@ -4,7 +4,7 @@
 import math
 from dataclasses import dataclass
 
-from mhri.core.driving.stick_brake import CANNOT, NO_SCAN, SLOWS, UNSEEN
+from mhri.core.driving.stick_brake import CANNOT, NO_PLACE, NO_SCAN, SLOWS, UNSEEN
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class BrakeView:
     @property
     def holds(self) -> bool:
         """Whether it may keep the robot still though the stick is held."""
-        return self.word in (SLOWS, UNSEEN, NO_SCAN)
+        return self.word in (SLOWS, UNSEEN, NO_SCAN, NO_PLACE)
 
 
 def brake_words(brake: BrakeView) -> str:
@@ -35,6 +35,7 @@ def brake_words(brake: BrakeView) -> str:
         return 'brake: slows for something {:.1f} m ahead'.format(brake.free_way_m)
     return {NO_SCAN: 'brake: no laser or depth data, no way forward',
             UNSEEN: 'brake: slow, it does not see that way',
+            NO_PLACE: 'brake: place of a laser unknown, no way that no other sees',
             CANNOT: 'no brake: it has no laser or depth camera'}.get(brake.word, '')
 
 
@@ -44,6 +45,9 @@ def standing_words(brake: BrakeView) -> str:
         return ''
     if brake.word == NO_SCAN:
         return 'brake: no laser or depth data: back away, or switch the brake off'
+    if brake.word == NO_PLACE:
+        return 'brake: place of a laser unknown: name it in tf or in the type, or switch the ' \
+               'brake off'
     if brake.word == UNSEEN:
         return 'brake: it does not see that way: turn less, or turn to it first'
     return 'brake: something is in the way: back away or turn'

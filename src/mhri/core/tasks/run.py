@@ -18,7 +18,7 @@ from typing import List, Optional, Tuple
 import numpy as np
 
 from mhri.core.driving.brake import (
-    braked, everywhere, Looks, MARGIN_M, REACTION_S, SCAN_OLD_S, seen_speed)
+    braked, CRAWL_MPS, everywhere, Looks, MARGIN_M, REACTION_S, SCAN_OLD_S, seen_speed)
 from mhri.core.driving.gate import HELD, OPERATOR, TASK
 from mhri.core.driving.limits import Velocity, ZERO
 from mhri.core.screen.battery import FLAT_AT
@@ -50,7 +50,8 @@ class Facts:
     that of its place, 0 where the task needs none or it does not grow old, None where it is not
     placed; ``place_text`` says the same in words; ``settling`` that its place was just corrected by
     far, '' where it was not. ``has_laser`` is false for a type with neither laser nor depth camera,
-    which has no brake; ``looks`` tells where the one it has looks.
+    which has no brake; ``looks`` tells where the one it has looks, ``unplaced`` that nobody says
+    where one of several sits.
     ``battery`` is in [0, 1], None where it is not known.
     """
 
@@ -67,8 +68,14 @@ class Facts:
     scan_age_s: Optional[float] = None
     has_laser: bool = True
     looks: Looks = everywhere
+    unplaced: bool = False
     battery: Optional[float] = None
     senses: Optional[Senses] = None
+
+    @property
+    def crawl_mps(self) -> float:
+        """How fast it may back away without an eye for it [m/s]."""
+        return 0.0 if self.unplaced else CRAWL_MPS
 
 
 class RobotRun:
@@ -187,7 +194,8 @@ class RobotRun:
             self.end(FAILED, 'its task asked for a velocity that is no number', facts.now_s)
             return ZERO
         radius_m = self._body.radius_m
-        free = braked(step.velocity, met, radius_m, facts.scan_age_s, facts.looks) \
+        free = braked(step.velocity, met, radius_m, facts.scan_age_s, facts.looks,
+                      facts.crawl_mps) \
             if facts.has_laser else braked(step.velocity, robots, radius_m, 0.0)
         on_floor = braked(free, senses.floor, radius_m, 0.0)
         velocity = kept_inside(on_floor, senses.pose, senses.fence, self._body)
@@ -219,7 +227,10 @@ class RobotRun:
             return _LETS_PASS + first
         if abs(velocity.linear_mps) > _STANDS_MPS:
             return ''
-        if facts.has_laser and (facts.scan_age_s is None or facts.scan_age_s > SCAN_OLD_S):
+        blind = facts.has_laser and (facts.scan_age_s is None or facts.scan_age_s > SCAN_OLD_S)
+        if facts.unplaced and (blind or self._unseen(step.velocity, velocity, facts)):
+            return 'the place of one of its lasers is unknown'
+        if blind:
             return 'its laser or depth camera has said nothing for {:.1f} s'.format(
                 facts.scan_age_s or 0.0)
         return 'it does not see where it would go' \
@@ -230,7 +241,7 @@ class RobotRun:
         if not facts.has_laser or facts.scan_age_s is None or wanted.linear_mps == 0.0:
             return ''
         seen = seen_speed(wanted, self._body.radius_m + MARGIN_M, REACTION_S + facts.scan_age_s,
-                          facts.looks)
+                          facts.looks, facts.crawl_mps)
         slow = abs(seen) < abs(wanted.linear_mps) and abs(free.linear_mps) >= abs(seen) - 1e-3
         return ', slowly: it does not see that way' if slow else ''
 

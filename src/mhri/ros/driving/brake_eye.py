@@ -17,7 +17,7 @@ from mhri.ros.convert import header_of
 from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.robots.robot_link import ODOMETRY_READERS
 from mhri.ros.sensors.beams import made_s, read_beams
-from mhri.ros.sensors.mounts import Mounts
+from mhri.ros.sensors.mounts import Mounts, NoPlace
 from mhri.ros.sensors.refusals import Refusals
 
 # A robot is no further from where it was read last than a few centimetres [s].
@@ -78,15 +78,15 @@ class BrakeEye:
                 (self._depth.open if self.brake.asked else self._depth.close)()
             elif self.brake.asked and not self._subscribers:
                 self._subscribers = [
-                    rospy.Subscriber(topic, LaserScan, self._on_scan, topic, queue_size=1,
+                    rospy.Subscriber(topic, LaserScan, self._on_scan, laser, queue_size=1,
                                      buff_size=1 << 20, tcp_nodelay=True)
-                    for topic in self._topics]
+                    for laser, topic in enumerate(self._topics)]
             elif not self.brake.asked:
                 subscribers, self._subscribers = self._subscribers, []
                 for subscriber in subscribers:
                     unsubscribe(subscriber)
-            if self.brake.asked and self._frames is not None:
-                self._frames.open()
+            if self._frames is not None:
+                (self._frames.open if self.brake.asked else self._frames.close)(self)
 
     def on_odometry(self, message, now):
         """Take in the bytes of an odometry message (``rospy.AnyMsg``)."""
@@ -105,13 +105,17 @@ class BrakeEye:
                 self._track.add(header[1], pose, now)
             self.brake.move(pose)
 
-    def _on_scan(self, message, topic):
+    def _on_scan(self, message, laser):
         now = self._clock()
         message = self._refusals.read(message, LaserScan)
         if message is None:
             return
         try:
-            self._see(read_beams(message, self._mounts), now, made_s(message), topic)
+            self._see(read_beams(message, self._mounts, laser), now, made_s(message),
+                      self._topics[laser])
+        except NoPlace as problem:
+            self.brake.hear_unplaced(self._topics[laser], now)
+            self._refusals.note(problem, NoPlace.verdict)
         except ValueError as error:
             self._refusals.note(error)
 

@@ -10,7 +10,7 @@ Interfaces (global names; SI units):
   ``/gates_in/group_speed`` (``mhri/GroupSpeed``) only from the operator in control
 - publishes ``/gates/state`` (``mhri/GatesState``, latched, on change and at 2 Hz), and for each
   robot the topics of :class:`mhri.ros.driving.robot_gate.RobotGate`
-- subscribes ``/tf_static`` once the obstacle brake is asked for
+- subscribes ``/tf`` and ``/tf_static`` while the obstacle brake is asked for
 - serves ``/gates/take_control`` (``std_srvs/Trigger``) and ``/gates/set_motor_power``
   (``std_srvs/SetBool``: false cuts the motor power of every robot that offers it)
 
@@ -71,7 +71,7 @@ class Gates:
         self._strangers = Strangers(clock)
         self._states = []
         # What moves says nothing of where a laser sits on its robot.
-        self._frames = TfFeed(clock, moving=False)
+        self._frames = TfFeed(clock)
         self._neighbour = Neighbour('the mux')
         self._mux = InForce(STOP_SERVICE, self._refuse, self._on_new_mux)
         self._roster = Roster(types, self._open, self._close_gate, self._unheard, memory)

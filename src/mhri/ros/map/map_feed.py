@@ -12,7 +12,6 @@ from mhri.core.map.grid import grid_of, GridError
 from mhri.core.robots.mocap import Pose
 from mhri.ros.convert import yaw_of
 from mhri.ros.graph.rospy_inside import unsubscribe
-from mhri.ros.map.tf_feed import TfFeed
 from mhri.ros.sensors.lasers import Lasers
 from mhri.ros.sensors.refusals import Refusals
 
@@ -82,8 +81,6 @@ class MapScans:
         self._do = do
         self._wanted = {}
         self._open = {}
-        # Lasers sit still on their robots: what moves is not listened to.
-        self._frames = TfFeed(time.monotonic, moving=False)
 
     def want(self, robots):
         """Listen to the lasers of these robots and no others: {name: RobotType}; returns at once.
@@ -98,15 +95,13 @@ class MapScans:
     def _switch(self):
         """Open and close feeds until they match the newest wish (blocking, on the worker)."""
         wanted = self._wanted
-        if wanted:
-            self._frames.open()
         for name, (kind, lasers) in list(self._open.items()):
             if wanted.get(name) != kind:
                 del self._open[name]
                 lasers.close()
         for name, kind in wanted.items():
             if name not in self._open:
-                lasers = Lasers(name, kind, self._frames)
+                lasers = Lasers(name, kind)
                 lasers.open()
                 self._open[name] = kind, lasers
 
@@ -114,13 +109,12 @@ class MapScans:
         """Return the robots whose lasers are listened to now."""
         return tuple(self._open)
 
-    def take(self, name, base):
+    def take(self, name, frames):
         """Return the new scans of a robot, as :meth:`Lasers.each` has them."""
         _, lasers = self._open.get(name, (None, None))
-        return lasers.each(base) if lasers is not None else {}
+        return lasers.each(frames) if lasers is not None else {}
 
     def close(self):
         """Stop listening (blocking: it asks the master)."""
         self._wanted = {}
         self._switch()
-        self._frames.close()

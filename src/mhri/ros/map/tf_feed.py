@@ -9,6 +9,7 @@ each publisher, sleeps a moment after it has read, and then finds several of the
 """
 import struct
 import threading
+import time
 
 import rospy
 from tf2_msgs.msg import TFMessage
@@ -45,16 +46,15 @@ def transforms(buff):
 
 
 class TfFeed:
-    """The :class:`TfTree` of ``/tf`` and ``/tf_static``, from :meth:`open` on.
+    """The :class:`TfTree` of ``/tf`` and ``/tf_static``, while anybody has it open.
 
     :param clock: seconds, monotonic: a transform is as old as its hearing, whatever clock its
         sender has
-    :param moving: False: hear ``/tf_static`` alone
     """
 
-    def __init__(self, clock, moving=True):
+    def __init__(self, clock):
         self._clock = clock
-        self._moving = moving
+        self._users = set()
         self._lock = threading.Lock()
         self._tree = TfTree()
         self._subscribers = []
@@ -63,21 +63,31 @@ class TfFeed:
         self._thread = threading.local()
         self._closed = threading.Event()
 
-    def open(self):
-        """Begin to listen (blocking: it asks the master)."""
+    def open(self, user=None):
+        """Begin to listen (blocking: it asks the master); once more changes nothing.
+
+        :param user: whoever needs it until it calls :meth:`close`, where there are several
+        """
         with self._opening:
+            self._users.add(user)
             if self._subscribers:
                 return
+            self._closed.clear()
+            # Many robots tell of what never moves, such as a laser, on /tf again and again.
             self._subscribers = [
                 rospy.Subscriber(topic, bytes_of(TFMessage), self._hear, topic == '/tf_static')
-                for topic in ('/tf', '/tf_static') if self._moving or topic == '/tf_static']
+                for topic in ('/tf', '/tf_static')]
 
-    def close(self):
-        """Stop listening (blocking: it asks the master)."""
-        self._closed.set()
-        subscribers, self._subscribers = self._subscribers, []
-        for subscriber in subscribers:
-            unsubscribe(subscriber)
+    def close(self, user=None):
+        """Stop listening once no other user is left (blocking: it asks the master)."""
+        with self._opening:
+            self._users.discard(user)
+            if self._users:
+                return
+            self._closed.set()
+            subscribers, self._subscribers = self._subscribers, []
+            for subscriber in subscribers:
+                unsubscribe(subscriber)
 
     def _hear(self, message, static):
         at_s = None if static else self._clock()
@@ -103,6 +113,11 @@ class TfFeed:
         with self._lock:
             return self._tree.find(frame, other)
 
+    def child_above(self, parent, frame):
+        """Return the child of a frame above another, as :meth:`TfTree.child_above` has it."""
+        with self._lock:
+            return self._tree.child_above(parent, frame)
+
     def matrix(self, frame, other):
         """Return the matrix of a frame in another one, as :meth:`TfTree.matrix` has it."""
         with self._lock:
@@ -113,3 +128,7 @@ class TfFeed:
         """Tell whether anything was said of a frame."""
         with self._lock:
             return self._tree.knows(frame)
+
+
+#: For all that draw in one process: each that listened by itself would wake up for each message.
+SHARED = TfFeed(time.monotonic)

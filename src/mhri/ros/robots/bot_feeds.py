@@ -3,6 +3,7 @@
 """What a tile can show of its robot: a feed for each view, opened while it is wanted."""
 import rospy
 
+from mhri.core.map.tf_tree import OdometryFrames
 from mhri.core.screen.view_rows import load, RECORD, VIEW_ROWS
 from mhri.ros.sensors.mocap_feed import MocapFeed
 
@@ -19,8 +20,8 @@ class BotFeeds:
 
     def __init__(self, robot, robot_type, worker):
         self.robot_type = robot_type
-        #: the robot's own tf frame, '' until its odometry has named it
-        self.base = ''
+        #: its tf frames, empty until its odometry has named them
+        self.frames = OdometryFrames()
         #: what else is read of the robot, and counts what it refuses
         self.others = {}
         self._robot = robot

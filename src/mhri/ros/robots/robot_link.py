@@ -14,7 +14,7 @@ from std_msgs.msg import String
 
 from mhri.core.link.figures import FIGURES, FIGURES_S, read_figures, thinned_words
 from mhri.core.link.records import FETCHING, FETCHING_WORD
-from mhri.core.map.tf_tree import frame_name
+from mhri.core.map.tf_tree import OdometryFrames
 from mhri.core.robots.link import link_note, link_state
 from mhri.core.robots.link_quality import LinkQuality, link_warning
 from mhri.core.robots.names import topic_of
@@ -165,8 +165,8 @@ class RobotLink:
             return []
 
         def read_motion(message):
-            """Read what moves, and take note of what the robot calls its own frame."""
-            self.feeds.base = frame_name(getattr(message, 'child_frame_id', ''))
+            """Read what moves, and take note of what the robot calls its frames."""
+            self.feeds.frames = OdometryFrames.of(message)
             return read(message)
         return [Feed(topic_of(self.name, topic), message_class, read_motion, self._on_message,
                      self._clock) for topic in self.robot_type.odometry]

@@ -18,10 +18,12 @@ def made_s(message):
     return message.header.stamp.to_sec() + (sweep_s if 0.0 < sweep_s <= SWEEP_S else 0.0)
 
 
-def read_beams(message, mounts=None):
+def read_beams(message, mounts=None, number=0):
     """Return a ``sensor_msgs/LaserScan`` as :class:`mhri.core.driving.brake.Scan`.
 
     :param mounts: :class:`mhri.ros.sensors.mounts.Mounts`; None: the laser sits in the middle
+    :param number: which of the robot's lasers made it
+    :raises NoPlace: nobody says where that sits
     :raises ValueError: says what of it cannot be
     """
     problem = beams_problem(len(message.ranges), message.angle_min, message.angle_increment)
@@ -31,7 +33,8 @@ def read_beams(message, mounts=None):
         message.ranges, message.range_min, message.range_max), MOST_BEAMS)
     step = message.angle_increment
     first, step = message.angle_min + 0.5 * (together - 1) * step, together * step
-    mount, turned_over = mounts.laser(message.header.frame_id) if mounts else (_MIDDLE, False)
+    mount, turned_over = mounts.laser(message.header.frame_id, number) if mounts \
+        else (_MIDDLE, False)
     if turned_over:
         first, step = -first, -step
     if step < 0.0:

@@ -1,12 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """All lasers of one robot: each for the map, together for the robot's own view."""
-import time
-
 from mhri.core.sensors.all_round import all_round, Sweep, turned
 from mhri.core.sensors.nearest import OLD_S
-from mhri.ros.map.tf_feed import TfFeed
-from mhri.ros.sensors.mounts import Mounts
+from mhri.ros.map.tf_feed import SHARED
+from mhri.ros.sensors.mounts import Mounts, NoPlace
 from mhri.ros.sensors.scan_feed import ScanFeed
 
 
@@ -15,8 +13,6 @@ class Lasers:
 
     :param robot: the robot's name (namespace)
     :param robot_type: its :class:`mhri.core.robots.robot_types.RobotType`
-    :param frames: :class:`mhri.ros.map.tf_feed.TfFeed` that somebody else opens and closes; None:
-        one of its own
     """
 
     @classmethod
@@ -24,17 +20,14 @@ class Lasers:
         """Return the lasers of a robot, None for a type without a laser scanner."""
         return cls(robot, kind) if getattr(kind, key) else None
 
-    def __init__(self, robot, robot_type, frames=None):
-        # Lasers sit still on their robots: what moves is not listened to.
-        self._own = None if frames else TfFeed(time.monotonic, moving=False)
-        self._mounts = Mounts(robot_type, frames or self._own)
+    def __init__(self, robot, robot_type):
+        self._mounts = Mounts(robot_type, SHARED)
         self._feeds = [ScanFeed(robot, [topic]) for topic in robot_type.scan]
         self._newest = {}
 
     def open(self):
         """Start listening (blocking: it asks the master)."""
-        if self._own:
-            self._own.open()
+        SHARED.open(self)
         for feed in self._feeds:
             feed.open()
 
@@ -42,8 +35,7 @@ class Lasers:
         """Stop listening and forget (blocking: it asks the master)."""
         for feed in self._feeds:
             feed.close()
-        if self._own:
-            self._own.close()
+        SHARED.close(self)
         self._newest = {}
 
     def refused(self):
@@ -55,31 +47,38 @@ class Lasers:
         return min((age_s for age_s in (feed.age_s() for feed in self._feeds)
                     if age_s is not None), default=None)
 
-    def each(self, base):
+    def each(self, frames):
         """Return the new scans: {number of the laser: (scan, its age [s], its mount)}.
 
-        :param base: the robot's own frame, '' where it is not known
+        Those of a laser of which nobody says where it sits are left out.
+
+        :param frames: :class:`mhri.core.map.tf_tree.OdometryFrames` of the robot
         :returns: scans as :class:`mhri.core.sensors.all_round.Sweep`, mounts as
             :meth:`Mounts.laser` has them
         """
-        self._mounts.base = base
+        self._mounts.frames = frames
         found = {}
         for number, feed in enumerate(self._feeds):
             scan = feed.take()
-            if scan is not None:
-                found[number] = (Sweep(*scan), feed.age_s() or 0.0,
-                                 self._mounts.laser(feed.frame))
+            if scan is None:
+                continue
+            try:
+                mount = self._mounts.laser(feed.frame, number)
+            except NoPlace as problem:
+                feed.note(problem, NoPlace.verdict)
+                continue
+            found[number] = (Sweep(*scan), feed.age_s() or 0.0, mount)
         return found
 
-    def take(self, base):
+    def take(self, frames):
         """Return what all of them see as one :class:`Sweep`, None if nothing is new.
 
         One laser's distances are measured from itself, those of several from the robot's middle.
         A laser that is silent for longer than a view is new says nothing.
 
-        :param base: the robot's own frame, '' where it is not known
+        :param frames: as :meth:`each` has them
         """
-        new = self.each(base)
+        new = self.each(frames)
         if not new:
             return None
         self._newest.update({number: (scan, mount) for number, (scan, _, mount) in new.items()})

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from mhri.core.map.tf_tree import frame_name
+from mhri.core.map.tf_tree import frame_name, OdometryFrames
 from mhri.core.robots.mocap import Pose
 
 # A laser that is tilted by more does not measure in the plane: its frame says nothing [cosine].
@@ -14,29 +14,45 @@ _LEVEL = 0.9
 _AHEAD = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 
 
+class NoPlace(ValueError):
+    """Nobody says where a laser sits: what it measures may lie in any direction."""
+
+    #: how to go on from its text, for :meth:`mhri.ros.sensors.refusals.Refusals.note`
+    verdict = ('is unknown: let tf lead to its frame from that of the robot, or give "lasers" in '
+               'the type of the robot')
+
+
 class Mounts:
     """The places of one robot's sensors.
 
-    ``base`` is the frame of the robot itself, '' until its odometry has named it.
+    ``frames`` are those of its odometry, :class:`mhri.core.map.tf_tree.OdometryFrames`.
 
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
-    :param frames: :class:`mhri.ros.map.tf_feed.TfFeed`, None: there is no tf
+    :param tf: :class:`mhri.ros.map.tf_feed.TfFeed`, None: there is no tf
     """
 
-    def __init__(self, robot_type, frames=None):
+    def __init__(self, robot_type, tf=None):
         self._type = robot_type
-        self._frames = frames
-        self.base = ''
+        self._tf = tf
+        self.frames = OdometryFrames()
 
     def see_odometry(self, message):
-        """Take in the robot's frame of an odometry message, where its type has one."""
-        self.base = frame_name(getattr(message, 'child_frame_id', ''))
+        """Take in the frames of an odometry message, where its type has them."""
+        self.frames = OdometryFrames.of(message)
 
-    def laser(self, frame):
-        """Return (:class:`Pose` of a laser, whether it is mounted upside down)."""
+    def laser(self, frame, number=0):
+        """Return (:class:`Pose` of a laser, whether it is mounted upside down).
+
+        :param number: which of its type's ``scan`` it is
+        :raises NoPlace: neither tf nor the robot's type says where it sits
+        """
         matrix = self._matrix(frame)
         if matrix is None or abs(matrix[2, 2]) < _LEVEL:
-            return Pose(self._type.laser_x_m, 0.0, 0.0), False
+            place = self._type.laser_place(number)
+            if place is None:
+                raise NoPlace('the place of its laser ({}, frame {!r})'.format(
+                    self._type.scan[number], frame_name(frame)))
+            return Pose(*place), False
         return Pose(float(matrix[0, 3]), float(matrix[1, 3]),
                     math.atan2(matrix[1, 0], matrix[0, 0])), matrix[2, 2] < 0.0
 
@@ -52,6 +68,11 @@ class Mounts:
 
     def _matrix(self, frame):
         frame = frame_name(frame)
-        if self._frames is None or not (frame and self.base):
+        if self._tf is None or not frame:
             return None
-        return self._frames.matrix(self.base, frame)
+        base, odometry = self.frames
+        matrix = self._tf.matrix(base, frame) if base else None
+        if matrix is None and odometry:
+            base = self._tf.child_above(odometry, frame)
+            matrix = self._tf.matrix(base, frame) if base else None
+        return matrix

@@ -42,10 +42,11 @@ class Refusals:
             self.note('a {} of these bytes ({})'.format(message_class._type, error))
             return None
 
-    def note(self, problem):
+    def note(self, problem, verdict='is impossible'):
         """Count a message, and log what is wrong with it unless just logged.
 
         :param problem: the impossible part in words, e.g. 'angular velocity of 1e+30 rad/s'
+        :param verdict: what is wrong with it
         """
         now = self._clock()
         with self._lock:
@@ -54,5 +55,4 @@ class Refusals:
             if self._logged_at is not None and now - self._logged_at < LOG_EVERY_S:
                 return
             self._logged_at = now
-        rospy.logwarn('%s: %s is impossible; left out (%d so far)', self._topic, problem,
-                      count)
+        rospy.logwarn('%s: %s %s; left out (%d so far)', self._topic, problem, verdict, count)

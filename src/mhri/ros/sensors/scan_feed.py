@@ -60,6 +60,10 @@ class ScanFeed:
         with self._lock:
             self._message, self._heard_at = message, self._clock()
 
+    def note(self, problem, verdict):
+        """Count and log why a scan is not used, see :meth:`Refusals.note`."""
+        self._refusals[0].note(problem, verdict)
+
     def refused(self):
         """Return the number of impossible scans left out."""
         return sum(refusals.count for refusals in self._refusals)

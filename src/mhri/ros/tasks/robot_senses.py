@@ -8,7 +8,7 @@ import time
 import rospy
 from sensor_msgs.msg import BatteryState, LaserScan
 
-from mhri.core.driving.brake import NARROW_M, Surroundings
+from mhri.core.driving.brake import NARROW_M, Surroundings, Unplaced
 from mhri.core.map.places import Odometry, OLD_S
 from mhri.core.map.tf_tree import frame_name
 from mhri.core.robots.mocap import Pose
@@ -21,7 +21,7 @@ from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.robots.robot_link import battery_fraction, ODOMETRY_READERS
 from mhri.ros.sensors.beams import made_s, read_beams
 from mhri.ros.sensors.mocap_feed import MocapFeed
-from mhri.ros.sensors.mounts import Mounts
+from mhri.ros.sensors.mounts import Mounts, NoPlace
 from mhri.ros.sensors.refusals import Refusals
 
 
@@ -48,9 +48,9 @@ class _Newest:
             message, self._message = self._message, None
         return None if message is None else self._refusals.read(message, self._class)
 
-    def note(self, problem):
-        """Say what cannot be."""
-        self._refusals.note(problem)
+    def note(self, *problem):
+        """Say what cannot be, see :meth:`Refusals.note`."""
+        self._refusals.note(*problem)
 
     def age_s(self):
         """Return the age of the newest message [s], None before the first."""
@@ -96,6 +96,7 @@ class RobotSenses:
         self._mocap = MocapFeed(name, clock)
         self._mocap.open()
         self._surroundings = Surroundings()
+        self._unplaced = Unplaced()
 
     def _open_odometry(self):
         module, class_name, self._read = ODOMETRY_READERS[self.robot_type.odometry_type]
@@ -175,12 +176,15 @@ class RobotSenses:
 
     def _see(self):
         """Take in what lasers or depth camera have measured, where the robot was at that time."""
-        for topic, newest in self._scans.items():
+        for number, (topic, newest) in enumerate(self._scans.items()):
             heard_at, message = newest.heard_at, newest.take()
             if message is not None:
                 try:
-                    self._see_scan(read_beams(message, self._mounts), heard_at or self._clock(),
-                                   made_s(message), topic)
+                    self._see_scan(read_beams(message, self._mounts, number),
+                                   heard_at or self._clock(), made_s(message), topic)
+                except NoPlace as problem:
+                    self._unplaced.hear(topic, self._clock())
+                    newest.note(problem, NoPlace.verdict)
                 except ValueError as error:
                     newest.note(error)
         scan, self._depth_scan = self._depth_scan, None
@@ -196,12 +200,17 @@ class RobotSenses:
         :raises ValueError: it is too late for that
         """
         at_s, pose = self._track.moment(stamp_s, heard_s)
+        self._unplaced.place(laser)
         self._scan_at = at_s if self._scan_at is None else max(at_s, self._scan_at)
         self._surroundings.see(scan, pose or self.pose, at_s, laser)
 
     def looks(self):
         """Return what tells where its laser or depth camera looks, as the brake has it."""
         return self._surroundings.looks(self.pose)
+
+    def has_unplaced(self):
+        """Tell whether nobody says where one of its lasers sits."""
+        return self._unplaced.any(self._clock())
 
     def points(self, robots=()):
         """Return what its laser has met, in its frame, were it where it was heard last.

@@ -329,6 +329,7 @@ class Tasks:
             known.update(obeys=gate.obeys, stands=gate.stands)
         if robot is not None:
             known.update(robot.ages(), has_laser=robot.has_eye, looks=robot.looks(),
+                         unplaced=robot.has_unplaced(),
                          battery=robot.charge, senses=self._seen.senses(
                              robot, now, busy, self.places.place, self.places.fence(),
                              self._map.floor if self._keeps_to_map else None))
