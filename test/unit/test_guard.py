@@ -155,7 +155,8 @@ def test_where_one_laser_does_not_look_another_does():
     ('scan', [('scan', (0.1, 0.0, 0.0))]),
     ('front@0.2 /bot1/rear@-0.2,0,180', [('front', (0.2, 0.0, 0.0)),
                                          ('/bot1/rear', (-0.2, 0.0, math.pi))]),
-    ('a b@1,-2.5', [('a', (0.1, 0.0, 0.0)), ('b', (1.0, -2.5, 0.0))]),
+    ('a@0.1 b@1,-2.5', [('a', (0.1, 0.0, 0.0)), ('b', (1.0, -2.5, 0.0))]),
+    ('a b@1,-2.5', None), ('front rear', None),
     ('', None), ('a,b', None), ('a@', None), ('a@1,2,3,4', None), ('a@1.2.3', None), (7, None),
     (' '.join('abcdefghi'), None)])
 def test_its_lasers_are_read(monkeypatch, value, found):
