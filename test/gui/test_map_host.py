@@ -11,6 +11,7 @@ from support.maps import click, drag, pixel
 
 from mhri.core.map import gesture
 from mhri.core.map.scene import Placing, PlacesView, UnderWay
+from mhri.core.map.tf_tree import OdometryFrames
 from mhri.core.robots.mocap import Pose
 from mhri.core.screen import views
 from mhri.core.screen.saved_state import usable_state
@@ -35,7 +36,7 @@ class Operator:
     @staticmethod
     def feeds(name):
         """Return what knows the type of a robot."""
-        return SimpleNamespace(robot_type=KIND, base='')
+        return SimpleNamespace(robot_type=KIND, frames=OdometryFrames())
 
 
 class Places:
