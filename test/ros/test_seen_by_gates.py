@@ -4,9 +4,10 @@
 import pytest
 
 from mhri.core.driving.stick_brake import WORDS
+from mhri.core.screen.gate_words import STANDS_WORDS
 from mhri.core.screen.views import LIVE, ProofView, RobotView, SILENT, UNANSWERED
 from mhri.msg import RobotGate
-from mhri.ros.driving.gates_client import is_driven, round_trip_s, STANDS_WORDS
+from mhri.ros.driving.gates_client import is_driven, round_trip_s
 from mhri.ros.robots.robot_link import seen_by_gates
 
 TOPIC = '/bot1/cmd_vel'
@@ -63,8 +64,17 @@ def test_a_row(before, said, answers, expected):
     assert {key: getattr(after, key) for key in expected} == expected
 
 
+def test_others_who_command_it_are_named():
+    for before in (view(), view(proof=ProofView('waiting', 'stopping'))):
+        after = seen_by_gates(before, gate(also_commanded_by=['/nav', '/bag']), True)
+        assert after.also_commanded_by == ('/nav', '/bag')
+        words = after.proof.text if after.proof else after.note
+        assert '/nav' in words and '/bag' in words and after.slow
+
+
 def test_every_reason_to_stand_has_words():
-    assert set(STANDS_WORDS) == {RobotGate.STOPPED, RobotGate.NOT_HEARD, RobotGate.JOINING}
+    assert set(STANDS_WORDS) == {RobotGate.STOPPED, RobotGate.NOT_HEARD, RobotGate.JOINING,
+                                 RobotGate.GUARD_VERSION, RobotGate.TWO_ROBOTS}
     assert RobotGate.JOINING == 'joining', 'without a comment'
 
 

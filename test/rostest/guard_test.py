@@ -13,6 +13,7 @@ import unittest
 from geometry_msgs.msg import TwistStamped
 import rospy
 import rostest
+from std_msgs.msg import String
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 sys.path.insert(0, os.path.join(HERE, '..'))
@@ -23,6 +24,7 @@ from support.ros_system import wait_for  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
 
 GUARD = os.path.join(HERE, '..', '..', 'utils', 'remote', 'mhri_guard')
+OTHER = os.path.join(HERE, '..', 'support', 'other_driver.py')
 START_S = 60.0
 ZERO, GO = (0.0, 0.0), (0.3, 0.1)
 
@@ -96,6 +98,41 @@ class GuardTest(unittest.TestCase):
         driver = Driver(name, *options, **keywords)
         self.addCleanup(driver.close)
         return driver
+
+    def other(self, topic):
+        """Let somebody else drive the robot at 50 Hz, and wait until it gets that."""
+        process = subprocess.Popen([sys.executable, OTHER, topic, '50', '0.5', '__name:=nav'])
+        self.addCleanup(process.wait)
+        self.addCleanup(process.terminate)
+        return process
+
+    def test_a_stop_that_it_holds_answers_whoever_else_drives(self):
+        driver = self.driver('beside', '_beside:=mux/input/navi')
+        told = []
+        rospy.Subscriber('/beside/mhri_guard/state', String, lambda said: told.append(said.data))
+        driver.drive()
+        other = self.other('/beside/cmd_vel')
+        wait_for(lambda: driver.end.values()[-1:] == [(0.5, 0.0)], START_S, 'somebody else')
+        begun = time.monotonic()
+        driver.say(ZERO, stop=True)
+        wait_for(lambda: driver.link.stop_confirmed, START_S, 'the guard to hold it')
+        driver.leave()
+        begun = time.monotonic()
+        wait_for(lambda: time.monotonic() - begun > 2.0, 20.0, 'it to end', poll_s=0.05)
+        said = driver.end.after(begun)
+        moving_s = sum(b[0] - a[0] for a, b in zip(said, said[1:]) if a[1])
+        measured('2 s of a held stop against 50 Hz: not told to stand for', moving_s)
+        self.assertGreater(len([one for one in said if one[1]]), 50, 'it goes on')
+        self.assertLess(moving_s, 0.4)
+        self.assertIn('also:/nav', told[-1].split())
+        other.terminate()
+        wait_for(lambda: 'also' not in told[-1], START_S, 'that nobody does')
+        wait_for(lambda: time.monotonic() - driver.end.received[-1][0] > 0.5, START_S, 'silence')
+        # By another way to the robot, which only zeros on this one can win against.
+        begun = time.monotonic()
+        self.other('/beside/mux/input/navi')
+        wait_for(lambda: len(driver.end.after(begun)) > 50, START_S, 'zeros')
+        self.assertEqual({entry[1:] for entry in driver.end.after(begun)}, {ZERO})
 
     def test_a_lease_and_its_echo(self):
         driver = self.driver('lease')

@@ -112,7 +112,10 @@ def test_turtlebot2_with_all_that_belongs_to_it(remote, master):
                  '/bot1/cmd_vel_mux/input/teleop', '/bot1/mobile_base/commands/velocity')
     wait_for(lambda: publishers(master, '/bot1/teleop/input') == ['/bot1/mhri_guard'], START_S,
              'the guard before the smoother', poll_s=0.1)
-    assert subscribers(master, '/bot1/teleop/input') == ['/bot1/teleop_velocity_smoother']
+    # The guard reads what others say there, too.
+    assert sorted(subscribers(master, '/bot1/teleop/input')) == [
+        '/bot1/mhri_guard', '/bot1/teleop_velocity_smoother']
+    assert '/bot1/mhri_guard' in subscribers(master, '/bot1/cmd_vel_mux/input/navi')
     assert subscribers(master, '/bot1/cmd_vel_mux/input/teleop') == ['/bot1/cmd_vel_mux']
     assert subscribers(master, '/bot1/mobile_base/commands/velocity') == ['/bot1/mobile_base']
     assert parameter(master, '/bot1/robot_type') == 'turtlebot2'

@@ -71,7 +71,8 @@ class FakeGates:
     def say_robot(self, name, **values):
         """Change what is said of one robot."""
         known = {robot.name: robot for robot in self.state.robots}
-        robot = known.setdefault(name, RobotGate(name=name, round_trip_s=float('nan')))
+        robot = known.setdefault(name, RobotGate(
+            name=name, round_trip_s=float('nan'), odometry_follows=True))
         for key, value in values.items():
             setattr(robot, key, value)
         self.say(robots=list(known.values()))

@@ -64,6 +64,7 @@ def gates_state(time_s, robots=ROBOTS):
     state = GatesState(operator='/mhri_panel', computer='here', stop_all=stopped)
     for robot in robots:
         gate = RobotGate(name=robot, topic='/{}/cmd_vel'.format(robot), round_trip_s=math.nan,
+                         odometry_follows=True,
                          obeys='operator' if robot in selected else '',
                          stands='stopped' if stopped and robot in selected else '')
         gate.sent.linear.x = 0.1 if robot in selected and not stopped else 0.0

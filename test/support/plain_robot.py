@@ -3,11 +3,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A robot of which mhri was told nothing: a node with the topics that it is given.
 
-``plain_robot.py COMMAND ODOMETRY [--turtle] [--sign TOPIC TYPE] [--halfway]``: reads velocity
-commands and tells how it moves, 20 times a second (``nav_msgs/Odometry``, or ``turtlesim/Pose``
-with ``--turtle``). It obeys at once, and stops 0.5 s after the last command. ``--sign`` is one more
-topic that it publishes. ``--halfway`` stops while it comes up: it subscribes its commands when it
-gets SIGUSR1.
+``plain_robot.py COMMAND ODOMETRY [OPTION]...``: reads velocity commands and tells how it moves, 20
+times a second (``nav_msgs/Odometry``, or ``turtlesim/Pose`` with ``--turtle``). It obeys at once,
+and stops 0.5 s after the last command. ``--sign TOPIC TYPE`` is one more topic that it publishes.
+``--halfway`` stops while it comes up: it subscribes its commands when it
+gets SIGUSR1. ``--frozen``: its odometry says that it stands, whatever it does.
 """
 import argparse
 import math
@@ -32,8 +32,10 @@ WATCHDOG_S = 0.5
 class PlainRobot:
 
     def __init__(self, options):
-        self._turtle = options.turtle
+        self._turtle, self._lies = options.turtle, options.frozen
+        self._lock = threading.Lock()
         self._command = (-WATCHDOG_S, 0.0, 0.0)
+        self._moved_at = time.monotonic()
         self._x = self._y = self._yaw = 0.0
         self._publisher = rospy.Publisher(options.odometry, Pose if self._turtle else Odometry,
                                           queue_size=1)
@@ -47,16 +49,27 @@ class PlainRobot:
         rospy.Subscriber(self._topic, Twist, self._obey, queue_size=1, tcp_nodelay=True)
 
     def _obey(self, message):
-        self._command = (time.monotonic(), message.linear.x, message.angular.z)
+        with self._lock:
+            now = time.monotonic()
+            self._move(now)
+            self._command = (now, message.linear.x, message.angular.z)
+
+    def _move(self, now):
+        """Go on as it was told, however short that is; return the velocity."""
+        at, linear, angular = self._command
+        moved_s = max(0.0, min(now, at + WATCHDOG_S) - self._moved_at)
+        self._moved_at = now
+        self._yaw += angular * moved_s
+        self._x += linear * math.cos(self._yaw) * moved_s
+        self._y += linear * math.sin(self._yaw) * moved_s
+        return (0.0, 0.0) if now > at + WATCHDOG_S else (linear, angular)
 
     def step(self):
-        at, linear, angular = self._command
-        if time.monotonic() - at > WATCHDOG_S:
-            linear = angular = 0.0
-        self._yaw += angular * PERIOD_S
-        self._x += linear * math.cos(self._yaw) * PERIOD_S
-        self._y += linear * math.sin(self._yaw) * PERIOD_S
-        self._publisher.publish(self._pose(linear, angular))
+        with self._lock:
+            linear, angular = self._move(time.monotonic())
+            if self._lies:
+                linear = angular = self._x = self._y = self._yaw = 0.0
+            self._publisher.publish(self._pose(linear, angular))
 
     def _pose(self, linear, angular):
         if self._turtle:
@@ -76,6 +89,7 @@ def main():
     parser.add_argument('--turtle', action='store_true')
     parser.add_argument('--sign', nargs=2, action='append', default=[])
     parser.add_argument('--halfway', action='store_true')
+    parser.add_argument('--frozen', action='store_true')
     options = parser.parse_args(rospy.myargv()[1:])
     go_on = threading.Event()
     signal.signal(signal.SIGUSR1, lambda *_: go_on.set())

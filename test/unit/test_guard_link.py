@@ -189,3 +189,8 @@ def test_the_guard_says_it_so():
     state = read_state(guard.state(0.1))
     assert (state.brake, state.back_after_s) == ('slows', 10.0)
     assert state.free_way_m == pytest.approx(0.6, abs=0.05)
+
+
+def test_who_else_commands_the_robot_is_read_and_bounded():
+    assert read_state('brake:on also:/nav also:/bot1/move_base').also == ('/nav', '/bot1/move_base')
+    assert read_state('also:nav also:/a;b also: also:/' + 'x' * 300).also == ()

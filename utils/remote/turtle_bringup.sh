@@ -163,6 +163,8 @@ prepare_turtlebot2() {
   folder=$(package turtlebot_bringup) || missing_package turtlebot_bringup
   GUARD_TOPIC=teleop/input
   limit_guard 0.65 3.14 0.18 -0.087
+  # The other inputs of its multiplexer (turtlebot_bringup/param/mux.yaml) below this one.
+  GUARD_LIMITS+=("_beside:=cmd_vel_mux/input/switch cmd_vel_mux/input/navi")
   if "$SMOOTHER" && ! package yocs_velocity_smoother >/dev/null; then
     warn "there is no package yocs_velocity_smoother: the robot will jerk more than necessary"
     SMOOTHER=false

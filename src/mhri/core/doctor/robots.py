@@ -157,8 +157,12 @@ def _type(robot: Robot, types: Mapping[str, RobotType]) -> List[Finding]:
 def _velocity(facts: Facts, robot: Robot) -> List[Finding]:
     """Judge who listens to the robot's velocity topics and who publishes them."""
     name, topics = robot.candidate.name, robot.topics('command')
+    guard = '/' + GUARD if robot.candidate.seen.at_root else topic_of(name, GUARD)
+    # Gates and guard read what others say there, and obey none of it.
+    drivers = [GATES, guard] + gates(facts)
     alive = {topic: [node for node in facts.graph.subscribers.get(topic, ())
-                     if facts.nodes[node].state == ANSWERS] for topic in topics}
+                     if facts.nodes[node].state == ANSWERS and node not in drivers]
+             for topic in topics}
     chosen = next((topic for topic in topics if alive[topic]), None)
     # A robot on a master of its own is driven through its guard, over the link.
     if chosen is None and not _by_link(facts, name):
@@ -168,12 +172,10 @@ def _velocity(facts: Facts, robot: Robot) -> List[Finding]:
             '{}   # its real topic, then: rosparam set /{}/mhri/command "[<topic>]"; or start its '
             'base: {}'.format(robot.list_topics(), name, start_robot(facts, name)))]
     found = []
-    guard = '/' + GUARD if robot.candidate.seen.at_root else topic_of(name, GUARD)
-    drivers = [GATES, guard] + gates(facts)
     for topic in topics + [guard + '/command']:
         foreign = [node for node in facts.graph.publishers.get(topic, ())
                    if node not in drivers and not node.startswith(TRIAL)]
-        if foreign and facts.graph.subscribers.get(topic):
+        if foreign and (alive[topic] if topic in alive else facts.graph.subscribers.get(topic)):
             found.append(_foreign(name, topic, foreign))
     return found + (_hidden(facts, name, chosen, alive[chosen]) if chosen else [])
 

@@ -22,6 +22,7 @@ from mhri.core.driving.stick_brake import NO_SCAN, ON, SLOWS, UNSEEN
 ECHO_S = 0.35
 _ID = re.compile(r'([A-Za-z0-9_-]{1,32})(!?):([0-9]{1,15}):([A-Za-z0-9_-]{0,32})(!?)\Z')
 _STATE = re.compile(r'(brake|way|back_after):([a-z0-9_.]{1,12})\Z')
+_ALSO = re.compile(r'also:(/[A-Za-z0-9_/]{1,60})\Z')
 _SESSION = re.compile(r'[A-Za-z0-9_-]{1,32}\Z')
 # The session of an echo before any command was obeyed.
 _NOBODY = '-'
@@ -50,12 +51,14 @@ class GuardState:
 
     ``brake`` is '' without a brake, else a word of :mod:`mhri.core.driving.stick_brake`;
     ``free_way_m`` the way to what slows the robot down [m], NaN while nothing does;
-    ``back_after_s`` after how long without a link it drives the robot back [s], 0 for never.
+    ``back_after_s`` after how long without a link it drives the robot back [s], 0 for never;
+    ``also`` the other nodes that it hears command the robot.
     """
 
     brake: str = ''
     free_way_m: float = math.nan
     back_after_s: float = 0.0
+    also: Tuple[str, ...] = ()
 
 
 def read_state(text: str) -> GuardState:
@@ -64,10 +67,12 @@ def read_state(text: str) -> GuardState:
     What cannot be read counts as not said, but for a brake of which nobody knows what it does.
     """
     found = {part.group(1): part.group(2)
-             for part in map(_STATE.match, text[:200].split()) if part}
+             for part in map(_STATE.match, text[:500].split()) if part}
+    also = tuple(part.group(1) for part in map(_ALSO.match, text[:500].split()) if part)
     brake = found.get('brake', '')
     return GuardState(brake if brake in ('', ON, SLOWS, UNSEEN) else NO_SCAN,
-                      _number(found.get('way'), math.nan), _number(found.get('back_after'), 0.0))
+                      _number(found.get('way'), math.nan), _number(found.get('back_after'), 0.0),
+                      also)
 
 
 def _number(text: Optional[str], otherwise: float) -> float:

@@ -11,6 +11,11 @@ from typing import Collection, FrozenSet, List, Optional, Sequence
 _TOOLS = re.compile(r'/(rostopic|record|play|rosbag|rqt|rviz|rosout|mhri)(_|$)')
 
 
+def guard_node(robot: str) -> str:
+    """Return the name of the guard of a robot: it reads velocity topics, and obeys none of them."""
+    return '/{}/mhri_guard'.format(robot)
+
+
 def obeying(robot: str, listeners: Sequence[Collection[str]]) -> List[FrozenSet[str]]:
     """Return the listeners of each topic that count as the robot.
 

@@ -72,7 +72,8 @@ class RobotView:
 
     What the gates say: ``driven`` is true while the velocity last sent to it is not zero,
     ``guarded`` while its commands go through a guard on the robot, ``obeys`` is whom it obeys ('',
-    'operator', 'task'), ``stands`` why it is kept still ('', 'stopped', 'not_heard', 'joining'),
+    'operator', 'task'), ``stands`` why it is kept still (a code of
+    :data:`mhri.core.screen.gate_words.STANDS_WORDS`), ``also_commanded_by`` who else commands it,
     ``waits`` is true while it waits for a centred stick, ``stop_latched`` once its guard has
     confirmed the stop. ``brake`` is what its obstacle brake does. ``hardware_stop`` is true while
     the robot's own emergency stop holds it, None if nothing reports it. ``power`` says in words
@@ -117,6 +118,7 @@ class RobotView:
     stands: str = ''
     brake: BrakeView = BrakeView()
     stop_latched: bool = False
+    also_commanded_by: Tuple[str, ...] = ()
     power: str = ''
     offers_power: bool = False
     hardware_stop: Optional[bool] = None

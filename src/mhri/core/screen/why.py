@@ -6,6 +6,7 @@ from typing import Callable, Dict, Tuple
 
 from mhri.core.robots.numbers import LAST_KEY
 from mhri.core.screen.brake_view import standing_words
+from mhri.core.screen.gate_words import stands_words
 from mhri.core.screen.views import (
     GONE, LIVE, PanelView, ROS_CONNECTED, RobotView, SILENT, UNANSWERED, WAITING)
 
@@ -138,7 +139,7 @@ def _braked(_: PanelView, robot: RobotView, __: _Stick) -> str:
 
 
 def _kept_standing(_: PanelView, robot: RobotView, __: _Stick) -> str:
-    return '' if robot.stands in _TOLD else robot.stands
+    return '' if robot.stands in _TOLD else stands_words(robot.stands)
 
 
 def _no_answer(_: PanelView, robot: RobotView, __: _Stick) -> str:

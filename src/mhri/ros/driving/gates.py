@@ -74,7 +74,8 @@ class Gates:
         self._frames = TfFeed(clock)
         self._neighbour = Neighbour('the mux')
         self._mux = InForce(STOP_SERVICE, self._refuse, self._on_new_mux)
-        self._roster = Roster(types, self._open, self._close_gate, self._unheard, memory)
+        self._roster = Roster(types, self._open, self._close_gate, self._unheard, memory,
+                              self._watched, self._on_publishers)
 
     def start(self):
         """Subscribe, serve, and begin to watch the time; returns at once."""
@@ -176,6 +177,7 @@ class Gates:
         for gate in self._gates.values():
             if not stopped and gate.power.is_cut:
                 gate.power.restore()
+        self._roster.look_now()
         self.on_change()
 
     def _on_foreign_stop(self, name):
@@ -288,7 +290,7 @@ class Gates:
         gate = RobotGate(name, robot_type, self._session, self._command, self._lock,
                          self._on_foreign_stop,
                          lambda robot: self._refuse('somebody', robot + '/mhri_guard/command'),
-                         self._clock, self._frames)
+                         self._clock, self._frames, self._wake.notify)
         with self._lock:
             now = self._clock()
             if self._closed:
@@ -303,6 +305,18 @@ class Gates:
         """Return the (topic, type) to which robots that are heard do not listen, as a list."""
         with self._lock:
             return [topic for gate in self._gates.values() for topic in gate.unheard(self._clock())]
+
+    def _watched(self):
+        """Return the velocity topics of stopped robots: somebody else may command them."""
+        with self._lock:
+            return {name: gate.velocity_topics() for name, gate in self._gates.items()} \
+                if self._stop else {}
+
+    def _on_publishers(self, name, found):
+        """Take in who publishes the velocity topics of a robot (on the roster's thread)."""
+        gate = self._gates.get(name)
+        if gate is not None:
+            gate.on_publishers(found)
 
     def _close_gate(self, name):
         """Close the gate of a robot with a zero (blocking: it asks the master)."""
@@ -324,7 +338,7 @@ class Gates:
                     self._tick(now)
                 except Exception as error:  # without this thread no lease would ever end
                     rospy.logerr_throttle(1.0, 'the gates could not look: {!r}'.format(error))
-                times = [self._seat.next_tick()] + [gate.rule.next_tick()
+                times = [self._seat.next_tick()] + [gate.next_tick()
                                                     for gate in self._gates.values()]
                 due = min([time_s for time_s in times if time_s is not None] + [now + TICK_S])
                 self._wake.wait(max(0.0, due - self._clock()))
@@ -343,7 +357,7 @@ class Gates:
         if news:
             self.on_change()
             rospy.logwarn('%s', news)
-        states = [(gate.rule.obeys, gate.rule.stands, gate.brake()[0])
+        states = [(gate.rule.obeys, gate.rule.stands, gate.brake()[0], gate.also_commanded_by(now))
                   for gate in self._gates.values()]
         if states != self._states:
             self._states = states

@@ -15,7 +15,7 @@ import rospy
 from std_srvs.srv import SetBool, Trigger
 
 from mhri.core.driving.control import who_drives
-from mhri.msg import GatesState, GroupSpeed, RobotGate
+from mhri.msg import GatesState, GroupSpeed
 from mhri.ros.driving.in_force import InForce, Strangers, TAKE_SERVICE
 from mhri.ros.worker import Worker
 
@@ -156,10 +156,3 @@ def round_trip_s(robot):
     :param robot: ``mhri/RobotGate``
     """
     return robot.round_trip_s if math.isfinite(robot.round_trip_s) else None
-
-
-STANDS_WORDS = {
-    RobotGate.STOPPED: '',
-    RobotGate.JOINING: 'centre the stick to drive',
-    RobotGate.NOT_HEARD: 'kept standing: the drive service does not hear it',
-}

@@ -13,15 +13,16 @@ from mhri.core.driving.gate import GateRule, STOPPED
 from mhri.core.driving.guard_link import GuardLink, GuardState, read_state
 from mhri.core.driving.limits import ZERO
 from mhri.core.robots.link import link_state
-from mhri.core.robots.listeners import obeying
+from mhri.core.robots.listeners import guard_node, obeying
 from mhri.core.robots.names import topic_of
 from mhri.core.screen.views import GONE, SILENT
 from mhri.msg import RobotGate as RobotGateMessage
 from mhri.ros.convert import packed_twist, to_twist
 from mhri.ros.driving.brake_eye import BrakeEye
 from mhri.ros.driving.motor_power import MotorPower
+from mhri.ros.driving.other_drivers import OtherDrivers
 from mhri.ros.graph.prompt import PromptPublisher
-from mhri.ros.graph.rospy_inside import listeners, publisher_uri, unsubscribe
+from mhri.ros.graph.rospy_inside import listeners, publisher_uri, publishers, unsubscribe
 from mhri.ros.robots.link_probe import LinkProbe
 from mhri.ros.robots.own_navigation import OwnNavigation
 
@@ -34,6 +35,12 @@ LIVE_S = 1.0
 MOST_TOPICS = 8
 # How often a guard that would go back alone is told that it is heard [s].
 BEAT_S = 0.5
+# A stopped robot that somebody else commands gets a zero so often [s]: 20 Hz, on ticks that may
+# come a little early.
+ZEROS_S = 0.045
+# The zero behind somebody else's message may overtake it, on another connection: it is said again
+# after so long [s].
+BEHIND_S = 0.005
 _PACKED_ZERO = packed_twist(0.0, 0.0)
 
 
@@ -44,7 +51,9 @@ class RobotGate:
     ``/<robot>/mhri_guard/command`` (``geometry_msgs/TwistStamped``); a zero goes to all of them, a
     command to one: the guard's while its echo is alive, else the first that the robot listens to.
     Subscribes ``/<robot>/mhri_guard/echo`` (``geometry_msgs/TwistStamped``) and the odometry, of
-    which only the time counts; of a guard that does something by itself also
+    which only the time counts; and each velocity topic: a stopped robot that
+    somebody else may command (:class:`mhri.ros.driving.other_drivers.OtherDrivers`) gets zeros at
+    20 Hz, and one behind each message that is heard. Of a guard that does something by itself also
     ``/<robot>/mhri_guard/state`` (``std_msgs/String``), which it answers by
     ``/<robot>/mhri_guard/heard`` (``std_msgs/String``). While the brake is asked for, see
     :class:`mhri.ros.driving.brake_eye.BrakeEye`; while the robot is checked or stopped, see
@@ -59,10 +68,11 @@ class RobotGate:
     :param on_foreign_stop: called with the robot if another run of the gates has stopped it
     :param on_displaced: called with the robot if somebody else has spoken to its guard
     :param frames: :class:`mhri.ros.map.tf_feed.TfFeed`, None: without tf
+    :param wake: called, under the lock, when :meth:`next_tick` has become earlier
     """
 
     def __init__(self, name, robot_type, session, command, lock, on_foreign_stop, on_displaced,
-                 clock=time.monotonic, frames=None):
+                 clock=time.monotonic, frames=None, wake=lambda: None):
         self.name = name
         self.robot_type = robot_type
         self._eye = BrakeEye(name, robot_type, clock, frames)
@@ -91,6 +101,11 @@ class RobotGate:
         self._heard = PromptPublisher('/{}/mhri_guard/heard'.format(name), String)
         self.power = MotorPower(name, robot_type)
         self._navigation = OwnNavigation(name)
+        self._wake = wake
+        self._zero_at, self._again_at = -math.inf, math.inf
+        # {(caller id, topic)} of those who can command it, as the master knows them.
+        self._registered = frozenset()
+        self._others = OtherDrivers(self._on_other_motion, clock)
         # A robot may be heard from here on.
         self._odometry = [
             rospy.Subscriber(topic_of(name, topic), rospy.AnyMsg, self._on_odometry, queue_size=1,
@@ -100,6 +115,7 @@ class RobotGate:
         self._state = rospy.Subscriber('/{}/mhri_guard/state'.format(name), String,
                                        self._on_guard_state, queue_size=1, tcp_nodelay=True)
         self._probe = LinkProbe(name, self._node_uri, self._on_round_trip)
+        self._others.listen(publisher.resolved_name for publisher in self._publishers[1:])
         if len(robot_type.command) > MOST_TOPICS:
             rospy.logwarn('%s has %d velocity topics: the first %d are used', name,
                           len(robot_type.command), MOST_TOPICS)
@@ -117,6 +133,69 @@ class RobotGate:
         if first:
             with self._lock:
                 self.send(self.rule.join(self._heard_at))
+
+    def velocity_topics(self):
+        """Return (absolute velocity topics, prefixes of topics that drive the robot, too).
+
+        A multiplexer on the robot has its inputs beside the one that is used here.
+        """
+        topics = [publisher.resolved_name for publisher in self._publishers[1:]]
+        inputs = [topic.rpartition('/')[0] + '/' for topic in topics
+                  if topic.rpartition('/')[0].endswith('/input')]
+        return topics, tuple(inputs + ['/{}/cmd_vel_mux/input/'.format(self.name)])
+
+    def on_publishers(self, found):
+        """Take in who publishes there, as {(caller id, topic)} (blocking: asks the master)."""
+        self._registered = frozenset(found)
+        self._others.listen(sorted({topic for _, topic in self._foreign(found)}))
+
+    def _foreign(self, found):
+        """Return those of {(caller id, topic)} that say anything but what the robot is sent here.
+
+        Its guard passes that on, and so does what reads one of its velocity topics and writes
+        another, such as a velocity smoother.
+        """
+        if not found:
+            return set()
+        passes_on = {}
+        for publisher, links in zip(self._publishers[1:], self._links[1:]):
+            for name in listeners(links):
+                passes_on.setdefault(name, set()).add(publisher.resolved_name)
+        own = {publisher.resolved_name for publisher in self._publishers[1:]}
+        apart = publishers(self._echo) | {rospy.get_name()}
+        return {(name, topic) for name, topic in found if name not in apart
+                and not (topic in own and passes_on.get(name, set()) - {topic})}
+
+    def _on_other_motion(self, caller, topic):
+        """Say zero directly behind what somebody else has just told a stopped robot."""
+        with self._lock:
+            if self.rule.state == STOPPED and self._foreign({(caller, topic)}):
+                self._publish_zero()
+                self._again_at = self._clock() + BEHIND_S
+                self._wake()
+
+    def next_tick(self):
+        """Return when to call :meth:`tick` next [s], or None for at leisure."""
+        times = [at for at in (self.rule.next_tick(), self._again_at)
+                 if at is not None and at < math.inf]
+        return min(times, default=None)
+
+    def also_commanded_by(self, now):
+        """Return the sorted caller ids of the other nodes that command the robot now."""
+        names = {name for name, _ in self._foreign(self._others.heard(now))}
+        own = rospy.get_name()
+        return sorted(names.union(name for name in self._guard_state.also if name != own)
+                      if self._guarded else names)
+
+    def _repeat_zero(self, now):
+        """Repeat the zero of a stopped robot while anybody else could command it."""
+        if now >= self._again_at:
+            self._again_at = math.inf
+            if self.rule.state == STOPPED:
+                self._publish_zero()
+        if self.rule.state == STOPPED and now - self._zero_at >= ZEROS_S and self._foreign(
+                self._others.connected() | self._others.out_of_reach(self._registered)):
+            self._publish(ZERO)
 
     def _on_guard_state(self, message):
         self._guard_state = read_state(message.data)
@@ -178,7 +257,9 @@ class RobotGate:
         if all(map(operator.is_, links, self._links)):
             return
         ids = [listeners(link) for link in links]
-        obeying_now = obeying(self.name, ids[:1]) + obeying(self.name, ids[1:])
+        guard = {guard_node(self.name)}
+        obeying_now = obeying(self.name, ids[:1]) + obeying(
+            self.name, [names - guard for names in ids[1:]])
         known = {id(link) for old in self._links for link in old}
         new = any(id(link) not in known and link.endpoint_id in names
                   for found, names in zip(links[1:], obeying_now[1:]) for link in found)
@@ -206,6 +287,7 @@ class RobotGate:
         self._look_at_guard(now)
         self.ask_brake(self._brake_asked)
         self.send(self.rule.hold(self._lost(now), now))
+        self._repeat_zero(now)
         self._beat(now)
 
     def _beat(self, now):
@@ -238,8 +320,7 @@ class RobotGate:
 
     def _publish(self, velocity):
         if velocity.is_zero():
-            for publisher in self._publishers[1:]:
-                publisher.publish_packed(_PACKED_ZERO, urgent=True)
+            self._publish_zero()
             self._send_to_guard(velocity)
         elif self._guarded:
             # A zero must first release a guard that still holds a stop.
@@ -247,6 +328,11 @@ class RobotGate:
         elif self._listened is not None:
             self._listened.publish_packed(
                 packed_twist(velocity.linear_mps, velocity.angular_rad_s))
+
+    def _publish_zero(self):
+        self._zero_at = self._clock()
+        for publisher in self._publishers[1:]:
+            publisher.publish_packed(_PACKED_ZERO, urgent=True)
 
     def _send_to_guard(self, velocity):
         guard = self._publishers[0]
@@ -259,9 +345,11 @@ class RobotGate:
 
     def unheard(self, now):
         """Return the (topic, type) to which nobody listens though the robot is there, as a list."""
+        # The guard reads velocity topics, too, and does not obey them.
+        deaf = {guard_node(self.name)}
         there = self._guarded or self._heard_at is not None and now - self._heard_at < LIVE_S
         return [(publisher.resolved_name, publisher.type) for publisher in self._publishers
-                if not publisher.links()] if there else []
+                if not listeners(publisher.links()) - deaf] if there else []
 
     def message(self):
         """Return the ``mhri/RobotGate`` of this moment."""
@@ -271,6 +359,7 @@ class RobotGate:
         return RobotGateMessage(
             name=self.name, obeys=rule.obeys,
             stands='not_heard' if rule.stands == 'held' else rule.stands,
+            also_commanded_by=self.also_commanded_by(self._clock()), odometry_follows=True,
             topic=chosen.resolved_name if chosen else '', guarded=self._guarded,
             stop_confirmed=self._guarded and self._guard.stop_confirmed,
             sent=to_twist(sent.linear_mps, sent.angular_rad_s), power=self.power.state,
@@ -285,6 +374,7 @@ class RobotGate:
         self.power.close()
         self._eye.close()
         self._navigation.close()
+        self._others.close()
         for publisher in self._publishers + [self._heard]:
             publisher.unregister()
         for subscriber in self._odometry + [self._echo, self._state]:

@@ -36,16 +36,21 @@ class Roster:
     :param types: {name: RobotType}
     :param open_gate: called with (name, RobotType), on the thread; replaces what was open
     :param close_gate: called with a name, on the thread
+    :param watched: returns {name: (topics, prefixes of topics)} of those whose other publishers are
+        to be told
+    :param on_publishers: called with a name and {(caller id, topic)}, on the thread
     :param unheard: returns a list of (topic, type) to which robots that are heard do not listen
     :param memory: :class:`mhri.ros.stand_by.Memory` of the gates before
     """
 
-    def __init__(self, types, open_gate, close_gate, unheard, memory):
+    def __init__(self, types, open_gate, close_gate, unheard, memory, watched, on_publishers):
         self._types = types
         self._open_gate = open_gate
         self._close_gate = close_gate
         self._unheard = unheard
         self._memory = memory
+        self._watched = watched
+        self._on_publishers = on_publishers
         self._announced_at = 0.0
         self._checked = frozenset()
         self._ever = {}
@@ -68,6 +73,10 @@ class Roster:
         self._checked = frozenset(names)
         if not self._checked <= set(self._open):
             self._changed.set()
+
+    def look_now(self):
+        """Look at once; returns at once."""
+        self._changed.set()
 
     def _run(self):
         while not rospy.is_shutdown():
@@ -113,6 +122,16 @@ class Roster:
         seen = {name: self._seen[name] for name in wanted if name in self._seen}
         for name, facts in robot_facts(rospy.get_name(), wanted, self._types, seen).items():
             self._settle(name, facts)
+        watched = self._watched()
+        if watched:
+            self._tell_publishers(api.call('getSystemState')[0], watched)
+
+    def _tell_publishers(self, published, watched):
+        """Tell who publishes the topics of robots, and those that begin like them."""
+        for name, (topics, prefixes) in watched.items():
+            self._on_publishers(name, {
+                (node, topic) for topic, nodes in published
+                if topic in topics or topic.startswith(prefixes) for node in nodes})
 
     def _announce(self, now):
         """Register again the topics that robots should listen to and do not.

@@ -37,6 +37,19 @@ def listeners(connections):
     return {connection.endpoint_id for connection in connections}
 
 
+def peer_hosts(connections):
+    """Return {caller id: network address} of who is at the other end of connections."""
+    found = {}
+    for connection in connections:
+        try:
+            host = connection.socket.getpeername()[0]
+        except (OSError, AttributeError, IndexError):
+            continue  # it has just ended
+        caller = connection.callerid_pub
+        found[connection.endpoint_id if caller == 'unknown' else caller] = host
+    return found
+
+
 def publishers(subscriber):
     """Return the caller ids of the publishers that are connected to a ``rospy.Subscriber``."""
     impl = subscriber.impl
@@ -72,6 +85,29 @@ def on_publisher_gone(subscriber, call):
             call(caller)
 
     impl.remove_connection = remove_connection
+
+
+_OTHERS_ONLY = set()
+_has_connection = rospy.topics._SubscriberImpl.has_connection
+
+
+def _connected(impl, endpoint_id):
+    """Tell whether a subscription has a connection, or is to have none, to a publisher."""
+    return (impl.resolved_name in _OTHERS_ONLY and endpoint_id == rospy.get_node_uri()
+            or _has_connection(impl, endpoint_id))
+
+
+rospy.topics._SubscriberImpl.has_connection = _connected
+
+
+def others_only(topic):
+    """Let subscribers of a topic never connect to this node itself, which publishes it, too.
+
+    Every message would come back, and be read on a thread of its own. Call it before subscribing.
+
+    :param topic: its absolute name
+    """
+    _OTHERS_ONLY.add(rospy.names.resolve_name(topic))
 
 
 def is_initialised():
@@ -161,8 +197,10 @@ def require(methods, names):
                           'or 1.16'.format(', '.join(missing)))
 
 
-require([(ROSHandler, ('getPid',)), (rospy.topics._SubscriberImpl, ('remove_connection',)),
+require([(ROSHandler, ('getPid',)),
+         (rospy.topics._SubscriberImpl, ('has_connection', 'remove_connection')),
          (rospy.core, ('add_preshutdown_hook', 'is_initialized',
                        'is_shutdown_requested'))],
-        [(rospy.topics._TopicImpl.__init__, ('connections', 'connection_poll', 'closed')),
+        [(rospy.topics._TopicImpl.__init__, (
+            'connections', 'connection_poll', 'closed', 'resolved_name')),
          (TCPROSTransport.__init__, ('callerid_pub', 'endpoint_id'))])

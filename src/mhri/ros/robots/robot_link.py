@@ -21,11 +21,12 @@ from mhri.core.robots.names import topic_of
 from mhri.core.robots.stamp_age import delay_of, StampAge
 from mhri.core.robots.stop_proof import StopProof
 from mhri.core.screen.brake_view import back_words, brake_words, BrakeView
+from mhri.core.screen.gate_words import also_words, stands_words
 from mhri.core.screen.views import LIVE, RobotView, UNANSWERED
 from mhri.core.sensors.plausible import BATTERY, can_be
 from mhri.msg import RobotGate
 from mhri.ros.convert import header_of, motion_from_odometry, motion_from_turtle_pose
-from mhri.ros.driving.gates_client import is_driven, round_trip_s, STANDS_WORDS
+from mhri.ros.driving.gates_client import is_driven, round_trip_s
 from mhri.ros.robots.hardware_stop import HardwareStop
 from mhri.ros.sensors.refusals import Refusals
 
@@ -313,16 +314,19 @@ def seen_by_gates(view, gate, answers):
         return replace(view, note=UNANSWERED, slow=True)
     if gate is None:
         return view
-    stands = STANDS_WORDS.get(gate.stands, gate.stands) if gate.obeys else ''
+    stands = stands_words(gate.stands) if gate.obeys else ''
+    also = tuple(gate.also_commanded_by)
+    warning = stands or also_words(also)
     brake = BrakeView(gate.brake, gate.free_way_m, gate.brake_on_robot, gate.back_after_s)
     return with_stop_words(replace(
         view, driven=is_driven(gate) and bool(gate.topic), guarded=gate.guarded,
         obeys=gate.obeys, stands=gate.stands, brake=brake, power=gate.power,
         waits=gate.stands == RobotGate.JOINING, stop_latched=gate.stop_confirmed,
         sent_mps=gate.sent.linear.x, sent_rad_s=gate.sent.angular.z, reached=bool(gate.topic),
-        note=stands if stands and view.link == LIVE else view.note or _calm_note(
+        also_commanded_by=also,
+        note=warning if warning and view.link == LIVE else view.note or _calm_note(
             view, gate, brake),
-        slow=view.slow or bool(stands) or brake.holds))
+        slow=view.slow or bool(warning) or brake.holds))
 
 
 def _calm_note(view, gate, brake):
@@ -339,7 +343,9 @@ def with_stop_words(view):
     words = ['its own emergency stop is pressed'] if view.hardware_stop else []
     words += ['motor power ' + view.power] if view.power else []
     if view.proof is not None:
-        words = [view.proof.text] + (['held by its guard'] if view.stop_latched else []) + words
+        also = also_words(view.also_commanded_by)
+        words = [view.proof.text] + ([also] if also else []) + (
+            ['held by its guard'] if view.stop_latched else []) + words
         return replace(view, proof=replace(view.proof, text=', '.join(words)))
     if not words:
         return view

@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Others on the topics of a robot: who commands it beside mhri, and who else has its name."""
+import os
+import sys
+import time
+
+import rospy
+import rostest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
+
+from gates_case import GatesCase, ZERO  # noqa: E402
+from rostest_tools import Process  # noqa: E402
+from support.robots import Witness  # noqa: E402
+from support.ros_system import wait_for  # noqa: E402
+from support.velocity import VelocityEnd  # noqa: E402
+
+HERE = os.path.dirname(os.path.realpath(__file__))
+GUARD = os.path.join(HERE, '..', '..', 'utils', 'remote', 'mhri_guard')
+SUPPORT = os.path.join(HERE, '..', 'support')
+NAV, NAV_MPS = '/own_navigation', 0.5
+# How long somebody else drives against a stop [s], and how far a robot may then come [m]: without
+# an answer to it, it would be 1.5 m.
+AGAINST_S, MAX_M = 3.0, 0.4
+
+
+class GatesOthersTest(GatesCase):
+    """Robots with odometry, driven by others as well."""
+
+    def robot(self, *options, kind=None):
+        """Start a robot; return (name, its witness, receiving end of its commands, process)."""
+        GatesCase.number += 1
+        name = 'other{}'.format(GatesCase.number)
+        if kind:
+            rospy.set_param('/{}/robot_type'.format(name), kind)
+        process = self.process('plain_robot.py', name, *options or ('cmd_vel', 'odom'))
+        witness, receiver = Witness(name), VelocityEnd('/{}/{}'.format(
+            name, options[0] if options else 'cmd_vel'))
+        self.operator.check(name)
+        self.state.wait_robot(name, lambda gate: gate.topic and gate.obeys == 'operator',
+                              'the gate of ' + name, 20.0)
+        wait_for(witness.live, what='the odometry')
+        self.centre(name, receiver)
+        self.addCleanup(self.operator.check)
+        return name, witness, receiver, process
+
+    def process(self, script, namespace, *words):
+        """Start one of the programs of test/support; it ends with the test."""
+        process = Process([sys.executable, os.path.join(SUPPORT, script)] + list(words),
+                          env={'ROS_NAMESPACE': namespace})
+        self.addCleanup(process.end)
+        return process
+
+    def guard(self, name, *options):
+        """Start the guard of a robot; return it once it is used."""
+        guard = Process([sys.executable, GUARD, '_command:=cmd_vel'] + list(options),
+                        env={'ROS_NAMESPACE': name})
+        self.addCleanup(guard.end)
+        self.state.wait_robot(name, lambda gate: gate.guarded, 'the guard', 20.0)
+        return guard
+
+    def drive_against(self, name, witness, receiver, topic, rate_hz):
+        """Let somebody drive the robot, stop it, and return how far it comes."""
+        nav = self.process('other_driver.py', '', topic, str(rate_hz), str(NAV_MPS),
+                           '__name:=' + NAV)
+        wait_for(lambda: witness.live() and witness.latest().speed_mps > 0.4,
+                 what='somebody else to drive')
+        self.state.wait_robot(name, lambda gate: NAV in gate.also_commanded_by, 'the name')
+        when = self.mux.stop(True)
+        before_m = witness.path_m
+        wait_for(lambda: time.monotonic() - when > AGAINST_S, what='it to end', poll_s=0.05)
+        moved_m = witness.path_m - before_m
+        print('MEASURED {:.3f} m in {:g} s of stop-all against {} Hz'.format(
+            moved_m, AGAINST_S, rate_hz), flush=True)
+        gate = self.state.robot(name)
+        self.assertEqual((gate.stands, NAV in gate.also_commanded_by), ('stopped', True))
+        self.assertLess(moved_m, MAX_M)
+        told = receiver.after(when)
+        ends = [b[0] - a[0] for a, b in zip(told, told[1:]) if a[1] and not b[1]]
+        print('MEASURED zero behind a message after {:.1f} ms, at most {:.1f} ms'.format(
+            1e3 * sorted(ends)[len(ends) // 2], 1e3 * max(ends)), flush=True)
+        zeros = [at for at, *value in receiver.after(when) if tuple(value) == ZERO]
+        self.assertGreater(len(zeros), 15 * AGAINST_S)
+        self.assertLess(max(b - a for a, b in zip(zeros, zeros[1:])), 0.2)
+        nav.end()
+        self.state.wait_robot(name, lambda gate: not gate.also_commanded_by, 'that nobody does')
+        return zeros
+
+    def test_a_stop_holds_against_10_hz(self):
+        name, witness, receiver, _ = self.robot()
+        self.drive_against(name, witness, receiver, '/{}/cmd_vel'.format(name), 10)
+        # Nobody else is there now: own navigation must not find the way blocked for ever.
+        wait_for(lambda: receiver.received and time.monotonic() - receiver.received[-1][0] > 0.5,
+                 what='silence', poll_s=0.05)
+
+    def test_a_stop_holds_against_50_hz(self):
+        name, witness, receiver, _ = self.robot()
+        self.drive_against(name, witness, receiver, '/{}/cmd_vel'.format(name), 50)
+
+    def test_a_stop_holds_behind_a_guard_that_answers(self):
+        name, witness, receiver, _ = self.robot()
+        self.guard(name)
+        self.centre(name, receiver)
+        self.drive_against(name, witness, receiver, '/{}/cmd_vel'.format(name), 50)
+
+    def test_an_input_of_its_multiplexer_counts(self):
+        """What wins there are zeros on the better input, as long as anybody uses the other."""
+        (name, receiver), = self.robots(1, 'turtlebot2', 'cmd_vel_mux/input/teleop')
+        self.process('other_driver.py', '', '/{}/cmd_vel_mux/input/navi'.format(name), '10', '0.5',
+                     '__name:=' + NAV)
+        self.mux.stop(True)
+        self.state.wait_robot(name, lambda gate: NAV in gate.also_commanded_by, 'the name')
+        when = time.monotonic()
+        wait_for(lambda: len(receiver.after(when)) > 40, 4.0, '20 zeros a second')
+        self.assertEqual({entry[1:] for entry in receiver.after(when)}, {ZERO})
+
+
+if __name__ == '__main__':
+    rospy.init_node('gates_others_test')
+    rostest.rosrun('mhri', 'gates_others', GatesOthersTest)
