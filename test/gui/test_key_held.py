@@ -8,6 +8,7 @@ import pytest
 from python_qt_binding.QtWidgets import QApplication
 
 from mhri.gui.driving.key_state import KeyState
+from mhri.gui.driving.x_server import XServer
 from support.ros_system import wait_for
 
 # An X server repeats a key from 0.66 s on; the power is cut after 2 s.
@@ -75,6 +76,15 @@ def test_the_keys_that_are_down_are_known(down):
     print('MEASURED one look at the keyboard: {:.0f} us (median)'.format(sorted(times)[100]))
     keys.close()
     assert keys.down() is None
+
+
+def test_the_extensions_of_the_server_are_known_and_this_one_is_no_vnc():
+    server = XServer()
+    said = subprocess.run(('xdpyinfo',), stdout=subprocess.PIPE, check=True).stdout.decode()
+    said = said.partition('extensions:')[2].partition('default screen')[0]
+    assert server.extensions() == {line.strip() for line in said.splitlines()[1:]}
+    server.close()
+    assert KeyState().remote == ''
 
 
 def test_without_an_x_server_nothing_is_known(monkeypatch):

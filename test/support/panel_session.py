@@ -21,6 +21,9 @@ class PanelSession:
     :param robots: the names of the robots that these bring
     """
 
+    #: "localhost": the screen is reached over the network
+    display_host = ''
+
     def __init__(self, launches, robots):
         self.system = System()
         self.host = None
@@ -35,7 +38,7 @@ class PanelSession:
         from mhri.presenters.screen_host import ScreenHost
         from mhri.ros.screen.backend import ScreenBackend
         # Before there is an application: it takes the screen that is named then.
-        self.system.screen()
+        self.system.screen(host=self.display_host)
         self.system.start_master()
         self.system.node('mux', '__name:=mux')
         self.system.node('gates')

@@ -183,9 +183,9 @@ class System:
         """Start roslaunch with a file of this package."""
         return self.start('roslaunch', 'mhri', *args)
 
-    def screen(self, size='1920x1080x24'):
+    def screen(self, size='1920x1080x24', host=''):
         """Start a virtual screen for this system and adopt it."""
-        process, display = start_xvfb(size)
+        process, display = start_xvfb(size, host)
         self._processes.append(process)
         self.env['DISPLAY'] = os.environ['DISPLAY'] = display
         return display

@@ -9,21 +9,23 @@ _FIRST, _LAST = 200, 9999
 _START_S = 30.0
 
 
-def start_xvfb(size='1920x1080x24'):
+def start_xvfb(size='1920x1080x24', host=''):
     """Start Xvfb on a display of its own and wait until it answers.
 
     The number is chosen here: with ``-displayfd`` a server takes no lock, and one that starts while
     another ends may lose its socket to it.
 
     :param size: width x height x depth
+    :param host: "localhost": the display is reached over the network, as one that ssh forwards
     :returns: (process, display such as ``:4711``)
     :raises RuntimeError: no server answered in half a minute
     """
     deadline = time.monotonic() + _START_S
     while time.monotonic() < deadline:
-        display = ':{}'.format(random.randint(_FIRST, _LAST))
+        number = ':{}'.format(random.randint(_FIRST, _LAST))
+        display = host + number
         process = subprocess.Popen(
-            ['Xvfb', display, '-screen', '0', size, '-nolisten', 'tcp'],
+            ['Xvfb', number, '-screen', '0', size, '-listen' if host else '-nolisten', 'tcp'],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
         while process.poll() is None and time.monotonic() < deadline:
             if subprocess.call(['xdpyinfo', '-display', display], stdout=subprocess.DEVNULL,

@@ -11,6 +11,7 @@ import time
 from python_qt_binding.QtCore import QObject, QTimer
 from python_qt_binding.QtWidgets import QApplication
 
+from mhri.core.driving.remote_display import HELD_S
 from mhri.core.robots.names import tidy_name
 from mhri.core.screen.busy import close_question
 from mhri.core.screen.saved_state import usable_state
@@ -23,6 +24,7 @@ from mhri.presenters.event_host import EventHost
 from mhri.presenters.fault_host import FaultHost
 from mhri.presenters.map_host import MapHost
 from mhri.gui.screen.screen import ScreenWidget
+from mhri.gui.screen.words import remote_stick_texts
 from mhri.presenters.pad_host import PadHost
 from mhri.presenters.requests_host import RequestsHost
 from mhri.presenters.session_host import SessionHost, ShelfHost
@@ -34,6 +36,8 @@ from mhri.ros.drill.faults_client import FaultsClient
 from mhri.ros.drill.state import DrillClient
 from mhri.ros.resources import resource_path
 
+LET_GO = ('stick let go: nothing came from the remote display for {:.0f} s; press the key, or take '
+          'the stick, again'.format(HELD_S))
 DRAW_MS = 50
 # So long other things have their turn after a drawing, on a busy computer, too.
 REST_MS = 20
@@ -124,6 +128,7 @@ class ScreenHost(QObject):
         panel.release_requested.connect(operator.release)
         panel.power_cut_requested.connect(lambda: operator.set_motor_power(False))
         panel.control_requested.connect(operator.take_control)
+        panel.stick_ran_out.connect(lambda: self.events.note('stick.let_go', LET_GO))
         panel.robot_list.ask_requested.connect(operator.controls.ask)
         self._draw_timer.timeout.connect(self._draw_in_turn)
         self._stick_timer.timeout.connect(self._repeat_stick)
@@ -156,6 +161,8 @@ class ScreenHost(QObject):
         if self.operator.speaks:
             self._stop_watch.start()
         self.events.start()
+        if self.screen.remote:
+            self.events.note('screen.remote', remote_stick_texts(self.screen.remote)[0])
         self.draw()
 
     def _draw_in_turn(self):

@@ -65,6 +65,7 @@ KINDS: Dict[str, Tuple[str, str]] = {
     'gates.silent': (ATTENTION, ATTENTION_TONE), 'gates.back': (CALM, CALM_TONE),
     'master.lost': (ATTENTION, ATTENTION_TONE), 'master.back': (CALM, CALM_TONE),
     'screen.cut_off': (ALARM, ATTENTION_TONE), 'screen.note': (CALM, ''),
+    'screen.remote': (CALM, ''), 'stick.let_go': (ATTENTION, ATTENTION_TONE),
     'screen.trouble': (ATTENTION, ''), 'camera.budget': (ATTENTION, ''),
 }
 

@@ -12,6 +12,7 @@ from python_qt_binding.QtWidgets import (
     QAbstractButton, QAbstractItemView, QAbstractSlider, QAbstractSpinBox, QApplication, QComboBox,
     QLineEdit, QPlainTextEdit, QTextEdit, QWidget)
 
+from mhri.gui.driving.hold_limit import HoldLimit
 from mhri.gui.driving.key_state import KeyState
 from mhri.gui.driving.stop_bar import CUT_AFTER_S
 
@@ -111,7 +112,8 @@ class DriveKeys(QObject):
     text field has the focus or a list is open, and with Ctrl, Alt or Meta; but Shift+Space stops
     everything, always, and held for 2 s cuts the power. With Shift the number pad does nothing. A
     key acts once, however long it is held, and counts as let go when it is
-    (:mod:`mhri.gui.driving.key_state`).
+    (:mod:`mhri.gui.driving.key_state`); on a remote display also when no key has been pressed or
+    repeated for a second. It then has to be pressed again.
 
     :param panel: the panel; a key that no widget has the focus for is its own
     :param keys: :class:`mhri.gui.driving.key_state.KeyState`
@@ -139,6 +141,8 @@ class DriveKeys(QObject):
     command_pressed = Signal(str)
     #: T was pressed or let go (push-to-talk)
     talk_changed = Signal(bool)
+    #: keys that were held count as let go: nothing came from the remote display
+    ran_out = Signal()
 
     def __init__(self, panel, keys=None):
         super().__init__(panel)
@@ -163,6 +167,9 @@ class DriveKeys(QObject):
         self._look_timer = QTimer(self)
         self._look_timer.setInterval(_LOOK_MS)
         self._look_timer.timeout.connect(self._look)
+        self.limit = HoldLimit(self)
+        self.limit.remote = self._keys.remote
+        self.limit.ran_out.connect(self._run_out)
 
     @property
     def talking(self):
@@ -188,6 +195,13 @@ class DriveKeys(QObject):
         self._dead.update(self._held)
         self._held.clear()
         self._update()
+
+    def _run_out(self):
+        """Let go what nobody has shown to be held still."""
+        if self._held or self._talk is not None:
+            self.centre()
+            self._set_talk(None)
+            self.ran_out.emit()
 
     def close(self):
         """Let every key go, and the X server, too."""
@@ -235,6 +249,7 @@ class DriveKeys(QObject):
             return self._on_release(event) or bool(stops)
         if stops:
             return self._on_stop(event, kind)
+        self._note_life()
         focus = QApplication.focusWidget() or watched
         if kind == QEvent.KeyPress and _is_text_field(watched):
             self._typed = _identity(event)
@@ -249,6 +264,16 @@ class DriveKeys(QObject):
         elif self._is_new(event):
             action()
         return True
+
+    def _note_life(self):
+        """Take in that a key comes, or its repeat: what was let go before has been told before.
+
+        Of several keys that are held only the last one repeats.
+        """
+        if self._real & (set(self._held) | {self._talk}):
+            self.limit.renew()
+        else:
+            self.limit.end()
 
     def _is_new(self, event):
         """Tell whether a press is one, and not the repeat of one."""
@@ -372,6 +397,7 @@ class DriveKeys(QObject):
         """Hold the key of push-to-talk, or let it go (None)."""
         changed = (identity is None) != (self._talk is None)
         self._talk = identity
+        self._note_life()
         if changed:
             self.talk_changed.emit(identity is not None)
 
@@ -379,6 +405,7 @@ class DriveKeys(QObject):
         """Hold a key."""
         self._dead.discard(identity)
         self._held[identity] = direction
+        self._note_life()
         self._update()
 
     def _update(self):

@@ -5,6 +5,7 @@ from python_qt_binding.QtCore import QEvent, QRect, Qt
 from python_qt_binding.QtGui import QFontMetrics, QKeySequence, QPainter
 from python_qt_binding.QtWidgets import QApplication, QWidget
 
+from mhri.core.driving.remote_display import HELD_S
 from mhri.gui.driving.drive_keys import COMMANDS
 from mhri.gui.screen import theme
 
@@ -21,10 +22,11 @@ COMMAND_WORDS = {
     'record': 'record the whole session, or end the recording',
     'mark': 'mark this moment, with a note if you like',
 }
+DRIVE_KEYS = 'arrows or W A S D'
 # (keys, what they do), in the order on show.
 KEY_ROWS = (
     ('Shift+Space', 'STOP ALL; held for 2 s, also cut the power of the motors'),
-    ('arrows or W A S D', 'drive while they are held; two at once combine'),
+    (DRIVE_KEYS, 'drive while they are held; two at once combine'),
     ('Space', 'centre the stick'),
     ('1 to 9', 'add the robot of that number to those driven, or take it out'),
     ('Ctrl+1 to Ctrl+9', 'drive the robot of that number and no other'),
@@ -72,6 +74,12 @@ class KeyHelp(QWidget):
         """Show these keys: (keys, what they do)."""
         self._rows = tuple(rows)
         self.setAccessibleDescription('; '.join('{}: {}'.format(*row) for row in self._rows))
+
+    def show_remote(self, remote):
+        """Say how the keys drive on a remote display; '' is one of this computer."""
+        if remote:
+            self.show_rows((keys, 'drive while they repeat: without, for {:.0f} s'.format(HELD_S)
+                            if keys == DRIVE_KEYS else text) for keys, text in self._rows)
 
     def toggle(self):
         """Show it, or hide it."""

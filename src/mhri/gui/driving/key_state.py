@@ -7,9 +7,11 @@ press is in its queue already when it reads the release; under load it often is 
 is held seems to be let go and pressed again, many times in a minute. So the server is asked.
 """
 import contextlib
+import os
 
 from python_qt_binding.QtGui import QGuiApplication
 
+from mhri.core.driving.remote_display import remote_kind
 from mhri.gui.driving.x_server import XError, XServer
 
 
@@ -22,9 +24,12 @@ class KeyState:
 
     def __init__(self):
         self._server = None
+        #: how the display is shown on another computer, see :func:`remote_kind`
+        self.remote = ''
         if QGuiApplication.platformName() == 'xcb':
             with contextlib.suppress(XError):
                 self._server = XServer()
+                self.remote = remote_kind(os.environ.get('DISPLAY', ''), self._server.extensions())
 
     def down(self):
         """Return the key codes (X11: evdev's plus 8) that are down now; None: not known."""

@@ -7,6 +7,7 @@ from python_qt_binding.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
 from python_qt_binding.QtGui import QPainter, QPalette, QPen
 from python_qt_binding.QtWidgets import QSizePolicy, QWidget
 
+from mhri.gui.driving.hold_limit import HoldLimit
 from mhri.gui.screen import theme
 
 CENTRE_SNAP = 0.08  # deflection that still is neutral
@@ -46,11 +47,14 @@ class VirtualJoystick(QWidget):
     """Rotation and translation at once, by mouse or touch.
 
     The knob follows the pointer while it is held and is neutral at any other time: on release, when
-    the window loses the focus, is hidden, blocked or disabled, or when the pointer is lost.
+    the window loses the focus, is hidden, blocked or disabled, or when the pointer is lost. On a
+    remote display (``limit``) also when the pointer has not moved for a second.
     """
 
     #: forward (ahead +) and turn (left +), each in [-1, 1]; on every change, at once
     moved = Signal(float, float)
+    #: it was let go since nothing came from the remote display
+    ran_out = Signal()
 
     def __init__(self, parent=None):
         super().__init__(parent)
@@ -59,6 +63,10 @@ class VirtualJoystick(QWidget):
         self._knob = (0.0, 0.0)
         self._active = True
         self._touch_id = None
+        # A scripted drive holds it, and no hand over a connection.
+        self._made_up = False
+        self.limit = HoldLimit(self)
+        self.limit.ran_out.connect(self._run_out)
         self.setAttribute(Qt.WA_AcceptTouchEvents)
         # Seen without a button, a move says that the release was lost.
         self.setMouseTracking(True)
@@ -76,10 +84,16 @@ class VirtualJoystick(QWidget):
     def centre(self):
         """Let the knob go, wherever the pointer is; it has to be taken again."""
         self._touch_id = None
+        self.limit.end()
         if self._dragging:
             self._dragging = False
             self._set_deflection((0.0, 0.0))
         self.show_keys(0.0, 0.0)
+
+    def _run_out(self):
+        """Let go what nobody has shown to be held still."""
+        self.centre()
+        self.ran_out.emit()
 
     def show_keys(self, forward, turn):
         """Show a deflection held by keys; the pointer wins while it holds the knob."""
@@ -116,6 +130,7 @@ class VirtualJoystick(QWidget):
     def mousePressEvent(self, event):  # noqa: N802
         """Take the knob."""
         if event.button() == Qt.LeftButton and self._touch_id is None:
+            self._made_up = not event.spontaneous()
             self._take(event.localPos())
 
     def mouseMoveEvent(self, event):  # noqa: N802
@@ -137,6 +152,7 @@ class VirtualJoystick(QWidget):
         for point in event.touchPoints():
             if self._touch_id is None and point.state() == Qt.TouchPointPressed:
                 self._touch_id = point.id()
+                self._made_up = False
                 self._take(point.pos())
             elif point.id() == self._touch_id:
                 if point.state() == Qt.TouchPointReleased:
@@ -153,6 +169,8 @@ class VirtualJoystick(QWidget):
 
     def _follow(self, pos):
         """Place the knob where the pointer is, at most at the rim."""
+        if not self._made_up:
+            self.limit.renew()
         middle, travel = QRectF(self.rect()).center(), self.travel()
         across = (pos.x() - middle.x()) / travel
         along = (middle.y() - pos.y()) / travel

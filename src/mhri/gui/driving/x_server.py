@@ -59,6 +59,16 @@ class XServer:
         return None if not place else _take(place, 32 + 4 * struct.unpack_from(
             '=I', ctypes.string_at(place, 8), 4)[0])
 
+    def extensions(self):
+        """Return the names of the extensions that the server has, none without an answer."""
+        answer = self.ask('xcb_list_extensions')
+        names, place = set(), 32
+        for _ in range(answer[1] if answer else 0):
+            end = place + 1 + answer[place]
+            names.add(answer[place + 1:end].decode('latin-1'))
+            place = end
+        return frozenset(names)
+
     def next_event(self):
         """Return the first 32 bytes of the next event, None where there is none."""
         self._xcb.xcb_poll_for_event.restype = ctypes.c_void_p

@@ -80,6 +80,8 @@ class ScreenWidget(QWidget):
     power_cut_requested = Signal()
     #: this screen is to be the one that drives
     control_requested = Signal()
+    #: the stick counts as let go, since nothing came from a remote display
+    stick_ran_out = Signal()
 
     def __init__(self, ui_dir, parent=None):
         super().__init__(parent)
@@ -99,6 +101,8 @@ class ScreenWidget(QWidget):
         self.foot_column.insertWidget(1, self.leave_bar)
         self.arrangement = ScreenLayout(self)
         self.drive_keys, self.key_help = DriveKeys(self), KeyHelp(self)
+        self.joystick.limit.remote = self.drive_keys.limit.remote
+        self.key_help.show_remote(self.remote)
         self.remove_steps = RemoveSteps(self)
         mark_drive_area(self)
         # A click beside a text field ends the typing, so that the keys drive again.
@@ -157,6 +161,8 @@ class ScreenWidget(QWidget):
         self.drive_keys.talk_changed.connect(self._tell_talk)
         self.joystick.moved.connect(self._on_stick)
         self.drive_keys.moved.connect(self._on_stick)
+        for part in (self.joystick, self.drive_keys):
+            part.ran_out.connect(self.stick_ran_out)
         self.drive_keys.centre_pressed.connect(self.centre_stick)
         self.drive_keys.stop_pressed.connect(self.stop_bar.request_stop)
         self.drive_keys.stop_held.connect(self.stop_bar.power_cut_requested)
@@ -272,6 +278,11 @@ class ScreenWidget(QWidget):
         unit = self.fontMetrics().height()
         return QSize(38 * unit, 26 * unit)
 
+    @property
+    def remote(self):
+        """How the display is shown on another computer ('VNC', 'forwarded X'), '' if it is not."""
+        return self.drive_keys.limit.remote
+
     def stick(self):
         """Return (forward, turn), each in [-1, 1], as held by pointer or keys now."""
         return self._stick
@@ -384,6 +395,8 @@ class ScreenWidget(QWidget):
             note, shorter = words.heard_text(view.heard), words.heard_shorter(view.heard)
         elif not in_force:
             note = 'no effect: {} drives'.format(self.mode_combo.label_of(view.mode))
+        elif self.remote:
+            note, shorter = words.remote_stick_texts(self.remote)
         else:
             note = 'drag, arrow keys or W A S D; space centres'
         self.drive_note.show_text(note, theme.MUTED, shorter)

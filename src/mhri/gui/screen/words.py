@@ -4,6 +4,7 @@
 import math
 import re
 
+from mhri.core.driving.remote_display import HELD_S
 from mhri.core.link.control import ASK_FOR, TAKE_IT
 from mhri.core.screen import views
 
@@ -104,6 +105,16 @@ def battery_text(fraction):
     if not _is_number(fraction):
         return ''
     return '{:.0f} %'.format(100.0 * min(1.0, max(0.0, fraction)))
+
+
+def remote_stick_texts(remote):
+    """Return (text, shorter ones) of how keys and stick drive on a remote display.
+
+    :param remote: what kind it is, e.g. "VNC"
+    """
+    rule = 'let go after {:.0f} s unless the key repeats or the pointer moves'.format(HELD_S)
+    return 'remote display ({}): {}'.format(remote, rule), (
+        rule, 'remote: let go after {:.0f} s'.format(HELD_S))
 
 
 def heard_text(heard):
