@@ -183,9 +183,14 @@ def test_pictures_that_were_missed_are_fetched(lab):
     lab.start_host_side('--keep', 'pictures')
     folder = os.path.join(lab.robot.home, 'mhri', 'link', 'bot1', 'kept', 'open')
     camera = '/bot1/camera/rgb/image_raw/compressed'
-    wait_for(lambda: listeners_of_camera(lab) and os.path.isdir(folder) and any(
-        os.path.getsize(os.path.join(folder, name)) > 50000 for name in os.listdir(folder)),
-        LONG_S, 'the robot to record', 0.1)
+
+    def has_picture():
+        try:
+            return any(camera[5:].encode() in open(os.path.join(folder, name), 'rb').read()
+                       for name in os.listdir(folder))
+        except FileNotFoundError:
+            return False  # not begun, or just ended
+    wait_for(has_picture, LONG_S, 'the robot to record a picture', 0.1)
     lab.host.kill(lab.link_of_host)
     begun = time.time()
     time.sleep(1.0)
