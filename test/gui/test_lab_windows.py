@@ -43,6 +43,18 @@ class FailsToDraw(TurtleBotWindow):
             raise ZeroDivisionError('x')
 
 
+class Exits(TurtleBotWindow):
+    def show_view(self, view, stop_all=False):
+        super().show_view(view, stop_all)
+        if view.x_m is not None:
+            raise SystemExit(3)
+
+
+class ExitsAtOnce(TurtleBotWindow):
+    def _build(self, ui_dir, type_label):
+        raise SystemExit(3)
+
+
 class FailsToRestore(TurtleBotWindow):
     def restore_settings(self, settings):
         raise ValueError('old')
@@ -75,6 +87,7 @@ def lab(tmp_path, monkeypatch):
     (tmp_path / 'lab_robot' / 'window.py').write_text(MODULE)
     (tmp_path / 'lab_robot' / 'slip.py').write_text('class Half(')
     (tmp_path / 'lab_robot' / 'quits.py').write_text('1 / 0')
+    (tmp_path / 'lab_robot' / 'exits.py').write_text('raise SystemExit(3)')
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.setattr(sys, 'excepthook', sys.__excepthook__)
     yield
@@ -97,6 +110,8 @@ def test_a_window_of_a_lab(operator, ui_dir):
     ('python_qt_binding.QtWidgets.QDialog',
      'is no subclass of mhri.gui.screen.bot_window.BotWindow'),
     ('lab_robot.window.FailsToBuild', "cannot be opened (KeyError: 'wheel')"),
+    ('lab_robot.exits.X', '(SystemExit: '),
+    ('lab_robot.window.ExitsAtOnce', 'cannot be opened (SystemExit: '),
     ('lab_robot.window.WantsMore', 'cannot be opened (TypeError: '),
     ('.', 'cannot be imported'), ('..X', 'cannot be imported'),
 ])
@@ -150,8 +165,10 @@ def drawn(host, operator, rounds=3):
         operator.wait_until(lambda: not host.tiles.draw_next())
 
 
-def test_one_that_fails_while_it_draws_is_replaced_and_the_others_go_on(host, operator):
-    lab = host.add('bot1', 'lab_robot.window.FailsToDraw')
+@pytest.mark.parametrize('key, why', [('FailsToDraw', 'ZeroDivisionError'),
+                                      ('Exits', 'SystemExit')])
+def test_one_that_fails_while_it_draws_is_replaced_and_the_others_go_on(host, operator, key, why):
+    lab = host.add('bot1', 'lab_robot.window.' + key)
     other = host.add('bot2', 'turtlebot')
     good = host.add('bot3', 'lab_robot.window.Good')
     drawn(host, operator)
@@ -163,9 +180,9 @@ def test_one_that_fails_while_it_draws_is_replaced_and_the_others_go_on(host, op
     assert not any(widget is lab and widget.isVisible()
                    for widget in operator.application.allWidgets())
     assert host.windows['bot2'] is other and host.windows['bot3'] is good
-    assert 'ZeroDivisionError' in host.screen.look_label.text()
+    assert why in host.screen.look_label.text()
     host.windows['bot1'].stop_requested.emit()
-    assert type(host.add('bot4', 'lab_robot.window.FailsToDraw')) is TurtleBotWindow
+    assert type(host.add('bot4', 'lab_robot.window.' + key)) is TurtleBotWindow
 
 
 def test_one_that_cannot_take_its_settings_back(host):

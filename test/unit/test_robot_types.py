@@ -84,6 +84,20 @@ def test_parameters_override_any_of_it():
     assert kind.limits == Limits(0.1, 3.14) and kind.odometry == ('odom',)
 
 
+@pytest.mark.parametrize('window, taken', [
+    ('antigravity.Window', False), ('os', False), ('', False), ('a_robot.window.Crawler', True),
+    ('turtlebot', True)])
+def test_a_robot_names_no_window_but_one_that_is_installed(window, taken):
+    """Whoever shows a window runs its code."""
+    types, _ = load_robot_types([], [
+        Export('a_robot', '/a/crawler.yaml', GOOD, 'a_robot.window.Crawler')])
+    types.update(shipped())
+    kind, errors = resolve_robot_type(types, 'bot1', {'robot_type': 'turtlebot2', 'mhri': {
+        'window': window, 'limits': {'linear_mps': 0.1}}})
+    assert kind.window == (window if taken else 'turtlebot') and kind.limits.linear_mps == 0.1
+    assert [error.key for error in errors] == ([] if taken else ['window'])
+
+
 HARDWARE = {
     'power_by_topic': ('motor_power: {topic: motor_power}', MotorPowerSpec('motor_power'), None),
     'power_by_number': (

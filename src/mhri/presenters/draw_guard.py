@@ -67,7 +67,9 @@ class DrawGuard:
         """Draw; return whether it succeeded."""
         try:
             job(*args)
-        except Exception as error:  # the guard of this boundary: see the head of this file
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # the guard of this boundary: see the head of this file
             reason = '{}: {}'.format(type(error).__name__, error)
             self.cover.failed(reason)
             self._log(reason)

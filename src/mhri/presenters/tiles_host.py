@@ -192,8 +192,8 @@ class TilesHost(QObject):
         key = self._keys[name]
         try:
             job(*args)
-        except Exception as error:
-            if not self._maker.trusts(key):
+        except BaseException as error:
+            if isinstance(error, KeyboardInterrupt) or not self._maker.trusts(key):
                 raise
             self._maker.distrust(key, '{} failed ({}: {}); mend it and start mhri again'.format(
                 key, type(error).__name__, error))
@@ -282,8 +282,8 @@ class TilesHost(QObject):
         try:
             look = tile.save_settings()
             json.dumps(look)
-        except Exception as error:
-            if not self._maker.trusts(self._keys[name]):
+        except BaseException as error:
+            if isinstance(error, KeyboardInterrupt) or not self._maker.trusts(self._keys[name]):
                 raise
             rospy.logwarn('the look of the window of %s is not kept: %s', name, error)
             return

@@ -119,7 +119,7 @@ def believed(robot: str, said: Mapping[str, object], types: Mapping[str, RobotTy
         kept['limits'] = {'linear_mps': low.linear_mps, 'angular_rad_s': low.angular_rad_s}
     if 'label' in overrides:
         kept['label'] = tidy_text(kind.label, MAX_LABEL)
-    if kind.window != base.window and kind.window in {one.window for one in types.values()}:
+    if kind.window != base.window:
         kept['window'] = kind.window
     if kept:
         found['mhri'] = kept

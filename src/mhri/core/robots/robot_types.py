@@ -356,7 +356,12 @@ def resolve_robot_type(types: Mapping[str, RobotType], robot: str, params: Mappi
     overrides = params.get('mhri')
     if overrides:
         try:
-            chosen = _overridden(chosen, overrides, origin)
+            chosen, standard = _overridden(chosen, overrides, origin), chosen
+            # To show a window is to run its code: a robot may only choose among those installed.
+            if chosen.window not in {one.window for one in types.values()}:
+                errors.append(ConfigError(origin, 'window', 'no installed robot type has {!r}; '
+                                          'export it from a package'.format(chosen.window[:80])))
+                chosen = replace(chosen, window=standard.window)
         except ConfigError as error:
             errors.append(error)
     return chosen.at_root() if seen.at_root else chosen, errors

@@ -40,7 +40,9 @@ def import_window(key):
     module, _, name = key.rpartition('.')
     try:
         found = getattr(importlib.import_module(module), name)
-    except Exception as error:  # the guard of this boundary: whatever a lab's module may raise
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # the guard of this boundary: a module may even exit
         raise ImportError('{} cannot be imported ({}: {}); has its package a setup.py and '
                           'catkin_python_setup(), and is its workspace built and sourced?'.format(
                               key, type(error).__name__, error))
@@ -70,7 +72,9 @@ class WindowMaker:
                 return self._class(key)(*args), ''
             except ImportError as error:
                 self.distrust(key, str(error))
-            except Exception as error:  # the guard of this boundary: see the head of this file
+            except KeyboardInterrupt:
+                raise
+            except BaseException as error:  # the guard of this boundary: see the head of this file
                 self.distrust(key, '{} cannot be opened ({}: {}); mend it and start mhri again'
                               .format(key, type(error).__name__, error))
         return window_class(STANDARD)(*args), '{}; the standard window is shown instead'.format(
