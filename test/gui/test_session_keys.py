@@ -8,6 +8,7 @@ import pytest
 from test_keyboard_session import ROBOTS, Session
 
 from mhri.core.session.folder import marks_of, read_events
+from support.graph import STICK
 
 
 class Recorded(Session):
@@ -73,16 +74,59 @@ def test_2_n_marks_and_asks_what_is_here(session):
                   == ['a red door, seen from W'], 'the note at its mark')
 
 
-def test_3_while_keys_drive_the_note_leaves_them_the_keyboard(session):
-    session.to_the_pictures()
-    session.key('1')
-    session.until(lambda: session.selected == ('bot1',), 'bot1 alone')
-    session.until(lambda: session.host.session._keys_drive, 'the keys to drive')
+def words_typed(session, words):
+    """Press N and type words at once; return what has become of them."""
     session.key('n')
-    session.until(lambda: session.note.isVisible(), 'the note')
-    assert not session.note.edit.hasFocus()
-    session.hold('w', session.witnesses['bot1'].moving, 'bot1 to drive')
-    session.rests()
+    session.xdotool('type', '--delay', '20', words)
+    session.until(lambda: session.note.edit.text() == words, 'the words')
+    session.key('Return')
+    session.until(lambda: marks_of(session.events())[-1].text == words, 'the note at its mark')
+    session.until(lambda: not session.note.isVisible(), 'the note to go')
+
+
+def test_3_words_typed_after_n_command_nothing(session):
+    import rospy
+    from sensor_msgs.msg import Joy
+    session.to_the_pictures()
+    session.key('0')
+    session.until(lambda: session.selected == ROBOTS, 'all')
+    session.until(lambda: session.operator.view().status.endswith('ready'), 'ready')
+    heard = []
+    subscriber = rospy.Subscriber(STICK, Joy, lambda message: heard.append(tuple(message.axes)),
+                                  queue_size=50)
+    session.until(lambda: heard, 'the stick')
+    for words in ('wall with water', 'red barrel', 'door 12, mapped'):
+        words_typed(session, words)
+    assert not any(any(axes) for axes in heard)
+    assert session.selected == ROBOTS and session.view.on
+    subscriber.unregister()
+
+
+def test_3_while_keys_drive_only_n_again_opens_the_note(session):
+    session.to_the_pictures()
+    session.key('2')
+    session.until(lambda: session.selected == ('bot1',), 'bot1 alone')
+    session.until(lambda: session.operator.view().status.endswith('ready'), 'ready')
+    marks = len(marks_of(session.events()))
+    session.xdotool('keydown', 'd')
+    try:
+        session.until(lambda: session.screen.stick() == (0.0, -1.0), 'the key to drive')
+        session.key('n')
+        session.until(session.note.isVisible, 'the note')
+        assert session.screen.stage.hasFocus() and session.screen.stick() == (0.0, -1.0)
+        session.until(session.witnesses['bot1'].moving, 'bot1 to drive')
+        session.key('n')
+        session.until(lambda: session.note.edit.hasFocus(), 'the note to have the keyboard')
+        assert session.screen.stick() == (0.0, 0.0), 'who types does not drive'
+        session.rests()
+    finally:
+        session.xdotool('keyup', 'd')
+    session.xdotool('type', 'sand')
+    session.until(lambda: session.note.edit.text() == 'sand', 'the typing, without the held key')
+    session.key('Return')
+    session.until(lambda: not session.note.isVisible(), 'the note to go')
+    session.until(lambda: marks_of(session.events())[-1].text == 'sand', 'the note at its mark')
+    assert len(marks_of(session.events())) == marks + 1, 'N again is no other mark'
     session.key('1')
     session.until(lambda: session.selected == (), 'none')
 
@@ -121,7 +165,7 @@ def test_6_events_of_the_screen_are_kept(session):
     session.until(lambda: [event.robot for event in session.events()
                            if event.kind == 'battery'] == ['bot1'], 'the battery')
     kinds = [event.kind for event in session.events()]
-    assert kinds.count('selection') == 2, 'seen on the graph, and not told by the screen as well'
+    assert kinds.count('selection') == 3, 'seen on the graph, and not told by the screen as well'
 
 
 def test_6_a_drill_is_on_the_screen_while_it_runs(session):

@@ -6,6 +6,8 @@ And those that were recorded before, with the page that lists them.
 
 Everything here runs on the GUI thread; nothing waits.
 """
+import collections
+
 from mhri.core.screen.views import ROS_CONNECTED
 from mhri.core.screen.why import VIRTUAL_JOYSTICK
 from mhri.gui.session.note_bar import NoteBar
@@ -31,6 +33,8 @@ class SessionHost:
         self._client = client or SessionClient()
         self._started = False
         self._keys_drive = False
+        # Of each mark that is on its way what the note bar knows, None for one without a note yet.
+        self._marks = collections.deque()
         self._trouble = ''
         self._on = False
         self._build()
@@ -48,6 +52,8 @@ class SessionHost:
         self._screen.drive_keys.command_pressed.connect(self._on_command)
         self.button.clicked.connect(self.toggle)
         self.note_bar.noted.connect(self._client.note)
+        self.note_bar.unmarked.connect(lambda text: self._events.note(
+            'session.trouble', 'note without a mark: ' + text))
         self.note_bar.left.connect(self._screen.stage.setFocus)
         self._events.told.connect(self._client.tell)
 
@@ -55,7 +61,7 @@ class SessionHost:
         if command == 'record':
             self.toggle()
         elif command == 'mark':
-            self.mark()
+            self._mark_by_key()
         elif command == 'stills':
             self._still()
 
@@ -76,6 +82,19 @@ class SessionHost:
 
     def mark(self):
         """Mark this moment."""
+        self._marks.append(None)
+        self._client.mark()
+
+    def _mark_by_key(self):
+        """Mark this moment, and ask at once: words typed after N must not be commands.
+
+        While keys drive they go on; N once more, and the stick is centred and the note asked.
+        """
+        if self.note_bar.isVisible() and not self.note_bar.has_keyboard:
+            self._screen.centre_stick()
+            self.note_bar.take_keyboard()
+            return
+        self._marks.append(self.note_bar.ask_first(not self._screen.drive_keys.holding))
         self._client.mark()
 
     def _still(self):
@@ -110,15 +129,19 @@ class SessionHost:
             if session.trouble:
                 self._events.note('session.trouble', 'session: ' + session.trouble)
 
-    def _show_answer(self, asked, done, text, mark):
+    def _show_answer(self, asked, done, text, name):
         """Say what has become of a request."""
+        mark = self._marks.popleft() if asked == 'mark' and self._marks else None
         if not done and asked == 'still':
             self._save_stills()
         elif not done:
             self._events.note('session.trouble', text)
         elif asked == 'mark':
             self._events.note('session.mark', text)
-            self.note_bar.ask(mark, not self._keys_drive)
+        if mark is not None:
+            self.note_bar.settle(mark, name if done else '', '' if done else text)
+        elif asked == 'mark' and done:
+            self.note_bar.ask(name, not self._keys_drive)
         self._screen.show_look_result(text)
 
     def close(self):

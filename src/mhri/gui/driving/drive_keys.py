@@ -176,6 +176,11 @@ class DriveKeys(QObject):
         """Whether T is held."""
         return self._talk is not None
 
+    @property
+    def holding(self):
+        """Whether keys hold the stick, also where they cancel each other."""
+        return bool(self._held)
+
     def deflection(self):
         """Return (forward, turn) as held by the keys now."""
         return self._deflection
@@ -252,6 +257,9 @@ class DriveKeys(QObject):
         self._note_life()
         focus = QApplication.focusWidget() or watched
         if kind == QEvent.KeyPress and _is_text_field(watched):
+            if _identity(event) in self._down:
+                # The repeat of a key that was pressed before the field had the keyboard.
+                return True
             self._typed = _identity(event)
         if self._typed == _identity(event) or not self._listens(watched, focus) \
                 or event.modifiers() & (Qt.AltModifier | Qt.MetaModifier):

@@ -20,7 +20,7 @@ COMMAND_WORDS = {
     'stills': 'save a still of every picture',
     'carry_on': 'continue the task that the robot you look at was taken from',
     'record': 'record the whole session, or end the recording',
-    'mark': 'mark this moment, with a note if you like',
+    'mark': 'mark this moment, with a note if you like; while keys drive, N again for the note',
 }
 DRIVE_KEYS = 'arrows or W A S D'
 # (keys, what they do), in the order on show.

@@ -11,17 +11,28 @@ SHOWN_MS = 20000
 LONGEST = 500
 
 
+class AskedMark:
+    """A mark that was asked for: its name, once it has one, and what is to be noted with it."""
+
+    def __init__(self, name=''):
+        self.name = name
+        self.text = ''
+        self.refused = False
+
+
 class NoteBar(QWidget):
-    """Hidden until :meth:`ask`; Return keeps what is typed, Escape leaves the mark as it is."""
+    """Hidden until it is asked; Return keeps what is typed, Escape leaves the mark as it is."""
 
     #: the mark's name and what was typed
     noted = Signal(str, str)
+    #: what was typed to a mark that was refused
+    unmarked = Signal(str)
     #: it had the keyboard, and has gone
     left = Signal()
 
     def __init__(self, parent=None):
         super().__init__(parent)
-        self._mark = ''
+        self._mark = AskedMark()
         self._build()
         self._connect()
 
@@ -55,22 +66,76 @@ class NoteBar(QWidget):
         self.keep_button.clicked.connect(self._keep)
         self._timer.timeout.connect(self._leave)
 
+    @property
+    def has_keyboard(self):
+        """Whether keys are typed here."""
+        return self.edit.hasFocus() or self.keep_button.hasFocus()
+
     def ask(self, mark, take_keyboard):
-        """Ask about a mark, such as "m3".
+        """Ask about a mark that has its name, such as "m3".
 
         What is half typed to the mark before is kept with that one.
 
-        :param take_keyboard: let it be typed at once; else after a click or F6
+        :param take_keyboard: let it be typed at once; else after N, a click or F6
         """
-        if self.edit.text().strip():
-            self.noted.emit(self._mark, self.edit.text().strip())
+        self._ask(AskedMark(mark), take_keyboard)
+
+    def ask_first(self, take_keyboard):
+        """Ask about a mark that is on its way: what is typed by then must not be commands.
+
+        :returns: what :meth:`settle` needs once it is known what has become of the mark
+        """
+        self._ask(AskedMark(), take_keyboard)
+        if take_keyboard:
+            # Whoever asked for it may think: words that come later are no commands, either.
+            self._timer.stop()
+        return self._mark
+
+    def settle(self, mark, name, problem=''):
+        """Take in the name of a mark, or why there is none; what was typed is kept either way."""
+        mark.name, mark.refused = name, not name
+        if mark.text:
+            self._tell(mark, mark.text)
+        if mark is self._mark:
+            self.edit.setPlaceholderText(problem or self._words())
+
+    def take_keyboard(self):
+        """Let it be typed from now on."""
+        self._timer.stop()
+        self.edit.setFocus(Qt.OtherFocusReason)
+        self.edit.setPlaceholderText(self._words())
+
+    def _ask(self, mark, take_keyboard):
+        """Begin anew."""
+        self._finish()
         self._mark = mark
-        self.edit.clear()
-        self.edit.setPlaceholderText('mark {} kept: what is here?'.format(mark[1:]))
         self.show()
         self._timer.start()
         if take_keyboard:
             self.edit.setFocus(Qt.OtherFocusReason)
+        self.edit.setPlaceholderText(self._words())
+
+    def _words(self):
+        """Return what is asked."""
+        saved = 'Mark {} saved. '.format(self._mark.name[1:]) if self._mark.name else ''
+        return saved + ('Add a note?' if self.has_keyboard else
+                        'N again, or a click, to add a note')
+
+    def _finish(self):
+        """Keep what is typed, if anything is."""
+        text = self.edit.text().strip()
+        if text:
+            self._tell(self._mark, text)
+        self.edit.clear()
+
+    def _tell(self, mark, text):
+        """Tell of a note, now or once its mark has a name."""
+        if mark.name:
+            self.noted.emit(mark.name, text)
+        elif mark.refused:
+            self.unmarked.emit(text)
+        else:
+            mark.text = text
 
     def keyPressEvent(self, event):  # noqa: N802
         """Close with Escape."""
@@ -81,17 +146,14 @@ class NoteBar(QWidget):
             super().keyPressEvent(event)
 
     def _keep(self):
-        """Keep what is typed, if anything is."""
-        text = self.edit.text().strip()
-        if text:
-            self.noted.emit(self._mark, text)
-        self.edit.clear()
+        """Keep what is typed, and go."""
+        self._finish()
         self._leave()
 
     def _leave(self):
         """Go, and give the keyboard back."""
         self._timer.stop()
-        had_keyboard = self.edit.hasFocus() or self.keep_button.hasFocus()
+        had_keyboard = self.has_keyboard
         self.hide()
         if had_keyboard:
             self.left.emit()
