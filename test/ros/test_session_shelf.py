@@ -1,14 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The sessions' replays and reports: one that cannot be started stands in nobody's way."""
+import os
 import subprocess
 import sys
 
 import pytest
 
-from mhri.ros.session.session_shelf import SessionShelf
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-PATIENCE_S = 60.0
+from mhri.ros.session.session_shelf import SessionShelf  # noqa: E402
+from support import made_session as made  # noqa: E402
+
+PATIENCE_S = 120.0
 
 
 @pytest.fixture
@@ -51,3 +55,18 @@ def test_a_report_that_cannot_be_started_can_be_asked_for_again(shelf, short_of_
     shelf.report('x')
     assert 'mhri/sessions/x' in news(shelf, 'told'), 'the word of the program that looked for it'
     assert news(shelf, 'report') == ''
+
+
+def test_a_report_of_the_panel_is_that_of_the_terminal(shelf, tmp_path):
+    """This process has imported mhri, and in a devel space has its sources first, as the panel."""
+    name = '2026-01-02-03-04-05'
+    folder = tmp_path / 'mhri' / 'sessions' / name
+    made.write_session(folder)
+    shelf.report(name)
+    with open(news(shelf, 'report'), encoding='utf-8') as page:
+        by_panel = page.read()
+    done = subprocess.run(['rosrun', 'mhri', 'mhri_report', str(folder)], timeout=PATIENCE_S,
+                          env=dict(os.environ, ROS_HOME=str(tmp_path)), stderr=subprocess.PIPE)
+    assert done.returncode == 0, done.stderr
+    path = tmp_path / 'mhri' / 'reports' / name / 'report.html'
+    assert 'not installed' not in by_panel and path.read_text(encoding='utf-8') == by_panel

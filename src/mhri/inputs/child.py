@@ -19,5 +19,8 @@ def command(module, *arguments):
     :param module: dotted name
     :param arguments: texts, which the module finds as ``sys.argv[1:]``
     """
-    paths = os.pathsep.join(path for path in sys.path if os.path.isabs(path))
+    # A package of a devel space puts its sources first once it is imported, and its messages are
+    # not there: what PYTHONPATH says comes first, as where this process was started.
+    wanted = os.environ.get('PYTHONPATH', '').split(os.pathsep) + sys.path
+    paths = os.pathsep.join(path for path in dict.fromkeys(wanted) if os.path.isabs(path))
     return [sys.executable, '-I', '-c', _RUN, paths, module, *arguments]
