@@ -16,7 +16,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 
 from support.doctor_world import (  # noqa: E402
     add, answer, apart, at, BOOL, BOT_IP, change, IGNORE, links, ODOMETRY, parameter, seen_as,
-    seen_at, stream, TYPES, without, World)
+    seen_at, stream, TWIST, TYPES, without, World)
 
 
 def samples(ahead_s, count=20):
@@ -112,8 +112,13 @@ CASES = {
     'bad name': ([add('/_bot/base', ['/_bot/x'])], ['robot_name_bad']),
     'in the list of the panel': ([parameter(mhri={'robots': ['bot1', 'bot7']})], ['robot_absent']),
     'foreign velocity': ([add('/key', ['/bot1/cmd_vel'])], ['velocity_foreign']),
-    'its own navigation': ([add('/bot1/move_base', ['/bot1/cmd_vel'], host=BOT_IP)],
-                           ['velocity_foreign']),
+    'its own navigation': ([add('/bot1/move_base', ['/bot1/cmd_vel'], host=BOT_IP)], []),
+    'its own twist_mux': ([add('/bot1/twist_mux', ['/bot1/cmd_vel'], ['/bot1/nav_vel'],
+                               host=BOT_IP)], []),
+    'its own twist_mux, of another name': (
+        [add('/twist_mux', ['/bot1/cmd_vel'], ['/bot1/nav_vel'], host=BOT_IP)], []),
+    'a key below its name on the desk': (
+        [add('/bot1/key', ['/bot1/cmd_vel'])], ['velocity_foreign']),
     'its guard': ([add('/bot1/mhri_guard', ['/bot1/cmd_vel'], host=BOT_IP)], []),
     'the guard of another robot': (
         [add('/bot2/mhri_guard', ['/bot1/cmd_vel'], host=BOT_IP)],
@@ -148,6 +153,18 @@ def test_ailment(case):
     for spoil in spoils:
         spoil(world)
     assert sorted(item.check for item in world.wrong()) == expected
+
+
+def test_the_base_of_a_turtlebot2_is_left_alone():
+    """Its smoother runs in the process of the base, and publishes a topic that takes commands."""
+    world = World()
+    world.parameters = {'bot1': {'robot_type': 'turtlebot2'}}
+    topics = ['/bot1/teleop/input', '/bot1/cmd_vel_mux/input/teleop']
+    base = '/bot1/mobile_base_nodelet_manager'
+    add(base, topics[1:], topics, kind=TWIST, host=BOT_IP)(world)
+    add('/mhri_gates', topics, kind=TWIST)(world)
+    assert world.wrong() == []
+    assert not any(base in item.remedy for item in diagnose(world.facts(), TYPES, IGNORE))
 
 
 def test_what_heals_by_itself_is_not_told():

@@ -172,12 +172,45 @@ def _velocity(facts: Facts, robot: Robot) -> List[Finding]:
             '{}   # its real topic, then: rosparam set /{}/mhri/command "[<topic>]"; or start its '
             'base: {}'.format(robot.list_topics(), name, start_robot(facts, name)))]
     found = []
+    hosts = {facts.nodes[node].host for nodes in alive.values() for node in nodes}
     for topic in topics + [guard + '/command']:
-        foreign = [node for node in facts.graph.publishers.get(topic, ())
-                   if node not in drivers and not node.startswith(TRIAL)]
+        others = [node for node in facts.graph.publishers.get(topic, ())
+                  if node not in drivers and not node.startswith(TRIAL)]
+        own = [] if topic.startswith(guard) else [
+            node for node in others if _runs_on(facts, robot, node, hosts)]
+        found += _beside(facts, name, topic, own)
+        foreign = [node for node in others if node not in own]
         if foreign and (alive[topic] if topic in alive else facts.graph.subscribers.get(topic)):
             found.append(_foreign(name, topic, foreign))
     return found + (_hidden(facts, name, chosen, alive[chosen]) if chosen else [])
+
+
+def _runs_on(facts: Facts, robot: Robot, node: str, hosts: Set[str]) -> bool:
+    """Tell whether a node is a robot's own: below its name, or of no robot, and on its computer.
+
+    :param hosts: where those run that listen to its velocity
+    """
+    host = facts.nodes[node].host
+    if hosts and host not in hosts:
+        return False
+    if node.startswith('/{}/'.format(robot.candidate.name)):
+        return True
+    of_none = robot.candidate.seen.at_root or node.count('/') == 1
+    # On one computer with everything else only what passes commands on is known to be the robot's.
+    return of_none and (not facts.computer.is_own(host) or robot.candidate.seen.at_root
+                        and _passes_on(facts, node))
+
+
+def _passes_on(facts: Facts, node: str) -> bool:
+    """Tell whether a node hears velocities, as a smoother or a twist_mux does."""
+    return any(facts.graph.types.get(topic) == TWIST for topic in facts.graph.topics_of(node)[1])
+
+
+def _beside(facts: Facts, name: str, topic: str, own: List[str]) -> List[Finding]:
+    """Say which programs of its own drive a robot beside mhri."""
+    nodes = [node for node in own if not _passes_on(facts, node)]
+    return [Finding(FINE, 'velocity_own', name, '{} of its own {} {}, too'.format(
+        listed(nodes), 'publishes' if len(nodes) == 1 else 'publish', topic))] * bool(nodes)
 
 
 def _by_link(facts: Facts, name: str) -> bool:
