@@ -14,7 +14,8 @@ import pytest
 
 from mhri.sim import world as world_module
 from mhri.sim.body import parse_bodies
-from mhri.sim.world import GHOST_S, SLOTS, World, world_path, WorldFull, WorldRefused
+from mhri.sim.world import (
+    GHOST_S, look_in, SLOTS, World, world_path, WorldFull, WorldRefused)
 
 BODY = parse_bodies((Path(__file__).resolve().parents[2] / 'resource' / 'sim'
                      / 'bodies.yaml').read_text(), 'bodies.yaml')['turtlebot2']
@@ -75,8 +76,44 @@ def test_what_a_camera_sees_of_another(enter):
 
 def test_a_robot_that_has_not_said_where_it_is_is_out_of_sight(enter, tmp_path, clock):
     one = enter('bot1')
-    World(world_path('one building', str(tmp_path)), 'bot2', BODY, clock)
-    assert (one.discs()[:, :2] > 1e6).all()
+    path = world_path('one building', str(tmp_path))
+    two = World(path, 'bot2', BODY, clock)
+    assert seen(one) == [] and [row['name'] for row in look_in(path, clock)] == [b'bot1']
+    two.publish(3.0, 4.0, 0.0)
+    assert seen(one) == [(3.0, 4.0, BODY.radius_m)]
+
+
+def race(path, name, seconds):
+    """Say a place whose parts belong together, as fast as can be, and come back now and then."""
+    end, number = time.monotonic() + seconds, 0
+    while time.monotonic() < end:
+        world = World(path, name, BODY, time.monotonic)
+        for _ in range(500):
+            number = number % 1000 + 1
+            world.publish(float(number), -float(number), 0.001 * number)
+
+
+def test_nobody_is_seen_where_it_never_was(tmp_path):
+    """Neither between two places, nor at none, by another robot or by the referee of a drill."""
+    path = world_path('fast', str(tmp_path))
+    watcher = World(path, 'watcher', BODY, time.monotonic)
+    robots = [PROCESSES.Process(target=race, args=(path, 'bot{}'.format(number), 2.0))
+              for number in range(2)]
+    for robot in robots:
+        robot.start()
+    looks = 0
+    while any(robot.is_alive() for robot in robots):
+        for rows in (watcher.others(), look_in(path, time.monotonic)):
+            for row in rows:
+                looks += 1
+                place = float(row['x']), float(row['y']), float(row['yaw'])
+                assert 1.0 <= place[0] <= 1000.0, place
+                assert place == (place[0], -place[0], 0.001 * place[0])
+                assert tuple(row['colour']) == BODY.colour and row['radius'] == BODY.radius_m
+    for robot in robots:
+        robot.join(PATIENCE_S)
+        assert robot.exitcode == 0
+    assert looks > 100
 
 
 def test_buildings_are_apart(enter, tmp_path):

@@ -5,15 +5,20 @@
 A file in shared memory with one slot per robot: lasers, bumpers and cameras must not need a topic
 that no real robot has. A killed robot stays where it was, as a body, until a robot of its name
 takes its slot or nobody has written to the slot for :data:`GHOST_S`.
+
+Nobody waits for anybody to read or to write a place: it is written at once with a sum over it, and
+whoever reads half of it looks again.
 """
 import errno
 import fcntl
 import hashlib
+import math
 import mmap
 import os
 import stat
 import struct
 import tempfile
+import zlib
 
 import numpy as np
 
@@ -22,11 +27,16 @@ from mhri.core.robots.names import MAX_LENGTH
 SLOTS = 64
 GHOST_S = 20.0
 _SLOT = np.dtype([('name', 'S{}'.format(MAX_LENGTH)), ('owner', '<u8'), ('x', '<f8'), ('y', '<f8'),
-                  ('yaw', '<f8'), ('stamp', '<f8'), ('radius', '<f8'), ('height', '<f8'),
-                  ('colour', 'u1', 3), ('spare', 'u1', 5)])
+                  ('yaw', '<f8'), ('stamp', '<f8'), ('sum', '<u4'), ('colour', 'u1', 3),
+                  ('spare', 'u1'), ('radius', '<f8'), ('height', '<f8')])
 _OWNER = struct.Struct('<Q')
 _POSE = struct.Struct('<4d')
+_SUM = struct.Struct('<I')
 _SIZE = SLOTS * _SLOT.itemsize
+_POSE_FROM = _SLOT.fields['x'][1]
+# So often a place is read that is being written.
+_TRIES = 20
+_NOWHERE = (math.nan, math.nan, 0.0)
 # The errors of opening a symbolic link, somebody else's file, a folder, and a socket.
 _NOT_OURS = frozenset((errno.ELOOP, errno.EACCES, errno.EPERM, errno.EISDIR, errno.ENXIO))
 
@@ -131,12 +141,22 @@ class World:
             raise WorldFull('the simulated building has room for {} robots'.format(SLOTS))
         slot = int(own[0] if len(own) else free[0])
         body = self._body_type
-        # Invisible until it says where it is.
-        slots[slot] = (self._name, self._owner, 1e9, 1e9, 0.0, self._clock(), body.radius_m,
-                       body.height_m, body.colour, 0)
         self._slot = slot
         self._owner_at = slot * _SLOT.itemsize + _SLOT.fields['owner'][1]
-        self._pose_at = slot * _SLOT.itemsize + _SLOT.fields['x'][1]
+        self._pose_at = slot * _SLOT.itemsize + _POSE_FROM
+        # Nobody's until all of it is there, and out of sight until it says where it is.
+        slots['owner'][slot] = 0
+        self._write(*_NOWHERE)
+        for key, value in (('name', self._name), ('radius', body.radius_m),
+                           ('height', body.height_m), ('colour', body.colour)):
+            slots[key][slot] = value
+        slots['owner'][slot] = self._owner
+
+    def _write(self, x, y, yaw):
+        # In one piece: pack_into() would fill the place with zeros first.
+        pose = _POSE.pack(x, y, yaw, self._clock())
+        self._map[self._pose_at:self._pose_at + _POSE.size + _SUM.size] = pose + _SUM.pack(
+            zlib.crc32(pose))
 
     def _owned(self):
         return _OWNER.unpack_from(self._map, self._owner_at)[0] == self._owner
@@ -152,7 +172,7 @@ class World:
                 self._take()
             finally:
                 fcntl.flock(self._file, fcntl.LOCK_UN)
-        _POSE.pack_into(self._map, self._pose_at, x, y, yaw, self._clock())
+        self._write(x, y, yaw)
 
     def _there(self):
         """Return which slots hold a robot, or the body of one that was killed."""
@@ -166,9 +186,8 @@ class World:
         Its fields: ``x, y`` [m], ``yaw`` [rad], ``radius, height`` [m], ``colour`` (3 times 0 to
         255), ``name``.
         """
-        there = self._there()
-        there[self._slot] = False
-        return self._slots[there]
+        rows = _whole_rows(self._slots.copy, self._clock)
+        return rows[rows['name'] != self._name]
 
     def discs(self):
         """Return the bodies of the other robots as an array (n, 3) of x, y, radius [m]."""
@@ -203,7 +222,28 @@ def look_in(path, clock):
         problem = _file_problem(os.fstat(handle))
         if problem:
             raise WorldRefused('{}: not looked at, {}'.format(path, problem))
-        rows = np.frombuffer(os.pread(handle, _SIZE, 0).ljust(_SIZE, b'\0'), dtype=_SLOT)
+        return _whole_rows(lambda: np.frombuffer(
+            os.pread(handle, _SIZE, 0).ljust(_SIZE, b'\0'), dtype=_SLOT), clock)
     finally:
         os.close(handle)
-    return rows[(rows['owner'] != 0) & (np.abs(clock() - rows['stamp']) <= GHOST_S)]
+
+
+def _whole_rows(read, clock):
+    """Return the slots of those who have said where they are; none that is read in part.
+
+    :param read: function that returns a copy of all slots
+    """
+    for _ in range(_TRIES):
+        rows = read()
+        # Another process may write while this one looks: then its stamp is later than our time.
+        rows = rows[rows['owner'] != 0]
+        whole = np.array([_is_whole(row.tobytes()) for row in rows], bool)
+        if whole.all():
+            break
+    rows = rows[whole]
+    return rows[np.isfinite(rows['x']) & (np.abs(clock() - rows['stamp']) <= GHOST_S)]
+
+
+def _is_whole(row):
+    end = _POSE_FROM + _POSE.size
+    return _SUM.unpack_from(row, end)[0] == zlib.crc32(row[_POSE_FROM:end])
