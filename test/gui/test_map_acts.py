@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What is drawn on the map with mouse and keys, and what comes of it."""
+from dataclasses import replace
 import math
 
 import pytest
@@ -44,6 +45,33 @@ def test_those_who_are_selected_are_meant_before_the_one_looked_at(pane, operato
     operator.click(pane.tools[gesture.GOTO])
     click(pane, 1.0, -0.5)
     assert told[0][0] == ['bot2'] and not told[0][2]
+
+
+@pytest.mark.parametrize('selected', [('bot1',), ('bot1', 'bot2')])
+def test_the_robot_that_was_clicked_is_meant_before_all_others(pane, operator, heard, selected):
+    told = heard(pane.goal_drawn)
+
+    def show(looked_at, selected=selected):
+        pane.show_scene(Scene(robots=tuple(
+            replace(robot, selected=robot.name in selected, looked_at=robot.name == looked_at)
+            for robot in (BOT1, BOT2))))
+    show('bot1')
+    click(pane, 2.0, 1.0)
+    show('bot2')
+    QTest.mousePress(pane.view, Qt.RightButton, Qt.NoModifier, pixel(pane, 1.0, -0.5))
+    choose(operator, menu_of(pane, operator), 'Send bot2 here')
+    operator.click(pane.tools[gesture.GOTO])
+    assert 'bot2' in pane.line.text() and 'bot1' not in pane.line.text()
+    click(pane, 1.0, -0.5)
+    assert [names for names, _, _ in told] == [['bot2'], ['bot2']]
+    # A click beside all of them, other robots selected, or another one looked at: as before.
+    for end in (lambda: click(pane, 1.0, -0.5), lambda: show('bot2', ('bot1', 'bot2')[:1 + (
+            len(selected) == 1)]), lambda: show('bot1')):
+        show('bot1')
+        click(pane, 2.0, 1.0)
+        show('bot2')
+        end()
+        assert pane.targets() != ('bot2',)
 
 
 @pytest.mark.parametrize('end', ['enter', 'double', 'button'])

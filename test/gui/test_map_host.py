@@ -288,6 +288,16 @@ def test_several_are_spread_out(session):
     assert 'bot1: ' in session.pane.line.text() and 'bot2: ' in session.pane.line.text()
 
 
+def test_the_robot_clicked_goes_and_not_the_one_that_is_driven(session):
+    press_m(session)
+    session.select('bot1')
+    click(session.pane, 1.0, 2.0)
+    session.draw()
+    session.take(gesture.GOTO)
+    click(session.pane, 4.0, 1.0)
+    assert [(key, robots) for key, robots, _ in session.tasks] == [('goto', ['bot2'])]
+
+
 def test_news_of_tasks_are_told(session):
     session.map.hear('task.begun', 'go to started', 'bot1')
     assert session.pane.line.text() == 'bot1: go to started'

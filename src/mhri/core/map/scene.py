@@ -124,10 +124,19 @@ class Scene:
         near = [row for row in near if row[0] <= max(within_m, row[2].radius_m)]
         return min(near)[2] if near else None
 
-    def targets(self) -> Tuple[str, ...]:
-        """Return the robots that are meant: those that are selected, else the one looked at."""
-        return tuple(robot.name for robot in self.robots if robot.selected) or tuple(
-            robot.name for robot in self.robots if robot.looked_at)
+    def targets(self, clicked: str = '') -> Tuple[str, ...]:
+        """Return the robots that are meant: the one clicked, else those selected or looked at.
+
+        :param clicked: the robot that was clicked on the map, '' for none
+        """
+        if self.robot(clicked) is not None:
+            return (clicked,)
+        return self.selected or tuple(robot.name for robot in self.robots if robot.looked_at)
+
+    @property
+    def selected(self) -> Tuple[str, ...]:
+        """The robots that are selected."""
+        return tuple(robot.name for robot in self.robots if robot.selected)
 
     def mark_at(self, x_m: float, y_m: float, within_m: float) -> Optional[MapMark]:
         """Return the mark that is as near to a place as this [m]."""

@@ -14,7 +14,7 @@ def menu_rows(pane, x_m, y_m):
 
     :param pane: :class:`mhri.gui.map.map_pane.MapPane`
     """
-    view, names = pane.view, list(pane.view.scene.targets())
+    view, names = pane.view, list(pane.targets())
     robot = view.scene.at(x_m, y_m, view.near_m())
     mark = view.scene.mark_at(x_m, y_m, view.near_m())
     rows = []

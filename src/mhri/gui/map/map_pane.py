@@ -15,7 +15,7 @@ from mhri.gui.screen.labels import TextLine
 
 TOOLS = {gesture.GOTO: 'Go to', gesture.ROUTE: 'Route', gesture.LEADER: 'Leader',
          gesture.FENCE: 'Fence', gesture.PLACE: 'Place', gesture.MARK: 'Mark'}
-_TIPS = {gesture.GOTO: 'send the selected robots, or the one you look at, to a place',
+_TIPS = {gesture.GOTO: 'send the robot you clicked, else the selected ones, to a place',
          gesture.ROUTE: 'let them patrol along a route', gesture.LEADER: 'let them follow a robot',
          gesture.FENCE: 'draw the fence that no task leaves',
          gesture.PLACE: 'say where the robot stands and looks',
@@ -61,6 +61,7 @@ class MapPane(QWidget):
         super().__init__(parent)
         self.large = True
         self._names = ()
+        self._clicked = ''
         self._to_place = ''
         self._tool = gesture.LOOK
         self._answer = ('', theme.TEXT)
@@ -171,9 +172,19 @@ class MapPane(QWidget):
 
     def show_scene(self, scene):
         """Show a :class:`mhri.core.map.scene.Scene`."""
+        before = self.view.scene
+        seen = next((robot.name for robot in scene.robots if robot.looked_at), '')
+        was = next((robot.name for robot in before.robots if robot.looked_at), '')
+        if scene.selected != before.selected or seen not in (was, self._clicked):
+            # The operator has chosen others since.
+            self._clicked = ''
         self.view.show_scene(scene)
         self.strip.show_robots(scene.robots, scene.answers, self.large)
         self._place_over()
+
+    def targets(self):
+        """Return the robots that an act is for: the one clicked here, else as the scene says."""
+        return self.view.scene.targets(self._clicked)
 
     def show_answer(self, text, good=True):
         """Say below the map what came of an act; it stays until the next one."""
@@ -229,7 +240,7 @@ class MapPane(QWidget):
 
     def take(self, tool, robot=''):
         """Take a tool into the hand; PLACE is for a robot, by default the first that is meant."""
-        self._names = self.view.scene.targets()
+        self._names = self.targets()
         self._to_place = robot or next(iter(self._names), '')
         self._answer = ('', theme.TEXT)
         if tool in _FOR_ROBOTS and not (self._to_place if tool == gesture.PLACE else self._names):
@@ -284,12 +295,14 @@ class MapPane(QWidget):
         """Look at a robot; the small map becomes large."""
         if not self.large:
             self.swap_requested.emit()
-        elif name:
+            return
+        self._clicked = name
+        if name:
             self.look_requested.emit(name)
 
     def _offer_fits(self):
         """Ask to what the robot is to be fitted."""
-        self._names = self.view.scene.targets()
+        self._names = self.targets()
         rows = fit_rows(self, next(iter(self._names), ''))
         if rows:
             self._popup(rows, self.fit_button.mapToGlobal(QPoint(0, self.fit_button.height())))
@@ -298,7 +311,7 @@ class MapPane(QWidget):
 
     def _open_menu(self, x_m, y_m, where):
         """Offer what can be done at a place."""
-        self._names = self.view.scene.targets()
+        self._names = self.targets()
         self._popup(menu_rows(self, x_m, y_m), where)
 
     def _popup(self, rows, where):
