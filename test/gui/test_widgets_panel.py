@@ -96,6 +96,8 @@ def test_the_drop_down_makes_room_for_the_button_to_talk(panel, operator, four_r
         panel.show_view(replace(four_robots, mode=mode))
         operator.settle()
         assert panel.width() == 1280 and panel.minimumSizeHint().width() <= 1024
+    assert '"stop"' not in panel.drive_note.shown_text(), 'no microphone is open'
+    panel.show_view(replace(panel._view, devices=(views.DeviceView('voice', 'the microphone'),)))
     assert panel.drive_note.shown_text().endswith('"stop" is always heard')
 
 

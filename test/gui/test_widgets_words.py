@@ -63,13 +63,27 @@ def test_beginnings(text, shorter):
 
 
 @pytest.mark.parametrize('heard, shorter', [
-    (None, '"stop" is always heard'),
     (views.HeardView('robot forward', 'forward 0.5', True), 'forward 0.5'),
     (views.HeardView('robot fly'), 'not a command'),
     (views.HeardView('x', reason='no wake word'), 'no wake word')])
 def test_of_what_was_heard_the_outcome_is_what_matters(heard, shorter):
     assert words.heard_shorter(heard)[-1] == shorter
     assert shorter in words.heard_text(heard)
+
+
+MICROPHONE = views.DeviceView('voice', 'the microphone "USB"', kind='microphone')
+
+
+@pytest.mark.parametrize('device, promised', [
+    (MICROPHONE, True), (None, False), (views.DeviceView('voice'), False),
+    (views.DeviceView('voice', note='no microphone: plug one in'), False)])
+@pytest.mark.parametrize('heard', [None, views.HeardView('robot forward', 'forward 0.5', True)])
+def test_that_stop_is_heard_is_said_only_while_a_microphone_is_open(device, promised, heard):
+    text, shorter = words.voice_texts(heard, device)
+    assert [part for part in (text, *shorter) if '"stop" is' in part and not promised] == []
+    assert '"stop" is' in text or heard is not None or not promised
+    if device is not None and device.absent:
+        assert text == device.note
 
 
 @pytest.mark.parametrize('link, age_s, text', [

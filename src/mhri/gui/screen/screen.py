@@ -392,7 +392,8 @@ class ScreenWidget(QWidget):
         elif view.mode is None:
             note = 'no effect: the mode is not known yet'
         elif view.mode == VOICE:
-            note, shorter = words.heard_text(view.heard), words.heard_shorter(view.heard)
+            note, shorter = words.voice_texts(view.heard, next(
+                (device for device in view.devices if device.source == VOICE), None))
         elif not in_force:
             note = 'no effect: {} drives'.format(self.mode_combo.label_of(view.mode))
         elif self.remote:

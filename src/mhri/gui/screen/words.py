@@ -117,13 +117,29 @@ def remote_stick_texts(remote):
         rule, 'remote: let go after {:.0f} s'.format(HELD_S))
 
 
+def voice_texts(heard, device):
+    """Return (text, shorter ones) below the button to talk.
+
+    That "stop" is heard is said only while a microphone is open.
+
+    :param heard: :class:`mhri.core.screen.views.HeardView`, None before the first
+    :param device: :class:`mhri.core.screen.views.DeviceView` of the voice, None while nobody says
+    """
+    if device is not None and device.absent:
+        return device.note, beginnings(device.note)
+    if heard is not None:
+        return heard_text(heard), heard_shorter(heard)
+    if device is None or not device.name:
+        return 'say the wake word, or hold the button and talk', ('wake word or button',)
+    return ('say the wake word, or hold the button and talk; "stop" is always heard',
+            ('wake word or button; "stop" is always heard', '"stop" is always heard'))
+
+
 def heard_text(heard):
     """Return what the voice node made of what it heard, e.g. 'heard "robot forward": forward 0.5'.
 
-    :param heard: :class:`mhri.core.screen.views.HeardView`, None before the first
+    :param heard: :class:`mhri.core.screen.views.HeardView`
     """
-    if heard is None:
-        return 'say the wake word, or hold the button and talk; "stop" is always heard'
     if not heard.text:
         return heard_outcome(heard)
     return 'heard "{}": {}'.format(heard.text, heard_outcome(heard))
@@ -131,8 +147,6 @@ def heard_text(heard):
 
 def heard_shorter(heard):
     """Return :func:`heard_text` in fewer and fewer words: what was made of it is what matters."""
-    if heard is None:
-        return 'wake word or button; "stop" is always heard', '"stop" is always heard'
     outcome = heard_outcome(heard)
     return (outcome,) + beginnings(outcome)
 
