@@ -166,6 +166,11 @@ class Operator:
         gates = [self._gates.get(name) for name in self.robots]
         return all(gate is not None and gate.guarded and not gate.stands for gate in gates)
 
+    def stopped(self, name):
+        """Tell whether the guard of a robot holds a stop."""
+        gate = self._gates.get(name)
+        return gate is not None and gate.stop_confirmed
+
     def _run(self):
         import rospy
         try:
@@ -205,9 +210,11 @@ class World:
 
     :param ways: of :data:`WAYS`
     :param robots: how many there are of each
+    :param guard: options of their guards
     """
 
-    def __init__(self, ways, robots):
+    def __init__(self, ways, robots, guard=()):
+        self._guard = list(guard)
         self.names = {way: [WAYS[way] + str(number) for number in range(1, robots + 1)]
                       for way in ways}
         self.shown = {name: Shown(name) for names in self.names.values() for name in names}
@@ -270,7 +277,7 @@ class World:
             'from mhri.nodes.sim_robot import main; main()', '__name:=base',
             '_x:={}'.format(x_m), '_y:={}'.format(y_m)))
         self.system.start(*self._words(way, 'ROS_NAMESPACE=' + name, sys.executable, GUARD,
-                                       '_command:=' + COMMAND))
+                                       '_command:=' + COMMAND, *self._guard))
 
     def _make_keys(self, robots):
         """Make keys for the host and for robots, if there are any."""

@@ -285,6 +285,31 @@ SCRIPTS = {
         10.06 A:2:b 0.2 0 = none came_back
         10.07 A:3:b 0 0 = 0 0
         10.08 A:4:b 0.2 0 = 0.2 0''',
+    'it stops at once when the sender answers on a new connection, and no answer is a word': '''
+        with {"back": [10, 5.0, 0.1]}
+        0.00 echo a = -:0:*
+        0.00 move 0 0 0
+        0.00 answer = none
+        0.01 A:1:a 0.2 0 = 0.2 0
+        0.02 move 0.5 0 180
+        0.10 answer = none
+        0.31 tick = 0 0
+        10.02 move 0.5 0 180
+        10.02 see inf
+        10.02 tick = 0.1 0
+        10.03 answer = 0 0
+        10.04 echo b = A:1:*
+        10.06 A:2:b 0.2 0 = none came_back
+        19.00 answer = none
+        28.90 move 0.5 0 180
+        28.90 see inf
+        28.90 tick = none
+        29.10 move 0.5 0 180
+        29.10 see inf
+        29.10 tick = 0.1 0
+        29.20 heard = 0 0
+        30.40 answer = none
+        60.00 tick = none''',
     'a command is heard as well, and a stop holds it where it is': '''
         with {"back": [10, 5.0, 0.1]}
         0.00 echo a = -:0:*

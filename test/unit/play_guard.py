@@ -11,6 +11,7 @@ Usage: play_guard.py GUARD <SCRIPTS.json >ANSWERS.json; a script is a list of li
     0.41 move 1.0 0.0 180         where the robot is by its odometry [m, m, degrees]
     0.42 see 0.5                  a scan that meets something so far ahead, and nothing elsewhere
     0.43 heard a                  the sender is there; "heard" alone: it ends
+    0.44 answer                   it answers on a new connection
 
 Before them a line "with", and arguments of Guard as JSON: "brake" is true for one, "back" are the
 arguments of WayBack without the first. The answer to a line is what the robot is
@@ -76,6 +77,8 @@ def play(names, lines):
             sight.see([float(words[2])] + [float('inf')] * 359, 0.0, 0.017453293, 0.1, 10.0, now)
         elif what == 'heard':
             answers.append(written(guard.on_heard(tokens[words[2]] if words[2:] else '', now)))
+        elif what == 'answer':
+            answers.append(written(guard.on_answer(now)))
         elif what in ('tick', 'close'):
             answers.append(written(getattr(guard, what)(now)))
         else:
