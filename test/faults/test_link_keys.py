@@ -8,11 +8,13 @@ out are the keys. That the same attack moves the robot with a key that drives sh
 import os
 import pathlib
 import random
+import select
 import socket
 import sys
 import threading
 import time
 
+import psutil
 import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
@@ -291,6 +293,71 @@ def test_a_key_that_is_withdrawn_is_out_within_seconds(lab):
     lab.drive(lab.operator)
     lab.operator.stick.hold(0.0, 0.0)
     wait_for(lambda: not lab.moves(), LONG_S, 'it to stand')
+
+
+def test_a_key_is_out_though_its_thief_takes_all_descriptors(lab):
+    """With them the keys cannot be read; before, the robot went on with the old ones."""
+    lab.authority.run('host', 'spare')
+    lab.authority.put('bot1')
+    wait_for(lab.is_linked, LONG_S, 'the link')
+    attacker = Attacker(lab, lab.authority.put('spare'), ('host:spare',))
+    try:
+        assert attacker.attack(lambda: attacker.heard, LONG_S), 'before that it is let in'
+        with Flood(lab.port, lab.node_of_robot()):
+            before = lab.said().count('are in use as they are now')
+            lab.authority.run('withdraw', 'spare')
+            lab.authority.put('bot1')
+            begun = time.monotonic()
+            wait_for(lambda: lab.said().count('are in use as they are now') > before, LONG_S,
+                     lambda: 'the list to be read: {}'.format(lab.said()[-1000:]))
+            print('MEASURED with no descriptor left the list is in use after {:.1f} s'.format(
+                time.monotonic() - begun))
+            attacker.heard.clear()
+            assert not attacker.attack(lab.moves, ATTACK_S) and attacker.heard == set()
+    finally:
+        attacker.close()
+    wait_for(lab.is_linked, LONG_S, 'the others to be linked again')
+
+
+class Flood:
+    """Holds as many connections as a process takes, and calls again where one is closed."""
+
+    def __init__(self, port, process):
+        self._port, self._process = port, process
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def __enter__(self):
+        # As many as the system gives a process would take long.
+        most = self._process.num_fds() + 200
+        self._before = self._process.rlimit(psutil.RLIMIT_NOFILE)
+        self._process.rlimit(psutil.RLIMIT_NOFILE, (most, self._before[1]))
+        self._most = 400
+        self._thread.start()
+        wait_for(lambda: self._process.num_fds() > most - 5, LONG_S,
+                 'all descriptors to be taken')
+        return self
+
+    def _run(self):
+        open_now, poll = {}, select.poll()
+        while not self._ended.is_set():
+            try:
+                while len(open_now) < self._most and not self._ended.is_set():
+                    caller = socket.create_connection(self._port, 1.0)
+                    open_now[caller.fileno()] = caller
+                    poll.register(caller, select.POLLIN)
+            except OSError:
+                pass  # it does not listen now, or its queue is full
+            for number, _ in poll.poll(20):
+                poll.unregister(number)
+                open_now.pop(number).close()
+        for caller in open_now.values():
+            caller.close()
+
+    def __exit__(self, *_):
+        self._ended.set()
+        self._thread.join()
+        self._process.rlimit(psutil.RLIMIT_NOFILE, self._before)
 
 
 def test_garbage_on_the_port_disturbs_nobody(lab):

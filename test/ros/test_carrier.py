@@ -5,6 +5,7 @@ import importlib
 import os
 import sys
 
+import psutil
 import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
@@ -78,3 +79,31 @@ def test_bytes_arrive_whoever_came_first(protocol):
         assert {data for _, data in heard} == {b'first run', b'second run'}
     finally:
         host.close()
+
+
+def test_what_is_larger_than_a_robot_needs_is_not_taken_in():
+    """A key that may only watch had the robot hold two messages of 700 MB."""
+    endpoint, heard = 'tcp/127.0.0.1:{}'.format(free_port()), []
+    robot = carrier.Carrier(listen=[endpoint], max_bytes=carrier.MAX_TO_ROBOT)
+    host = carrier.Carrier(connect=[endpoint])
+    robot.between('bot1', 'host:lab').listen('down', lambda _, data: heard.append(len(data)))
+    send = host.between('bot1', 'host:lab').sender('down', '_beat', COMMAND)
+
+    def arrives():
+        send(b'small')
+        return 5 in heard
+    try:
+        wait_for(arrives, 60.0, 'a small one', 0.05)
+        process = psutil.Process()
+        large = bytes(100 * carrier.MAX_TO_ROBOT // 10)
+        held = process.memory_info().rss
+        for _ in range(3):
+            send(large)
+        heard.clear()
+        wait_for(arrives, 60.0, 'a small one again', 0.05)
+        print('MEASURED memory grown by {:.0f} MB'.format(
+            1e-6 * (process.memory_info().rss - held)))
+        assert max(heard) <= carrier.MAX_TO_ROBOT
+    finally:
+        host.close()
+        robot.close()

@@ -35,7 +35,8 @@ from mhri.ros.ending import init_node
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
-from mhri.ros.link.carrier import Carrier, CarrierError, LibraryMissing, load_library
+from mhri.ros.link.carrier import (
+    Carrier, CarrierError, LibraryMissing, load_library, MAX_FROM_ROBOT, MAX_TO_ROBOT)
 from mhri.ros.link.computer import facts
 from mhri.ros.link.host_side import HostSide
 from mhri.ros.link.keeper import keeper_of, MOST_MB
@@ -134,7 +135,8 @@ def call(options):
     ends = [[endpoint(word, bool(keys)) for word in words.split()]
             for words in (options.listen, options.connect or options.router)]
     place = 'router' if options.side == 'router' else 'routed' if options.router else 'peer'
-    return keys, Carrier(*ends, secrets=secrets, place=place, own=keys.keys.own if keys else '')
+    return keys, Carrier(*ends, secrets=secrets, place=place, own=keys.keys.own if keys else '',
+                         max_bytes=MAX_TO_ROBOT if options.side == 'robot' else MAX_FROM_ROBOT)
 
 
 def known_types():

@@ -23,6 +23,8 @@ ENDPOINT = re.compile(r'(tcp|udp|tls|quic)/(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9.-]+):[
 _LEASE_MS, _KNOCK_MS, _KNOCK_MOST_MS, _OPEN_MS = 1500, 200, 1000, 1000
 # Beside datagrams TLS has the time for repeating what a bad radio loses: their keys need it.
 _LONG_LEASE_MS, _LONG_OPEN_MS = 5000, 4000
+# What is larger is no message, to a robot, and from one or through a router [bytes].
+MAX_TO_ROBOT, MAX_FROM_ROBOT = 1 << 23, 1 << 25
 
 
 class LibraryMissing(Exception):
@@ -82,11 +84,14 @@ class Carrier:
         None for a link without
     :param place: ``peer``; ``routed`` if what is called is a zenoh router; or ``router`` itself
     :param own: the name in the own key: between peers that have one sealed datagrams go, too
+    :param max_bytes: of a message that comes: who sends a larger one is hung up on
     :raises LibraryMissing: see :func:`load_library`
     :raises CarrierError: an endpoint cannot be listened on
     """
 
-    def __init__(self, listen=(), connect=(), secrets=None, place='peer', own=''):
+    def __init__(self, listen=(), connect=(), secrets=None, place='peer', own='',
+                 max_bytes=MAX_FROM_ROBOT):
+        self._max_bytes = max_bytes
         check_endpoints('listen', listen, secrets is not None)
         check_endpoints('connect', connect, secrets is not None)
         self._zenoh = load_library()
@@ -114,6 +119,7 @@ class Carrier:
             'scouting/gossip/autoconnect': {'router': [], 'peer': []},
             'transport/unicast/open_timeout': _LONG_OPEN_MS if self._datagrams else _OPEN_MS,
             'transport/link/tx/lease': _LONG_LEASE_MS if self._datagrams else _LEASE_MS,
+            'transport/link/rx/max_message_size': self._max_bytes,
             'transport/link/protocols': list(ALONE if secrets is None else TLS)}
         settings.update(secrets or {})
         config = self._zenoh.Config()
@@ -136,6 +142,11 @@ class Carrier:
 
         :raises CarrierError: the endpoint cannot be listened on yet; try again
         """
+        self.hang_up()
+        self._open(secrets)
+
+    def hang_up(self):
+        """Hear and reach nobody any more, until :meth:`renew`."""
         with self._lock:
             session, self._session = self._session, None
             self._publishers = {key: (None, urgency)
@@ -144,7 +155,6 @@ class Carrier:
             self._datagrams.forget()
         if session is not None:
             session.close()
-        self._open(secrets)
 
     def _publisher(self, key, urgency):
         priorities = {COMMAND: self._zenoh.Priority.REAL_TIME,
@@ -199,15 +209,10 @@ class Carrier:
         return topic in LITTLE or says_all(self._own, host)
 
     def close(self):
-        """Hang up."""
+        """Hang up for good."""
         if self._datagrams is not None:
             self._datagrams.close()
-        with self._lock:
-            session, self._session = self._session, None
-            self._publishers = {key: (None, urgency)
-                                for key, (_, urgency) in self._publishers.items()}
-        if session is not None:
-            session.close()
+        self.hang_up()
 
 
 class Between:

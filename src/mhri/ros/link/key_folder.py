@@ -18,6 +18,8 @@ PLACES = ('~/.config/mhri/keys', '~/mhri/keys')
 _MOST_BYTES = 1 << 20
 # The files are looked at this often [s].
 _LOOK_S = 1.0
+# For openssl, its pipes, and the files.
+_RESERVED = 24
 _TLS = 'transport/link/tls/'
 
 
@@ -134,31 +136,60 @@ def _reason(said):
     return 'openssl refuses the key: {}'.format(said.strip()[-200:])
 
 
+class Reserve:
+    """Descriptors that nobody else takes, for reading keys while a flood has all others."""
+
+    def __init__(self):
+        self._held = []
+        self.take()
+
+    def take(self):
+        """Hold what is missing, as far as there is any."""
+        try:
+            while len(self._held) < _RESERVED:
+                self._held.append(os.open(os.devnull, os.O_RDONLY | os.O_CLOEXEC))
+        except OSError:
+            pass  # the next time
+
+    def give(self):
+        """Let go of all."""
+        while self._held:
+            os.close(self._held.pop())
+
+
 def watch_keys(folder, carrier):
     """Let a :class:`mhri.ros.link.carrier.Carrier` take up keys that are replaced; returns at once.
 
-    Another name in the own key wants a new start, and ends the process: its keys name it.
+    Where they cannot be used it hangs up until they can: one of those who are linked may be whom
+    they keep out. Another name in the own key wants a new start, and ends the process: its keys
+    name it.
     """
-    threading.Thread(target=_watch, args=(folder, carrier), name='keys', daemon=True).start()
+    threading.Thread(target=_watch, args=(folder, carrier, Reserve()), name='keys',
+                     daemon=True).start()
 
 
-def _watch(folder, carrier):
+def _watch(folder, carrier, reserve):
     failed = False
     # Not rospy.sleep: this is to go on whatever the clock of ROS does.
     pause = threading.Event()
     while not rospy.is_shutdown():
         pause.wait(_LOOK_S)
         if not (failed or folder.changed()):
+            reserve.take()
             continue
-        own = folder.keys.own
+        own, failed = folder.keys.own, True
         try:
+            # First of all: those who knock have the descriptors that reading takes.
+            carrier.hang_up()
+            reserve.give()
             secrets = folder.read()
             if folder.keys.own != own:
                 rospy.signal_shutdown('the key in place is that of {} now'.format(folder.keys.own))
                 return
-            failed = True
+            reserve.take()
             carrier.renew(secrets)
             failed = False
             rospy.loginfo('the keys in %s are in use as they are now', folder.folder)
-        except (CarrierError, KeysError) as error:
-            rospy.logwarn_throttle(10.0, 'the keys that are new are not used: {}'.format(error))
+        except (CarrierError, KeysError, OSError) as error:
+            rospy.logwarn_throttle(10.0, 'nobody is linked: the keys that are new cannot be used: '
+                                   '{}'.format(error))
