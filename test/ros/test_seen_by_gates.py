@@ -14,7 +14,8 @@ TOPIC = '/bot1/cmd_vel'
 
 
 def gate(linear=0.0, angular=0.0, **values):
-    robot = RobotGate(name='bot1', **dict({'topic': TOPIC, 'obeys': RobotGate.OPERATOR}, **values))
+    robot = RobotGate(name='bot1', **dict(
+        {'topic': TOPIC, 'obeys': RobotGate.OPERATOR, 'odometry_follows': True}, **values))
     robot.sent.linear.x, robot.sent.angular.z = linear, angular
     return robot
 
@@ -70,6 +71,11 @@ def test_others_who_command_it_are_named():
         assert after.also_commanded_by == ('/nav', '/bag')
         words = after.proof.text if after.proof else after.note
         assert '/nav' in words and '/bag' in words and after.slow
+
+
+def test_odometry_that_does_not_follow_is_said():
+    after = seen_by_gates(view(), gate(0.3, odometry_follows=False), True)
+    assert not after.odometry_follows and after.slow and 'odometry' in after.note
 
 
 def test_every_reason_to_stand_has_words():

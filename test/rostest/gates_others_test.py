@@ -105,6 +105,27 @@ class GatesOthersTest(GatesCase):
         self.centre(name, receiver)
         self.drive_against(name, witness, receiver, '/{}/cmd_vel'.format(name), 50)
 
+    def hold(self, seconds, linear=0.3):
+        """Hold the stick for a while."""
+        begun = time.monotonic()
+        wait_for(lambda: self.mux.say(linear) and time.monotonic() - begun > seconds,
+                 what='the drive', poll_s=0.05)
+
+    def test_odometry_that_hangs_is_said(self):
+        name, _, receiver, _ = self.robot('cmd_vel', 'odom', '--frozen')
+        self.assertTrue(self.state.robot(name).odometry_follows)
+        self.hold(4.0)
+        self.state.wait_robot(name, lambda gate: not gate.odometry_follows, 'the doubt')
+        self.mux.stop(True)
+        self.state.wait(lambda state: state.stop_all, 'the stop')
+        self.assertFalse(self.state.robot(name).odometry_follows, 'before it has followed again')
+
+    def test_odometry_that_follows_is_a_witness(self):
+        name, witness, receiver, _ = self.robot()
+        self.hold(3.0)
+        self.assertTrue(witness.moving())
+        self.assertTrue(self.state.robot(name).odometry_follows)
+
     def test_an_input_of_its_multiplexer_counts(self):
         """What wins there are zeros on the better input, as long as anybody uses the other."""
         (name, receiver), = self.robots(1, 'turtlebot2', 'cmd_vel_mux/input/teleop')

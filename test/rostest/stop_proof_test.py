@@ -17,6 +17,7 @@ import rostest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
 from mhri.core.screen.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED  # noqa: E402
+from mhri.msg import RobotGate  # noqa: E402
 from mhri.ros.driving.gates_client import GatesClient  # noqa: E402
 from mhri.ros.resources import robot_types  # noqa: E402
 from mhri.ros.robots.bot_feeds import BotFeeds  # noqa: E402
@@ -147,6 +148,14 @@ class StopProofTest(unittest.TestCase):
         self.link._on_message(feed, torn, time.monotonic())
         view = self.link.view()
         self.assertEqual((view.link, view.linear_mps, view.x_m), ('live', None, None))
+
+    def test_one_that_did_not_follow_before(self):
+        """It says standstill at once, and the gates say that it did so when it was driven, too."""
+        self.link.on_gate(RobotGate(name=self.name, odometry_follows=False))
+        self.stop()
+        self.refuted('NOT CONFIRMED')
+        self.link.on_gate(RobotGate(name=self.name, odometry_follows=True))
+        wait_for(lambda: self.proof().state == PROOF_STOPPED, what='the proof')
 
     def test_one_in_a_national_grid(self):
         self.teller.x = 5_900_000.0

@@ -5,7 +5,8 @@ import pytest
 
 from mhri.core.robots.link import Motion
 from mhri.core.robots.robot_types import SILENT_AFTER_S
-from mhri.core.robots.stop_proof import PATIENCE_S, ROW_S, StopProof, UNKNOWN_ROUND_TRIP_S
+from mhri.core.robots.stop_proof import (
+    OdometryWitness, PATIENCE_S, ROW_S, StopProof, UNKNOWN_ROUND_TRIP_S)
 from mhri.core.screen.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED, PROOF_WAITING
 
 GRID_M = 5_900_000.0  # as in a national grid
@@ -204,3 +205,78 @@ def test_words_do_not_claim_that_a_resting_robot_moves():
     proof.view(1.5)
     proof.on_motion(REST, 1.6)
     assert 'moves at 0.00' not in proof.view(1.6).text
+
+
+GO, TURN, HOLD, CREEP = (0.3, 0.0), (0.0, 0.5), (0.0, 0.0), (0.03, 0.1)
+SPINS = Motion(0.0, 0.5)
+# (velocity that the robot is told, motion of each reading, [s] between them, [s] it lasts), ...
+DRIVES = {
+    'frozen': ([(GO, REST, 0.02, 4.0)], False),
+    'frozen_in_a_turn': ([(TURN, REST, 0.1, 4.0)], False),
+    'frozen_and_slow': ([(GO, REST, 1.0, 6.0)], False),
+    'frozen_after_it_followed': ([(GO, MOVES, 0.1, 4.0), (GO, REST, 0.1, 2.0)], False),
+    'frozen_but_for_a_gyro': ([((0.3, 0.2), SPINS, 0.1, 4.0)], False),
+    'frozen_while_the_stick_goes_to_and_fro': (
+        [(GO, REST, 0.1, 0.9), ((-0.3, 0.0), REST, 0.1, 0.9)], False),
+    'follows': ([(GO, MOVES, 0.1, 4.0), (HOLD, REST, 0.1, 4.0)], True),
+    'motors_that_take_their_time': ([(GO, REST, 0.1, 0.8), (GO, MOVES, 0.1, 1.0)], True),
+    'told_nothing': ([(HOLD, REST, 0.1, 10.0)], True),
+    'told_less_than_friction': ([(CREEP, REST, 0.1, 10.0)], True),
+    'taps': ([(GO, REST, 0.1, 0.4), (HOLD, REST, 0.1, 1.0)] * 5, True),
+    'slow_odometry_that_follows': ([(GO, MOVES, 1.0, 6.0)], True),
+    'an_old_reading_and_then_motion': ([(GO, REST, 1.0, 2.0), (GO, MOVES, 1.0, 2.0)], True),
+    'nothing_that_can_be': ([(GO, NAN, 0.1, 4.0)], True),
+    'follows_again': ([(GO, REST, 0.1, 4.0), (GO, MOVES, 0.1, 0.2)], True),
+    'pushed_by_hand_is_not_following': ([(GO, REST, 0.1, 4.0), (HOLD, MOVES, 0.1, 1.0)], False)}
+
+
+def driven(parts, moves=lambda motion, now: motion):
+    """Return a witness after a drive."""
+    witness, now = OdometryWitness(), 0.0
+    for told, motion, every_s, lasts_s in parts:
+        for _ in range(int(round(lasts_s / every_s))):
+            witness.on_told(*told, now)
+            now += every_s
+            witness.on_motion(moves(motion, now), now, 0.02)
+    return witness
+
+
+@pytest.mark.parametrize('name', sorted(DRIVES))
+def test_whether_odometry_follows_what_the_robot_is_told(name):
+    parts, follows = DRIVES[name]
+    assert driven(parts).follows == follows
+
+
+def test_a_pose_that_moves_follows_whatever_the_speed_beside_it_says():
+    assert driven([(GO, REST, 0.1, 4.0)], lambda _, now: Motion(0.0, 0.0, 0.3 * now)).follows
+    assert driven([(TURN, REST, 0.1, 4.0)],
+                  lambda _, now: Motion(0.0, 0.0, 0.0, 0.0, 0.5 * now)).follows
+
+
+@pytest.mark.parametrize('round_trip_s, follows', [(0.5, True), (0.02, False)])
+def test_a_long_way_to_the_robot_is_allowed_for(round_trip_s, follows):
+    witness = OdometryWitness()
+    witness.on_told(0.3, 0.0, 0.0)
+    for now in (0.5, 1.1, 1.2, 1.3, 1.4):
+        witness.on_motion(REST, now, round_trip_s)
+    assert witness.follows == follows
+
+
+def test_odometry_that_does_not_follow_proves_nothing():
+    proof = follow()
+    proof.follows = False
+    for now, motion in every(0.02, 3.0, REST):
+        proof.on_motion(motion, now)
+        assert proof.view(now).state == PROOF_NOT_CONFIRMED
+    assert proof.stopped_ms is None
+
+
+def test_a_doubt_that_comes_later_takes_the_proof_back_and_one_that_ends_gives_it():
+    proof = follow(*every(0.02, 1.0, REST))
+    assert proof.view(1.0).state == PROOF_STOPPED
+    proof.follows = False
+    assert proof.view(1.0).state == PROOF_NOT_CONFIRMED
+    proof.follows = True
+    for now, motion in every(0.02, 1.5, REST, 1.0):
+        proof.on_motion(motion, now)
+    assert proof.view(1.5).state == PROOF_STOPPED

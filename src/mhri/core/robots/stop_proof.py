@@ -1,11 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The proof of a stop: a robot is called stopped only when its own odometry shows standstill."""
+"""The proof of a stop: a robot is called stopped only when its own odometry shows standstill.
+
+And only if that odometry followed what the robot was told before the stop: one that says standstill
+whatever the robot does proves nothing (:class:`OdometryWitness`).
+"""
 import math
 from typing import Optional, Tuple
 
 from mhri.core.robots.link import Motion, STANDSTILL_MPS, STANDSTILL_RAD_S
 from mhri.core.robots.robot_types import SILENT_AFTER_S
+from mhri.core.screen.gate_words import NO_WITNESS
 from mhri.core.screen.views import (
     PROOF_NOT_CONFIRMED, PROOF_STOPPED, PROOF_WAITING, ProofView)
 from mhri.core.sensors.plausible import ANGULAR_VELOCITY, BOUNDS, SPEED
@@ -20,6 +25,11 @@ JITTER_RAD = 0.003
 POSE_WINDOW_S = 1.0
 # If the round trip is unknown, a stop and its answer may take this long together [s].
 UNKNOWN_ROUND_TRIP_S = 0.25
+# A robot that is told less may rightly stand: friction, noise, the smallest step of its motors
+# [m/s, rad/s].
+MIN_TOLD_MPS, MIN_TOLD_RAD_S = 0.05, 0.2
+# A robot that is told to go moves within this time [s], the round trip aside; motors have to start.
+FOLLOWS_WITHIN_S = 1.0
 
 
 class PoseWatch:
@@ -46,6 +56,57 @@ class PoseWatch:
         return moved_m / max(took_s, 0.01), turned_rad / max(took_s, 0.01)
 
 
+class OdometryWitness:
+    """Judges whether a robot's odometry follows what the robot is told.
+
+    It does not once READINGS readings in a row, of times when the robot should have been moving
+    for FOLLOWS_WITHIN_S, show standstill: of speed and pose, or of turning where the robot was told
+    only to turn. It does again with the first reading that shows motion while the robot is told to
+    move. Wheels that slip before a wall show motion; a robot whose wheels are held, and that is
+    told to go all the same, cannot be told from one whose odometry hangs.
+
+    Times are seconds of a clock that never goes back.
+    """
+
+    def __init__(self) -> None:
+        self.follows = True
+        self._pose = PoseWatch()
+        self._told_at: Optional[float] = None
+        self._only_turns = False
+        self._still = 0
+
+    @property
+    def asks(self) -> bool:
+        """Whether the robot is told to move: only then readings count."""
+        return self._told_at is not None
+
+    def on_told(self, linear_mps: float, angular_rad_s: float, now: float) -> None:
+        """Take in the velocity that the robot has been given, as often as you like."""
+        goes = abs(linear_mps) >= MIN_TOLD_MPS
+        if not goes and abs(angular_rad_s) < MIN_TOLD_RAD_S:
+            self._told_at = None
+        elif self._told_at is None or self._only_turns == goes:
+            self._told_at, self._still, self._only_turns = now, 0, not goes
+
+    def on_motion(self, motion: Motion, now: float, round_trip_s: float = 0.0) -> None:
+        """Take in a reading of the odometry while :attr:`asks`.
+
+        :param round_trip_s: of the link to the robot [s]; NaN: unknown
+        """
+        if self._told_at is None or not motion.is_possible():
+            return
+        pose_mps, pose_rad_s = self._pose.speed(motion, now)
+        moves = abs(motion.angular_rad_s) > STANDSTILL_RAD_S or pose_rad_s > 0.0 \
+            if self._only_turns else motion.speed_mps > STANDSTILL_MPS or pose_mps > 0.0
+        if round_trip_s != round_trip_s:
+            round_trip_s = UNKNOWN_ROUND_TRIP_S
+        if moves:
+            self.follows, self._still = True, 0
+        elif now - self._told_at > FOLLOWS_WITHIN_S + round_trip_s:
+            self._still += 1
+            self.follows = self.follows and self._still < READINGS
+
+
 class StopProof:
     """Follows one robot from the moment of a stop; time is seconds of a clock that never goes back.
 
@@ -55,6 +116,7 @@ class StopProof:
         WAITING        -> NOT_CONFIRMED  it still moves after PATIENCE_S, or nothing was heard from
                                          it for ``silent_after_s``
         STOPPED        -> NOT_CONFIRMED  it moves again, or falls silent
+        any            -> NOT_CONFIRMED  its odometry does not follow (:attr:`follows`)
         NOT_CONFIRMED  -> STOPPED        READINGS readings of standstill in a row, over ROW_S
 
     A reading of standstill has all three planar velocities near zero, a pose that does not change,
@@ -70,6 +132,8 @@ class StopProof:
 
     def __init__(self, now: float, round_trip_s: Optional[float] = None,
                  silent_after_s: float = SILENT_AFTER_S) -> None:
+        #: whether its odometry is a witness, see :class:`OdometryWitness`
+        self.follows = True
         self._begun = now
         # Readings measured before this may be from before the stop arrived.
         self._counts_from = now + (UNKNOWN_ROUND_TRIP_S if round_trip_s is None else round_trip_s)
@@ -129,6 +193,9 @@ class StopProof:
 
     def _rests(self, measured: float) -> None:
         """Count one reading of standstill."""
+        if not self.follows:
+            self._run = 0
+            return
         if self._run == 0:
             self._run_began = measured
         self._run += 1
@@ -142,7 +209,9 @@ class StopProof:
         """Let time pass and return the :class:`ProofView` of this moment."""
         old = now - self._measured > self._silent_after_s
         late = self.state == PROOF_WAITING and now - self._begun > PATIENCE_S
-        if old or late:
+        if not self.follows:
+            self._stopped_ms = None
+        if old or late or not self.follows:
             self.state = PROOF_NOT_CONFIRMED
             self._run = 0 if old else self._run
         return ProofView(self.state, self._words(now))
@@ -161,6 +230,8 @@ class StopProof:
             return 'stopping'
         if now - self._heard > self._silent_after_s:
             return 'NOT CONFIRMED: it cannot be heard'
+        if not self.follows:
+            return 'NOT CONFIRMED: ' + NO_WITNESS
         if self._doubt:
             return 'NOT CONFIRMED: ' + self._doubt
         if now - self._measured > self._silent_after_s:

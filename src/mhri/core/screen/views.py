@@ -74,6 +74,7 @@ class RobotView:
     ``guarded`` while its commands go through a guard on the robot, ``obeys`` is whom it obeys ('',
     'operator', 'task'), ``stands`` why it is kept still (a code of
     :data:`mhri.core.screen.gate_words.STANDS_WORDS`), ``also_commanded_by`` who else commands it,
+    ``odometry_follows`` is false where its odometry stood still while it was told to move,
     ``waits`` is true while it waits for a centred stick, ``stop_latched`` once its guard has
     confirmed the stop. ``brake`` is what its obstacle brake does. ``hardware_stop`` is true while
     the robot's own emergency stop holds it, None if nothing reports it. ``power`` says in words
@@ -119,6 +120,7 @@ class RobotView:
     brake: BrakeView = BrakeView()
     stop_latched: bool = False
     also_commanded_by: Tuple[str, ...] = ()
+    odometry_follows: bool = True
     power: str = ''
     offers_power: bool = False
     hardware_stop: Optional[bool] = None

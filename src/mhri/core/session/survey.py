@@ -13,6 +13,7 @@ from mhri.core.opencv import cv2
 from mhri.core.robots.link import Motion
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.robot_types import SILENT_AFTER_S
+from mhri.core.screen.gate_words import NO_WITNESS
 from mhri.core.session.timeline import Span
 
 # A robot that rests jitters by less than this, which is no way [m].
@@ -29,18 +30,22 @@ class Stopped:
 
     ``after_s`` is from the stop to the first reading of the standstill that lasted until the
     release, 0 for a robot that stood already, None if it moved at the end or was not heard
-    (``heard`` is false then); ``moved_m`` how far it went meanwhile.
+    (``heard`` is false then); ``moved_m`` how far it went meanwhile; ``follows`` is false if its
+    odometry did not follow commands before, and proves nothing.
     """
 
     heard: bool = False
     after_s: Optional[float] = None
     moved_m: float = 0.0
     stood_before: bool = False
+    follows: bool = True
 
     def words(self) -> str:
         """Return it in words."""
         if not self.heard:
             return 'NOT CONFIRMED: nothing was heard from it'
+        if not self.follows:
+            return 'NOT CONFIRMED: ' + NO_WITNESS
         if self.after_s is None:
             return 'NOT CONFIRMED: it still moved at the end of the stop'
         if self.stood_before:
@@ -51,8 +56,10 @@ class Stopped:
 class _StopWatch:
     """Follows one robot through one stop."""
 
-    def __init__(self, begin_s: float, before: Optional[Tuple[float, Motion]]) -> None:
+    def __init__(self, begin_s: float, before: Optional[Tuple[float, Motion]],
+                 follows: bool) -> None:
         self._begin_s = begin_s
+        self._follows = follows
         self._stood_before = before is not None and before[1].is_standstill() \
             and begin_s - before[0] < _JUST_BEFORE_S
         self._last = before[1] if before is not None else None
@@ -74,7 +81,8 @@ class _StopWatch:
     def read(self) -> Stopped:
         after_s = None if self._rests is None else max(0.0, self._rests - self._begin_s)
         stood = self._stood_before and after_s is not None
-        return Stopped(self._heard, 0.0 if stood else after_s, self._moved_m, stood)
+        return Stopped(self._heard, 0.0 if stood else after_s, self._moved_m, stood,
+                       self._follows)
 
 
 class RobotSurvey:
@@ -95,6 +103,7 @@ class RobotSurvey:
         self._last: Optional[Tuple[float, Motion]] = None
         self._anchor: Optional[Motion] = None
         self._origin: Optional[Pose] = None
+        self._follows = True
         self.placed = False
         self.first_s: Optional[float] = None
         self.distance_m = self.fastest_mps = 0.0
@@ -112,6 +121,10 @@ class RobotSurvey:
         if known and not self.placed:
             # What it drove before in its own frame has no place on the map.
             self.placed, self.pieces = True, []
+
+    def on_witness(self, follows: bool) -> None:
+        """Take in whether the gates say that its odometry follows commands."""
+        self._follows = follows
 
     def on_round_trip(self, round_trip_s: float) -> None:
         """Take in a round trip [s]; NaN: it was not known."""
@@ -137,7 +150,8 @@ class RobotSurvey:
         place = bisect_right(self._begins, at_s) - 1
         if place >= 0 and at_s < self._stops[place].end_s:
             if place not in self._watches:
-                self._watches[place] = _StopWatch(self._begins[place], self._last)
+                self._watches[place] = _StopWatch(
+                    self._begins[place], self._last, self._follows)
             self._watches[place].see(at_s, motion)
 
     def _go(self, at_s: float, motion: Motion) -> None:

@@ -93,10 +93,7 @@ class BrakeEye:
         if not self.brake.reads or self._odometry is None or now - self._pose_at < POSE_EVERY_S:
             return
         self._pose_at = now
-        message = self._odometry_refusals.read(message, self._odometry)
-        motion = None if message is None else self._read(message)
-        if motion is not None and motion.problem:
-            self._odometry_refusals.note(motion.problem)
+        message, motion = self._read_odometry(message)
         if motion is not None and motion.is_possible():
             self._mounts.see_odometry(message)
             pose = Pose(motion.x_m, motion.y_m, motion.heading_rad)
@@ -104,6 +101,18 @@ class BrakeEye:
             if header is not None:
                 self._track.add(header[1], pose, now)
             self.brake.move(pose)
+
+    def motion(self, message):
+        """Return the :class:`Motion` in the bytes of an odometry message, None: there is none."""
+        return None if self._odometry is None else self._read_odometry(message)[1]
+
+    def _read_odometry(self, message):
+        """Return (the message, its motion), None for what cannot be read; that is counted."""
+        message = self._odometry_refusals.read(message, self._odometry)
+        motion = None if message is None else self._read(message)
+        if motion is not None and motion.problem:
+            self._odometry_refusals.note(motion.problem)
+        return message, motion
 
     def _on_scan(self, message, laser):
         now = self._clock()

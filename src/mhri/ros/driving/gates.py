@@ -357,7 +357,8 @@ class Gates:
         if news:
             self.on_change()
             rospy.logwarn('%s', news)
-        states = [(gate.rule.obeys, gate.rule.stands, gate.brake()[0], gate.also_commanded_by(now))
+        states = [(gate.rule.obeys, gate.rule.stands, gate.brake()[0], gate.also_commanded_by(now),
+                   gate.odometry_follows)
                   for gate in self._gates.values()]
         if states != self._states:
             self._states = states

@@ -15,6 +15,7 @@ from mhri.core.driving.limits import ZERO
 from mhri.core.robots.link import link_state
 from mhri.core.robots.listeners import guard_node, obeying
 from mhri.core.robots.names import topic_of
+from mhri.core.robots.stop_proof import OdometryWitness
 from mhri.core.screen.views import GONE, SILENT
 from mhri.msg import RobotGate as RobotGateMessage
 from mhri.ros.convert import packed_twist, to_twist
@@ -35,6 +36,8 @@ LIVE_S = 1.0
 MOST_TOPICS = 8
 # How often a guard that would go back alone is told that it is heard [s].
 BEAT_S = 0.5
+# How often the odometry of a robot that is told to move is compared with that [s].
+COMPARE_S = 0.1
 # A stopped robot that somebody else commands gets a zero so often [s]: 20 Hz, on ticks that may
 # come a little early.
 ZEROS_S = 0.045
@@ -51,9 +54,10 @@ class RobotGate:
     ``/<robot>/mhri_guard/command`` (``geometry_msgs/TwistStamped``); a zero goes to all of them, a
     command to one: the guard's while its echo is alive, else the first that the robot listens to.
     Subscribes ``/<robot>/mhri_guard/echo`` (``geometry_msgs/TwistStamped``) and the odometry, of
-    which only the time counts; and each velocity topic: a stopped robot that
-    somebody else may command (:class:`mhri.ros.driving.other_drivers.OtherDrivers`) gets zeros at
-    20 Hz, and one behind each message that is heard. Of a guard that does something by itself also
+    which the time counts, and whether it follows what the robot is told; and each velocity topic: a
+    stopped robot that somebody else may command
+    (:class:`mhri.ros.driving.other_drivers.OtherDrivers`) gets zeros at 20 Hz, and one behind each
+    message that is heard. Of a guard that does something by itself also
     ``/<robot>/mhri_guard/state`` (``std_msgs/String``), which it answers by
     ``/<robot>/mhri_guard/heard`` (``std_msgs/String``). While the brake is asked for, see
     :class:`mhri.ros.driving.brake_eye.BrakeEye`; while the robot is checked or stopped, see
@@ -101,6 +105,9 @@ class RobotGate:
         self._heard = PromptPublisher('/{}/mhri_guard/heard'.format(name), String)
         self.power = MotorPower(name, robot_type)
         self._navigation = OwnNavigation(name)
+        self._witness, self._compared_at = OdometryWitness(), -math.inf
+        # What its guard says that the robot was given.
+        self._given = 0.0, 0.0
         self._wake = wake
         self._zero_at, self._again_at = -math.inf, math.inf
         # {(caller id, topic)} of those who can command it, as the master knows them.
@@ -130,6 +137,12 @@ class RobotGate:
     def _on_odometry(self, message):
         first, self._heard_at = self._heard_at is None, self._clock()
         self._eye.on_odometry(message, self._heard_at)
+        if self._witness.asks and self._heard_at - self._compared_at >= COMPARE_S:
+            self._compared_at = self._heard_at
+            motion = self._eye.motion(message)
+            if motion is not None:
+                with self._lock:
+                    self._witness.on_motion(motion, self._heard_at, self.round_trip_s)
         if first:
             with self._lock:
                 self.send(self.rule.join(self._heard_at))
@@ -197,6 +210,20 @@ class RobotGate:
                 self._others.connected() | self._others.out_of_reach(self._registered)):
             self._publish(ZERO)
 
+    @property
+    def odometry_follows(self):
+        """Whether the robot's odometry moved when the robot was told to."""
+        return self._witness.follows
+
+    def _tell_witness(self, now):
+        """Say what the robot was given: nothing where its motors are off, or nobody listens."""
+        given = 0.0, 0.0
+        if self._guarded:
+            given = self._given
+        elif self._listened is not None:
+            given = self.rule.sent.linear_mps, self.rule.sent.angular_rad_s
+        self._witness.on_told(*((0.0, 0.0) if self.power.is_cut else given), now)
+
     def _on_guard_state(self, message):
         self._guard_state = read_state(message.data)
 
@@ -224,6 +251,7 @@ class RobotGate:
             ours = self._guard.speaker.startswith(self._session)
             if stopped and not ours and self.rule.state != STOPPED:
                 self._on_foreign_stop(self.name)
+            self._given = message.twist.linear.x, message.twist.angular.z
             self._look_at_guard(now)
             if self._guard.displaced:
                 self._begin_session(now)
@@ -287,6 +315,7 @@ class RobotGate:
         self._look_at_guard(now)
         self.ask_brake(self._brake_asked)
         self.send(self.rule.hold(self._lost(now), now))
+        self._tell_witness(now)
         self._repeat_zero(now)
         self._beat(now)
 
@@ -359,7 +388,8 @@ class RobotGate:
         return RobotGateMessage(
             name=self.name, obeys=rule.obeys,
             stands='not_heard' if rule.stands == 'held' else rule.stands,
-            also_commanded_by=self.also_commanded_by(self._clock()), odometry_follows=True,
+            also_commanded_by=self.also_commanded_by(self._clock()),
+            odometry_follows=self.odometry_follows,
             topic=chosen.resolved_name if chosen else '', guarded=self._guarded,
             stop_confirmed=self._guarded and self._guard.stop_confirmed,
             sent=to_twist(sent.linear_mps, sent.angular_rad_s), power=self.power.state,

@@ -21,7 +21,7 @@ from mhri.core.robots.names import topic_of
 from mhri.core.robots.stamp_age import delay_of, StampAge
 from mhri.core.robots.stop_proof import StopProof
 from mhri.core.screen.brake_view import back_words, brake_words, BrakeView
-from mhri.core.screen.gate_words import also_words, stands_words
+from mhri.core.screen.gate_words import also_words, NO_WITNESS, stands_words
 from mhri.core.screen.views import LIVE, RobotView, UNANSWERED
 from mhri.core.sensors.plausible import BATTERY, can_be
 from mhri.msg import RobotGate
@@ -136,7 +136,7 @@ class RobotLink:
         self._motion = None
         self._quality = quality()
         self._ages = {}
-        self._proof = None
+        self._proof, self._follows = None, True
         self._battery = None
         self._guard_feeds = []
         self._dropped_at = -math.inf
@@ -154,6 +154,9 @@ class RobotLink:
         """Take in what the gates say of this robot (``mhri/RobotGate``), on a ROS thread."""
         with self._lock:
             self._quality.on_round_trip(round_trip_s(gate))
+            self._follows = gate.odometry_follows
+            if self._proof is not None:
+                self._proof.follows = self._follows
 
     def _open_feeds(self):
         """Subscribe to the odometry topics of the template."""
@@ -233,6 +236,8 @@ class RobotLink:
             self._proof = StopProof(
                 now, self._quality.read(now).round_trip_s,
                 self.robot_type.silent_after_s) if stopped else None
+            if self._proof is not None:
+                self._proof.follows = self._follows
 
     @property
     def stopped_ms(self):
@@ -316,14 +321,14 @@ def seen_by_gates(view, gate, answers):
         return view
     stands = stands_words(gate.stands) if gate.obeys else ''
     also = tuple(gate.also_commanded_by)
-    warning = stands or also_words(also)
+    warning = stands or also_words(also) or ('' if gate.odometry_follows else NO_WITNESS)
     brake = BrakeView(gate.brake, gate.free_way_m, gate.brake_on_robot, gate.back_after_s)
     return with_stop_words(replace(
         view, driven=is_driven(gate) and bool(gate.topic), guarded=gate.guarded,
         obeys=gate.obeys, stands=gate.stands, brake=brake, power=gate.power,
         waits=gate.stands == RobotGate.JOINING, stop_latched=gate.stop_confirmed,
         sent_mps=gate.sent.linear.x, sent_rad_s=gate.sent.angular.z, reached=bool(gate.topic),
-        also_commanded_by=also,
+        also_commanded_by=also, odometry_follows=gate.odometry_follows,
         note=warning if warning and view.link == LIVE else view.note or _calm_note(
             view, gate, brake),
         slow=view.slow or bool(warning) or brake.holds))

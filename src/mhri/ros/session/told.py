@@ -216,6 +216,7 @@ class Teller:
             survey = self._surveys.get(row.name if topic == GATES else row.robot)
             if survey is not None and topic == GATES:
                 survey.on_round_trip(row.round_trip_s)
+                survey.on_witness(row.odometry_follows)
             elif survey is not None:
                 survey.on_place(_pose(row.odometry))
 
