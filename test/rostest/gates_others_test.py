@@ -3,9 +3,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Others on the topics of a robot: who commands it beside mhri, and who else has its name."""
 import os
+import signal
 import sys
+import threading
 import time
 
+from geometry_msgs.msg import TwistStamped
+from nav_msgs.msg import Odometry
 import rospy
 import rostest
 
@@ -125,6 +129,84 @@ class GatesOthersTest(GatesCase):
         self.hold(3.0)
         self.assertTrue(witness.moving())
         self.assertTrue(self.state.robot(name).odometry_follows)
+
+    def kept_standing(self, name, receiver, code, seconds=1.0):
+        """Hold the stick: the robot is told nothing but to stand, and the code says why."""
+        self.state.wait_robot(name, lambda gate: gate.stands == code, code)
+        when = time.monotonic()
+        self.hold(seconds)
+        self.assertLessEqual({entry[1:] for entry in receiver.after(when)}, {ZERO})
+        self.assertEqual(self.state.robot(name).stands, code)
+
+    def drives_again(self, name, receiver):
+        """Centre the stick, and drive the robot."""
+        self.state.wait_robot(name, lambda gate: gate.stands in ('', 'joining'), 'the end of it')
+        self.centre(name, receiver)
+        self.assertEqual(self.drive(receiver, 0.2), (0.2, 0.0))
+
+    def unreadable(self, kind, frame_id, word):
+        """Drive a robot with a guard whose echo cannot be read: it stands until that ends."""
+        name, _, receiver, _ = self.robot()
+        self.assertEqual(self.drive(receiver, 0.2), (0.2, 0.0))
+        echo = rospy.Publisher('/{}/mhri_guard/echo'.format(name), kind, queue_size=1)
+        message, ends = kind(), threading.Event()
+        message.header.frame_id = frame_id
+
+        def speak():
+            while not ends.wait(0.1):
+                echo.publish(message)
+        speaker = threading.Thread(target=speak)
+        speaker.start()
+        try:
+            self.kept_standing(name, receiver, 'guard_version')
+            self.state.wait(lambda state: any(name in line and word in line
+                                              for line in state.refused), 'its version')
+        finally:
+            ends.set()
+            speaker.join()
+            echo.unregister()
+        self.drives_again(name, receiver)
+
+    def test_a_guard_with_one_field_more_is_not_driven_past(self):
+        self.unreadable(TwistStamped, 'a:1:token:more', '4 fields')
+
+    def test_a_guard_whose_messages_are_defined_otherwise_is_not_driven_past(self):
+        class Other(TwistStamped):
+            _md5sum = '0123456789abcdef0123456789abcdef'
+        self.unreadable(Other, 'a:1:token', Other._md5sum)
+
+    def test_two_computers_of_one_name_are_not_driven(self):
+        name, _, receiver, _ = self.robot()
+        self.drive(receiver, 0.2)
+        when = time.monotonic()
+        other = self.process('plain_robot.py', name, 'cmd_vel', 'odom', '__name:=base_too')
+        self.state.wait_robot(name, lambda gate: gate.stands == 'two_robots', 'both to be seen')
+        self.assertIn(ZERO, [entry[1:] for entry in receiver.after(when)])
+        self.kept_standing(name, receiver, 'two_robots')
+        self.state.wait(lambda state: any('base_too' in line for line in state.refused), 'a name')
+        other.end()
+        self.drives_again(name, receiver)
+
+    def test_two_guards_of_one_name_are_not_driven(self):
+        name, _, receiver, _ = self.robot()
+        self.guard(name)
+        self.centre(name, receiver)
+        other = self.guard(name, '__name:=guard_too')
+        self.kept_standing(name, receiver, 'two_robots')
+        other.end()
+        self.drives_again(name, receiver)
+
+    def test_who_records_plays_and_looks_on_is_no_robot(self):
+        """Nor is a second computer that reads what the robot is told, or a guard started anew."""
+        name, _, receiver, _ = self.robot()
+        rospy.Publisher('/{}/odom'.format(name), Odometry, queue_size=1)
+        guard = self.guard(name)
+        guard.send(signal.SIGKILL)
+        self.state.wait_robot(name, lambda gate: not gate.guarded, 'no guard')
+        self.guard(name)
+        self.drives_again(name, receiver)
+        self.hold(0.5)
+        self.assertEqual(self.state.robot(name).stands, '')
 
     def test_an_input_of_its_multiplexer_counts(self):
         """What wins there are zeros on the better input, as long as anybody uses the other."""

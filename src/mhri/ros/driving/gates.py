@@ -289,8 +289,7 @@ class Gates:
         self._close_gate(name)
         gate = RobotGate(name, robot_type, self._session, self._command, self._lock,
                          self._on_foreign_stop,
-                         lambda robot: self._refuse('somebody', robot + '/mhri_guard/command'),
-                         self._clock, self._frames, self._wake.notify)
+                         self._refuse, self._clock, self._frames, self._wake.notify)
         with self._lock:
             now = self._clock()
             if self._closed:

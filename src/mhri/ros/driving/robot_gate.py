@@ -5,17 +5,19 @@ import math
 import operator
 import time
 
+import genpy
 from geometry_msgs.msg import Twist, TwistStamped
 import rospy
 from std_msgs.msg import String
 
-from mhri.core.driving.gate import GateRule, STOPPED
+from mhri.core.driving.gate import GateRule, HELD, STOPPED
 from mhri.core.driving.guard_link import GuardLink, GuardState, read_state
 from mhri.core.driving.limits import ZERO
 from mhri.core.robots.link import link_state
 from mhri.core.robots.listeners import guard_node, obeying
 from mhri.core.robots.names import topic_of
 from mhri.core.robots.stop_proof import OdometryWitness
+from mhri.core.robots.twins import GuardTurns, listed, twins
 from mhri.core.screen.views import GONE, SILENT
 from mhri.msg import RobotGate as RobotGateMessage
 from mhri.ros.convert import packed_twist, to_twist
@@ -23,7 +25,9 @@ from mhri.ros.driving.brake_eye import BrakeEye
 from mhri.ros.driving.motor_power import MotorPower
 from mhri.ros.driving.other_drivers import OtherDrivers
 from mhri.ros.graph.prompt import PromptPublisher
-from mhri.ros.graph.rospy_inside import listeners, publisher_uri, publishers, unsubscribe
+from mhri.ros.graph.rospy_inside import (
+    caller_of, listeners, md5sum_of, peer_hosts, publisher_hosts, publisher_uri, publishers,
+    type_of, unsubscribe)
 from mhri.ros.robots.link_probe import LinkProbe
 from mhri.ros.robots.own_navigation import OwnNavigation
 
@@ -44,7 +48,25 @@ ZEROS_S = 0.045
 # The zero behind somebody else's message may overtake it, on another connection: it is said again
 # after so long [s].
 BEHIND_S = 0.005
+# A guard whose echo could not be read within this time is there, and must not be driven past; one
+# that is read and takes no commands for so long is of another version, too [s].
+UNREADABLE_S, UNLINKED_S = 1.5, 1.0
+COMPLAIN_S = 1.0
 _PACKED_ZERO = packed_twist(0.0, 0.0)
+
+
+def _read_echo(message):
+    """Return the echo in some bytes (``rospy.AnyMsg``), None if it is none; and its version."""
+    kind, version = type_of(message), md5sum_of(message)
+    echo = None
+    if kind == TwistStamped._type and version in (TwistStamped._md5sum, '*'):
+        try:
+            echo = TwistStamped().deserialize(message._buff)
+        except genpy.DeserializationError:
+            pass
+    said = '{} {}'.format(kind, version)[:100]
+    return echo, said if echo is None else '{}, {} fields in its frame_id'.format(
+        said, min(99, 1 + echo.header.frame_id.count(':')))
 
 
 class RobotGate:
@@ -70,12 +92,13 @@ class RobotGate:
     :param command: the operator's last command, None before the first
     :param lock: held by the callbacks
     :param on_foreign_stop: called with the robot if another run of the gates has stopped it
-    :param on_displaced: called with the robot if somebody else has spoken to its guard
+    :param on_refused: called with (who, what) if somebody else has spoken to its guard, or cannot
+        be believed or driven
     :param frames: :class:`mhri.ros.map.tf_feed.TfFeed`, None: without tf
     :param wake: called, under the lock, when :meth:`next_tick` has become earlier
     """
 
-    def __init__(self, name, robot_type, session, command, lock, on_foreign_stop, on_displaced,
+    def __init__(self, name, robot_type, session, command, lock, on_foreign_stop, on_refused,
                  clock=time.monotonic, frames=None, wake=lambda: None):
         self.name = name
         self.robot_type = robot_type
@@ -88,7 +111,7 @@ class RobotGate:
         self._lock = lock
         self._session = session
         self._on_foreign_stop = on_foreign_stop
-        self._on_displaced = on_displaced
+        self._on_refused = on_refused
         self._sessions = 0
         self._guard = GuardLink(session)
         self._guarded = False
@@ -114,10 +137,14 @@ class RobotGate:
         self._registered = frozenset()
         self._others = OtherDrivers(self._on_other_motion, clock)
         # A robot may be heard from here on.
+        self._turns = GuardTurns()
+        self._unreadable_at, self._unlinked_since = -math.inf, None
+        self._held_by, self._complained_at = '', -math.inf
         self._odometry = [
             rospy.Subscriber(topic_of(name, topic), rospy.AnyMsg, self._on_odometry, queue_size=1,
                              tcp_nodelay=True) for topic in robot_type.odometry]
-        self._echo = rospy.Subscriber('/{}/mhri_guard/echo'.format(name), TwistStamped,
+        # As bytes: rospy would not connect to a guard whose messages are defined otherwise.
+        self._echo = rospy.Subscriber('/{}/mhri_guard/echo'.format(name), rospy.AnyMsg,
                                       self._on_echo, queue_size=1, tcp_nodelay=True)
         self._state = rospy.Subscriber('/{}/mhri_guard/state'.format(name), String,
                                        self._on_guard_state, queue_size=1, tcp_nodelay=True)
@@ -244,9 +271,14 @@ class RobotGate:
     def _on_echo(self, message):
         """Take in an echo; repeat a stop or a release that the guard has missed."""
         now = self._clock()
+        caller, (message, version) = caller_of(message), _read_echo(message)
         with self._lock:
-            if not self._guard.on_echo(message.header.frame_id, now):
+            if message is None or not self._guard.on_echo(message.header.frame_id, now):
+                self._unreadable_at = now
+                self._complain(caller, 'mhri_guard/echo, {}'.format(version), now)
+                self._settle_hold(now)
                 return
+            self._turns.on_token(self._guard.token, now)
             stopped = self._guard.stop_confirmed
             ours = self._guard.speaker.startswith(self._session)
             if stopped and not ours and self.rule.state != STOPPED:
@@ -264,8 +296,51 @@ class RobotGate:
         """Start a new session: another sender has taken over the guard."""
         self._sessions += 1
         self._guard = GuardLink('{}-{}'.format(self._session, self._sessions))
-        self._on_displaced(self.name)
+        self._on_refused('somebody', self.name + '/mhri_guard/command')
         self.send(self.rule.join(now) or ZERO)
+
+    def _hold_reason(self, now):
+        """Return why nothing may be sent to the robot: a code, '' for no reason."""
+        twins_found = self._twins()
+        if twins_found or self._turns.two(now):
+            self._complain(listed(twins_found) or 'two guards', 'all are ' + self.name, now)
+            return RobotGateMessage.TWO_ROBOTS
+        alive = self._guard.alive(now)
+        # Behind a guard that is read, whatever else is said there counts for nothing.
+        if not alive and now - self._unreadable_at < UNREADABLE_S:
+            return RobotGateMessage.GUARD_VERSION
+        if not alive or self._publishers[0].links():
+            self._unlinked_since = None
+        elif self._unlinked_since is None or now - self._unlinked_since < UNLINKED_S:
+            self._unlinked_since = self._unlinked_since or now
+            return RobotGateMessage.JOINING
+        else:
+            self._complain(self.name, 'its guard takes no commands', now)
+            return RobotGateMessage.GUARD_VERSION
+        return RobotGateMessage.NOT_HEARD if self._lost(now) else ''
+
+    def _twins(self):
+        """Return the nodes or computers that are this robot each, as a set."""
+        if all(ear.get_num_connections() < 2 for ear in self._odometry):
+            return set()
+        commands = set().union(*self._obeying[1:])
+        hosts = peer_hosts(link for links in self._links[1:] for link in links)
+        return twins(map(publisher_hosts, self._odometry),
+                     {name: host for name, host in hosts.items() if name in commands})
+
+    def _complain(self, who, what, now):
+        """Name who cannot be believed or driven, once a second."""
+        if now - self._complained_at >= COMPLAIN_S:
+            self._complained_at = now
+            self._on_refused(who, '/{}: {}'.format(self.name, what))
+            rospy.logwarn_throttle(10.0, '{}: {}: {}'.format(self.name, who, what))
+
+    def _settle_hold(self, now):
+        """Hold the robot if there is a reason, and let it go on when there is none."""
+        reason = self._hold_reason(now)
+        if reason:
+            self._held_by = reason
+        self.send(self.rule.hold(bool(reason), now))
 
     def _look_at_guard(self, now):
         """Let the robot wait for neutral if its guard has come or gone."""
@@ -314,7 +389,7 @@ class RobotGate:
         self._look_at_links(now)
         self._look_at_guard(now)
         self.ask_brake(self._brake_asked)
-        self.send(self.rule.hold(self._lost(now), now))
+        self._settle_hold(now)
         self._tell_witness(now)
         self._repeat_zero(now)
         self._beat(now)
@@ -387,7 +462,7 @@ class RobotGate:
         brake, way_m, on_robot = self.brake()
         return RobotGateMessage(
             name=self.name, obeys=rule.obeys,
-            stands='not_heard' if rule.stands == 'held' else rule.stands,
+            stands=self._held_by if rule.stands == HELD else rule.stands,
             also_commanded_by=self.also_commanded_by(self._clock()),
             odometry_follows=self.odometry_follows,
             topic=chosen.resolved_name if chosen else '', guarded=self._guarded,

@@ -27,6 +27,11 @@ def type_of(message):
     return message._connection_header['type']
 
 
+def md5sum_of(message):
+    """Return the md5sum of a message's definition as its publisher named it, '' if unknown."""
+    return message._connection_header.get('md5sum', '')
+
+
 def link_of(message):
     """Return an object that is the same for all messages of one connection."""
     return message._connection_header
@@ -48,6 +53,12 @@ def peer_hosts(connections):
         caller = connection.callerid_pub
         found[connection.endpoint_id if caller == 'unknown' else caller] = host
     return found
+
+
+def publisher_hosts(subscriber):
+    """Return {caller id: network address} of the publishers connected to a ``rospy.Subscriber``."""
+    impl = subscriber.impl
+    return peer_hosts(impl.connections if impl else ())
 
 
 def publishers(subscriber):

@@ -319,7 +319,8 @@ def seen_by_gates(view, gate, answers):
         return replace(view, note=UNANSWERED, slow=True)
     if gate is None:
         return view
-    stands = stands_words(gate.stands) if gate.obeys else ''
+    stands = stands_words(gate.stands) if gate.obeys or gate.stands in (
+        RobotGate.GUARD_VERSION, RobotGate.TWO_ROBOTS) else ''
     also = tuple(gate.also_commanded_by)
     warning = stands or also_words(also) or ('' if gate.odometry_follows else NO_WITNESS)
     brake = BrakeView(gate.brake, gate.free_way_m, gate.brake_on_robot, gate.back_after_s)
