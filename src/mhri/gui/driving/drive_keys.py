@@ -15,6 +15,7 @@ from python_qt_binding.QtWidgets import (
 from mhri.gui.driving.hold_limit import HoldLimit
 from mhri.gui.driving.key_state import KeyState
 from mhri.gui.driving.stop_bar import CUT_AFTER_S
+from mhri.gui.driving.stop_clear import keep_clear, press_beneath
 
 _AHEAD, _BACK, _LEFT, _RIGHT = (1, 0), (-1, 0), (0, 1), (0, -1)
 
@@ -47,6 +48,9 @@ _LOSSES = frozenset((QEvent.WindowDeactivate, QEvent.WindowBlocked, QEvent.Appli
 # Before one of these somebody else may have had the releases of keys that were held.
 _ARRIVALS = frozenset((QEvent.WindowActivate, QEvent.WindowUnblocked, QEvent.ApplicationActivate,
                        QEvent.FocusIn))
+
+# What lies over other windows comes, or changes its place.
+_PLACED = frozenset((QEvent.Show, QEvent.Move, QEvent.Resize))
 
 _TEXT_FIELDS = (QLineEdit, QAbstractSpinBox, QTextEdit, QPlainTextEdit)
 _ARROW_USERS = (QAbstractSlider, QComboBox, QAbstractItemView)
@@ -245,6 +249,10 @@ class DriveKeys(QObject):
             self._down.intersection_update(self._keys.down() or ())
         elif kind in _KEYS and isinstance(watched, QWidget):
             return self._on_key(watched, event, kind)
+        elif kind == QEvent.MouseButtonPress and isinstance(watched, QWidget):
+            return press_beneath(event)
+        elif kind in _PLACED and isinstance(watched, QWidget) and watched.isWindow():
+            keep_clear(watched)
         return False
 
     def _on_key(self, watched, event, kind):

@@ -23,13 +23,21 @@ def stop_places():
     """
     places = {int(widget.winId()): [] for widget in QApplication.topLevelWidgets()
               if widget.isVisible() and widget.windowHandle()}
+    for button in stop_buttons():
+        places.setdefault(int(button.window().winId()), []).append(button.place())
+    return places
+
+
+def stop_buttons():
+    """Return the stop buttons of this program that are shown."""
+    shown = []
     for button in list(_BUTTONS):
         try:
             if button.isVisible():
-                places.setdefault(int(button.window().winId()), []).append(button.place())
+                shown.append(button)
         except RuntimeError:  # Qt has deleted it
             _BUTTONS.discard(button)
-    return places
+    return shown
 
 
 class StopButton(QAbstractButton):
@@ -107,14 +115,19 @@ class StopButton(QAbstractButton):
         """Act on the first contact of a finger."""
         kind = event.type()
         if kind == QEvent.TouchBegin and self.isEnabled():
-            self.setDown(True)
-            self.pressed.emit()
+            self.press()
         elif kind in (QEvent.TouchEnd, QEvent.TouchCancel):
             self.setDown(False)
         elif kind != QEvent.TouchUpdate:
             return super().event(event)
         event.accept()
         return True
+
+    def press(self):
+        """Act on a press that somebody else received, as an open menu does."""
+        if self.isEnabled():
+            self.setDown(True)
+            self.pressed.emit()
 
     def _watch(self):
         """Look for the end of this press."""
@@ -124,6 +137,7 @@ class StopButton(QAbstractButton):
         """Tell of the end of a press, wherever it arrives."""
         if event.type() in _ENDS:
             QApplication.instance().removeEventFilter(self)
+            self.setDown(False)
             self.let_go.emit()
         return False
 

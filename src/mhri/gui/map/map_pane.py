@@ -7,6 +7,7 @@ from python_qt_binding.QtWidgets import QHBoxLayout, QMenu, QPushButton, QVBoxLa
 
 from mhri.core.map import gesture
 from mhri.core.map.canvas import place_words
+from mhri.gui.driving.stop_clear import room_px
 from mhri.gui.map.map_canvas import MapCanvas
 from mhri.gui.map.map_menu import fit_rows, menu_rows
 from mhri.gui.map.map_strip import NameField, UnplacedStrip
@@ -319,8 +320,10 @@ class MapPane(QWidget):
         menu = QMenu(self)
         menu.setObjectName('map_menu')
         menu.setFont(self.font())
+        # Lower rows rather than a menu that finds no room above STOP ALL.
+        least, room = self.fontMetrics().height(), room_px(where) - self.fontMetrics().height()
         menu.setStyleSheet('QMenu::item {{ min-height: {}px; padding: 0 1em; }}'.format(
-            theme.touch_size(self)))
+            max(least, min(theme.touch_size(self), room // max(1, len(rows))))))
         menu.setAttribute(Qt.WA_DeleteOnClose)
         for text, act in rows:
             menu.addAction(text).triggered.connect(lambda checked=False, act=act: act())
