@@ -9,11 +9,15 @@ import os
 import signal
 import subprocess
 import sys
+import time
 
 import psutil
 import pytest
 
-from mhri.ros import stand_by
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
+
+from mhri.ros import stand_by  # noqa: E402
+from support.ros_system import wait_for  # noqa: E402
 
 # Says its number; ends with 7 if SIGTERM or SIGHUP asks it to, with 8 if SIGINT does. If it is to
 # beat, it does so once, and hangs from then on.
@@ -86,6 +90,23 @@ def test_a_signal_to_end_is_handed_on_once_and_the_status_with_it(start, number,
     send(process.pid, number)
     assert process.wait(60) == status
     assert process.stdout.read().split() == ['signal', str(int(number))]
+
+
+def test_one_that_was_stopped_for_a_while_stands_by_as_before(start):
+    """As by Ctrl-Z and fg, or a laptop that sleeps."""
+    process = start(beats=True, beat='beat.end()')
+    first = here(process)
+    parent = psutil.Process(process.pid)
+    for _ in range(3):
+        parent.suspend()
+        begun = time.monotonic()
+        wait_for(lambda: parent.status() == psutil.STATUS_STOPPED, 60.0)
+        # Longer than it waits between two looks at the beats.
+        wait_for(lambda since=begun: time.monotonic() - since > 0.3, 60.0)
+        parent.resume()
+        wait_for(lambda: parent.status() == psutil.STATUS_SLEEPING, 60.0)
+    os.kill(first, signal.SIGKILL)
+    assert here(process) != first and process.poll() is None
 
 
 SHORT = '''

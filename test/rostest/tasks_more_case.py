@@ -10,7 +10,7 @@ import unittest
 
 import actionlib
 from geometry_msgs.msg import PoseStamped, Twist
-from move_base_msgs.msg import MoveBaseAction, MoveBaseResult
+from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseResult
 from nav_msgs.msg import Odometry
 import rospy
 from rostest_tools import NEUTRAL, Recorder, Stick, velocity, wait_until
@@ -22,6 +22,7 @@ sys.path[:0] = [os.path.join(HERE, '..'), os.path.join(HERE, '..', 'support', 'm
 from mhri.msg import ControlMode, RunTaskAction, RunTaskGoal, TaskList, TaskState  # noqa: E402
 from mhri.srv import SetFence, SetMark  # noqa: E402
 from support.fake_mux import FakeOperator, StateEar  # noqa: E402
+from support.graph import navigation  # noqa: E402
 from turtlesim.msg import Pose as TurtlePose  # noqa: E402
 
 PATIENCE_S = 120.0
@@ -33,6 +34,9 @@ class FakeMoveBase:
 
     def __init__(self, name):
         self.goals = []
+        # Before the server, which writes into the message.
+        self.stamps = Recorder(navigation(name, 'goal'), MoveBaseActionGoal,
+                               lambda message: message.goal_id.stamp.to_sec())
         self._drive = rospy.Publisher('/{}/cmd_vel'.format(name), Twist, queue_size=1)
         self._server = actionlib.ActionServer('/{}/move_base'.format(name), MoveBaseAction,
                                               self._on_goal, self._on_cancel, auto_start=False)

@@ -30,3 +30,8 @@ def guard(robot, what):
 def motion_capture(robot):
     """Return the topic of a robot's pose as motion capture sees it."""
     return '/vrpn_client_node/{}/pose'.format(robot)
+
+
+def navigation(robot, what):
+    """Return a topic of a robot's own navigation: 'goal', 'cancel' or 'status'."""
+    return '/{}/move_base/{}'.format(robot, what)

@@ -3,9 +3,9 @@
 """The executable ``tasks``: runs :class:`mhri.ros.tasks.tasks.Tasks` as ``/mhri_tasks``.
 
 ``tasks --stand-by`` does so in a process that another one, already loaded, replaces if it is
-killed (:mod:`mhri.ros.stand_by`). Parameter: ``~map`` (path of a YAML file of map_server; it is
-published as ``/map``; default: none), ``~keep_to_map`` (true: no robot on a task leaves the free
-floor of the map, where it is placed on it and stands there; default: true).
+killed or hangs (:mod:`mhri.ros.stand_by`). Parameter: ``~map`` (path of a YAML file of map_server;
+it is published as ``/map``; default: none), ``~keep_to_map`` (true: no robot on a task leaves the
+free floor of the map, where it is placed on it and stands there; default: true).
 """
 import sys
 
@@ -56,14 +56,15 @@ def main():
     """
     types, _ = robot_types()
     kinds, errors = task_kinds()
-    stand_by('the tasks')
+    beat = stand_by('the tasks', beats=True)
     limit_handshakes()
     init_node('mhri_tasks', disable_rostime=True)
+    rospy.on_shutdown(beat.end)
     log.install()
     by_hand = ended_by_hand()
     for error in errors:
         rospy.logwarn('a task is left out: %s', error)
-    tasks = Tasks(types, kinds, map_of_parameter(), keeps_to_map=keeps_to_map())
+    tasks = Tasks(types, kinds, map_of_parameter(), keeps_to_map=keeps_to_map(), beat=beat)
     rospy.on_shutdown(tasks.close)
     MasterWatch().start()
     tasks.start()

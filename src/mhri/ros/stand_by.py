@@ -86,9 +86,17 @@ def _fork(label):
             if not told:
                 _say('{}: no process can be started yet: {}\n'.format(label, error))
             told = True
-            asked = signal.sigtimedwait(_ENDS, _LOOK_S)
+            asked = _signal_soon(_ENDS)
             if asked is not None:
-                os._exit(128 + asked.si_signo)
+                os._exit(128 + asked)
+
+
+def _signal_soon(signs):
+    """Return the number of the signal that comes within :data:`_LOOK_S`, None for none."""
+    info = signal.sigtimedwait(signs, _LOOK_S)
+    # Python returns what happens to be in its memory (seen with 3.11) where the time was over while
+    # this process was stopped, by Ctrl-Z or with a computer that slept.
+    return info.si_signo if info is not None and info.si_signo in signs else None
 
 
 def _say(line):
@@ -188,11 +196,11 @@ def _end_of(child, watch):
     while True:
         watching = watch is not None and not asked and not hung
         signs = _ENDS + (signal.SIGCHLD,)
-        info = signal.sigtimedwait(signs, _LOOK_S) if watching else signal.sigwaitinfo(signs)
-        if info is not None and info.si_signo != signal.SIGCHLD:
+        number = _signal_soon(signs) if watching else signal.sigwaitinfo(signs).si_signo
+        if number in _ENDS:
             asked = True
-            os.kill(child, info.si_signo)
-        elif info is not None:
+            os.kill(child, number)
+        elif number is not None:
             ended, status = os.waitpid(child, os.WNOHANG)
             if ended:
                 return status, asked, hung

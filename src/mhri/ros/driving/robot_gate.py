@@ -10,6 +10,7 @@ from geometry_msgs.msg import Twist, TwistStamped
 import rospy
 from std_msgs.msg import String
 
+from mhri.core.driving import arbiter
 from mhri.core.driving.gate import GateRule, HELD, STOPPED
 from mhri.core.driving.guard_link import GuardLink, GuardState, read_state
 from mhri.core.driving.limits import ZERO
@@ -82,7 +83,7 @@ class RobotGate:
     message that is heard. Of a guard that does something by itself also
     ``/<robot>/mhri_guard/state`` (``std_msgs/String``), which it answers by
     ``/<robot>/mhri_guard/heard`` (``std_msgs/String``). While the brake is asked for, see
-    :class:`mhri.ros.driving.brake_eye.BrakeEye`; while the robot is checked or stopped, see
+    :class:`mhri.ros.driving.brake_eye.BrakeEye`; for the robot's own navigation, see
     :class:`mhri.ros.robots.own_navigation.OwnNavigation`. Apart from its callbacks it is not
     thread-safe: hold ``lock``.
 
@@ -127,7 +128,8 @@ class RobotGate:
         self._listened = self._listeners = None
         self._heard = PromptPublisher('/{}/mhri_guard/heard'.format(name), String)
         self.power = MotorPower(name, robot_type)
-        self._navigation = OwnNavigation(name)
+        self._abandoned_at = -math.inf
+        self._navigation = OwnNavigation(name, self._on_abandoned)
         self._witness, self._compared_at = OdometryWitness(), -math.inf
         # What its guard says that the robot was given.
         self._given = 0.0, 0.0
@@ -253,6 +255,12 @@ class RobotGate:
 
     def _on_guard_state(self, message):
         self._guard_state = read_state(message.data)
+
+    def _on_abandoned(self):
+        """Begin with the zeros behind a task whose program has died."""
+        with self._lock:
+            self._abandoned_at = self._clock()
+            self.send(self.rule.on_task(ZERO, self._abandoned_at))
 
     def ask_brake(self, asked):
         """Switch the brake for the stick on or off; that of a guard on the robot replaces it."""
@@ -386,6 +394,8 @@ class RobotGate:
     def tick(self, now):
         """Let time pass: stale commands, a silent guard, a link lost or back."""
         self.send(self.rule.tick(now))
+        if now - self._abandoned_at < arbiter.ZEROS_S:
+            self.send(self.rule.on_task(ZERO, now))
         self._look_at_links(now)
         self._look_at_guard(now)
         self.ask_brake(self._brake_asked)

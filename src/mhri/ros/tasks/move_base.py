@@ -9,8 +9,10 @@ Interfaces for each robot where somebody publishes ``/<robot>/move_base/status``
 - subscribes ``/<robot>/move_base/status`` (``actionlib_msgs/GoalStatusArray``, 5 Hz)
 
 These are the topics of actionlib's protocol (http://wiki.ros.org/actionlib/DetailedDescription). A
-goal whose id begins as ours do and that nobody here wants is cancelled: that of an mhri_tasks which
-was killed, and one whose cancel was lost.
+goal is sent only while the gates hear it, which cancel it if this process dies
+(:mod:`mhri.ros.robots.own_navigation`); where they are started anew meanwhile it ends, as other
+tasks do. One whose id begins as ours do and that nobody here wants is cancelled: its cancel was
+lost, or gates and mhri_tasks died together.
 """
 import math
 import threading
@@ -24,14 +26,9 @@ from mhri.core.tasks.delegated import Errand
 from mhri.ros.graph.master_api import MasterApi
 from mhri.ros.graph.prompt import PromptPublisher
 from mhri.ros.graph.rospy_inside import unsubscribe
-
-try:
-    from move_base_msgs.msg import MoveBaseActionGoal
-except ImportError:  # without it no robot's own navigation is used
-    MoveBaseActionGoal = None
+from mhri.ros.robots.own_navigation import CANCEL, GOAL, MoveBaseActionGoal, PREFIX
 
 STATUS = '/{}/move_base/status'
-PREFIX = 'mhri_tasks:'
 # Without a word for so long it is gone [s].
 SILENT_S = 2.0
 # A goal that is not listed so long after it was sent is lost [s].
@@ -54,18 +51,20 @@ class MoveBase(Errand):
     """One robot's navigation.
 
     :param odometry_frame: function that returns the name of the frame of its odometry
+    :param gates: function that returns the caller id of the gates in force, '' while unknown
     :param clock: seconds, monotonic
     """
 
-    def __init__(self, name, odometry_frame, clock):
+    def __init__(self, name, odometry_frame, gates, clock):
         self._odometry_frame = odometry_frame
+        self._gates = gates
         self._clock = clock
         self._lock = threading.Lock()
-        self._wanted = None
+        self._wanted = self._watched = None
         self._sent_at = self._heard_at = -math.inf
         self._status = {}
-        self._goal = PromptPublisher('/{}/move_base/goal'.format(name), MoveBaseActionGoal)
-        self._cancel = PromptPublisher('/{}/move_base/cancel'.format(name), GoalID, queue_size=10)
+        self._goal = PromptPublisher(GOAL.format(name), MoveBaseActionGoal)
+        self._cancel = PromptPublisher(CANCEL.format(name), GoalID, queue_size=10)
         self._subscriber = rospy.Subscriber(STATUS.format(name), GoalStatusArray, self._on_status,
                                             queue_size=1, tcp_nodelay=True)
 
@@ -86,14 +85,24 @@ class MoveBase(Errand):
             self._cancel.publish(GoalID(id=goal))
 
     def is_ready(self):
-        """Tell whether it is heard, and hears us."""
-        return self._clock() - self._heard_at < SILENT_S and all(
-            publisher.get_num_connections() for publisher in (self._goal, self._cancel))
+        """Tell whether it is heard and hears us, and the gates do."""
+        gates = self._gates()
+        others = any(link.endpoint_id != gates for link in self._goal.links())
+        return (self._clock() - self._heard_at < SILENT_S and others
+                and self._watch() is not None and bool(self._cancel.links()))
+
+    def _watch(self):
+        """Return the newest connection to the gates in force, None without one."""
+        gates = self._gates()
+        return next((link for link in reversed(self._goal.links()) if link.endpoint_id == gates),
+                    None)
 
     def begin(self, by_odometry, in_frame):
         """Send it to a pose; in the frame of its odometry, which each robot knows by itself."""
         message = MoveBaseActionGoal()
-        message.header.stamp = message.goal_id.stamp = rospy.Time.now()
+        # goal_id.stamp stays 0, so that the server sets it: its clock may be another one than ours,
+        # or simulated, and it refuses every goal that is older than the last one.
+        message.header.stamp = rospy.Time.now()
         message.goal_id.id = PREFIX + uuid.uuid4().hex
         target = message.goal.target_pose
         target.header.stamp, target.header.frame_id = rospy.Time(0), self._odometry_frame()
@@ -102,6 +111,7 @@ class MoveBase(Errand):
         target.pose.orientation.w = math.cos(0.5 * by_odometry.heading_rad)
         with self._lock:
             self._wanted, self._sent_at = message.goal_id.id, self._clock()
+            self._watched = self._watch()
         self._goal.publish(message)
 
     def look(self):
@@ -113,6 +123,8 @@ class MoveBase(Errand):
             unlisted = status is None and now - self._sent_at > LISTED_S
         if silent or unlisted or status == GoalStatus.LOST:
             return LOST, 'its own navigation (move_base) does not answer'
+        if self._watch() is not self._watched:
+            return LOST, 'the drive service was started anew'
         state, words = _STATES.get(status, _STATES[GoalStatus.PENDING])
         return state, '{} ({})'.format(words, text[:100]) if text and state != RUNNING else words
 
@@ -128,10 +140,12 @@ class MoveBases:
     """The :class:`MoveBase` of each robot that has one.
 
     :param odometry_frame: function from a robot's name to the frame of its odometry
+    :param gates: see :class:`MoveBase`
     """
 
-    def __init__(self, odometry_frame, clock):
+    def __init__(self, odometry_frame, gates, clock):
         self._odometry_frame = odometry_frame
+        self._gates = gates
         self._clock = clock
         self._robots = {}
 
@@ -149,7 +163,7 @@ class MoveBases:
             self._robots.pop(name).close()
         for name in there - set(self._robots):
             self._robots[name] = MoveBase(
-                name, lambda robot=name: self._odometry_frame(robot), self._clock)
+                name, lambda robot=name: self._odometry_frame(robot), self._gates, self._clock)
 
     def get(self, name):
         """Return a robot's :class:`MoveBase`, None where it has none."""

@@ -25,13 +25,14 @@ class Starter:
     :param kinds: {key: TaskKind}
     :param seen: :class:`mhri.ros.tasks.seen_robots.SeenRobots`
     :param places: :class:`mhri.ros.map.place_keeper.PlaceKeeper`
+    :param gates: function that returns the caller id of the gates in force, '' while unknown
     """
 
-    def __init__(self, kinds, seen, places, clock):
+    def __init__(self, kinds, seen, places, gates, clock):
         self._kinds = kinds
         self._seen = seen
         self._places = places
-        self._move_bases = MoveBases(self._odometry_frame, clock)
+        self._move_bases = MoveBases(self._odometry_frame, gates, clock)
 
     def _odometry_frame(self, name):
         robot = self._seen.get(name)

@@ -89,12 +89,14 @@ class Tasks:
     :param kinds: {key: TaskKind} of the tasks that can be started
     :param grid: of a map that is to be published; None: whatever map there is
     :param keeps_to_map: no robot on a task leaves the free floor of that map
+    :param beat: called in every step: see :func:`mhri.ros.stand_by.stand_by`
     :param clock: seconds, monotonic
     """
 
     def __init__(self, types, kinds=BY_KEY, grid=None, clock=time.monotonic,
-                 keeps_to_map=True):
+                 keeps_to_map=True, beat=lambda: None):
         self._kinds = kinds
+        self._beat = beat
         self._clock = clock
         self._lock = threading.RLock()
         self._wake = threading.Event()
@@ -104,7 +106,10 @@ class Tasks:
         self._map = MapSource(grid)
         self._keeps_to_map = keeps_to_map
         self.places = PlaceKeeper(self._seen, self._map, clock, frames)
-        self._starter = Starter(kinds, self._seen, self.places, clock)
+        self._gates_force = InForce(TAKE_SERVICE)
+        self._mux_force = InForce(STOP_SERVICE)
+        self._starter = Starter(kinds, self._seen, self.places, lambda: self._gates_force.caller,
+                                clock)
         self._goals = {}
         # {robot: its newest RobotRun}: a robot has one task.
         self._runs = {}
@@ -114,8 +119,6 @@ class Tasks:
         self._operator = ''
         self._told = None
         self._worker = Worker('tasks_calls', self._between_calls)
-        self._gates_force = InForce(TAKE_SERVICE)
-        self._mux_force = InForce(STOP_SERVICE)
         self._server = None
 
     def start(self):
@@ -274,6 +277,7 @@ class Tasks:
             self._wake.wait(due - now)
             self._wake.clear()
             number += 1
+            self._beat()
             try:
                 self._tick(number)
             except Exception as error:  # without this thread no task would ever end
