@@ -12,6 +12,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 
 from mhri.core.link.bearing import (  # noqa: E402
     AROUND_BYTES, Bearing, CUT, DRAIN_S, FIRST_CUT, LEAST_BYTES_PER_S, Meter, QUIET_S)
+from mhri.core.link.budget import Budget  # noqa: E402
 from mhri.core.link.carried import (  # noqa: E402
     COMMAND, GUARD_ECHO, Pace, PICTURE, STATE, Stream)
 from mhri.core.link.figures import (  # noqa: E402
@@ -371,3 +372,29 @@ def test_how_often_a_picture_comes(rate_hz, words):
 def test_a_thinned_picture_is_a_warning_of_the_row():
     found = link_warning(LinkFigures(0.4, None, 0.2, 'picture 1 in 2 s'))
     assert found.startswith('picture 1 in 2 s; slow link: 400 ms') and '20 %' in found
+
+
+# --- several hosts of one robot
+
+@pytest.mark.parametrize('rows, found', [
+    # (host, what the radio bears by its reports, whether it reports), the share of the last
+    ([('lab', math.inf, True)], math.inf), ([('lab', 50e3, True)], 50e3),
+    ([('lab', math.inf, True), ('desk', math.inf, True)], math.inf),
+    ([('lab', math.inf, True), ('desk', math.inf, False)], LEAST_BYTES_PER_S),
+    ([('desk', math.inf, False), ('lab', 50e3, True)], 50e3),
+    ([('lab', 100e3, True), ('desk', math.inf, True)], 25e3),
+    ([('lab', 100e3, True), ('desk', 9e3, True)], 9e3),
+    ([('lab', 100e3, True), ('one', math.inf, True), ('desk', math.inf, True)], 12.5e3),
+    ([('lab', 8e3, True), ('desk', math.inf, True)], LEAST_BYTES_PER_S),
+    ([('one', 50e3, True), ('desk', math.inf, True)], math.inf)])
+def test_one_radio_for_all_hosts_the_one_in_control_first(rows, found):
+    budget = Budget()
+    said = [budget.share(host, 'lab', bears, reports, 10.0) for host, bears, reports in rows]
+    assert said[-1] == found
+
+
+def test_a_holder_that_has_gone_takes_nothing_with_it():
+    budget = Budget()
+    budget.share('lab', 'lab', 100e3, True, 10.0)
+    assert budget.share('desk', 'lab', math.inf, True, 10.5) == 25e3
+    assert budget.share('desk', 'lab', math.inf, True, 13.0) == math.inf

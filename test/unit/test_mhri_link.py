@@ -164,6 +164,17 @@ def test_age_needs_no_common_clock(offset_s, down_s, up_s):
         up_s, abs=0.5 * abs(up_s - down_s) + 1e-6)
 
 
+def test_of_ways_that_differ_the_age_is_wrong_by_half_the_difference():
+    """As the documents say: what bounds it then is the guard's own clock (test_guard: late)."""
+    peer = Peer()
+    # The robot's side: its beat went up in 20 ms, the host's came down in 400.
+    now = talk(peer, 100.0, 7.0, 0.02, 0.4)
+    sent_at = now + 1.0
+    age_s = peer.age_s(Frame(9, 2, sent_at + 7.0, b''), sent_at + 0.4)
+    assert age_s == pytest.approx(0.21, abs=1e-6)
+    assert may_pass('abc:1:tok', age_s)
+
+
 def test_nobody_knows_the_age_of_what_another_run_said_or_after_a_long_silence():
     peer = Peer()
     assert peer.age_s(Frame(9, 1, 1.0, b''), 1.0) is None

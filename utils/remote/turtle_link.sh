@@ -7,6 +7,8 @@
 CORE_PID=
 LINK_PID=
 LINK_ENV=()
+# The table of nftables.
+LIMITS=
 # What the archive of turtlebot_deploy.sh --link becomes.
 LINK_PLACE=$HERE/link
 
@@ -46,6 +48,47 @@ start_master() {
     running "$CORE_PID" || die "roscore could not start a ROS master on this robot: see above"
     sleep 0.2
   done
+}
+
+# limit_callers: lets each address call this robot's link ten times at once, and then twice a second:
+# zenoh takes a tenth of a second over each call that fails, and a host would wait behind them.
+limit_callers() {
+  local port=${LISTEN##*:} admin=(sudo -n)
+  if [ -n "$ROUTER" ] || [[ $LISTEN == udp/* ]]; then return; fi
+  [ "$(id -u)" != 0 ] || admin=()
+  LIMITS=mhri_link_$port
+  if ! "${admin[@]}" env "PATH=$PATH:/usr/sbin:/sbin" nft -f - <<RULES 2>/dev/null
+table inet $LIMITS
+delete table inet $LIMITS
+table inet $LIMITS {
+  set callers4 { type ipv4_addr; size 65536; flags dynamic, timeout; timeout 1m; }
+  set callers6 { type ipv6_addr; size 65536; flags dynamic, timeout; timeout 1m; }
+  chain input {
+    type filter hook input priority -10; policy accept;
+    iif lo accept
+    tcp dport $port tcp flags & (syn | ack) == syn jump limited
+  }
+  chain limited {
+    update @callers4 { ip saddr limit rate over 2/second burst 10 packets } drop
+    update @callers6 { ip6 saddr & ffff:ffff:ffff:ffff:: limit rate over 2/second burst 10 packets }\
+      drop
+  }
+}
+RULES
+  then
+    LIMITS=
+    warn "nothing limits how often somebody may call port $port (nft is not there, or wants root):" \
+      "who reaches it can keep the host out with calls that fail; see 'Keys in five minutes'"
+  fi
+}
+
+# unlimit_callers: takes that back.
+unlimit_callers() {
+  local admin=(sudo -n)
+  [ -n "$LIMITS" ] || return 0
+  [ "$(id -u)" != 0 ] || admin=()
+  "${admin[@]}" env "PATH=$PATH:/usr/sbin:/sbin" nft delete table inet "$LIMITS" 2>/dev/null || true
+  LIMITS=
 }
 
 start_link() {

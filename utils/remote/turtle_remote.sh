@@ -248,6 +248,7 @@ clean_up() {
   trap '' INT TERM HUP
   end_all
   "$PYTHON" "$HERE/turtle_check.py" release "$HOST_IP" "$PORT" "$NAME" "$TOKEN" || true
+  unlimit_callers
   end_master
 }
 
@@ -293,6 +294,7 @@ main() {
   trap 'stop 130' INT
   trap 'stop 143' TERM
   trap 'stop 129' HUP
+  if "$LINK"; then limit_callers; fi
   start_all
   if "$LINK"; then say "$NAME has a master of its own; its link: ${ROUTER:-$LISTEN}"; fi
   while [ -z "$STOPPED_WITH" ]; do

@@ -15,7 +15,8 @@ from mhri.core.link.frames import Beat, Frame
 BEAT_S = 0.2
 # Three beats in a row may be lost before the other side counts as gone.
 GONE_S = 1.0
-# A command that is older is not passed on to the guard [s].
+# A command that is older by that estimate is not passed on to the guard, which sees by its own
+# clock that it answers a young echo [s].
 COMMAND_S = 0.3
 # Without an echo for so long nobody knows how old anything is [s].
 SURE_S = 10.0

@@ -5,6 +5,7 @@ import threading
 
 import rospy
 
+from mhri.core.link.budget import Budget
 from mhri.core.link.carried import COMMAND, key_of
 from mhri.core.link.control import Control, pack_standing, Standing
 from mhri.core.link.frames import FrameError, read_rows, unpack, unpack_beat
@@ -23,8 +24,9 @@ SAID_S = 1.0
 class Desk:
     """What the robot has agreed with one host about control."""
 
-    def __init__(self, host, control, lock):
+    def __init__(self, host, control, lock, budget):
         self.host = host
+        self._budget = budget
         self.asked = 0
         self.answer = ''
         self._control = control
@@ -62,6 +64,11 @@ class Desk:
         with self._lock:
             return self._control.may_drive(self.host) and self._control.holder in ('', self.host)
 
+    def share(self, bears, reports, now):
+        """Return what this host may be sent, see :class:`mhri.core.link.budget.Budget`."""
+        with self._lock:
+            return self._budget.share(self.host, self._control.holder, bears, reports, now)
+
     def news(self, said, now):
         """Return what to say to the host of control now, None for nothing."""
         with self._lock:
@@ -89,6 +96,7 @@ class Reception:
         self._lock = threading.RLock()
         self._control = Control(
             lambda host: may_drive(host) and (own is None or split(own)[0] == ROBOT))
+        self._budget = Budget()
         self._said = ''
         self._new = set()
         self._sides = {}
@@ -132,7 +140,7 @@ class Reception:
         while self._new:
             host = self._new.pop()
             if host not in self._sides:
-                desk = Desk(host, self._control, self._lock)
+                desk = Desk(host, self._control, self._lock, self._budget)
                 side = RobotSide(self._name, self._carrier.between(self._name, host), *self._rest,
                                  desk)
                 self._sides[host] = side, desk

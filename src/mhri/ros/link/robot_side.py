@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The robot's side of the link, on the robot's own master."""
+import math
+
 import rospy
 
 from mhri.core.driving.guard_link import parse_id
@@ -127,7 +129,7 @@ class RobotSide(Side):
         self._about = About({'link': versions()}, ())
         self._told_at = self._looked_at = 0.0
         self._wanted = ()
-        self._bearing = Bearing()
+        self._bearing, self._bound = Bearing(), False
         self._pictures = Pictures(self.clock, self._up_piece, lambda data, names, number: rewritten(
             data, number, names, self._rename))
         self._streams = {}
@@ -166,35 +168,38 @@ class RobotSide(Side):
         if wanted != self._wanted:
             self._wanted = wanted
             self.to_do.set()
-        if beat.heard is not None:
-            self._thin(beat.heard, now)
+        self._thin(beat.heard, now)
 
     def _thin(self, heard, now):
-        """Send as much as the radio bears, by what the host's side says that came."""
+        """Send as much as the radio bears, by what the host's side says that came, and others'."""
         opened = [carried for topic, carried in list(self._open.items())
                   if topic in self._wanted]
         flows, bearing = [carried.flow for carried in opened], self._bearing
-        was_bound = bearing.bound
-        bearing.on_heard(heard, sum(flow.demand(now) for flow in flows), now)
-        if not (was_bound or bearing.bound):
+        was_bound = self._bound
+        if heard is not None:
+            bearing.on_heard(heard, sum(flow.demand(now) for flow in flows), now)
+        bytes_per_s = self._desk.share(bearing.bytes_per_s if bearing.bound else math.inf,
+                                       heard is not None, now)
+        self._bound = math.isfinite(bytes_per_s)
+        if not (was_bound or self._bound):
             return
         if not was_bound:
             for flow in flows:
                 flow.packed()
-        found = shares(flows, bearing.bytes_per_s, bearing.loss, now, bearing.quiet) \
-            if bearing.bound else {}
+        found = shares(flows, bytes_per_s, bearing.loss, now, bearing.quiet) \
+            if self._bound else {}
         for carried in opened:
             carried.thin(found.get(carried.stream.topic))
         self._pictures.share(found)
         looked_at = any(flow.stream.urgency == PICTURE for flow in flows)
-        self.thinned = Thinned(bearing.bytes_per_s, self._pictures.most_hz(), looked_at) \
+        self.thinned = Thinned(bytes_per_s, self._pictures.most_hz(), looked_at) \
             if found else Thinned()
-        if not bearing.bound:
+        if not self._bound:
             self._pictures.forget()
             rospy.loginfo_throttle(TOLD_S, '{}: the radio bears everything'.format(self.name))
         elif not was_bound:
             rospy.loginfo_throttle(TOLD_S, '{}: the radio bears {:.0f} kB/s: less is sent'.format(
-                self.name, 1e-3 * bearing.bytes_per_s))
+                self.name, 1e-3 * bytes_per_s))
 
     def on_frame(self, topic, frame, now):
         """Give the guard a command, unless it is late, or another host has control."""
@@ -254,7 +259,7 @@ class RobotSide(Side):
         with self.lock:
             if not self._goes(stream):
                 return 0
-            bound = self._bearing.bound
+            bound = self._bound
             if bound and stream.urgency == PICTURE:
                 self._pictures.offer(stream, kind, data, names)
                 return len(data)
@@ -269,7 +274,7 @@ class RobotSide(Side):
 
     def _up_piece(self, stream, piece):
         with self.lock:
-            goes = self._goes(stream) and self._bearing.bound
+            goes = self._goes(stream) and self._bound
             if goes:
                 self.send(stream.topic, stream.urgency, piece, kind=PIECE)
             return goes

@@ -1,0 +1,85 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A host that only watches, wants everything and never says what comes: the operator drives on."""
+import os
+import random
+import subprocess
+import sys
+import time
+
+import pytest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+
+from support import bad_radio  # noqa: E402
+
+WHY_NOT = bad_radio.why_not()
+BAD = {'delay_ms': 200, 'loss_percent': 20, 'rate_mbit': 1}
+LONG_S, DRIVE_S = 120.0, 15.0
+# Without the watcher it is 100 %; on a busy computer a little less.
+LEAST_PERCENT = 70.0
+
+
+@pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))
+def test_a_watcher_that_never_reports_does_not_take_the_radio():
+    # In a network of its own, so that the radio's addresses meet nobody else's.
+    done = subprocess.run(['unshare', '--net', sys.executable, os.path.abspath(__file__)],
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=3 * LONG_S,
+                          universal_newlines=True)
+    print(done.stdout)
+    assert done.returncode == 0, done.stdout[-3000:]
+
+
+def watch(endpoint):
+    """Want everything of the robot, and report nothing."""
+    from mhri.core.link.carried import COMMAND
+    from mhri.core.link.frames import Beat, pack, pack_beat, unpack, unpack_about
+    from mhri.ros.link.carrier import Carrier
+    from mhri.ros.link.clock import boot_clock
+    carrier = Carrier(connect=[endpoint])
+    between, about, came = carrier.between('udp1', 'watch:gallery'), [], [0]
+
+    def hear(topic, data):
+        """Take note of what the robot has."""
+        came[0] += len(data)
+        if topic == '_about':
+            about.append(unpack_about(unpack(data).body))
+    between.listen('up', hear)
+    send, number, session = between.sender('down', '_beat', COMMAND), 0, random.getrandbits(32)
+    while True:
+        number += 1
+        found = about[-1] if about else None
+        send(pack(session, number, boot_clock(), pack_beat(
+            Beat(None, found.name, tuple(range(len(found.topics)))) if found else Beat())))
+        if number % 25 == 0:
+            print('watched', came[0], flush=True)
+        time.sleep(0.2)
+
+
+def inside():
+    """Be the operator; end with an AssertionError where something is not so."""
+    from support.behind_radio import FAR_IP, FIRST_PORT, World
+    subprocess.run(['ip', 'link', 'set', 'lo', 'up'], check=True)
+    with World(['udp'], 1) as world:
+        world.start()
+        world.look('udp')
+        world.settle('udp')
+        with subprocess.Popen([sys.executable, os.path.abspath(__file__),
+                               'udp/{}:{}'.format(FAR_IP, FIRST_PORT)],
+                              stdout=subprocess.PIPE, universal_newlines=True) as watcher:
+            try:
+                while watcher.stdout.readline().split() in ([], ['watched', '0']):
+                    pass
+                figures, _ = world.measure('udp', BAD, 0, DRIVE_S)
+            finally:
+                watcher.kill()
+        print('MEASURED beside a watcher that never reports it drove {:.0f} %'.format(
+            figures['drove_percent']))
+        assert figures['drove_percent'] > LEAST_PERCENT
+
+
+if __name__ == '__main__':
+    if sys.argv[1:]:
+        watch(sys.argv[1])
+    else:
+        inside()
