@@ -4,6 +4,7 @@
 """The obstacle brake for the stick: a simulated robot driven at a wall, and scans played here."""
 import math
 import os
+import signal
 import sys
 import threading
 import time
@@ -16,9 +17,10 @@ from sensor_msgs.msg import LaserScan
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
 from drive_tools import Hall, Hand, PATIENCE_S  # noqa: E402
-from gates_case import GatesCase, ZERO  # noqa: E402
+from gates_case import GatesCase, start_gates, ZERO  # noqa: E402
 from mhri.core.driving.brake import CRAWL_MPS  # noqa: E402
 from mhri.msg import GroupSpeed, RobotGate  # noqa: E402
+from rostest_tools import measured  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.two_lasers import TwoLasers  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
@@ -102,15 +104,99 @@ class Brake(GatesCase):
         self.hold(0.2, 0.4)
         wait_for(lambda: end.values()[-1] == (0.0, 0.4), PATIENCE_S, 'it to turn on the spot')
 
-    def scanned(self, way_m):
+    def test_who_stands_before_a_wall_that_is_too_near_to_be_seen_touches_it_by_no_way(self):
+        """Its laser measures nothing nearer than 0.45 m."""
+        self.bot1()
+        self.ask(True)
+        self.state.wait_robot('bot1', lambda gate: gate.brake == RobotGate.BRAKE_ON, 'its laser')
+        hand = self.hold(SPEED_MPS)
+        self.hall.rests()
+        hand.let_go()
+        self.mux.say(0.0)
+        for way in (self.uncheck, self.off_and_on, self.new_gates):
+            way()
+            self.bot1()
+            self.ask(True)
+            begun = time.monotonic()
+            self.state.wait_robot('bot1', lambda gate: gate.brake == RobotGate.BRAKE_ON,
+                                  'its laser')
+            hand = self.hold(SPEED_MPS)
+            self.state.wait_robot('bot1', lambda gate: gate.brake in (
+                RobotGate.BRAKE_SLOWS, RobotGate.BRAKE_UNSEEN), 'the brake to act', PATIENCE_S)
+            self.hall.rests()
+            hand.let_go()
+            self.mux.say(0.0)
+            print('MEASURED gap to the wall after {}: never less than {:.3f} m'.format(
+                way.__name__, self.hall.least_gap(begun)))
+            self.assertGreater(self.hall.least_gap(begun), 0.03, way.__name__)
+        self.ask(False)
+        self.drive_to(11.0)
+
+    def uncheck(self):
+        """Let another be checked for a moment."""
+        self.operator.check()
+        self.state.wait_robot('bot1', lambda gate: not gate.obeys, 'it to obey nobody')
+
+    def off_and_on(self):
+        """Switch the brake off; it is switched on after this."""
+        self.ask(False)
+
+    def new_gates(self):
+        """Kill the gates, and start others that have seen nothing."""
+        GatesCase.gates.send(signal.SIGKILL)
+        GatesCase.gates.wait()
+        GatesCase.gates = start_gates()
+        self.wait_for_mux()
+
+    def test_a_laser_that_measures_nothing_is_no_way(self):
+        for value in (math.nan, 0.0, -math.inf, -1.0, 0.01):
+            (name, end), scans = self.scanned(value, value)
+            self.ask(True)
+            self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_NO_SCAN,
+                                  'the word')
+            self.centre(name, end)
+            begun = time.monotonic()
+            hand = self.hold(-0.2)
+            wait_for(lambda: (-CRAWL_MPS, 0.0) in [entry[1:] for entry in end.after(begun)],
+                     PATIENCE_S, 'the crawl back')
+            hand.let_go()
+            self.stays_at_rest(end, self.mux.say(0.0), 0.2)
+            self.ask(False)
+            self.centre(name, end)
+            self.assertEqual(self.drive(end, 0.2), (0.2, 0.0), 'without the brake it drives')
+            self.centre(name, end)
+            scans.let_go()
+            self.operator.check()
+
+    def test_a_laser_that_measures_nothing_any_more_stops_the_robot(self):
+        for value in (math.nan, 0.0, -math.inf):
+            (name, end), scans = self.scanned(3.0, 3.0)
+            self.ask(True)
+            self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_ON, 'its laser')
+            self.centre(name, end)
+            hand = self.hold(0.2)
+            wait_for(lambda: end.values()[-1] == (0.2, 0.0), PATIENCE_S, 'it to drive')
+            when = time.monotonic()
+            scans.way_m = scans.rest_m = value
+            wait_for(lambda: end.values()[-1] == ZERO, PATIENCE_S, 'the zero')
+            measured('a laser gone blind ({}): zero'.format(value), next(
+                at for at, *said in end.after(when) if tuple(said) == ZERO) - when)
+            self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_NO_SCAN,
+                                  'the word')
+            hand.let_go()
+            self.mux.say(0.0)
+            scans.let_go()
+            self.operator.check()
+
+    def scanned(self, way_m, rest_m=math.inf):
         """Return ((name, receiving end) of a robot, whoever plays its scans)."""
         (name, end), = self.robots(1, 'turtlebot3')
-        scans = Scans('/{}/scan'.format(name), way_m)
+        scans = Scans('/{}/scan'.format(name), way_m, rest_m)
         self.addCleanup(scans.let_go)
         return (name, end), scans
 
     def test_without_scans_there_is_no_way_forward_and_it_says_so(self):
-        (name, end), scans = self.scanned(9.0)
+        (name, end), scans = self.scanned(3.0)
         self.ask(True)
         self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_ON, 'its laser')
         self.centre(name, end)
@@ -125,7 +211,7 @@ class Brake(GatesCase):
         wait_for(lambda: end.values()[-1] == (-CRAWL_MPS, 0.0), PATIENCE_S, 'the crawl back')
 
     def test_a_scan_brakes_a_stick_that_says_nothing_new(self):
-        (name, end), scans = self.scanned(9.0)
+        (name, end), scans = self.scanned(3.0)
         self.ask(True)
         self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_ON, 'its laser')
         self.centre(name, end)
@@ -218,10 +304,10 @@ class Brake(GatesCase):
 
 
 class Scans:
-    """Plays the scans of one robot, 20 times a second: something ahead, nothing elsewhere."""
+    """Plays the scans of one robot, 20 times a second: what is ahead, and what is elsewhere."""
 
-    def __init__(self, topic, way_m):
-        self.way_m = way_m
+    def __init__(self, topic, way_m, rest_m):
+        self.way_m, self.rest_m = way_m, rest_m
         self._done = threading.Event()
         self._publisher = rospy.Publisher(topic, LaserScan, queue_size=1)
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -229,9 +315,9 @@ class Scans:
 
     def _run(self):
         message = LaserScan(angle_increment=2.0 * math.pi / 360.0, angle_max=2.0 * math.pi,
-                            range_min=0.05, range_max=20.0)
+                            range_min=0.12, range_max=3.5)
         while not self._done.wait(0.05):
-            message.ranges = [self.way_m] + [float('inf')] * 359
+            message.ranges = [self.way_m] + [self.rest_m] * 359
             self._publisher.publish(message)
 
     def let_go(self):

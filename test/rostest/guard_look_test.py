@@ -64,7 +64,7 @@ class GuardLook(GatesCase):
     def guarded(self, *options):
         """Check bot1, with a guard that was started with some options, and centre the stick."""
         guard = Process([sys.executable, GUARD, '_command:=cmd_vel', '_radius_m:=0.22',
-                         *options], env={'ROS_NAMESPACE': 'bot1'})
+                         '_no_return:=0,inf@3.5', *options], env={'ROS_NAMESPACE': 'bot1'})
 
         def leave():
             guard.send(signal.SIGTERM)

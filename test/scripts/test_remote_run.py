@@ -121,6 +121,7 @@ def test_turtlebot2_with_all_that_belongs_to_it(remote, master):
     assert parameter(master, '/bot1/robot_type') == 'turtlebot2'
     assert parameter(master, '/bot1/mobile_base/odom_frame') == 'bot1/odom'
     asked = {'max_linear_mps': 0.65, 'radius_m': 0.18, 'laser_x_m': -0.087, 'brake': True,
+             'no_return': 'nan,inf',
              'back_after_s': 10}
     assert {key: parameter(master, '/bot1/mhri_guard/' + key) for key in asked} == asked
     assert subscribers(master, '/bot1/scan') == ['/bot1/mhri_guard']

@@ -11,11 +11,12 @@ import random
 
 import numpy as np
 
-from mhri.core.driving.brake import Scan
+from mhri.core.driving.laser_scan import laser_scan
 from mhri.core.driving.stick_brake import StickBrake
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.pose_track import PoseTrack
+from mhri.core.sensors.readings import NO_RETURN
 from mhri.core.tasks.base import ENDS, RUNNING, Step, Task, way, wrapped
 from mhri.core.tasks.rows import BY_KEY
 from mhri.core.tasks.run import RobotRun
@@ -50,11 +51,12 @@ class Rough:
     delay: int = 1
     place_m: float = 0.002
     stamped: bool = True
+    no_return: tuple = NO_RETURN
 
 
 ROUGH = (
-    Rough('TurtleBot3', scan_min_m=0.12, every=4, late=1),
-    Rough('TurtleBot2', scan_min_m=0.45, every=2, late=1),
+    Rough('TurtleBot3', scan_min_m=0.12, every=4, late=1, no_return=(0.0,)),
+    Rough('TurtleBot2', scan_min_m=0.45, every=2, late=1, no_return=(math.nan,)),
     Rough('half a turn', half=True, late=1),
     Rough('half, not near', scan_min_m=0.45, half=True, late=1),
     Rough('late', late=3, delay=2, scan_min_m=0.45),
@@ -68,7 +70,7 @@ class RoughRobot(Robot):
 
     def __init__(self, world, name, pose, seed, rough=ROUGH[0]):
         super().__init__(world, name, pose, seed, replace(KIND, scan_min_m=rough.scan_min_m),
-                         rough.delay)
+                         rough.delay, rough.no_return)
         self.rough = rough
         self.laser.NOISE_M = rough.noise_m
         self._chance = random.Random(seed)
@@ -90,19 +92,20 @@ class RoughRobot(Robot):
         while self._under_way and self._under_way[0][0] <= tick:
             _, scan, stamp_s = self._under_way.pop(0)
             at_s, pose = self._track.moment(stamp_s, now_s)
-            self.seen.see(scan, pose or self.odometry(), at_s)
-            self.scan_at = at_s
+            if self.seen.see(scan, pose or self.odometry(), at_s):
+                self.scan_at = at_s
             if self.eye is not None:
                 self.eye.move(self.odometry())
                 self.eye.see(scan, at_s, pose)
 
     def _scan(self, ranges):
-        scan = self._world.scan_of(self, ranges)
         if not self.rough.half:
-            return scan
-        quarter = len(ranges) // 4
-        ahead = np.concatenate((scan.ranges[-quarter:], scan.ranges[:quarter + 1]))
-        return Scan(ahead, -quarter * scan.step, scan.step, scan.range_min_m, scan.range_max_m)
+            return self._world.scan_of(self, ranges)
+        quarter, step = len(ranges) // 4, self.laser.increment_rad
+        ahead = np.concatenate((ranges[-quarter:], ranges[:quarter + 1]))
+        return laser_scan(ahead, (-quarter * step, step),
+                          (self.kind.scan_min_m, self.kind.scan_max_m),
+                          {None: self.no_return}, self.kind.radius_m)
 
     def senses(self, now_s):
         senses = super().senses(now_s)

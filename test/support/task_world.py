@@ -6,10 +6,12 @@ import random
 
 import numpy as np
 
-from mhri.core.driving.brake import Scan, Surroundings
+from mhri.core.driving.brake import Surroundings
+from mhri.core.driving.laser_scan import laser_scan
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
 from mhri.core.robots.robot_types import Limits
+from mhri.core.sensors.readings import NO_RETURN
 from mhri.core.tasks.base import (
     Body as TaskBody, circles, ENDS, NOWHERE, Other, Senses, Start, Step, Task)
 from mhri.core.tasks.rows import BY_KEY
@@ -47,9 +49,10 @@ class Robot:
     """A body with its laser and its run.
 
     :param delay: ticks from a command to the moment at which the body has it
+    :param no_return: values by which its laser says that nothing is there
     """
 
-    def __init__(self, world, name, pose, seed, kind=KIND, delay=1):
+    def __init__(self, world, name, pose, seed, kind=KIND, delay=1, no_return=NO_RETURN):
         self.name = name
         self._world = world
         self.kind = kind
@@ -58,8 +61,10 @@ class Robot:
                                             disc_distance(world.discs, x, y)),
             lambda: world.others(name)), random.Random(seed))
         self.laser = Laser(world.walls if len(world.walls) else np.array([[1e6, 0, 1e6, 1]]),
-                           kind.scan_min_m, kind.scan_max_m, np.random.default_rng(seed))
-        self.seen = Surroundings()
+                           kind.scan_min_m, kind.scan_max_m, np.random.default_rng(seed),
+                           nothing=no_return[0])
+        self.no_return = no_return
+        self.seen = Surroundings(kind.radius_m)
         self.task_body = TaskBody(kind.radius_m, LIMITS)
         self.run = None
         self.contacts = 0
@@ -85,8 +90,8 @@ class Robot:
         if tick % 2 == 0 and not self.blind:
             ranges = self.laser.scan(self.body.x, self.body.y, self.body.yaw,
                                      self._world.seen_by(self.name))
-            self.seen.see(self._world.scan_of(self, ranges), self.odometry())
-            self.scan_at = now_s
+            if self.seen.see(self._world.scan_of(self, ranges), self.odometry(), now_s):
+                self.scan_at = now_s
 
     def senses(self, now_s):
         others = {other.name: Other(other.pose(), other.name < self.name
@@ -131,11 +136,10 @@ class World:
 
     @staticmethod
     def scan_of(robot, ranges):
-        """Return a scan as the node reads it: NaN where nothing was measured."""
-        ranges = np.where((ranges >= robot.kind.scan_min_m) & (ranges <= robot.kind.scan_max_m),
-                          ranges, np.nan)
-        return Scan(ranges, 0.0, robot.laser.increment_rad, robot.kind.scan_min_m,
-                    robot.kind.scan_max_m)
+        """Return a scan as the node reads it."""
+        return laser_scan(ranges, (0.0, robot.laser.increment_rad),
+                          (robot.kind.scan_min_m, robot.kind.scan_max_m),
+                          {None: robot.no_return}, robot.kind.radius_m)
 
     def step(self, **facts):
         """Let a twentieth of a second pass."""

@@ -261,6 +261,7 @@ SCRIPTS = {
         10.01 tick = 0 0.4
         10.02 tick = none
         10.10 move 0.4 0 180
+        10.10 see inf
         10.11 tick = 0.1 0
         10.20 move 0.2 0 180
         10.20 tick = 0.1 0

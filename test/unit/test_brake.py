@@ -93,7 +93,8 @@ def test_what_came_too_near_to_be_seen_is_remembered_until_it_is_looked_at_again
 def sector(degrees, met=math.nan, mount=Pose(0.0, 0.0, 0.0), looked=None):
     """Return a scan of a sector around straight ahead, in which everything is as far."""
     half = math.radians(degrees) / 2
-    return Scan(np.full(61, met), -half, 2 * half / 61, 0.1, 10.0, mount, looked)
+    return Scan(np.full(61, met), -half, 2 * half / 61, 0.1, 10.0, mount,
+                None if looked is None else np.where(looked, 0.0, np.inf))
 
 
 @pytest.mark.parametrize('degrees, wanted, allowed', [

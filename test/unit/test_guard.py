@@ -16,6 +16,7 @@ from play_guard import load
 import pytest
 
 from mhri.core.driving import brake
+from mhri.core.driving.laser_scan import laser_scan
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
 
@@ -110,32 +111,40 @@ def test_its_figures_are_those_of_the_host():
 
 
 # One laser; one before the middle; two that see half a turn each, as robots have them at corners.
+NO_RETURNS = {}, {None: (math.nan, math.inf)}, {10.0: (0.0, math.inf)}
 MOUNTS = (((0.0, 0.0, 0.0),), ((-0.06, 0.0, 0.0),), ((0.2, 0.1, 0.4), (-0.2, -0.1, -2.9)))
 
 
 @pytest.mark.parametrize('step', [2 * math.pi / 360, -2 * math.pi / 360])
 @pytest.mark.parametrize('seed', range(21))
-def test_it_sees_and_remembers_what_the_host_does(seed, step):
-    """Random scans from random places; what the brake then allows hardly differs."""
-    dice, mounts = random.Random(seed), MOUNTS[seed % 3]
-    mine, host = GUARD['Sight'](0.2, mounts), brake.Surroundings()
+def test_it_sees_and_remembers_what_the_host_does(monkeypatch, seed, step):
+    """Random scans from random places; of what is in one cell, both keep one, not the same."""
+    monkeypatch.setattr(brake, '_GRID_M', 1e-7)
+    monkeypatch.setitem(GUARD, 'GRID_M', 1e-7)
+    dice, mounts, no_return = random.Random(seed), MOUNTS[seed % 3], NO_RETURNS[seed // 3 % 3]
+    mine, host = GUARD['Sight'](0.2, mounts, no_return), brake.Surroundings(0.2)
+    turned, scan_s = 0.0, None
     for number in range(8):
         # Now and then one of them says nothing for so long that its place is taken.
         at_s, laser = 0.2 * number, dice.randrange(len(mounts))
-        pose = dice.uniform(-0.2, 0.2), dice.uniform(-0.2, 0.2), dice.uniform(-3.0, 3.0)
+        turned += dice.uniform(-1.6, 1.6)
+        pose = dice.uniform(-0.2, 0.2), dice.uniform(-0.2, 0.2), turned
         ranges = [dice.choice((float('nan'), 0.0, dice.uniform(0.3, 3.0))) for _ in range(240)]
+        if number % 4 == 2:
+            ranges = [dice.choice((math.inf, 10.0, 11.0, -math.inf, float('nan')))] * 240
         first = dice.uniform(-3.0, 0.0)
         mine.move(pose, at_s)
         mine.see(ranges, first, step, 0.45, 10.0, at_s, laser)
-        seen = np.array([far if 0.45 <= far <= 10.0 else math.nan for far in ranges])
-        begin = first if step > 0.0 else first + 239 * step
-        host.see(brake.Scan(seen if step > 0.0 else seen[::-1], begin, abs(step), 0.45, 10.0,
-                            Pose(*mounts[laser])), Pose(*pose), at_s, str(laser))
+        looked = host.see(laser_scan(ranges, (first, step), (0.45, 10.0), no_return, 0.2,
+                                     (Pose(*mounts[laser]), False)),
+                          Pose(*pose), at_s, str(laser))
+        scan_s = at_s if looked else scan_s
         wanted = dice.uniform(-0.6, 0.6), dice.uniform(-1.0, 1.0)
-        expected = brake.braked(Velocity(*wanted), host.around(Pose(*pose)), 0.2, 0.0,
+        expected = brake.braked(Velocity(*wanted), host.around(Pose(*pose)), 0.2,
+                                None if scan_s is None else at_s - scan_s,
                                 host.looks(Pose(*pose)))
         assert mine.allow(wanted, at_s) == pytest.approx(
-            (expected.linear_mps, expected.angular_rad_s), abs=0.03)
+            (expected.linear_mps, expected.angular_rad_s), abs=1e-6)
 
 
 def test_where_one_laser_does_not_look_another_does():
@@ -166,3 +175,17 @@ def test_its_lasers_are_read(monkeypatch, value, found):
             GUARD['lasers'](0.1)
     else:
         assert GUARD['lasers'](0.1) == [(name, pytest.approx(where)) for name, where in found]
+
+
+@pytest.mark.parametrize('value, found', [
+    ('', {}), ('nan,inf', {None: (math.nan, math.inf)}), (0.0, {None: (0.0,)}),
+    ([math.nan, '.inf'], {None: (math.nan, math.inf)}),
+    ('0,inf@3.5 nan,inf@8', {3.5: (0.0, math.inf), 8.0: (math.nan, math.inf)}),
+    ('x', None), ('0,@3', None), ('0@a', None), (True, None)])
+def test_what_says_that_nothing_is_there_is_read(monkeypatch, value, found):
+    monkeypatch.setattr(GUARD['rospy'], 'get_param', lambda name, default: value, raising=False)
+    if found is None:
+        with pytest.raises(ValueError, match='no_return.*such as'):
+            GUARD['returns']()
+    else:
+        assert repr(GUARD['returns']()) == repr(found)

@@ -94,3 +94,28 @@ def test_no_stamps_at_all():
 def test_the_heading_takes_the_short_way():
     pose = track((1.0, 0.0, 3.1), (1.1, 0.0, -3.1)).moment(1.05, 1.1).pose
     assert abs(math.remainder(pose.heading_rad - math.pi, 2.0 * math.pi)) < 1e-9
+
+
+@pytest.mark.parametrize('metres, radians, after_s, anew', [
+    (0.02, 0.1, 0.04, False), (0.65, 1.0, 1.0, False), (0.15, 0.4, 0.0, False),
+    (0.35, 0.0, 0.04, True), (5.0, 0.0, 60.0, True), (0.0, 1.5, 0.04, True),
+    (0.6, 2.0, 60.0, False)])
+def test_odometry_that_leaps_has_begun_anew(metres, radians, after_s, anew):
+    """However long it was silent: a robot that nobody hears does not go far."""
+    track = PoseTrack(0.65)
+    assert not track.follow(Pose(3.0, 1.0, 3.1), 10.0)
+    assert track.follow(Pose(3.0 + metres, 1.0, 3.1 + radians), 10.0 + after_s) == anew
+
+
+def test_odometry_that_is_heard_late_has_not_leapt():
+    track = PoseTrack(0.65)
+    track.follow(Pose(0.0, 0.0, 0.0), 10.0, None, NOW)
+    assert not track.follow(Pose(0.5, 0.0, 0.0), 10.04, None, NOW + 0.8)
+    assert track.follow(Pose(1.0, 0.0, 0.0), 10.08, None, NOW + 0.84)
+
+
+def test_odometry_from_another_publisher_has_begun_anew():
+    track, one, other, here = PoseTrack(0.65), object(), object(), Pose(0.1, 0.0, 0.0)
+    told = [track.follow(here, number * 0.1, source)
+            for number, source in enumerate((one, one, other, other, one))]
+    assert told == [False, False, True, False, False]

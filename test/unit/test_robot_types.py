@@ -177,6 +177,31 @@ def test_parameter_that_cannot_be_used_is_reported(key):
     assert [error.key for error in errors] == [key] and kind == shipped()['generic']
 
 
+@pytest.mark.parametrize('said, found', [
+    ('[0.0, .inf]', {None: (0.0, math.inf)}), ('[]', {None: ()}),
+    ('{3.5: [0, .inf], "8": [inf]}', {3.5: (0.0, math.inf), 8.0: (math.inf,)}),
+    ('0.0', None), ('[near]', None), ('[true]', None), ('[[0.0]]', None), ('{far: [0.0]}', None),
+    ('{3.5: 0.0}', None), ('{.inf: [0.0]}', None), ('{-1: [0.0]}', None)])
+def test_what_a_laser_sends_for_nothing(said, found):
+    text = GOOD + 'no_return: ' + said
+    if found is None:
+        with pytest.raises(ConfigError, match='no_return: expected'):
+            parse_robot_type(text, 'crawler.yaml')
+        return
+    assert parse_robot_type(text, 'crawler.yaml').no_return == found
+    by_parameter, errors = resolve_robot_type(
+        shipped(), 'bot1', {'mhri': {'no_return': yaml.safe_load(said)}})
+    assert by_parameter.no_return == found and errors == []
+
+
+def test_what_the_lasers_of_the_shipped_types_send_for_nothing():
+    """NaN is not equal to itself."""
+    types = shipped()
+    assert repr(types['turtlebot2'].no_return) == '{None: (nan, inf)}'
+    assert repr(types['turtlebot3'].no_return) == '{3.5: (0.0, inf), 8.0: (nan, inf)}'
+    assert types['generic'].no_return == {}
+
+
 def test_defaults_of_a_template():
     """A name, limits and one command are enough."""
     kind = parse_robot_type(GOOD, 'crawler.yaml')

@@ -100,7 +100,7 @@ def test_rays_and_range():
     ranges = scanner.scan(1.0, 0.5, 0.0, NOTHING)
     assert len(ranges) == 360 and scanner.increment_rad == pytest.approx(DEGREE)
     assert ranges[0] == math.inf, '3 m are beyond its range'
-    assert ranges[270] == 0.0, '0.5 m are too near'
+    assert ranges[270] == -math.inf, '0.5 m are too near'
     assert ranges[180] == pytest.approx(1.0)
     seen = ranges[np.isfinite(ranges) & (ranges > 0.0)]
     assert seen.min() >= 0.6 and seen.max() <= 2.5

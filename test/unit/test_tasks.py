@@ -17,7 +17,7 @@ from mhri.core.tasks.run import BLOCKED_AFTER_S
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from support.task_world import DT_S, random_goal, room, World  # noqa: E402
+from support.task_world import DT_S, KIND, random_goal, room, World  # noqa: E402
 
 
 def alone(task, parameters, walls=room(), discs=(), **start):
@@ -102,6 +102,15 @@ def test_square_closes_and_says_its_corners(side, number):
     corners = [line for line in robot.run.said if line.startswith('corner')]
     assert len(corners) == 4 * number
     assert 'by odometry' in robot.run.text and 'by motion capture' in robot.run.text
+
+
+@pytest.mark.parametrize('gap_m', [0.02, 0.1, 0.2])
+def test_a_first_task_before_a_wall_that_is_too_near_to_be_seen_touches_nothing(gap_m):
+    world = World(room())
+    robot = world.add('bot1', x=3.0 - KIND.radius_m - gap_m, no_return=(math.nan,))
+    robot.begin(BY_KEY['goto'], '{x: 4.5, y: 0.0}', 0.0)
+    world.until_ended()
+    assert robot.run.state == BLOCKED and robot.contacts == 0
 
 
 def test_hold_stands_and_says_if_pushed():

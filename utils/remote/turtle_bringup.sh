@@ -151,18 +151,19 @@ find_guard_python() {
   return 1
 }
 
-# limit_guard LINEAR ANGULAR RADIUS AHEAD: this robot's greatest speeds [m/s, rad/s], the disc around
-# all of it [m], as in its type on the host, and how far ahead of its middle its laser sits [m].
+# limit_guard LINEAR ANGULAR RADIUS AHEAD NO_RETURN: this robot's greatest speeds [m/s, rad/s], the
+# disc around all of it [m], as in its type on the host, how far ahead of its middle its laser sits
+# [m], and the ranges by which that says "nothing there".
 limit_guard() {
   GUARD_LIMITS=("_max_linear_mps:=$1" "_max_angular_rad_s:=$2" "_radius_m:=$3"
-    "_laser_x_m:=$4")
+    "_laser_x_m:=$4" "_no_return:=$5")
 }
 
 prepare_turtlebot2() {
   local folder
   folder=$(package turtlebot_bringup) || missing_package turtlebot_bringup
   GUARD_TOPIC=teleop/input
-  limit_guard 0.65 3.14 0.18 -0.087
+  limit_guard 0.65 3.14 0.18 -0.087 nan,inf
   # The other inputs of its multiplexer (turtlebot_bringup/param/mux.yaml) below this one.
   GUARD_LIMITS+=("_beside:=cmd_vel_mux/input/switch cmd_vel_mux/input/navi")
   if "$SMOOTHER" && ! package yocs_velocity_smoother >/dev/null; then
@@ -186,8 +187,9 @@ prepare_turtlebot3() {
     die "which TurtleBot3 is this? TURTLEBOT3_MODEL is '$MODEL': give --model burger, waffle or" \
       "waffle_pi"
   export TURTLEBOT3_MODEL=$MODEL
-  if [ "$MODEL" = burger ]; then limit_guard 0.22 2.84 0.22 -0.032
-  else limit_guard 0.26 1.82 0.22 -0.064; fi
+  local lds="0,inf@3.5 nan,inf@8"
+  if [ "$MODEL" = burger ]; then limit_guard 0.22 2.84 0.22 -0.032 "$lds"
+  else limit_guard 0.26 1.82 0.22 -0.064 "$lds"; fi
   if [ -z "$LDS_MODEL" ] &&
     grep -qsF 'env LDS_MODEL' "$folder/launch/turtlebot3_lidar.launch"; then
     die "LDS_MODEL is not set: put 'export LDS_MODEL=LDS-01' (or LDS-02, see the label on the" \

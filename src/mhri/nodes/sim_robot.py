@@ -22,6 +22,7 @@ import rospy
 
 from mhri.core.config import ConfigError, short, shown
 from mhri.core.robots.robot_types import resolve_robot_type
+from mhri.core.sensors.readings import no_return_of
 from mhri.ros import parameters
 from mhri.ros.ending import init_node
 from mhri.ros.graph import log
@@ -128,7 +129,8 @@ def build(name, of_robot):
     pose = start_pose(plan, name, kind.radius_m)
     seed = seed_of()
     chance = random.Random(seed)
-    laser = Laser(plan.walls, kind.scan_min_m, kind.scan_max_m, np.random.default_rng(seed))
+    laser = Laser(plan.walls, kind.scan_min_m, kind.scan_max_m, np.random.default_rng(seed),
+                  nothing=no_return_of(template.no_return, kind.scan_max_m)[0])
     shared = world_path(building_key(plan))
     world = World(shared, name, kind, time.monotonic)
     body = Body(kind, template.limits, pose, Bumper(kind.radius_m, plan.distance, world.discs),

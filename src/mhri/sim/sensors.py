@@ -47,15 +47,19 @@ class Laser:
 
     :param walls: array (n, 4) of x1, y1, x2, y2 [m]
     :param random: :class:`numpy.random.Generator`
+    :param nothing: what its driver sends where nothing is within its range; if that is not what
+        REP 117 says, it sends the same where something is too near
     """
 
     NOISE_M = 0.01
     # So that no ray slips out between two walls that share a corner.
     _OVERLAP = 1e-9
 
-    def __init__(self, walls, range_min_m, range_max_m, random, rays=360):
+    def __init__(self, walls, range_min_m, range_max_m, random, rays=360, nothing=math.inf):
         self.range_min_m = range_min_m
         self.range_max_m = range_max_m
+        self._nothing = nothing
+        self._too_near = -math.inf if nothing == math.inf else nothing
         self.increment_rad = 2.0 * math.pi / rays
         self._angles = np.arange(rays) * self.increment_rad
         self._start = walls[:, :2]
@@ -89,9 +93,9 @@ class Laser:
         return nearest
 
     def scan(self, x, y, yaw, discs):
-        """Return what the scanner reports: with noise, inf beyond its range, 0 below it."""
+        """Return what the scanner reports: with noise."""
         ranges = self.distances(x, y, yaw, discs)
         ranges = ranges + self._random.normal(0.0, self.NOISE_M, ranges.shape)
-        ranges[ranges > self.range_max_m] = np.inf
-        ranges[ranges < self.range_min_m] = 0.0
+        far, near = ranges > self.range_max_m, ranges < self.range_min_m
+        ranges[far], ranges[near] = self._nothing, self._too_near
         return ranges

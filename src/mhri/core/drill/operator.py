@@ -26,6 +26,8 @@ LEAST_FORWARD = 0.25
 AHEAD_M = 0.45
 # It looks this far to both sides for what is ahead [rad].
 AHEAD_RAD = 0.35
+# What is so near to its front is not looked for [m].
+_FRONT_M = 0.05
 # Nothing heard for so long: it lets go [s].
 NOT_HEARD_S = 1.0
 # It looks and acts so often [Hz].
@@ -36,12 +38,13 @@ def ahead_of(ranges: Sequence[float], increment_rad: float, front_m: float,
              range_min_m: float) -> float:
     """Return the free way straight ahead [m] of a scan that begins there, from the front on.
 
-    What is nearer than the laser measures (0) counts as being there.
+    What is nearer than the laser measures counts as being there. 0 and NaN may mean that, or that
+    nothing is there: the latter, where the laser measures all that is before the robot's front.
     """
     side = int(AHEAD_RAD / increment_rad)
-    near = [range_min_m if distance <= 0.0 else distance
+    unsure_m = range_min_m if range_min_m > front_m + _FRONT_M else math.inf
+    near = [distance if distance > 0.0 else range_min_m if distance < 0.0 else unsure_m
             for distance in (*ranges[:side + 1], *ranges[-side:])]
-    near = [distance for distance in near if distance == distance]
     return max(0.0, min(near, default=math.inf) - front_m)
 
 

@@ -5,7 +5,7 @@
 The robot is a disc, driven along the arc of its command. Its speed is kept to what it can lose
 within the way that is free, after the time that scan and command take: zero before contact.
 """
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 from typing import Callable, Dict, Iterable, Optional, Tuple
 
@@ -13,6 +13,7 @@ import numpy as np
 
 from mhri.core.driving.limits import Velocity
 from mhri.core.robots.mocap import Pose
+from mhri.core.sensors.readings import LaserLife
 
 # A scan that is older is trusted by nobody [s].
 SCAN_OLD_S = 0.3
@@ -31,9 +32,15 @@ _GRID_M = 0.03
 _EDGE_M = 0.05
 # No gap between the last beam and the first hides anything if it is twice as wide at most [rad].
 _GAP_RAD = 0.05
+# Ground that is seen free is remembered in cells of this size, so far beyond what is too near [m],
+# and while nothing looks for so long [s].
+_CELL_M, _AHEAD_M, _KNOWN_S = 0.05, 0.2, 10.0
+_COLUMNS = 1 << 30
 # What was met no further off a robot than this was that robot [m].
 _BESIDE_M = 0.15
 _NOTHING = np.zeros((0, 2))
+# So close to each other are the places that have to be looked at [m].
+_STEP_M = 0.03
 # What is tried where a robot would come to a way at which nothing looks [share of its speed].
 _SLOWER = (1.0, 0.75, 0.5, 0.25, 0.1)
 _HERE = Pose(0.0, 0.0, 0.0)
@@ -50,8 +57,10 @@ def everywhere(points: np.ndarray) -> np.ndarray:
 class Scan:
     """A laser scan: ranges [m] with NaN where nothing was met, angles [rad], 0 is ahead.
 
-    ``mount`` is where its middle lies on the robot. ``looked`` tells for each beam whether it was
-    measured at all, None: every one was.
+    ``mount`` is where its middle lies on the robot. ``blind_m`` tells for each beam up to which
+    distance it says nothing [m], inf for one that was not measured; None: all were. ``near_m`` is
+    up to which distance such a laser may say nothing, 0 where that is within the robot.
+    ``sure_share`` is the share of beams that a dead laser would not send.
     """
 
     ranges: np.ndarray
@@ -61,13 +70,24 @@ class Scan:
     range_max_m: float
 
     mount: Pose = _HERE
-    looked: Optional[np.ndarray] = None
+    blind_m: Optional[np.ndarray] = None
+    near_m: float = 0.0
+    sure_share: float = 1.0
+
+    @property
+    def _whole(self) -> bool:
+        return abs(self.step) * len(self.ranges) + 2.0 * _GAP_RAD >= 2.0 * math.pi
 
     @property
     def all_round(self) -> bool:
         """Whether its beams leave no gap that anything could hide in."""
-        return self.looked is None and (
-            abs(self.step) * len(self.ranges) + 2.0 * _GAP_RAD >= 2.0 * math.pi)
+        return self.blind_m is None and self._whole
+
+    @property
+    def looks_anywhere(self) -> bool:
+        """Whether any beam was measured, or found nothing."""
+        return bool(len(self.ranges)) and (
+            self.blind_m is None or bool(np.isfinite(self.blind_m).any()))
 
     def points(self) -> np.ndarray:
         """Return what was met as an array (n, 2) in the robot's frame [m]."""
@@ -77,26 +97,56 @@ class Scan:
         return _out_of(self.mount, beams)
 
     def faces(self, points: np.ndarray) -> np.ndarray:
-        """Return for each point whether a beam goes that way, however far it reaches."""
-        return self._faced(_into(self.mount, points), _GAP_RAD)
+        """Return for each point whether a beam goes that way that would have met it."""
+        points = _into(self.mount, points)
+        far = np.hypot(points[:, 0], points[:, 1])
+        faced: np.ndarray = (self._blind(points, _GAP_RAD) <= far) & (far <= self.range_max_m)
+        return faced
+
+    def faces_past(self, points: np.ndarray) -> np.ndarray:
+        """Return for each point whether a beam goes that way, though it may be too near for it."""
+        return np.isfinite(self._blind(_into(self.mount, points), _GAP_RAD))
+
+    def clears(self, points: np.ndarray) -> np.ndarray:
+        """Return for each point whether nothing is there by this scan."""
+        points = _into(self.mount, points)
+        far = np.hypot(points[:, 0], points[:, 1])
+        met = np.where(np.isfinite(self.ranges), self.ranges, np.inf)
+        clear: np.ndarray = ((self._blind(points) <= far) & (far <= self.range_max_m)
+                             & (far < met[self._number(self._beam(points)[1])]))
+        return clear
 
     def looks_at(self, points: np.ndarray) -> np.ndarray:
         """Return for each point whether this scan would have met it."""
         points = _into(self.mount, points)
         far = np.hypot(points[:, 0], points[:, 1])
-        seen: np.ndarray = (self._faced(points) & (far > self.range_min_m + _EDGE_M)
+        seen: np.ndarray = ((self._blind(points) <= far) & (far > self.range_min_m + _EDGE_M)
                             & (far < self.range_max_m))
         return seen
 
-    def _faced(self, points: np.ndarray, slack_rad: float = 0.0) -> np.ndarray:
+    def _beam(self, points: np.ndarray, slack_rad: float = 0.0) -> Tuple[np.ndarray, np.ndarray]:
+        """Return for each point (is it in the field of view, the number its beam would have)."""
         turn = np.mod(np.arctan2(points[:, 1], points[:, 0]) - self.angle_min + slack_rad,
                       2.0 * math.pi)
         step, count = abs(self.step), len(self.ranges)
-        faced: np.ndarray = turn <= step * count + 2.0 * slack_rad
-        if self.looked is not None and count:
-            beam = np.rint((turn - slack_rad) / step).astype(int)
-            faced &= self.looked[np.clip(beam, 0, count - 1)]
-        return faced
+        beam = np.rint((turn - slack_rad) / step).astype(int)
+        return turn <= step * count + 2.0 * slack_rad, beam
+
+    def _number(self, beam: np.ndarray) -> np.ndarray:
+        count = len(self.ranges)
+        found: np.ndarray = np.mod(beam, count) if self._whole else np.clip(beam, 0, count - 1)
+        return found
+
+    def _blind(self, points: np.ndarray, slack_rad: float = 0.0) -> np.ndarray:
+        """Return up to which distance nothing is known that way [m], inf: nothing at all."""
+        if not len(self.ranges) or not self.step:
+            return np.full(len(points), np.inf)
+        inside, beam = self._beam(points, slack_rad)
+        if self.blind_m is None:
+            return np.where(inside, 0.0, np.inf)
+        wide = int(slack_rad / abs(self.step))
+        beams = self._number(beam[:, None] + np.arange(-wide, wide + 1))
+        return np.where(inside, self.blind_m[beams].min(axis=1), np.inf)
 
 
 @dataclass(frozen=True)
@@ -131,27 +181,75 @@ class Unplaced:
         return any(now - at_s <= SCAN_OLD_S for at_s in list(self._heard.values()))
 
 
+class _Ground:
+    """The ground around a robot that was seen to be free, or that it stood on itself."""
+
+    def __init__(self, radius_m: float) -> None:
+        self._radius_m = radius_m
+        self._cells = np.zeros(0, dtype=np.int64)
+        self._at_s = -math.inf
+
+    def learn(self, scan: Scan, odometry: Pose, at_s: float) -> None:
+        """Take in a scan of which some beams see nothing that is near."""
+        reach_m = scan.near_m + _AHEAD_M
+        count = int(reach_m / _CELL_M) + 1
+        around = np.arange(-count, count + 1)
+        columns = math.floor(odometry.x_m / _CELL_M) + around
+        rows = math.floor(odometry.y_m / _CELL_M) + around
+        cells = np.stack(np.meshgrid(columns, rows, indexing='ij'), axis=-1).reshape(-1, 2)
+        here = _into(odometry, (cells + 0.5) * _CELL_M)
+        free = scan.clears(here) | (np.hypot(here[:, 0], here[:, 1]) < self._radius_m)
+        kept = self._cells if at_s - self._at_s <= _KNOWN_S else self._cells[:0]
+        kept = kept[np.isin(kept, _codes(cells))]
+        self._cells = np.union1d(kept, _codes(cells[free]))
+        self._at_s = at_s
+
+    def has(self, points: np.ndarray) -> np.ndarray:
+        """Return for each point, in the frame of odometry, whether it is known to be free."""
+        found: np.ndarray = np.isin(_codes(np.floor(points / _CELL_M).astype(np.int64)),
+                                    self._cells)
+        return found
+
+
+def _codes(cells: np.ndarray) -> np.ndarray:
+    codes: np.ndarray = cells[:, 0].astype(np.int64) * _COLUMNS + cells[:, 1]
+    return codes
+
+
 class Surroundings:
     """What a robot's lasers have met: the newest scan of each, and what they no longer look at.
 
     Many lasers do not see what is nearer than 0.45 m, or only what is ahead: what came that close
-    is remembered, in the frame of odometry, until a scan has looked there again.
+    is remembered, in the frame of odometry, until a scan has looked there again. Where their beams
+    say nothing of what is near, ground counts as free that was seen to be.
+
+    :param radius_m: of the disc around all of the robot
     """
 
-    def __init__(self) -> None:
+    def __init__(self, radius_m: float = 0.0) -> None:
+        self._radius_m = radius_m
+        self._lives: Dict[str, LaserLife] = {}
+        self.clear()
+
+    def clear(self) -> None:
+        """Forget everything but which lasers live: odometry has begun anew."""
         self._met = _NOTHING
         self._fresh = 0
         self._newest: Dict[str, _Seen] = {}
+        self._ground = _Ground(self._radius_m)
         # Seen from here, nothing is nearer than this [m].
         self._clear: Tuple[Pose, float] = (_HERE, math.inf)
-        self._all_round = False
+        self._all_round_m = 0.0
 
-    def see(self, scan: Scan, odometry: Pose, at_s: float = 0.0, laser: str = '') -> None:
-        """Take in a scan that was made here.
+    def see(self, scan: Scan, odometry: Pose, at_s: float = 0.0, laser: str = '') -> bool:
+        """Take in a scan that was made here; return whether it looked anywhere.
 
         :param at_s: when [s]; where another laser looks counts for :data:`SCAN_OLD_S` from its own
         :param laser: which one it was, on a robot that has several
         """
+        life = self._lives.setdefault(laser, LaserLife())
+        if not life.look(scan.sure_share, odometry, at_s, abs(scan.step) * len(scan.ranges)):
+            scan = replace(scan, blind_m=np.full(len(scan.ranges), np.inf))
         before = self._newest.pop(laser, None)
         old = [name for name, seen in self._newest.items() if at_s - seen.at_s > SCAN_OLD_S]
         gone = [self._newest.pop(name) for name in old] + ([before] if before else [])
@@ -161,13 +259,17 @@ class Surroundings:
         if len(kept):
             # One of each cell; none is moved, which time after time would lead it astray.
             kept = kept[np.unique(np.round(kept / _GRID_M), axis=0, return_index=True)[1]]
+        if scan.near_m > 0.0:
+            self._ground.learn(scan, odometry, at_s)
         self._newest[laser] = _Seen(at_s, scan, odometry, _out_of(odometry, scan.points()))
         fresh = [seen.points for seen in self._newest.values()]
         self._fresh = sum(map(len, fresh))
         self._met = met = np.vstack((*fresh, kept))
         far = np.hypot(met[:, 0] - odometry.x_m, met[:, 1] - odometry.y_m)
         self._clear = odometry, float(far.min()) if len(met) else math.inf
-        self._all_round = any(seen.scan.all_round for seen in self._newest.values())
+        self._all_round_m = max(seen.scan.range_max_m if seen.scan.all_round else 0.0
+                                for seen in self._newest.values())
+        return scan.looks_anywhere
 
     def forget(self, odometry: Pose, robots: Iterable[Tuple[float, float, float]]) -> None:
         """Forget what is remembered where robots are known to be: they move, and leave nothing.
@@ -191,16 +293,22 @@ class Surroundings:
         way_m = math.hypot(odometry.x_m - there.x_m, odometry.y_m - there.y_m)
         return _NOTHING if clear_m - way_m > reach_m else _into(odometry, self._met)
 
-    def looks(self, odometry: Pose) -> Looks:
-        """Return what tells where the newest scans look, seen from a robot that is here."""
-        if self._all_round:
+    def looks(self, odometry: Pose, reach_m: float = KEEP_M) -> Looks:
+        """Return what tells where the newest scans look, seen from a robot that is here.
+
+        :param reach_m: nothing that is further off will be asked for
+        """
+        if self._all_round_m > reach_m:
             return everywhere
-        newest = list(self._newest.values())
+        newest, ground = list(self._newest.values()), self._ground
 
         def look(points: np.ndarray) -> np.ndarray:
-            found = np.zeros(len(points), dtype=bool)
+            found, there = np.zeros(len(points), dtype=bool), _out_of(odometry, points)
             for seen in newest:
-                found |= seen.scan.faces(_into(seen.odometry, _out_of(odometry, points)))
+                here = _into(seen.odometry, there)
+                found |= seen.scan.faces(here)
+                if seen.scan.near_m > 0.0 and not found.all():
+                    found |= seen.scan.faces_past(here) & ground.has(there)
             return found
         return look
 
@@ -275,7 +383,8 @@ def stopping_speed(way_m: float, delay_s: float) -> float:
 def fronts(velocity: Velocity, radius_m: float, delay_s: float) -> np.ndarray:
     """Return where a disc's foremost point comes until the disc can stand, (n, 2) [m]."""
     speed, turn = velocity.linear_mps, velocity.angular_rad_s
-    times = np.linspace(0.0, delay_s + abs(speed) / (2.0 * BRAKES_MPS2), 5)
+    lasts_s = delay_s + abs(speed) / (2.0 * BRAKES_MPS2)
+    times = np.linspace(0.0, lasts_s, 5 + min(95, int(abs(speed) * lasts_s / _STEP_M)))
     angles = turn * times
     if abs(turn) < 1e-6:
         middle = np.column_stack((speed * times, np.zeros(len(times))))

@@ -35,8 +35,8 @@ class StickBrake:
     def __init__(self, radius_m: float, has_eye: bool) -> None:
         self._radius_m = radius_m
         self._has_eye = has_eye
-        self._asked = False
-        self._seen = Surroundings()
+        self._asked = self._remembers = False
+        self._seen = Surroundings(radius_m)
         self._unplaced = Unplaced()
         self._pose: Optional[Pose] = None
         self._scan_at: Optional[float] = None
@@ -54,16 +54,26 @@ class StickBrake:
         """Whether it is asked for and needs what looks to be read."""
         return self._asked and self._has_eye
 
-    def ask(self, asked: bool) -> None:
-        """Switch it on or off; what was seen before does not count after."""
-        if asked and not self._asked:
-            self._seen, self._pose, self._scan_at = Surroundings(), None, None
-        self._asked, self._slowed_at = asked, -math.inf
+    @property
+    def remembers(self) -> bool:
+        """Whether it was ever asked for: then it needs odometry, to know where what it saw is."""
+        return self._remembers
 
-    def move(self, pose: Pose) -> None:
-        """Take in where the robot is by its odometry."""
-        if self._pose is None:
-            self._seen, self._scan_at = Surroundings(), None
+    def ask(self, asked: bool) -> None:
+        """Switch it on or off; what was met before is remembered, but nobody looks there now."""
+        if asked and not self._asked:
+            self._scan_at = None
+        self._asked, self._slowed_at = asked, -math.inf
+        self._remembers |= self.reads
+
+    def move(self, pose: Pose, anew: bool = False) -> None:
+        """Take in where the robot is by its odometry.
+
+        :param anew: odometry has jumped, so nobody knows where what was seen before is
+        """
+        if self._pose is None or anew:
+            self._seen.clear()
+            self._scan_at = None
         self._pose = pose
 
     def see(self, scan: Scan, at_s: float, pose: Optional[Pose] = None, laser: str = '') -> None:
@@ -77,9 +87,9 @@ class StickBrake:
         pose = (pose or self._pose) if self._pose is not None else None
         if pose is None:
             # Without odometry nothing can be remembered: it would move along with the robot.
-            self._seen = Surroundings()
-        self._seen.see(scan, pose or _HERE, at_s, laser)
-        self._scan_at = at_s if self._scan_at is None else max(at_s, self._scan_at)
+            self._seen.clear()
+        if self._seen.see(scan, pose or _HERE, at_s, laser):
+            self._scan_at = at_s if self._scan_at is None else max(at_s, self._scan_at)
 
     def hear_unplaced(self, laser: str, now: float) -> None:
         """Take in that a laser was heard of which nobody says where it sits."""
@@ -91,9 +101,8 @@ class StickBrake:
         if not self.reads or velocity.linear_mps == 0.0:
             return velocity
         age_s, here = self._age(now), self._pose or _HERE
-        looks = self._seen.looks(here)
-        points = self._seen.around(
-            here, reach_of(velocity.linear_mps, self._radius_m, age_s or 0.0))
+        reach_m = reach_of(velocity.linear_mps, self._radius_m, age_s or 0.0)
+        looks, points = self._seen.looks(here, reach_m), self._seen.around(here, reach_m)
         crawl_mps = 0.0 if self._unplaced.any(now) else CRAWL_MPS
         allowed = braked(velocity, points, self._radius_m, age_s, looks, crawl_mps)
         if age_s is not None and abs(velocity.linear_mps) - abs(allowed.linear_mps) > _SLOWER_MPS:

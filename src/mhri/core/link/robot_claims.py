@@ -37,8 +37,8 @@ _TOPIC = re.compile(r'[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*\Z')
 _MAX_NAME = 250
 _WORD = re.compile(r'[A-Za-z0-9_-]{1,64}\Z')
 # Of the overrides these are taken as they are, once they are valid.
-_PLAIN = ('odometry_type', 'silent_after_s', 'radius_m', 'laser_x_m', 'lasers', 'depth_x_m',
-          'depth_z_m')
+_PLAIN = ('odometry_type', 'silent_after_s', 'radius_m', 'laser_x_m', 'lasers', 'no_return',
+          'depth_x_m', 'depth_z_m')
 _Spec = Union[MotorPowerSpec, HardwareStopSpec]
 
 

@@ -17,6 +17,10 @@ KEPT_S = 0.5
 # A stamp that is further from that of the newest odometry is none, or by another clock [s].
 SAME_CLOCK_S = 2.0
 _MOST = 100
+# Odometry that goes or turns further between two messages has begun anew [m, rad], besides what
+# the robot may have moved meanwhile; nobody knows what it did for longer than this [s].
+_LEAP_M, _LEAP_RAD, _TURNS_RAD_S, _UNHEARD_S = 0.2, 0.5, 6.0, 1.0
+_MOST_SOURCES = 8
 
 
 class Moment(NamedTuple):
@@ -30,11 +34,36 @@ class PoseTrack:
     """The last poses of a robot, each with its stamp [s]: of one clock, whichever it is.
 
     Poses come from one thread; another may ask.
+
+    :param most_mps: the most that the robot drives
     """
 
-    def __init__(self) -> None:
+    def __init__(self, most_mps: float = 2.0) -> None:
         self._poses: Deque[Tuple[float, Pose]] = deque(maxlen=_MOST)
         self._age = StampAge()
+        self._most_mps = most_mps
+        self._last: Optional[Tuple[Pose, float, float]] = None
+        self._sources: Deque[object] = deque(maxlen=_MOST_SOURCES)
+
+    def follow(self, pose: Pose, heard_s: float, source: object = None,
+               stamp_s: float = 0.0) -> bool:
+        """Take in a pose, with or without a stamp; return whether odometry has begun anew.
+
+        :param heard_s: when, of our clock, which never goes back [s]
+        :param source: stands for who said it: another than before has another origin
+        :param stamp_s: what is heard late was not said at that time [s], 0: it has no stamp
+        """
+        last, self._last = self._last, (pose, heard_s, stamp_s)
+        anew = last is not None and all(source is not one for one in self._sources)
+        if last is None or anew:
+            self._sources.append(source)
+            return anew
+        then, then_s, then_stamp_s = last
+        passed_s = min(max(heard_s - then_s, stamp_s - then_stamp_s), _UNHEARD_S)
+        turned = abs(math.remainder(pose.heading_rad - then.heading_rad, 2.0 * math.pi))
+        return (math.hypot(pose.x_m - then.x_m, pose.y_m - then.y_m)
+                > _LEAP_M + 1.5 * self._most_mps * passed_s
+                or turned > _LEAP_RAD + _TURNS_RAD_S * passed_s)
 
     def add(self, stamp_s: float, pose: Pose, heard_s: float) -> None:
         """Take in a pose; a stamp that goes back begins anew.

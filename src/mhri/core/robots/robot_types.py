@@ -92,6 +92,8 @@ class RobotType:
     Where tf does not say it, ``laser_x_m`` and ``depth_x_m`` are how far ahead of its middle laser
     and depth camera sit, ``depth_z_m`` how high the camera sits [m], 0: nobody knows; ``lasers``
     is where each laser of ``scan`` sits: ahead, to the left [m], turned to the left [rad].
+    ``no_return`` is {range_max of a laser [m], None for any other: values by which it says "nothing
+    there"}, empty: as REP 117 says.
     ``instance`` is the first segment of all its topics if one node may
     have several such robots, each with its own first segment.
     """
@@ -118,6 +120,7 @@ class RobotType:
     lasers: Tuple[LaserPlace, ...] = ()
     depth_x_m: float = 0.0
     depth_z_m: float = 0.0
+    no_return: Dict[Optional[float], Tuple[float, ...]] = field(default_factory=dict)
     motor_power: Optional[MotorPowerSpec] = None
     hardware_stop: Optional[HardwareStopSpec] = None
     instance: Optional[str] = None
@@ -193,7 +196,7 @@ def parse_robot_type(text: str, origin: str) -> RobotType:
         models={key: _limits(item) for key, item in section.named_sections('models').items()},
         odometry_type=odometry_type, known_by=_known_by(section),
         silent_after_s=_silent_after_s(section), radius_m=_radius_m(section),
-        **_places(section),
+        **_places(section), no_return=_no_return(section),
         **{key: read(section) for key, read in _HARDWARE.items()},
         instance=section.text('instance', None), **_all_topics(section))
     robot_type = replace(robot_type, lasers=_lasers(section, len(robot_type.scan)))
@@ -264,6 +267,34 @@ def _is_place(row: object) -> bool:
     return isinstance(row, list) and len(row) == 3 and all(
         isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= most
         for value, most in zip(row, (10.0, 10.0, 360.0)))
+
+
+def _no_return(section: Section) -> Dict[Optional[float], Tuple[float, ...]]:
+    """Read which ranges mean "nothing there": a list, or lists by the laser's range_max [m]."""
+    rows = section.take('no_return', {})
+    if isinstance(rows, list):
+        rows = {None: rows}
+    found: Dict[Optional[float], Tuple[float, ...]] = {}
+    for reach, values in rows.items() if isinstance(rows, dict) else [(None, None)]:
+        reach_m = None if reach is None else _as_number(reach)
+        numbers = [_as_number(value) for value in values] if isinstance(values, list) else [None]
+        if None in numbers or reach is not None and not (reach_m and 0.0 < reach_m < math.inf):
+            raise section.error('no_return', 'expected a list such as [.nan, .inf], or one for '
+                                'each range_max, such as {{3.5: [0.0, .inf]}}, got {}'.format(
+                                    shown(rows)))
+        found[reach_m] = tuple(number for number in numbers if number is not None)
+    return found
+
+
+def _as_number(value: object) -> Optional[float]:
+    """Return a number, or the text of one, as parameters have it; None for anything else."""
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        return None
+    try:
+        return float(value.replace('.nan', 'nan').replace('.inf', 'inf')
+                     if isinstance(value, str) else value)
+    except (ValueError, OverflowError):
+        return None
 
 
 def _topics(section: Section, key: str) -> Tuple[str, ...]:
@@ -383,6 +414,8 @@ def _overridden(robot_type: RobotType, overrides: object, origin: str) -> RobotT
     if 'lasers' in section or 'scan' in changes:
         # Other topics are other lasers.
         changes['lasers'] = _lasers(section, len(changes.get('scan', robot_type.scan)))
+    if 'no_return' in section:
+        changes['no_return'] = _no_return(section)
     changes.update((key, section.text(key)) for key in ('label', 'window') if key in section)
     if 'limits' in section:
         limits = section.section('limits')

@@ -73,7 +73,8 @@ class DepthBeams:
         ranges[ranges > FARTHEST_M] = np.nan
         looked = np.isfinite(ranges)
         looked[self._beams[len(depth) // 2][measured >= LEAST_OF_COLUMN]] = True
-        return Scan(ranges, self._first, self._step, self._near_m, FARTHEST_M, self._place, looked)
+        return Scan(ranges, self._first, self._step, self._near_m, FARTHEST_M, self._place,
+                    np.where(looked, 0.0, np.inf))
 
     def _make(self, shape: Tuple[int, ...], lens: Lens, mount: np.ndarray,
               height_known: bool) -> None:

@@ -84,22 +84,6 @@ def beams_problem(count: int, angle_min: float, angle_increment: float) -> Optio
     return None
 
 
-def measured_ranges(ranges: Sequence[float], least: float, greatest: float) -> np.ndarray:
-    """Return ranges [m] as an array with NaN if there is no measurement.
-
-    :param least: the least that the sensor says it can measure [m]; NaN and absurd values do not
-        count
-    :param greatest: the same for the greatest
-    """
-    bound = BOUNDS[RANGE]
-    low = least if least > bound.least else bound.least
-    high = greatest if greatest < bound.greatest else bound.greatest
-    found = np.array(ranges, dtype=float)
-    with np.errstate(invalid='ignore'):
-        found[~((found >= low) & (found <= high))] = np.nan
-    return found
-
-
 def thinned(ranges: np.ndarray, most: int) -> Tuple[np.ndarray, int]:
     """Return (at most ``most`` ranges, how many beams each stands for).
 

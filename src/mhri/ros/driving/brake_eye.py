@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What the obstacle brake of the gates knows of a robot: what it sees, and where it is."""
+from contextlib import nullcontext
 import importlib
 import threading
 import time
@@ -57,7 +58,7 @@ class BrakeEye:
         self._refusals = Refusals(', '.join(self._topics or [
             topic_of(name, topic) for topic in robot_type.depth]), clock)
         self._odometry_refusals = Refusals('the odometry of ' + name, clock)
-        self._track = PoseTrack()
+        self._track = PoseTrack(robot_type.limits.linear_mps)
         self._subscribers = []
         self._settling = threading.Lock()
         self._seeing = threading.Lock()
@@ -90,9 +91,11 @@ class BrakeEye:
 
     def on_odometry(self, message, now):
         """Take in the bytes of an odometry message (``rospy.AnyMsg``)."""
-        if not self.brake.reads or self._odometry is None or now - self._pose_at < POSE_EVERY_S:
+        if not self.brake.remembers or self._odometry is None \
+                or now - self._pose_at < POSE_EVERY_S:
             return
         self._pose_at = now
+        source = getattr(message, '_connection_header', None)
         message, motion = self._read_odometry(message)
         if motion is not None and motion.is_possible():
             self._mounts.see_odometry(message)
@@ -100,7 +103,9 @@ class BrakeEye:
             header = header_of(message, type(message))
             if header is not None:
                 self._track.add(header[1], pose, now)
-            self.brake.move(pose)
+            anew = self._track.follow(pose, now, source, header[1] if header else 0.0)
+            with self._seeing if anew else nullcontext():
+                self.brake.move(pose, anew)
 
     def motion(self, message):
         """Return the :class:`Motion` in the bytes of an odometry message, None: there is none."""

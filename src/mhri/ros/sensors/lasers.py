@@ -22,7 +22,8 @@ class Lasers:
 
     def __init__(self, robot, robot_type):
         self._mounts = Mounts(robot_type, SHARED)
-        self._feeds = [ScanFeed(robot, [topic]) for topic in robot_type.scan]
+        self._feeds = [ScanFeed(robot, [topic], no_return=robot_type.no_return)
+                       for topic in robot_type.scan]
         self._newest = {}
 
     def open(self):

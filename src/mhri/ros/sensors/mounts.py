@@ -25,14 +25,15 @@ class NoPlace(ValueError):
 class Mounts:
     """The places of one robot's sensors.
 
-    ``frames`` are those of its odometry, :class:`mhri.core.map.tf_tree.OdometryFrames`.
+    ``frames`` are those of its odometry, :class:`mhri.core.map.tf_tree.OdometryFrames`;
+    ``robot_type`` is the robot's.
 
     :param robot_type: :class:`mhri.core.robots.robot_types.RobotType`
     :param tf: :class:`mhri.ros.map.tf_feed.TfFeed`, None: there is no tf
     """
 
     def __init__(self, robot_type, tf=None):
-        self._type = robot_type
+        self.robot_type = robot_type
         self._tf = tf
         self.frames = OdometryFrames()
 
@@ -48,10 +49,10 @@ class Mounts:
         """
         matrix = self._matrix(frame)
         if matrix is None or abs(matrix[2, 2]) < _LEVEL:
-            place = self._type.laser_place(number)
+            place = self.robot_type.laser_place(number)
             if place is None:
                 raise NoPlace('the place of its laser ({}, frame {!r})'.format(
-                    self._type.scan[number], frame_name(frame)))
+                    self.robot_type.scan[number], frame_name(frame)))
             return Pose(*place), False
         return Pose(float(matrix[0, 3]), float(matrix[1, 3]),
                     math.atan2(matrix[1, 0], matrix[0, 0])), matrix[2, 2] < 0.0
@@ -63,8 +64,8 @@ class Mounts:
             return matrix, True
         matrix = np.eye(4)
         matrix[:3, :3] = _AHEAD
-        matrix[0, 3], matrix[2, 3] = self._type.depth_x_m, self._type.depth_z_m
-        return matrix, self._type.depth_z_m > 0.0
+        matrix[0, 3], matrix[2, 3] = self.robot_type.depth_x_m, self.robot_type.depth_z_m
+        return matrix, self.robot_type.depth_z_m > 0.0
 
     def _matrix(self, frame):
         frame = frame_name(frame)

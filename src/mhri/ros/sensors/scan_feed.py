@@ -8,12 +8,15 @@ import rospy
 from sensor_msgs.msg import LaserScan
 
 from mhri.core.robots.names import topic_of
-from mhri.core.sensors.plausible import beams_problem, measured_ranges, thinned
+from mhri.core.sensors.plausible import beams_problem, thinned
+from mhri.core.sensors.readings import no_return_of, read_ranges
 from mhri.ros.graph.rospy_inside import unsubscribe
 from mhri.ros.sensors.refusals import Refusals
 
 # More than one per pixel around the view; a scan with more is thinned out to this.
 MOST_POINTS = 4000
+# What types say that do not say it.
+NO_RETURN = {}
 
 
 class ScanFeed:
@@ -21,11 +24,13 @@ class ScanFeed:
 
     :param robot: the robot's name (namespace)
     :param topics: relative to the namespace; if several speak, the newest message counts
+    :param no_return: see :class:`mhri.core.robots.robot_types.RobotType`
     """
 
-    def __init__(self, robot, topics, clock=time.monotonic):
+    def __init__(self, robot, topics, clock=time.monotonic, no_return=NO_RETURN):
         self._topics = [topic_of(robot, topic) for topic in topics]
         self._clock = clock
+        self._no_return = no_return
         self._lock = threading.Lock()
         self._subscribers = []
         self._message = None
@@ -72,7 +77,8 @@ class ScanFeed:
         """Return (ranges, angle_min, angle_increment, range_max), or None if nothing is new.
 
         ``ranges`` is an array [m] in which NaN means no measurement: nothing within reach, too
-        near, outside the sensor's stated limits, or beyond any sensor's. There are at most
+        near, or outside the sensor's stated limits, see
+        :func:`mhri.core.sensors.readings.read_ranges`. There are at most
         :data:`MOST_POINTS`, each the nearest of the beams around it. Angles [rad] begin ahead and
         grow to the left.
         """
@@ -81,8 +87,9 @@ class ScanFeed:
         if message is None:
             return None
         self.frame = message.header.frame_id
-        ranges, together = thinned(measured_ranges(
-            message.ranges, message.range_min, message.range_max), MOST_POINTS)
+        readings = read_ranges(message.ranges, message.range_min, message.range_max,
+                               no_return_of(self._no_return, message.range_max))
+        ranges, together = thinned(readings.ranges, MOST_POINTS)
         step = message.angle_increment
         return (ranges, message.angle_min + 0.5 * (together - 1) * step, together * step,
                 message.range_max)

@@ -8,7 +8,7 @@ import time
 import rospy
 from sensor_msgs.msg import BatteryState, LaserScan
 
-from mhri.core.driving.brake import NARROW_M, Surroundings, Unplaced
+from mhri.core.driving.brake import NARROW_M, reach_of, SCAN_OLD_S, Surroundings, Unplaced
 from mhri.core.map.places import Odometry, OLD_S
 from mhri.core.map.tf_tree import frame_name
 from mhri.core.robots.mocap import Pose
@@ -91,11 +91,11 @@ class RobotSenses:
         self._depth_scan = self._scan_at = None
         self._depth_refusals = Refusals(', '.join(self._topics('depth')), clock)
         self._mounts = Mounts(robot_type, frames)
-        self._track = PoseTrack()
+        self._track = PoseTrack(robot_type.limits.linear_mps)
         self._charge = None
         self._mocap = MocapFeed(name, clock)
         self._mocap.open()
-        self._surroundings = Surroundings()
+        self._surroundings = Surroundings(self.body.radius_m)
         self._unplaced = Unplaced()
 
     def _open_odometry(self):
@@ -167,6 +167,11 @@ class RobotSenses:
             return
         self.pose = Pose(motion.x_m, motion.y_m, motion.heading_rad)
         header = header_of(message, type(message))
+        if self._track.follow(self.pose, self._odometry.heard_at,
+                              getattr(message, '_connection_header', None),
+                              header[1] if header else 0.0):
+            self._surroundings.clear()
+            self._scan_at = None
         if header is not None:
             self._track.add(header[1], self.pose, self._odometry.heard_at)
             self._mounts.see_odometry(message)
@@ -201,12 +206,13 @@ class RobotSenses:
         """
         at_s, pose = self._track.moment(stamp_s, heard_s)
         self._unplaced.place(laser)
-        self._scan_at = at_s if self._scan_at is None else max(at_s, self._scan_at)
-        self._surroundings.see(scan, pose or self.pose, at_s, laser)
+        if self._surroundings.see(scan, pose or self.pose, at_s, laser):
+            self._scan_at = at_s if self._scan_at is None else max(at_s, self._scan_at)
 
     def looks(self):
         """Return what tells where its laser or depth camera looks, as the brake has it."""
-        return self._surroundings.looks(self.pose)
+        return self._surroundings.looks(self.pose, reach_of(
+            self.body.limits.linear_mps, self.body.radius_m, SCAN_OLD_S))
 
     def has_unplaced(self):
         """Tell whether nobody says where one of its lasers sits."""
