@@ -87,6 +87,17 @@ def test_buttons_are_those_that_the_comment_of_the_file_names():
             'stop_all', 'next_robot', 'previous_robot', 'select_all', 'mark'}), name
 
 
+@pytest.mark.parametrize('profile', PROFILES, ids=lambda profile: profile.name)
+def test_a_pad_that_counts_as_let_go_moves_nothing(profile):
+    """Wherever it rests, with its dead-man button held; full travel drives."""
+    for travel in [number / 1000.0 for number in range(0, 400)] + [1.0]:
+        axes, buttons = [0.0] * 8, [1] * 17
+        axes[profile.forward.index] = travel
+        stick = profile.read(axes, buttons)
+        assert not stick.neutral or stick.is_zero(), travel
+    assert not stick.is_zero()
+
+
 def test_ps3_drives_at_full_speed_with_no_more_than_the_dead_man_button():
     assert BY_NAME['ps3'].turbo is None
     assert BY_NAME['ps3'].dead_zone == 0.08

@@ -197,8 +197,7 @@ class Calibration:
                  'name: ' + self._name,
                  'forward: ' + _flow(self._entries[FORWARD]),
                  'turn: ' + _flow(self._entries[LEFT]),
-                 'dead_zone: {}'.format(dead_zone),
-                 'neutral: {}'.format(round(dead_zone + 0.04, 2))]
+                 'dead_zone: {}'.format(dead_zone)]
         lines += ['{}_button: {}'.format(action, self._buttons[action])
                   for action in _BUTTONS if action in self._buttons]
         match = 'guids: ["{}"]'.format(self._guid) if self._guid else 'names: [{}]'.format(

@@ -124,7 +124,8 @@ class Profile:
 
     ``dead_zone`` is the fraction of travel around the centre that counts as zero (the rest is
     stretched, so that full travel stays full speed); ``neutral`` the fraction inside which the
-    stick counts as released for the interlock; ``curve`` bends the response, 0 straight to 1
+    stick counts as released for the interlock, and then asks for nothing: at most the dead zone,
+    where there is one; ``curve`` bends the response, 0 straight to 1
     cubic, for fine control near the centre. ``dead_man`` is the button that must be held for
     anything to move, ``ANY`` for any button, None for none. ``turbo`` is a button; while it is
     not held, everything is multiplied by ``without_turbo``. ``actions`` are
@@ -158,9 +159,11 @@ class Profile:
                              '{}'.format(len(axes), self.name, needed))
         held = self._held(buttons)
         forward, turn = self.forward.read(axes), self.turn.read(axes)
-        neutral = max(abs(forward), abs(turn)) <= self.neutral
-        if not held:
-            return Stick(0.0, 0.0, neutral, False)
+        # A stick that counts as let go moves nothing.
+        rests = min(self.neutral, self.dead_zone) if self.dead_zone else self.neutral
+        neutral = max(abs(forward), abs(turn)) <= rests
+        if neutral or not held:
+            return Stick(0.0, 0.0, neutral, held)
         # A pad without that button is slow, never fast.
         slow = self.turbo is not None and not is_pressed(buttons, self.turbo)
         factor = self.without_turbo if slow else 1.0
