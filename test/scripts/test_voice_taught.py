@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A voice that is not understood is taught: sentences read by espeak-ng into the program.
+"""The recogniser itself: a voice that is taught, and a word that sounds like a motion.
 
-A short language of the test's own, so that it takes seconds.
+The voices are espeak-ng's. To be taught, there is a short language, so that it takes seconds.
 """
 import os
 from pathlib import Path
@@ -18,6 +18,7 @@ from support import speech  # noqa: E402
 
 from mhri.core.voice.grammar import Grammar  # noqa: E402
 from mhri.core.voice.language import parse_language  # noqa: E402
+from mhri.core.voice.speech import SURE, SURE_WHEN_HELD  # noqa: E402
 from mhri.inputs.recogniser import Dictionary, Recogniser  # noqa: E402
 from mhri.inputs.teaching import check_voice  # noqa: E402
 
@@ -31,9 +32,9 @@ LATER = ('robot go right', 'robot deselect rover', 'robot turn left')
 PATIENCE_S = 900.0
 
 
-def spoken(text, gain=1.0):
+def spoken(text, gain=1.0, voice=VOICE):
     """Return a sentence in a quiet room."""
-    sound = speech.speak(text, VOICE) * gain
+    sound = speech.speak(text, voice) * gain
     return speech.in_room(sound, np.random.RandomState(1), before_s=0.5, after_s=1.5)
 
 
@@ -57,3 +58,24 @@ def test_a_voice_is_taught_and_understood(tmp_path):
     recogniser = Recogniser(grammar, dictionary, voice=str(voice))
     heard = [recogniser.recognise(spoken(text)) for text in LATER]
     assert [found and found.text for found in heard] == list(LATER)
+
+
+def test_a_word_that_sounds_like_a_motion_moves_nothing():
+    """Of this voice, "robot, record" fits "robot forward a bit" best, with a confidence of 0.6."""
+    path, dictionary = REPO / 'resource' / 'voice' / 'english.yaml', Dictionary()
+    grammar = Grammar(parse_language(path.read_text(), str(path)), speech.ROBOTS,
+                      dictionary.__contains__)
+    recogniser = Recogniser(grammar, dictionary)
+
+    def heard(text):
+        sound = speech.speak(text, speech.Voice('en-us+f3', 150, 50))
+        recogniser.begin(b'')
+        sound = speech.in_room(sound, np.random.RandomState(3), before_s=0.35, after_s=0.45)
+        recogniser.go_on(sound)
+        found = recogniser.recognise(sound)
+        print('heard', text, found)
+        return found
+    found = heard('robot, record')
+    assert not grammar.moves(found.text) or found.confidence < SURE_WHEN_HELD
+    found = heard('robot forward')
+    assert found.text == 'robot forward' and found.confidence >= SURE

@@ -75,6 +75,16 @@ def test_a_command_moves_for_its_time(desk):
     assert desk.reader.read(0.0) == REST
 
 
+def test_a_command_that_waited_in_a_queue_moves_nothing_and_a_stop_stops(desk):
+    spoken_s = desk.now
+    desk.now += 8.0
+    desk.say('began')
+    desk.say('ended', text='robot drive forward', confidence=0.9, age_s=1.0, spoken_s=spoken_s)
+    assert not desk.heard[-1].accepted and desk.reader.read(0.0) is None
+    desk.say('ended', text='stop', confidence=0.9, age_s=1.0, spoken_s=spoken_s)
+    assert [act.kind for act in desk.acts] == [STOP]
+
+
 def test_read_returns_as_a_motion_ends_not_as_its_patience_does(desk):
     """The zero must not wait for the next sound."""
     desk.ended('robot drive forward')

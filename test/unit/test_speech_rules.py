@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from mhri.core.voice.speech import (
-    REST, STOP_RECORDING_S, SURE, SURE_OF_STOP, SURE_WHEN_HELD, VoiceRules)
+    MAX_AGE_S, REST, STOP_RECORDING_S, SURE, SURE_OF_STOP, SURE_WHEN_HELD, VoiceRules)
 from mhri.core.voice.grammar import Grammar, STOP
 from mhri.core.voice.language import parse_language
 
@@ -24,9 +24,10 @@ class Talker:
         self.rules = VoiceRules(LANGUAGE)
         self.now = 100.0
 
-    def say(self, text, confidence=0.9, lasts_s=1.0):
+    def say(self, text, confidence=0.9, lasts_s=1.0, age_s=0.0):
         began, self.now = self.now, self.now + lasts_s
-        return self.rules.hear(text, GRAMMAR.parse(text), confidence, began, self.now)
+        return self.rules.hear(text, GRAMMAR.parse(text), confidence, began, self.now,
+                               age_s)
 
     def stick(self, later_s=0.0):
         return self.rules.stick(self.now + later_s)
@@ -242,3 +243,23 @@ def test_wishes_go_to_others(talk, text):
     assert heard.accepted
     assert (heard.act.kind, heard.act.action, heard.act.robots) == WISHES[text]
     assert talk.stick() == REST
+
+
+@pytest.mark.parametrize('text', ('robot drive forward', 'robot faster', 'robot turn left'))
+def test_what_was_said_too_long_ago_moves_nothing(talk, text):
+    talk.say('robot drive forward')
+    talk.now += 10.0
+    heard = talk.say(text, age_s=MAX_AGE_S + 0.1)
+    assert not heard.accepted and heard.reason and talk.stick() == REST
+    assert talk.say(text, age_s=MAX_AGE_S - 0.1).accepted
+
+
+@pytest.mark.parametrize('text', ('stop', 'robot stop', 'robot drive stop'))
+def test_a_stop_is_never_too_old(talk, text):
+    talk.say('robot drive forward')
+    assert talk.say(text, age_s=60.0).act.kind == STOP and talk.stick() == REST
+
+
+def test_a_wake_word_that_waited_wakes_for_no_longer(talk):
+    talk.say('robot', age_s=60.0)
+    assert not talk.say('drive forward').accepted

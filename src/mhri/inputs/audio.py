@@ -101,6 +101,11 @@ class Microphone:
         block, self._held = self._held[:BLOCK_BYTES], self._held[BLOCK_BYTES:]
         return block
 
+    def waits(self):
+        """Tell whether more of it waits to be read."""
+        return len(self._held) >= BLOCK_BYTES or bool(
+            select.select([self._process.stdout], [], [], 0.0)[0])
+
     def close(self):
         """Give it back; does nothing if it is not open."""
         process, self._process = self._process, None
@@ -152,6 +157,10 @@ class WavFile:
                 return b''
         self._due += BLOCK_S
         return self._file.readframes(BLOCK_BYTES // 2).ljust(BLOCK_BYTES, b'\0')
+
+    def waits(self):
+        """Tell whether the next block should have been read already."""
+        return time.monotonic() > self._due
 
     def close(self):
         """Close it; does nothing if it is not open."""
@@ -233,6 +242,10 @@ class RawStream:
             return b''
         block, self._held = self._held, b''
         return block
+
+    def waits(self):
+        """Tell whether more of it waits to be read."""
+        return self._ready(0.0)
 
     def close(self):
         """Close it; does nothing if it is not open."""

@@ -13,13 +13,15 @@ where the orders end, so does the process. Events are ``{"kind": ...}`` with one
 - ``open`` (``device``, ``notes``, ``robots``, ``words``), again after each change of the robots
 - ``absent`` or ``lost`` (``reason``): the process ends
 - ``began``, ``spotted`` (``word``)
-- ``ended`` (``text``, ``confidence``, ``age_s``: how long ago the utterance began)
+- ``ended`` (``text``, ``confidence``, ``age_s``: how long ago the utterance began, ``spoken_s``:
+  when the pause behind it was over [s, monotonic], however long the sound waited to be read)
 """
 import importlib.util
 import json
 import os
 import select
 import sys
+import time
 
 from mhri.core.config import ConfigError
 from mhri.core.voice.adaptation import ModelError
@@ -66,7 +68,7 @@ def begin(first, say):
     """
     if missing():
         raise DeviceAbsent(missing())
-    source = open_source(first['source'])
+    source, opened_s = open_source(first['source']), time.monotonic()
     device = source.open()
     # Only now: loading takes a second of a core, and a microphone is looked for once a second.
     from mhri.inputs.recogniser import RecogniserError
@@ -77,7 +79,8 @@ def begin(first, say):
             language = parse_language(stream.read(), first['language'])
         if first['voice']:
             check_voice(first['voice'])
-        return Session(language, source, device, first['robots'], first['voice'], say)
+        return Session(language, source, device, first['robots'], first['voice'],
+                       opened_s, say)
     except (RecogniserError, ConfigError, ModelError, OSError) as reason:
         source.close()
         raise DeviceAbsent(str(reason))

@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Speech to words by pocketsphinx, offline, with its English model.
 
-Three searches work together. The spotter hears a stop while the word is being spoken. When an
+Four searches work together. The spotter hears a stop while the word is being spoken. When an
 utterance has ended, the command search fits the grammar to it, whatever was said; and the filler, a
 loop of all sounds of the language, says how well anything would have fitted. Where the command fits
 much worse than the filler does in the same place, or something was spoken before its first word,
-the utterance was no command; and several small signs of that count together.
+the utterance was no command; and several small signs of that count together. Where it was a motion,
+the fourth search fits all that is none ("robot record" for "robot forward"): a motion that does not
+fit better by far is none.
 """
 import math
 import os
@@ -29,7 +31,9 @@ _NO_WORDS = '<+[('
 _SHORT_FRAMES = 5
 # In frames: an utterance begins with 0.3 s of what was before it, and then speech takes a moment.
 _USUAL_START, _LATEST_FRAMES, _LONGEST_GAPS = 33, 12, 40
-_COMMAND, _FILLER = 'command', 'filler'
+_COMMAND, _STILL, _FILLER = 'command', 'still', 'filler'
+# Steps below the limit at which nothing is obeyed, push-to-talk or not.
+_SURELY_NOT = -3.0
 _REMEDY = 'install python3-pocketsphinx and pocketsphinx-en-us'
 
 
@@ -49,6 +53,9 @@ class Tuning:
     A stop has to fit as well as ``stop_word`` in that word, and lasts ``stop_frames`` at least.
     ``unspotted_wake`` takes the place of ``first_word`` where the spotter has not heard the wake
     word. At the limit the confidence is 0.5; one ``slope`` below it 0.27.
+
+    ``motion_lead`` is by how much the whole of a motion has to fit better than the best phrase that
+    moves nothing [score], whether push-to-talk is held or not; ``lead_slope`` as ``slope``.
 
     The others are the weights of a logistic regression over the :class:`Fit` of a command with more
     than the wake word, which has to be 0.5 as well: commands against talk of both tuning runs, ten
@@ -73,6 +80,8 @@ class Tuning:
     by_gaps: float = -0.068
     by_start: float = -0.8
     at_rest: float = 15.82
+    motion_lead: float = 250.0
+    lead_slope: float = 100.0
 
 
 @dataclass(frozen=True)
@@ -301,10 +310,11 @@ class Recogniser:
             decoder = new_decoder(folder, rows, compallsen=True, cmn='batch', topn=8, beam=1e-120,
                                   wbeam=1e-100, pbeam=1e-120, mean=self._voice)
         decoder.set_jsgf_string(_COMMAND, grammar.jsgf())
+        decoder.set_jsgf_string(_STILL, grammar.jsgf(motion=False))
         decoder.set_jsgf_string(_FILLER, '#JSGF V1.0;\ngrammar filler;\npublic <any> = ({})+;\n'
                                 .format(loop))
         self._decoder = decoder
-        self._language = grammar.language
+        self._language, self._moves = grammar.language, grammar.moves
 
     # Stops and wake words, while they are spoken.
 
@@ -366,6 +376,14 @@ class Recogniser:
         return [(part.word, part.start_frame, part.end_frame, part.ascore)
                 for part in decoder.seg()]
 
+    def _lead(self, fitted, sound):
+        """Return how surely a motion was said, not something that moves nothing; 0 at the limit."""
+        other = self._segments(_STILL, sound)
+        if not other:
+            return math.inf
+        lead = sum(score for *_, score in fitted) - sum(score for *_, score in other)
+        return (lead - self._tuning.motion_lead) / self._tuning.lead_slope
+
     def recognise(self, sound):
         """Return the :class:`Hypothesis` of a whole utterance, or None if nothing fits.
 
@@ -385,5 +403,7 @@ class Recogniser:
         steps = fit.margin(self._tuning, stops, woken, self._wake_spotted) / self._tuning.slope
         if not stops and text not in language.wake_words:
             steps = min(steps, fit.logit(self._tuning, woken))
+        if steps > _SURELY_NOT and self._moves(text):
+            steps = min(steps, self._lead(fitted, sound))
         # Bounded, since exp() has a largest argument.
         return Hypothesis(text, 1.0 / (1.0 + math.exp(-max(-50.0, min(50.0, steps)))))

@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Listening to one source: its sound through the recogniser, as events for the node."""
+import time
+
+from mhri.core.voice.backlog import Backlog
 from mhri.core.voice.speech import SURE_OF_STOP
 from mhri.core.voice.grammar import Grammar, STOP
 from mhri.inputs.listener import Began, Ended, Listener, Spotted
@@ -17,11 +20,12 @@ class Session:
     :param device: its name
     :param robots: names in the panel's order
     :param voice: path of a voice that was taught, '' for any voice
+    :param opened_s: when the source was opened [s, monotonic]
     :param say: function that takes an event as a mapping, see :mod:`mhri.inputs.listening`
     :raises RecogniserError: speech cannot be recognised here
     """
 
-    def __init__(self, language, source, device, robots, voice, say):
+    def __init__(self, language, source, device, robots, voice, opened_s, say):
         self._language = language
         self._source = source
         self._device = device
@@ -31,6 +35,8 @@ class Session:
         self._recogniser = Recogniser(self._grammar, self._dictionary, voice=voice)
         self._listener = Listener(self._recogniser, self._is_stop)
         self._robots = None
+        self._backlog = Backlog(opened_s)
+        self._spoken_s = opened_s
         self._say_open()
 
     def _new_grammar(self, robots):
@@ -55,8 +61,10 @@ class Session:
         :raises DeviceLost: there will be none any more
         """
         block = self._source.read(_WAIT_S)
+        if block:
+            self._spoken_s = self._backlog.take(time.monotonic(), self._source.waits())
         for event in self._listener.feed(block) if block else ():
-            self._say(_as_mapping(event))
+            self._say(_as_mapping(event, self._spoken_s))
         if self._robots is not None and not self._listener.speaking:
             robots, self._robots = self._robots, None
             self._grammar = self._new_grammar(robots)
@@ -66,12 +74,15 @@ class Session:
     def finish(self):
         """Say what is left, and close the source."""
         for event in self._listener.finish():
-            self._say(_as_mapping(event))
+            self._say(_as_mapping(event, self._spoken_s))
         self._source.close()
 
 
-def _as_mapping(event):
-    """Return what is said of an event of the listener."""
+def _as_mapping(event, spoken_s):
+    """Return what is said of an event of the listener.
+
+    :param spoken_s: when the newest sound was spoken [s, monotonic]
+    """
     if isinstance(event, Began):
         return {'kind': 'began'}
     if isinstance(event, Spotted):
@@ -79,5 +90,6 @@ def _as_mapping(event):
     assert isinstance(event, Ended)
     found = event.hypothesis
     return {'kind': 'ended', 'age_s': round(event.at_s - event.began_s, 3),
+            'spoken_s': round(spoken_s, 3),
             'text': found.text if found else '',
             'confidence': round(found.confidence, 3) if found else 0.0}

@@ -99,8 +99,13 @@ class Grammar:
                    + language.stop_before + language.stop_after)
         return sorted({word for phrase in phrases for word in phrase.split()})
 
-    def jsgf(self) -> str:
-        """Return the grammar in the JSpeech Grammar Format; its public rule is ``said``."""
+    def moves(self, text: str) -> bool:
+        """Tell whether words mean a motion."""
+        command = self.parse(text)
+        return command is not None and command.kind in (DRIVE, PACE)
+
+    def _drives(self) -> List[str]:
+        """Return the motions in the JSpeech Grammar Format."""
         language = self.language
         manners = [phrase for phrases in language.manner.values() for phrase in phrases]
         paces = language.manner['faster'] + language.manner['slower']
@@ -110,6 +115,15 @@ class Grammar:
         going = sorted({verb for verbs, _ in language.drive.values() for verb in verbs})
         drives.append('[{}] {}'.format(_any_of(going), _any_of(paces)) if going
                       else _any_of(paces))
+        return drives
+
+    def jsgf(self, motion: bool = True) -> str:
+        """Return the grammar in the JSpeech Grammar Format; its public rule is ``said``.
+
+        :param motion: False: without what moves a robot
+        """
+        drives = self._drives() if motion else []
+        language = self.language
         others = [phrase for action in GROUP_ACTIONS for phrase in language.robots[action]]
         others += [phrase for phrases in language.requests.values() for phrase in phrases]
         if language.sources:

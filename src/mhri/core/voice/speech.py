@@ -21,6 +21,9 @@ SURE = 0.5
 SURE_WHEN_HELD = 0.25
 # A stop is believed much sooner: one too many does no harm.
 SURE_OF_STOP = 0.18
+# What was said so long ago moves nothing, whatever kept it: the pipe of a process that hung, a busy
+# computer [s]. It counts from the end of the pause that ends an utterance.
+MAX_AGE_S = 1.0
 # Why a voice that is not understood is refused.
 UNCLEAR = NO_COMMAND, NOT_SURE = 'no command', 'not sure enough'
 
@@ -44,7 +47,8 @@ class VoiceRules:
     """Decides what spoken commands do. Times are seconds of one clock that never goes back.
 
     Motion, and all but a stop, needs the wake word in front, the wake word alone shortly before, or
-    push-to-talk at the beginning. A stop is obeyed always. Nothing moves for longer than the
+    push-to-talk at the beginning. A stop is obeyed always, motion within :data:`MAX_AGE_S` only.
+    Nothing moves for longer than the
     language's ``lasts_s``, at most 2 s, unless it is said again.
 
     :param language: :class:`mhri.core.voice.language.Language`
@@ -137,7 +141,7 @@ class VoiceRules:
     # What the recogniser makes of a whole utterance.
 
     def hear(self, text: str, command: Optional[Command], confidence: float, began: float,
-             now: float) -> Heard:
+             now: float, age_s: float = 0.0) -> Heard:
         """Judge an utterance; return :class:`Heard`.
 
         :param text: the words, '' if they fit nothing
@@ -145,11 +149,12 @@ class VoiceRules:
         :param confidence: [0, 1] of the recogniser; 0.5 and more means a command, with push-to-talk
             0.25 and more
         :param began: when the utterance began
+        :param age_s: how long ago it ended
         """
         waiting, self._stop_due = self._stop_due is not None, None
         window, self._woken_until = self._woken_until, -math.inf
         heard = Heard(text, command.words if command else '', confidence=confidence)
-        problem = self._problem(command, confidence, began, window)
+        problem = self._problem(command, confidence, began, window) or _too_old(command, age_s)
         recorder = command is not None and command.action == 'stop_recording'
         hidden = (confidence >= SURE_OF_STOP
                   and any(word in self._language.stop for word in text.split()))
@@ -157,7 +162,7 @@ class VoiceRules:
             return self._stopped(heard, now)
         if command is None or problem:
             return _refused(heard, problem)
-        return self._carry_out(heard, command, now)
+        return self._carry_out(heard, command, now, age_s)
 
     def _problem(self, command: Optional[Command], confidence: float, began: float,
                  window: float) -> str:
@@ -181,13 +186,13 @@ class VoiceRules:
         self._stopped_at = now
         return Heard(heard.text, STOP, True, '', heard.confidence, Command(STOP))
 
-    def _carry_out(self, heard: Heard, command: Command, now: float) -> Heard:
+    def _carry_out(self, heard: Heard, command: Command, now: float, age_s: float) -> Heard:
         """Obey a command that nothing speaks against."""
         if command.kind == STOP:
             return self._stopped(heard, now)
         words, act = heard.command, None
         if command.kind == WAKE:
-            self._woken_until = now + self._language.wake_window_s
+            self._woken_until = now - age_s + self._language.wake_window_s
         elif command.kind in (PANEL, MODE):
             act = command
         elif command.kind == PACE:
@@ -213,6 +218,13 @@ class VoiceRules:
             self._pace(command.manner)
         self._direction = command.action
         self._until = now + (motion.little_s if command.manner == 'little' else motion.lasts_s)
+
+
+def _too_old(command: Optional[Command], age_s: float) -> str:
+    """Say that a motion was said too long ago; '' where it was not."""
+    if command is None or command.kind not in (DRIVE, PACE) or age_s <= MAX_AGE_S:
+        return ''
+    return 'said {:.1f} s ago: this computer is too busy, say it again'.format(age_s)
 
 
 def _refused(heard: Heard, reason: str) -> Heard:
