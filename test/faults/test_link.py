@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import pytest
@@ -139,6 +140,52 @@ def test_another_host_of_the_same_name_has_to_ask(lab):
         lab.operator.stick.hold(0.0, 0.0)
     finally:
         other.close()
+
+
+def test_hosts_with_names_that_are_made_up_lock_nobody_out_for_good(lab):
+    first = Hosts(lab, ['host:made_up_{}'.format(number) for number in range(20)])
+    wait_for(lambda: len(first.answered) >= 10, LONG_S, 'the robot to take them for hosts')
+    first.close()
+    other = Hosts(lab, ['host:newcomer'])
+    try:
+        wait_for(lambda: other.answered, LONG_S, 'a host that is new to be heard')
+    finally:
+        other.close()
+    lab.drive(lab.operator)
+    lab.operator.stick.hold(0.0, 0.0)
+    wait_for(lambda: not lab.moves(), LONG_S, 'it to stand')
+
+
+class Hosts:
+    """Beats by several names; notes who is answered."""
+
+    def __init__(self, lab, names):
+        from mhri.core.link.carried import COMMAND
+        from mhri.ros.link.carrier import Carrier
+        self.answered = set()
+        self._carrier = Carrier(connect=[lab.endpoint])
+        self._ended = threading.Event()
+        self._senders = []
+        for name in names:
+            between = self._carrier.between('bot1', name)
+            between.listen('up', lambda *_, name=name: self.answered.add(name))
+            self._senders.append(between.sender('down', '_beat', COMMAND))
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _run(self):
+        from mhri.core.link.frames import Beat, pack, pack_beat
+        from mhri.ros.link.clock import boot_clock
+        number = 0
+        while not self._ended.wait(0.2):
+            number += 1
+            for session, send in enumerate(self._senders):
+                send(pack(session, number, boot_clock(), pack_beat(Beat())))
+
+    def close(self):
+        self._ended.set()
+        self._thread.join()
+        self._carrier.close()
 
 
 def test_pictures_only_for_those_who_look(lab):

@@ -166,6 +166,11 @@ def test_who_knocked_in_words(line, words):
     assert words in meaning(line)
 
 
+def test_a_key_of_tomorrow_is_no_key_that_is_none():
+    line = 'WARN zenoh_link_tls::unicast: invalid peer certificate: NotValidYet'
+    assert 'clock' in meaning(line) and meaning(line) != meaning(line.replace('NotValidYet', 'x'))
+
+
 def test_one_line_for_many_knocks():
     told, now = [], [100.0]
     knocks = Knocks(told.append, lambda: now[0])

@@ -175,7 +175,7 @@ class Carrier:
         def send(data):
             """Send bytes, or drop them."""
             with self._lock:
-                publisher = self._publishers[key][0]
+                publisher, _ = self._publishers.get(key, (None, None))
                 if publisher is not None:
                     publisher.put(data)
         return send
@@ -189,6 +189,20 @@ class Carrier:
             # zenoh forgets what nobody holds.
             self._kept.append((keys, hear, self._session and
                                self._session.declare_subscriber(keys, hear)))
+
+    def leave(self, root, way):
+        """Say and hear nothing more below a key, and by a way of datagrams (or None)."""
+        with self._lock:
+            gone = [row for row in self._kept if row[0].startswith(root)]
+            self._kept = [row for row in self._kept if row not in gone]
+            ended = [subscriber for *_, subscriber in gone] + [
+                self._publishers.pop(key)[0] for key in list(self._publishers)
+                if key.startswith(root)]
+        if way is not None:
+            self._datagrams.leave(way)
+        for one in ended:
+            if one is not None:
+                one.undeclare()
 
     def between(self, robot, host):
         """Return what carries the link of a robot with one host."""
@@ -250,3 +264,7 @@ class Between:
             elif self._way is not None:
                 self._way.on_offer(data)
         self._carrier.listen(root + '**', hear)
+
+    def close(self):
+        """Say and hear nothing more."""
+        self._carrier.leave(key_of(self._robot, self._host, '', '')[:-1], self._way)

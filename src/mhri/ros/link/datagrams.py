@@ -118,6 +118,11 @@ class Datagrams:
             self._ways.append(found)
         return found
 
+    def leave(self, way):
+        """Send and take in nothing more by a way."""
+        with self._lock:
+            self._ways = [other for other in self._ways if other is not way]
+
     def forget(self):
         """Agree on new keys with everybody; meanwhile all goes over TLS."""
         for way in list(self._ways):

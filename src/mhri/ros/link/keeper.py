@@ -66,6 +66,11 @@ class Keeper:
         with self._lock:
             self._hosts[who] = keep, heard, pictures
 
+    def forget(self, who):
+        """Forget a host."""
+        with self._lock:
+            self._hosts.pop(who, None)
+
     def pictures_too(self):
         """Tell whether a host wants what it misses of the cameras, too."""
         with self._lock:

@@ -8,6 +8,8 @@ import time
 
 import rospy
 
+from mhri.core.screen.text import tidy_text
+
 # Of each kind one line in so long [s]: who knocks in a loop must not fill the disk.
 EVERY_S = 10.0
 _ASKED = ('off,zenoh_link_tls::unicast=warn,zenoh_link_quic::unicast=warn,'
@@ -18,6 +20,8 @@ _MEANS = (
     ('did not match any configured ACL subject',
      'somebody was not let in whose key is withdrawn, not on the list here (put the keys in place '
      'again), or for something else'),
+    ('NotValidYet', 'somebody was not let in whose key is good from later on: a clock is wrong, '
+     'that of this robot or that of who made the key'),
     ('Expired', 'somebody was not let in whose key has run out'),
     ('UnknownIssuer', 'somebody was not let in with a key of another authority'),
     ('BadSignature', 'somebody was not let in with a key of another authority'),
@@ -47,6 +51,7 @@ class Knocks:
     def on_line(self, line):
         """Take in a line; return whether it was one of zenoh's."""
         if 'zenoh' not in line:
+            # The rest of one that a caller made longer, by a line break in its name.
             return False
         words, now = meaning(line), self._clock()
         if words and now - self._told_at.get(words, -EVERY_S) >= EVERY_S:
@@ -72,6 +77,7 @@ def tell_knocks(zenoh, name):
         with os.fdopen(reader, errors='replace') as lines:
             for line in lines:
                 if not knocks.on_line(line):
-                    out.write(line)
+                    # What a caller says goes into no terminal as it is.
+                    out.write(tidy_text(line.rstrip('\n')) + '\n')
     threading.Thread(target=read, name='knocks', daemon=True).start()
     zenoh.init_log_from_env_or(_ASKED)

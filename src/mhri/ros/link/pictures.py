@@ -35,6 +35,7 @@ class Pictures:
         self._smaller = {}
         self._flows = {}
         self._number = 0
+        self._ended = False
         threading.Thread(target=self._run, name='pictures', daemon=True).start()
 
     def share(self, shares):
@@ -52,6 +53,10 @@ class Pictures:
         """Tell whether a picture waits for its turn."""
         with self._lock:
             return bool(self._waiting)
+
+    def close(self):
+        """Send none any more."""
+        self._ended = True
 
     def forget(self):
         """Send none of those that wait."""
@@ -72,7 +77,7 @@ class Pictures:
         return self._shares.get(topic, Share(1.0))
 
     def _run(self):
-        while not rospy.is_shutdown():
+        while not (self._ended or rospy.is_shutdown()):
             found = self._take(self._clock())
             if found is None:
                 self._news.wait(IDLE_S)

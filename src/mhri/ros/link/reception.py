@@ -15,8 +15,9 @@ from mhri.ros.link.robot_side import RobotSide
 from mhri.ros.link.clock import boot_clock
 from mhri.ros.link.side import BEAT, CONTROL
 
-# More hosts than this are not heard.
-MOST_HOSTS = 16
+# More hosts than this are not heard at once. Where there are so many, one that was not heard for so
+# long gives way to one that is new [s].
+MOST_HOSTS, GONE_S = 16, 10.0
 # Who has control is said again after this, since the radio may have lost it [s].
 SAID_S = 1.0
 
@@ -118,8 +119,8 @@ class Reception:
         except FrameError as error:
             rospy.logwarn_throttle(1.0, '{}: refused a beat: {}'.format(self._name, error))
             return
-        if len(self._sides) >= MOST_HOSTS:
-            rospy.logwarn_throttle(60.0, '{}: {} is not heard: {} hosts were here'.format(
+        if len(self._sides) >= MOST_HOSTS and self._longest_gone() is None:
+            rospy.logwarn_throttle(60.0, '{}: {} is not heard: {} hosts are here'.format(
                 self._name, called(host), MOST_HOSTS))
             return
         self._new.add(host)
@@ -136,10 +137,31 @@ class Reception:
                     rospy.logerr_throttle(1.0, '{}: the link failed: {!r}'.format(
                         self._name, error))
 
+    def _longest_gone(self):
+        """Return the host to forget where another one is new, None if there is none.
+
+        First of those for whom nothing is recorded meanwhile.
+        """
+        now = self._clock()
+        gone = [(side.keeps(), -side.peer.silence_s(now), host)
+                for host, (side, _) in list(self._sides.items())
+                if side.peer.silence_s(now) > GONE_S]
+        return min(gone)[2] if gone else None
+
+    def _make_room(self):
+        """Return whether one more host may be here."""
+        gone = self._longest_gone() if len(self._sides) >= MOST_HOSTS else None
+        if gone is not None:
+            side, _ = self._sides.pop(gone)
+            self._budget.forget(gone)
+            side.leave()
+            rospy.loginfo('%s: %s has gone', self._name, called(gone))
+        return len(self._sides) < MOST_HOSTS
+
     def _tick(self, now):
         while self._new:
             host = self._new.pop()
-            if host not in self._sides:
+            if host not in self._sides and self._make_room():
                 desk = Desk(host, self._control, self._lock, self._budget)
                 side = RobotSide(self._name, self._carrier.between(self._name, host), *self._rest,
                                  desk)

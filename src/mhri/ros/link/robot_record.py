@@ -47,7 +47,7 @@ class RobotRecord:
 
     def _run(self):
         ticked_at = 0.0
-        while not rospy.is_shutdown():
+        while not self._side.ended():
             self._asked.wait(TICK_S)
             self._asked.clear()
             try:
@@ -58,9 +58,15 @@ class RobotRecord:
                     self._keeper.want(self, self._keep, self._side.peer.heard(now), self._pictures)
                     self._keeper.tick(self._topics(self._keeper.pictures_too()))
             except Exception as error:  # the disk, a master that is gone: the link goes on
-                if not rospy.is_shutdown():
+                if not self._side.ended():
                     rospy.logwarn_throttle(10.0, '{}: cannot record: {!r}'.format(
                         self._side.name, error))
+
+        self._keeper.forget(self)
+
+    def keeps(self):
+        """Tell whether this host wants what it misses."""
+        return self._keep
 
     def _answer(self):
         ask, self._ask = self._ask, None

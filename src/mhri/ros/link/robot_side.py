@@ -309,6 +309,20 @@ class RobotSide(Side):
         with self.lock:
             self._about = About(parameters, tuple(sorted(topics.items())))
 
+    def keeps(self):
+        """Tell whether the host wants what it misses."""
+        return self._record.keeps()
+
+    def leave(self):
+        """Forget this host (blocking: it asks the master); :meth:`close` ends all of them."""
+        self._ended.set()
+        self._carrier.close()
+        self._pictures.close()
+        for carried in list(self._open.values()):
+            carried.close()
+        for publisher in self._publishers.values():
+            publisher.unregister()
+
     def unheard(self, silence_s):
         """Return in words that the host is not heard, for so long [s]."""
         return 'the host is not heard' if silence_s < 1e9 else 'the host was never heard'

@@ -66,6 +66,7 @@ class Side:
         # {class: (when, bytes) of what was sent}
         self._sent = collections.defaultdict(lambda: collections.deque(maxlen=_AGES))
         self._was_heard = False
+        self._ended = threading.Event()
 
     def start(self):
         """Begin to listen and to beat; returns at once."""
@@ -120,7 +121,7 @@ class Side:
                 self.name, tidy_text(topic, 60), tidy_text(str(error))))
         except rospy.ROSException:
             # The topics are closed while the node is being ended.
-            if not rospy.is_shutdown():
+            if not self.ended():
                 raise
 
     def _newest_of(self, topic):
@@ -174,14 +175,18 @@ class Side:
             return {urgency: sorted(age_s for at, age_s, _ in ages if now - at < _TOLD_S)
                     for urgency, ages in self._ages.items()}
 
+    def ended(self):
+        """Tell whether this side, or the node, is over."""
+        return self._ended.is_set() or rospy.is_shutdown()
+
     def _run(self, tick, asked):
-        while not rospy.is_shutdown():
+        while not self.ended():
             asked.wait(0.75 * BEAT_S)
             asked.clear()
             try:
                 tick(self.clock())
             except Exception as error:  # without this thread the link would be dead
-                if not rospy.is_shutdown():
+                if not self.ended():
                     rospy.logerr_throttle(1.0, '{}: the link failed: {!r}'.format(self.name, error))
 
     def _beat(self, now):
