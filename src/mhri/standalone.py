@@ -5,13 +5,13 @@ import signal
 import socket
 import threading
 
-from python_qt_binding.QtCore import QEvent, QSocketNotifier, QTimer, Signal
+from python_qt_binding.QtCore import QEvent, QSize, QSocketNotifier, QTimer, Signal
 from python_qt_binding.QtWidgets import QApplication, QMainWindow
 import rospy
 
 from mhri.core.screen.saved_state import read_geometry
 from mhri.gui.screen import theme
-from mhri.gui.screen.geometry import geometry_of, restore_geometry
+from mhri.gui.screen.geometry import fitting, geometry_of, restore_geometry
 from mhri.presenters.screen_host import ScreenHost
 from mhri.presenters.settings_file import SettingsError, SettingsFile
 from mhri.ros.screen.backend import ScreenBackend
@@ -32,7 +32,7 @@ class MainWindow(QMainWindow):
         host.screen.leave_bar.close_requested.connect(self.close_now)
         self.setWindowTitle('mhri')
         self.setCentralWidget(host.screen)
-        self.resize(1280, 720)
+        self.resize(fitting(QSize(1280, 720)))
 
     def close_now(self):
         """Close, whatever drives or records."""

@@ -5,6 +5,17 @@ from python_qt_binding.QtCore import QRect, Qt
 from python_qt_binding.QtGui import QGuiApplication
 
 
+# Of the smallest monitor a window may demand so much: its frame has to fit as well.
+_DEMANDED = 0.9
+
+
+def fitting(size):
+    """Return a :class:`QSize`, made small enough for every monitor, with the window's frame."""
+    for screen in QGuiApplication.screens():
+        size = size.boundedTo(screen.availableGeometry().size() * _DEMANDED)
+    return size
+
+
 def geometry_of(window):
     """Return the geometry of a window, while it is maximised that from before."""
     maximised = window.isMaximized()

@@ -9,7 +9,7 @@ from mhri.core.screen.views import PanelView, ROS_CUT_OFF
 from mhri.gui.screen import theme, words
 from mhri.gui.driving.control_bar import ControlBar
 from mhri.gui.events.event_button import EventButton
-from mhri.gui.screen.geometry import geometry_of, restore_geometry
+from mhri.gui.screen.geometry import fitting, geometry_of, restore_geometry
 from mhri.gui.driving.drive_keys import DriveKeys, mark_drive_area
 from mhri.gui.driving.key_help import KeyHelp
 from mhri.gui.driving.leave_bar import LeaveBar
@@ -274,9 +274,12 @@ class ScreenWidget(QWidget):
             self.arrangement.change_full_screen()
 
     def minimumSizeHint(self):  # noqa: N802
-        """Return the least at which it can be used; parts that are too large then give way."""
+        """Return the least at which it can be used; parts that are too large then give way.
+
+        However large the letters are, it fits on the monitor, with STOP ALL.
+        """
         unit = self.fontMetrics().height()
-        return QSize(38 * unit, 26 * unit)
+        return fitting(QSize(38 * unit, 26 * unit))
 
     @property
     def remote(self):

@@ -5,6 +5,7 @@ from python_qt_binding.QtCore import Qt, Signal
 from python_qt_binding.QtWidgets import QVBoxLayout, QWidget
 
 from mhri.gui.driving.drive_keys import mark_drive_area
+from mhri.gui.screen.geometry import fitting
 
 
 class TornOff(QWidget):
@@ -34,7 +35,7 @@ class TornOff(QWidget):
         column.setContentsMargins(0, 0, 0, 0)
         self.setPalette(self.tile.palette())
         self.setFont(self.tile.font())
-        self.resize(self.tile.sizeHint())
+        self.resize(fitting(self.tile.sizeHint()))
         column.addWidget(self.tile)
         self.tile.show_torn_off(True)
         self.tile.show_large(True)
