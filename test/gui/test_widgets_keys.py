@@ -5,9 +5,12 @@ import pytest
 from python_qt_binding.QtCore import QEvent, Qt
 from python_qt_binding.QtGui import QKeyEvent
 from python_qt_binding.QtTest import QTest
-from python_qt_binding.QtWidgets import QApplication, QLineEdit, QSpinBox, QTextEdit, QWidget
+from python_qt_binding.QtWidgets import (
+    QApplication, QLineEdit, QSpinBox, QSplitter, QTextEdit, QWidget)
 
 from mhri.gui.driving.drive_keys import DriveKeys, mark_drive_area
+from mhri.gui.screen.screen import ScreenWidget
+from mhri.gui.screen.torn_off import TornOff
 from mhri.gui.screen.windows import window_class
 
 W, A, S, D, UP, LEFT, RIGHT, DOWN, SPACE, ONE, NINE, ZERO, SHIFT = (
@@ -381,3 +384,48 @@ def test_another_window_that_takes_the_keys_cuts_nothing(panel, operator, cut):
     operator.press(panel, Qt.Key_Space, SPACE, Qt.ShiftModifier)
     QApplication.sendEvent(panel, QEvent(QEvent.WindowDeactivate))
     assert not panel.drive_keys._stop_timer.isActive() and cut == []
+
+
+def test_of_two_panels_keys_act_for_the_one_that_has_the_keyboard(
+        application, operator, ui_dir, heard):
+    """As in one rqt: the newest of two filters had every key, whoever had the focus."""
+    window = QSplitter()
+    window.resize(1400, 800)
+    operator.show(window)
+    panels = [ScreenWidget(ui_dir) for _ in range(2)]
+    tiles = []
+    for panel in panels:
+        window.addWidget(panel)
+        application.installEventFilter(panel.drive_keys)
+        tile = window_class('turtlebot')(ui_dir, 'bot1', 'TurtleBot2', panel.stage)
+        panel.stage.show_tiles({'bot1': tile})
+        tiles.append(tile)
+    operator.settle()
+    moved, stopped, switched = ([heard(signal(panel)) for panel in panels] for signal in (
+        lambda panel: panel.stick_moved, lambda panel: panel.stop_requested,
+        lambda panel: panel.drive_keys.robot_pressed))
+    # Before any of them had the keyboard: the first, and never both.
+    QTest.keyClick(window, Qt.Key_Left)
+    assert moved == [[TO_LEFT, (0.0, 0.0)], []]
+    for turn in (0, 1, 0):
+        panels[turn].stage.setFocus()
+        operator.wait_until(panels[turn].stage.hasFocus)
+        for part in (*moved, *stopped, *switched):
+            del part[:]
+        operator.hit(panels[turn].stage, Qt.Key_W, W)
+        operator.hit(panels[turn].stage, Qt.Key_1, ONE)
+        assert moved[turn] == [AHEAD, (0.0, 0.0)] and switched[turn] == [1]
+        assert moved[1 - turn] == [] and switched[1 - turn] == []
+        # Where nobody has it, the one that had it last.
+        operator.hit(window, Qt.Key_Left, LEFT)
+        assert moved[turn][2:] == [TO_LEFT, (0.0, 0.0)] and moved[1 - turn] == []
+        operator.hit(panels[turn].stage, Qt.Key_Space, SPACE, Qt.ShiftModifier)
+        assert stopped[0] + stopped[1]
+    torn = TornOff(tiles[0])
+    torn.show()
+    del moved[0][:]
+    operator.hit(torn, Qt.Key_W, W)
+    assert moved == [[AHEAD, (0.0, 0.0)], []]
+    for panel in panels:
+        application.removeEventFilter(panel.drive_keys)
+        panel.drive_keys.close()

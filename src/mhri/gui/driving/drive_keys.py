@@ -5,7 +5,8 @@
 One object watches the key events of the whole application, because drive keys have to work
 whatever widget has the focus, and stop-all from anywhere at all. It acts in the *drive areas*
 alone: widgets marked by :func:`mark_drive_area` (panel, bot windows) and what is in them; another
-rqt plugin beside the panel keeps its keys. Stop-all knows no such bounds.
+rqt plugin beside the panel keeps its keys, and so does another panel. Stop-all knows no such
+bounds.
 """
 from python_qt_binding.QtCore import QEvent, QObject, Qt, QTimer, Signal
 from python_qt_binding.QtWidgets import (
@@ -61,9 +62,13 @@ _AREA = 'mhri_drive_area'
 _KEEPS_ARROWS = 'mhri_keeps_arrows'
 
 
-def mark_drive_area(widget):
-    """Let the drive keys work in a widget and everything in it."""
+def mark_drive_area(widget, owner=None):
+    """Let the drive keys work in a widget and everything in it.
+
+    :param owner: a widget of the panel that a window of its own belongs to
+    """
     widget.setProperty(_AREA, True)
+    widget.drive_owner = owner
 
 
 def keep_arrows(widget):
@@ -148,8 +153,12 @@ class DriveKeys(QObject):
     #: keys that were held count as let go: nothing came from the remote display
     ran_out = Signal()
 
+    # Of all in this program the one whose panel had the keyboard last.
+    _latest = None
+
     def __init__(self, panel, keys=None):
         super().__init__(panel)
+        self._latest_one()
         self._panel = panel
         self._keys = keys or KeyState()
         # Identities of the keys that are down, as far as they are known here.
@@ -217,6 +226,8 @@ class DriveKeys(QObject):
         self.release()
         self._look_timer.stop()
         self._keys.close()
+        if DriveKeys._latest is self:
+            DriveKeys._latest = None
 
     def _look(self):
         """Let go the keys that are up in truth, though nobody has said so."""
@@ -247,6 +258,8 @@ class DriveKeys(QObject):
             self.release()
         elif kind in _ARRIVALS:
             self._down.intersection_update(self._keys.down() or ())
+            if kind == QEvent.FocusIn:
+                self._note_focus(watched)
         elif kind in _KEYS and isinstance(watched, QWidget):
             return self._on_key(watched, event, kind)
         elif kind == QEvent.MouseButtonPress and isinstance(watched, QWidget):
@@ -344,14 +357,37 @@ class DriveKeys(QObject):
             return False
         if _is_text_field(focus) or _is_text_field(watched):
             return False
-        if focus.isAncestorOf(self._panel):
-            return True
-        widget = focus
+        in_area, panel = self._place_of(focus)
+        if panel is not None:
+            return panel is self._panel
+        # Nobody's: of several panels in one program the one that had the keyboard last.
+        return (in_area or focus.isAncestorOf(self._panel)) and self._latest_one() is self
+
+    def _latest_one(self):
+        """Return the one whose panel had the keyboard last, this one where that is gone."""
+        try:
+            if DriveKeys._latest.parent() is not None:
+                return DriveKeys._latest
+        except (AttributeError, RuntimeError):  # none yet, or Qt has deleted it
+            pass
+        DriveKeys._latest = self
+        return self
+
+    @staticmethod
+    def _place_of(widget):
+        """Return (whether a widget is in a drive area, the panel that it belongs to or None)."""
+        in_area = False
         while widget is not None:
-            if widget.property(_AREA):
-                return True
-            widget = widget.parentWidget()
-        return False
+            if hasattr(widget, 'drive_keys'):
+                return True, widget
+            in_area = in_area or bool(widget.property(_AREA))
+            widget = getattr(widget, 'drive_owner', None) or widget.parentWidget()
+        return in_area, None
+
+    def _note_focus(self, watched):
+        """Take note of the panel that has the keyboard."""
+        if isinstance(watched, QWidget) and self._place_of(watched)[1] is self._panel:
+            DriveKeys._latest = self
 
     def _action(self, event, focus):
         """Return what a press has to do, or None where the key is not ours."""

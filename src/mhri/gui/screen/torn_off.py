@@ -30,7 +30,7 @@ class TornOff(QWidget):
         self.setObjectName('torn_off_' + self.tile.name)
         self.setWindowTitle('{} - mhri'.format(self.tile.name))
         self.setAttribute(Qt.WA_ShowWithoutActivating)
-        mark_drive_area(self)
+        mark_drive_area(self, self.tile.parentWidget())
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         self.setPalette(self.tile.palette())
