@@ -80,7 +80,8 @@ def test_odometry_that_does_not_follow_is_said():
 
 def test_every_reason_to_stand_has_words():
     assert set(STANDS_WORDS) == {RobotGate.STOPPED, RobotGate.NOT_HEARD, RobotGate.JOINING,
-                                 RobotGate.GUARD_VERSION, RobotGate.TWO_ROBOTS}
+                                 RobotGate.GUARD_VERSION, RobotGate.TWO_ROBOTS,
+                                 RobotGate.UNREACHABLE}
     assert RobotGate.JOINING == 'joining', 'without a comment'
 
 

@@ -208,6 +208,24 @@ class GatesOthersTest(GatesCase):
         self.hold(0.5)
         self.assertEqual(self.state.robot(name).stands, '')
 
+    def test_a_generic_robot_is_not_driven_behind_its_own_multiplexer(self):
+        """Until its parameter names an input of that; one that comes up late is seen, too."""
+        name, _, receiver, _ = self.robot(kind='generic')
+        self.assertEqual(self.drive(receiver, 0.2), (0.2, 0.0))
+        self.process('own_mux.py', name, 'cmd_vel', 'joy_vel', 'nav_vel')
+        self.state.wait_robot(name, lambda gate: gate.stands == 'unreachable', 'it to be seen',
+                              20.0)
+        self.assertEqual(self.state.robot(name).topic, '')
+        self.kept_standing(name, receiver, 'unreachable')
+        joy = VelocityEnd('/{}/joy_vel'.format(name))
+        rospy.set_param('/{}/mhri/command'.format(name), ['joy_vel'])
+        self.state.wait_robot(name, lambda gate: gate.topic == '/{}/joy_vel'.format(name),
+                              'the input', 20.0)
+        self.centre(name, joy)
+        when = time.monotonic()
+        self.assertEqual(self.drive(joy, 0.2), (0.2, 0.0))
+        self.assertLessEqual({entry[1:] for entry in receiver.after(when)}, {ZERO})
+
     def test_an_input_of_its_multiplexer_counts(self):
         """What wins there are zeros on the better input, as long as anybody uses the other."""
         (name, receiver), = self.robots(1, 'turtlebot2', 'cmd_vel_mux/input/teleop')

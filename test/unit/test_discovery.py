@@ -201,7 +201,17 @@ GRAPHS = {
         ('a', None, Seen()), ('b', None, Seen())]),
     'behind_its_own_multiplexer': (
         ('/b/mux reads /b/input', '/b/mux writes /b/cmd_vel', '/b/base reads /b/cmd_vel'), {},
-        [('b', None, Seen(False, None, 'input'))]),
+        [('b', None, Seen(False, None, 'input', None, ('cmd_vel',)))]),
+    'behind_its_own_multiplexer_with_several_inputs': (
+        ('/b/mux reads /b/joy', '/b/mux reads /b/nav', '/b/mux writes /b/cmd_vel',
+         '/b/base reads /b/cmd_vel', '/b/mhri_guard writes /b/cmd_vel'), {},
+        [('b', None, Seen(False, None, None, None, ('cmd_vel',), ('cmd_vel',)))]),
+    'beside_its_own_navigation': (
+        ('/b/move_base writes /b/cmd_vel', '/b/base reads /b/cmd_vel'), {},
+        [('b', None, Seen(False, None, 'cmd_vel'))]),
+    'beside_somebody_elses_multiplexer': (
+        ('/lab/mux reads /lab/joy', '/lab/mux writes /b/cmd_vel', '/b/base reads /b/cmd_vel'), {},
+        [('b', None, Seen(False, None, 'cmd_vel')), ('lab', None, Seen(False, None, 'joy'))]),
     'none_is_the_likeliest': (('/b/x reads /b/left', '/b/y reads /b/right'), {}, [
         ('b', None, Seen())]),
     'one_is_the_likeliest': (('/b/x reads /b/aux', '/b/y reads /b/base_cmd_vel'), {}, [

@@ -315,6 +315,26 @@ def test_what_is_seen_of_a_robot_decides_where_its_parameters_do_not(case):
     assert len(errors) == (case == 'unknown_type')
 
 
+@pytest.mark.parametrize('parameters, seen, behind, is_behind, guard_behind, said', [
+    ({}, Seen(behind=('cmd_vel',)), ('cmd_vel',), True, False, True),
+    ({'robot_type': 'generic'}, Seen(behind=('cmd_vel',), guard_behind=('cmd_vel',)),
+     ('cmd_vel',), True, True, True),
+    ({}, Seen(command='joy', behind=('cmd_vel',)), ('cmd_vel',), False, False, False),
+    ({'mhri': {'command': ['joy']}}, Seen(behind=('cmd_vel',), guard_behind=('cmd_vel',)),
+     (), False, True, False),
+    ({'mhri': {'command': ['cmd_vel']}}, Seen(behind=('cmd_vel',), guard_behind=('cmd_vel',)),
+     (), False, False, False),
+    ({'mhri': {'radius_m': 0.3}}, Seen(behind=('cmd_vel',)), ('cmd_vel',), True, False, True),
+    ({'robot_type': 'turtlebot2'}, Seen(behind=('cmd_vel_mux/input/teleop',)),
+     (), False, False, False)])
+def test_a_generic_robot_is_not_driven_behind_its_own_multiplexer(
+        parameters, seen, behind, is_behind, guard_behind, said):
+    robot_type, errors = resolve_robot_type(shipped(), 'bot1', parameters, seen)
+    assert (robot_type.behind, robot_type.is_behind, robot_type.guard_behind) == (
+        behind, is_behind, guard_behind)
+    assert ['mhri/command' in str(error) for error in errors] == [True] * said
+
+
 def test_exported_types_join_the_shipped_ones():
     """The window that the package names counts, else that of the template."""
     types, errors = load_robot_types([('generic.yaml', GOOD.replace('crawler', 'generic'))], [

@@ -303,7 +303,27 @@ class Survey:
         kind = next((name for name, item in sorted(self._types.items())
                      if item.known_by and all(self._published(prefix + topic, sign)
                                               for topic, sign in item.known_by.items())), None)
-        return Seen(namespace == ROOT, kind, self._likeliest(namespace, prefix))
+        behind = tuple(topic for topic in sorted(self._commands.get(namespace, ()))
+                       if self._is_behind(namespace, self._full(prefix, topic)))
+        guard = '/{}/mhri_guard'.format(namespace)
+        return Seen(namespace == ROOT, kind, self._likeliest(namespace, prefix), None, behind,
+                    tuple(topic for topic in behind
+                          if guard in self._publishers.get(self._full(prefix, topic), ())))
+
+    @staticmethod
+    def _full(prefix: str, topic: str) -> str:
+        return topic if topic.startswith('/') else prefix + topic
+
+    def _is_behind(self, namespace: str, topic: str) -> bool:
+        """Tell whether a node of the robot writes a velocity topic that reads velocity itself.
+
+        A multiplexer, a smoother. A navigation, which reads none, drives beside us.
+        """
+        writers = {node for node in self._publishers.get(topic, ())
+                   if split(node)[0] == namespace and not self._ignored(node)}
+        return bool(writers) and any(
+            self._topic_types.get(other) == TWIST and not writers.isdisjoint(nodes)
+            for other, nodes in self._subscribers.items() if other != topic)
 
     def _published(self, topic: str, kind: str) -> bool:
         return topic in self._publishers and self._topic_types.get(topic) == kind

@@ -65,16 +65,21 @@ class Seen:
         equally likely
     :param instance: where the topics of this robot begin, e.g. ``/turtle2``, if one node has
         several robots; else None
+    :param behind: its velocity topics that a node of its own writes which reads velocity itself: a
+        multiplexer with its lock
+    :param guard_behind: those of them that its guard writes as well
     """
 
     at_root: bool = False
     kind: Optional[str] = None
     command: Optional[str] = None
     instance: Optional[str] = None
+    behind: Tuple[str, ...] = ()
+    guard_behind: Tuple[str, ...] = ()
 
     def anything(self) -> bool:
         """Tell whether anything but its name is known."""
-        return bool(self.at_root or self.kind or self.command or self.instance)
+        return bool(self.at_root or self.kind or self.command or self.instance or self.behind)
 
 
 @dataclass(frozen=True)
@@ -95,7 +100,9 @@ class RobotType:
     ``no_return`` is {range_max of a laser [m], None for any other: values by which it says "nothing
     there"}, empty: as REP 117 says.
     ``instance`` is the first segment of all its topics if one node may
-    have several such robots, each with its own first segment.
+    have several such robots, each with its own first segment. ``behind`` are those of ``command``
+    that lie behind the robot's own multiplexer: a zero may go there, no command.
+    ``guard_behind``: what its guard passes on goes there.
     """
 
     name: str
@@ -124,6 +131,13 @@ class RobotType:
     motor_power: Optional[MotorPowerSpec] = None
     hardware_stop: Optional[HardwareStopSpec] = None
     instance: Optional[str] = None
+    behind: Tuple[str, ...] = ()
+    guard_behind: bool = False
+
+    @property
+    def is_behind(self) -> bool:
+        """Whether all its velocity topics lie behind the robot's own multiplexer."""
+        return bool(self.behind) and set(self.command) <= set(self.behind)
 
     def laser_place(self, number: int) -> Optional[LaserPlace]:
         """Return where the laser of ``scan[number]`` sits by its type, None: unknown.
@@ -139,7 +153,7 @@ class RobotType:
         """Return this type with absolute topics, for a robot without a namespace."""
         changes: Dict[str, Any] = {
             key: tuple('/' + topic.lstrip('/') for topic in getattr(self, key))
-            for key in TOPIC_KEYS}
+            for key in TOPIC_KEYS + ('behind',)}
         changes.update((key, getattr(self, key).at_root()) for key in _HARDWARE
                        if getattr(self, key))
         return replace(self, **changes)
@@ -385,6 +399,7 @@ def resolve_robot_type(types: Mapping[str, RobotType], robot: str, params: Mappi
     if seen.instance and chosen.instance:
         chosen = chosen.for_instance(seen.instance)
     overrides = params.get('mhri')
+    chosen = _behind(chosen, seen, overrides)
     if overrides:
         try:
             chosen, standard = _overridden(chosen, overrides, origin), chosen
@@ -395,7 +410,30 @@ def resolve_robot_type(types: Mapping[str, RobotType], robot: str, params: Mappi
                 chosen = replace(chosen, window=standard.window)
         except ConfigError as error:
             errors.append(error)
+    errors += _behind_error(chosen, origin)
     return chosen.at_root() if seen.at_root else chosen, errors
+
+
+def _behind(chosen: RobotType, seen: Seen, overrides: object) -> RobotType:
+    """Return a generic type that knows which of its topics lie behind the robot's own multiplexer.
+
+    What its own parameters name does not: whoever names it knows what is before it.
+    """
+    if chosen.name != 'generic':
+        return chosen
+    named = overrides.get('command') if isinstance(overrides, dict) else None
+    known = {one for one in named if isinstance(one, str)} if isinstance(named, list) else set()
+    return replace(chosen, guard_behind=bool(set(seen.guard_behind) - known), behind=tuple(
+        one for one in chosen.command if one in seen.behind and one not in known))
+
+
+def _behind_error(chosen: RobotType, origin: str) -> List[ConfigError]:
+    """Return that only its own multiplexer may drive a robot, with the remedy; [] otherwise."""
+    if not chosen.is_behind:
+        return []
+    return [ConfigError(origin, 'mhri/command', 'its velocity topic {} is written by a node of its '
+                        'own, behind whose lock mhri must not drive: set this parameter to a topic '
+                        'that this node reads'.format(chosen.behind[0]))]
 
 
 def _overridden(robot_type: RobotType, overrides: object, origin: str) -> RobotType:
@@ -403,6 +441,8 @@ def _overridden(robot_type: RobotType, overrides: object, origin: str) -> RobotT
     section = Section(overrides, origin, 'mhri')
     changes: Dict[str, Any] = {
         key: _topics(section, key) for key in TOPIC_KEYS if key in section}
+    if 'command' in changes:
+        changes['behind'] = tuple(one for one in robot_type.behind if one in changes['command'])
     if 'odometry_type' in section:
         changes['odometry_type'] = _odometry_type(section)
     changes.update((key, read(section)) for key, read in _HARDWARE.items() if key in section)

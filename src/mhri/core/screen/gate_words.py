@@ -10,6 +10,8 @@ STANDS_WORDS: Dict[str, str] = {
     'not_heard': 'kept standing: the drive service does not hear it',
     'guard_version': 'kept standing: its guard is of another version; send it this one with '
                      'turtlebot_deploy.sh',
+    'unreachable': 'kept standing: its own multiplexer writes its velocity; set its parameter '
+                   'mhri/command to an input of that',
     'two_robots': 'kept standing: two computers are this robot; end one of them',
 }
 NO_WITNESS = 'its odometry does not follow commands'

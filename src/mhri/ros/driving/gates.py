@@ -75,7 +75,7 @@ class Gates:
         self._neighbour = Neighbour('the mux')
         self._mux = InForce(STOP_SERVICE, self._refuse, self._on_new_mux)
         self._roster = Roster(types, self._open, self._close_gate, self._unheard, memory,
-                              self._watched, self._on_publishers)
+                              self._watched, self._on_publishers, self._insiders)
 
     def start(self):
         """Subscribe, serve, and begin to watch the time; returns at once."""
@@ -310,6 +310,12 @@ class Gates:
         with self._lock:
             return {name: gate.velocity_topics() for name, gate in self._gates.items()} \
                 if self._stop else {}
+
+    def _insiders(self):
+        """Return {name: the nodes of a generic robot that publish its velocity}."""
+        with self._lock:
+            return {name: gate.insiders() for name, gate in self._gates.items()
+                    if gate.robot_type.name == 'generic'}
 
     def _on_publishers(self, name, found):
         """Take in who publishes the velocity topics of a robot (on the roster's thread)."""

@@ -126,6 +126,8 @@ class RobotGate:
         self._obeying = [frozenset()] * len(self._publishers)
         # The first velocity topic that the robot listens to, and its links.
         self._listened = self._listeners = None
+        # Behind the robot's own multiplexer: a zero may go there, no command.
+        self._behind = {topic_of(name, topic) for topic in robot_type.behind}
         self._heard = PromptPublisher('/{}/mhri_guard/heard'.format(name), String)
         self.power = MotorPower(name, robot_type)
         self._abandoned_at = -math.inf
@@ -185,6 +187,11 @@ class RobotGate:
         inputs = [topic.rpartition('/')[0] + '/' for topic in topics
                   if topic.rpartition('/')[0].endswith('/input')]
         return topics, tuple(inputs + ['/{}/cmd_vel_mux/input/'.format(self.name)])
+
+    def insiders(self):
+        """Return the nodes of the robot itself that publish its velocity, but for its guard."""
+        return frozenset(name for name, _ in self._foreign(self._others.connected())
+                         if name.startswith('/{}/'.format(self.name)))
 
     def on_publishers(self, found):
         """Take in who publishes there, as {(caller id, topic)} (blocking: asks the master)."""
@@ -314,6 +321,8 @@ class RobotGate:
             self._complain(listed(twins_found) or 'two guards', 'all are ' + self.name, now)
             return RobotGateMessage.TWO_ROBOTS
         alive = self._guard.alive(now)
+        if self.robot_type.guard_behind if alive else self.robot_type.is_behind:
+            return RobotGateMessage.UNREACHABLE
         # Behind a guard that is read, whatever else is said there counts for nothing.
         if not alive and now - self._unreadable_at < UNREADABLE_S:
             return RobotGateMessage.GUARD_VERSION
@@ -376,7 +385,8 @@ class RobotGate:
                   for found, names in zip(links[1:], obeying_now[1:]) for link in found)
         self._links, self._obeying = links, obeying_now
         self._listened, self._listeners = next((found for *found, names in zip(
-            self._publishers[1:], links[1:], obeying_now[1:]) if names), (None, None))
+            self._publishers[1:], links[1:], obeying_now[1:])
+            if names and found[0].resolved_name not in self._behind), (None, None))
         if new:
             # Killed gates may have told it something before: send a zero.
             self.send(self.rule.join(now) or ZERO)
@@ -469,6 +479,8 @@ class RobotGate:
         """Return the ``mhri/RobotGate`` of this moment."""
         rule, sent = self.rule, self.rule.sent
         chosen = self._publishers[0] if self._guarded else self._listened
+        if self._held_by == RobotGateMessage.UNREACHABLE and rule.stands == HELD:
+            chosen = None
         brake, way_m, on_robot = self.brake()
         return RobotGateMessage(
             name=self.name, obeys=rule.obeys,

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Which robots the gates know, and their types: asked of the master, off the driving path."""
+import math
 import threading
 import time
 
@@ -19,6 +20,8 @@ DRIVEN_PARAMETER = '/mhri_gates/robots'
 PERIOD_S = 1.0
 # How often a robot that is heard but does not listen is told again about its topics [s].
 ANNOUNCE_S = 5.0
+# How long to look again at a robot that publishes its own velocity [s].
+AGAIN_S = 5.0
 
 
 def _names(value):
@@ -39,11 +42,14 @@ class Roster:
     :param watched: returns {name: (topics, prefixes of topics)} of those whose other publishers are
         to be told
     :param on_publishers: called with a name and {(caller id, topic)}, on the thread
+    :param insiders: returns {name: frozenset of the robot's own nodes that publish its velocity} of
+        robots that are driven as generic
     :param unheard: returns a list of (topic, type) to which robots that are heard do not listen
     :param memory: :class:`mhri.ros.stand_by.Memory` of the gates before
     """
 
-    def __init__(self, types, open_gate, close_gate, unheard, memory, watched, on_publishers):
+    def __init__(self, types, open_gate, close_gate, unheard, memory, watched, on_publishers,
+                 insiders):
         self._types = types
         self._open_gate = open_gate
         self._close_gate = close_gate
@@ -51,6 +57,8 @@ class Roster:
         self._memory = memory
         self._watched = watched
         self._on_publishers = on_publishers
+        self._insiders = insiders
+        self._inside = {}
         self._announced_at = 0.0
         self._checked = frozenset()
         self._ever = {}
@@ -119,12 +127,26 @@ class Roster:
             del self._open[name]
             self._seen.pop(name, None)
             self._close_gate(name)
+        self._look_again(time.monotonic())
         seen = {name: self._seen[name] for name in wanted if name in self._seen}
         for name, facts in robot_facts(rospy.get_name(), wanted, self._types, seen).items():
             self._settle(name, facts)
         watched = self._watched()
         if watched:
             self._tell_publishers(api.call('getSystemState')[0], watched)
+
+    def _look_again(self, now):
+        """Look again at robots whose velocity topics have new publishers of their own.
+
+        For a few seconds: a multiplexer may only come up.
+        """
+        for name, inside in self._insiders().items():
+            known, at = self._inside.get(name, (frozenset(), -math.inf))
+            if inside - known:
+                at = now
+            self._inside[name] = inside, at
+            if now - at < AGAIN_S:
+                self._seen.pop(name, None)
 
     def _tell_publishers(self, published, watched):
         """Tell who publishes the topics of robots, and those that begin like them."""
@@ -159,11 +181,11 @@ class Roster:
             self._problems[name] = words
             for text in words:
                 rospy.logwarn('%s', text)
+        if news or facts.seen is not None and facts.parameters.get('robot_type') == 'generic':
+            self._seen[name] = seen
         # A topic or parameter that merely vanished never changes a type under way.
         if name in self._open and (self._open[name] == robot_type
                                    or not (facts.parameters.get('robot_type') or news)):
             return
-        if news:
-            self._seen[name] = seen
         self._open[name] = robot_type
         self._open_gate(name, robot_type)

@@ -124,8 +124,8 @@ def shipped_ignore_list():
 def robot_facts(caller_id, names, types, seen=None):
     """Return {name: :class:`Facts`}: the parameters of robots, in one request.
 
-    It looks at the graph, in another request, only if a robot has no ``robot_type`` and ``seen``
-    lacks it.
+    It looks at the graph, in another request, only if a robot has no ``robot_type``, or is
+    ``generic``, and ``seen`` lacks it.
 
     :param types: {name: RobotType}
     :param seen: {name: :class:`Seen`} as far as known already
@@ -139,7 +139,7 @@ def robot_facts(caller_id, names, types, seen=None):
     values = api.call_many([('getParam', '/' + key) for key in keys])
     parameters = {key: value for key, value in zip(keys, values) if value is not None}
     unseen = [name for name in names if name not in seen
-              and 'robot_type' not in parameters_of(name, parameters)]
+              and parameters_of(name, parameters).get('robot_type', 'generic') == 'generic']
     if unseen:
         state, topic_types = api.call_many([('getSystemState',), ('getTopicTypes',)])
         graph = (state or [], parameters, shipped_ignore_list())

@@ -320,7 +320,7 @@ def seen_by_gates(view, gate, answers):
     if gate is None:
         return view
     stands = stands_words(gate.stands) if gate.obeys or gate.stands in (
-        RobotGate.GUARD_VERSION, RobotGate.TWO_ROBOTS) else ''
+        RobotGate.GUARD_VERSION, RobotGate.TWO_ROBOTS, RobotGate.UNREACHABLE) else ''
     also = tuple(gate.also_commanded_by)
     warning = stands or also_words(also) or ('' if gate.odometry_follows else NO_WITNESS)
     brake = BrakeView(gate.brake, gate.free_way_m, gate.brake_on_robot, gate.back_after_s)
