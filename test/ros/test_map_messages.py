@@ -64,6 +64,18 @@ def test_a_picture_that_is_none_is_refused_by_name(tmp_path, name):
     assert 'hall.yaml: image' in str(refused.value)
 
 
+@pytest.mark.parametrize('head', [
+    b'P5 30000 30000 255\n', b'\x89PNG\r\n\x1a\n\0\0\0\rIHDR' + 2 * (30000).to_bytes(4, 'big')])
+def test_a_picture_that_is_too_large_is_refused_before_it_is_unpacked(tmp_path, monkeypatch, head):
+    (tmp_path / 'vast.pgm').write_bytes(head)
+    monkeypatch.setattr(cv2, 'imread', lambda *_: pytest.fail('it is unpacked'))
+    path = tmp_path / 'hall.yaml'
+    path.write_text(YAML.format('vast.pgm'))
+    with pytest.raises(ConfigError) as refused:
+        load_map(str(path))
+    assert '30000 x 30000' in str(refused.value)
+
+
 @pytest.mark.parametrize('change', [
     dict(width=7), dict(width=2 ** 31, height=2 ** 31), dict(resolution=0.0),
     dict(resolution=math.nan)])

@@ -1,6 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The sessions' replays and reports: one that cannot be started stands in nobody's way."""
+"""The sessions' replays and reports: one that cannot be started stands in nobody's way.
+
+And the folder of one that was killed, and goes on.
+"""
+import json
 import os
 import subprocess
 import sys
@@ -9,6 +13,8 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
+from mhri.core.session.folder import EVENTS_JSONL, SessionEvent  # noqa: E402
+from mhri.ros.session.session_folder import SessionFolder  # noqa: E402
 from mhri.ros.session.session_shelf import SessionShelf  # noqa: E402
 from support import made_session as made  # noqa: E402
 
@@ -70,3 +76,15 @@ def test_a_report_of_the_panel_is_that_of_the_terminal(shelf, tmp_path):
     assert done.returncode == 0, done.stderr
     path = tmp_path / 'mhri' / 'reports' / name / 'report.html'
     assert 'not installed' not in by_panel and path.read_text(encoding='utf-8') == by_panel
+
+
+@pytest.mark.parametrize('left', ['', '{"a": 1}\n', '{"a": 1}\n{"b'])
+def test_a_recording_that_goes_on_leaves_no_empty_line(tmp_path, left):
+    (tmp_path / EVENTS_JSONL).write_text(left)
+    folder = SessionFolder(str(tmp_path))
+    folder.end_line()
+    folder.tell(SessionEvent(1.0, 1.0, 'record', 'it goes on'))
+    folder.close()
+    lines = (tmp_path / EVENTS_JSONL).read_text().split('\n')
+    assert '' not in lines[:-1] and lines[-1] == ''
+    assert json.loads(lines[-2])['text'] == 'it goes on'

@@ -14,6 +14,7 @@ import time
 import unittest
 
 import actionlib
+from actionlib_msgs.msg import GoalID, GoalStatusArray
 from geometry_msgs.msg import PoseStamped, Twist
 import roslib.packages
 import rospkg
@@ -21,6 +22,7 @@ import rospy
 import rostest
 from rostest_tools import (
     measured, moves, NEUTRAL, Process, Recorder, rests, Stick, velocity, wait_until)
+from rosgraph_msgs.msg import Log
 from std_srvs.srv import SetBool
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
@@ -169,9 +171,39 @@ class Tasks(unittest.TestCase):
             self.addCleanup(tool.end)
             self.assertNotEqual(tool.wait(60.0), 0)
             self.assertIn(said, tool.said())
+        begun = time.monotonic()
+        ended = self.ends(self.start('bot1 bot9', 'goto', '{x: 9.0, y: 2.0}'))
+        self.assertEqual([state for state, _ in ended], [TaskState.FAILED, TaskState.LOST])
+        self.assertTrue(all('bot9' in text for _, text in ended), ended)
+        self.commands['bot1'].wait_silence(0.6, 60.0)
+        self.assertFalse([item for item in self.commands['bot1'].since(begun)
+                          if moves(item.value)], 'a good robot of a bad goal moved')
         goal = self.start('bot1', 'goto', '{x: 1, z: 1, y: 1}')
         wait_until(lambda: goal.get_comm_state() == actionlib.CommState.DONE, 'not refused', 30.0)
         self.assertIn('z: unknown key', goal.get_goal_status_text())
+
+    def test_a_storm_of_cancels_is_neither_kept_nor_logged(self):
+        cancels = rospy.Publisher('/mhri_tasks/run/cancel', GoalID, queue_size=1000)
+        statuses = Recorder('/mhri_tasks/run/status', GoalStatusArray,
+                            lambda message: [row.goal_id.id for row in message.status_list])
+        logged = Recorder('/rosout', Log, lambda message: message.name)
+        for recorder in (statuses, logged):
+            self.addCleanup(recorder.close)
+            recorder.wait_publisher()
+        wait_until(cancels.get_num_connections, 'mhri_tasks does not listen', 60.0)
+        begun = time.monotonic()
+        cancels.publish(GoalID(stamp=rospy.Time(4e9)))
+        for number in range(300):
+            cancels.publish(GoalID(id='none {}'.format(number)))
+            cancels.publish(GoalID())
+        cancels.publish(GoalID(id='last'))
+        statuses.wait(lambda ids: 'last' in ids, begun)
+        # Still heard, and one of the future refuses no goal.
+        ended = self.ends(self.start('bot1', 'goto', '{x: 9.0, y: 2.0, timeout: 0.1}'))
+        self.assertIn(ended[0][0], (TaskState.TIMEOUT, TaskState.LOST))
+        self.assertLess(max(len(item.value) for item in statuses.since(begun)), 200)
+        lines = [item for item in logged.since(begun) if item.value == '/mhri_tasks']
+        self.assertLess(len(lines), 20)
 
     def test_a_follower_keeps_its_distance_and_returns(self):
         following = self.start('bot2', 'follow', '{leader: bot1, distance: 1.0}')

@@ -104,6 +104,29 @@ def test_workspace_that_cannot_be_written(checkout):
     assert checkout.called('roslaunch') == []
 
 
+def test_what_is_built_runs_where_nothing_can_be_written(checkout):
+    """As another user, or from a disk that is mounted for reading alone."""
+    checkout.run(*HERE)
+    lock = checkout.root / 'build' / '.ws' / 'lock'
+    lock.unlink()
+    lock.mkdir()  # in the way, even of root
+    status, output = checkout.run(*HERE)
+    assert status == 0, output
+    assert len(checkout.called('catkin_make')) == 1 and len(checkout.called('roslaunch')) == 2
+    (checkout.root / 'msg' / 'New.msg').write_text('bool x\n')
+    status, output = checkout.run(*HERE)
+    assert status == 1 and 'make it writable, or copy the checkout' in output
+    assert len(checkout.called('catkin_make')) == 1 and 'Is a directory' not in output
+
+
+@pytest.mark.parametrize('name', ["Ann's", 'a$HOME', 'say "hi"', 'back\\slash', 'a;b', 'a`b'])
+def test_a_path_that_catkin_or_roslaunch_would_misread_is_refused(tmp_path, name):
+    checkout = Checkout(tmp_path, name)
+    status, output = checkout.run(*HERE)
+    assert status == 1 and 'move the checkout' in output
+    assert checkout.called('catkin_make', 'roslaunch') == []
+
+
 @pytest.mark.parametrize('name', ['mhri_run.sh', 'mrhi_run.sh'])
 def test_from_anywhere_and_through_a_link(checkout, tmp_path, name):
     link = tmp_path / 'my link'

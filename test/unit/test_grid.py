@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mhri.core.config import ConfigError
-from mhri.core.map.grid import Grid, grid_of, GridError, read_map
+from mhri.core.map.grid import Grid, grid_of, GridError, picture_size, read_map
 from mhri.core.robots.mocap import Pose
 
 CORNER = Pose(-1.0, 2.0, 0.0)
@@ -84,13 +84,28 @@ def test_a_file_is_read_as_map_server_reads_it(changed, picture, cells):
     ('[-1.0, 2.0, 0.0]', '[1, 2, .inf]', 'origin: expected [x, y, yaw]'),
     ('negate: 0', 'negate: 2', 'negate: expected 0 or 1'),
     ('negate: 0', 'mode: grey', 'mode: expected trinary, scale or raw'),
-    ('negate: 0', 'colour: 1', 'colour: unknown key'),
     ('0.196', '0.7', 'free_thresh: expected less than occupied_thresh'),
     ('image: hall.pgm', '', 'image: is missing')])
 def test_a_file_that_cannot_be_used_is_refused_by_key(old, new, words):
     with pytest.raises(ConfigError) as refused:
         read_map(YAML.replace(old, new), 'hall.yaml', loaded(PICTURE))
     assert words in str(refused.value)
+
+
+def test_keys_of_others_and_16_bits_are_read_as_map_server_does():
+    deep = np.array(PICTURE, dtype=np.uint16) * 256 + 77
+    grid = read_map(YAML + 'author: somebody\n', 'hall.yaml', lambda name: deep)
+    assert grid.cells.tolist() == read_map(YAML, 'hall.yaml', loaded(PICTURE)).cells.tolist()
+
+
+@pytest.mark.parametrize('head, size', [
+    (b'\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x01\x02\x08', (30000, 258)),
+    (b'P5 30000 258 255\n', (30000, 258)),
+    (b'P5\n# CREATOR: map_saver 0.050 m/pix\n30000 258\n255\n', (30000, 258)),
+    (b'BM' + bytes(16) + b'\x30\x75\0\0' + b'\xfe\xfe\xff\xff', (30000, 258)),
+    (b'\x89PNG\r\n\x1a\n', None), (b'P5\n', None), (b'\xff\xd8\xff', None), (b'', None)])
+def test_the_size_of_a_picture_is_in_its_head(head, size):
+    assert picture_size(head) == size
 
 
 @pytest.mark.parametrize('load', [

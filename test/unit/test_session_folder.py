@@ -57,6 +57,15 @@ def test_what_is_no_event_is_left_out(line):
     assert len(read_events(whole + line + '\n' + whole)) == 2
 
 
+def test_what_no_page_may_have_in_it_is_not_read():
+    text = event_line(SessionEvent(1.0, 1.0, 'note', 'a\0b\x1b[31m\ud800\tc\nd',
+                                   data={'k\0': ['\0']}))
+    event, = read_events(text)
+    assert event.text == 'a\ufffdb\ufffd[31m\ufffd\tc\nd'
+    assert event.data == {'k\ufffd': ['\ufffd']}
+    assert event.text.encode()
+
+
 def test_a_note_to_no_mark_is_left_out():
     mark = SessionEvent(1.0, 1.0, 'mark', 'mark 1', data={'id': 'm1'})
     notes = [SessionEvent(2.0, 2.0, 'note', 'to none', data={'mark': name})

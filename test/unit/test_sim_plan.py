@@ -7,12 +7,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
 from mhri.core.config import ConfigError
 from mhri.sim.body import parse_bodies
+from mhri.sim.floor_map import grid_of_plan
 from mhri.sim.plan import disc_distance, parse_plan
 
 SIM = Path(__file__).resolve().parents[2] / 'resource' / 'sim'
+DRILLS = SIM.parent / 'drills'
 SHIPPED = parse_plan((SIM / 'plan.yaml').read_text(), 'plan.yaml')
 BODIES = parse_bodies((SIM / 'bodies.yaml').read_text(), 'bodies.yaml')
 SMALL = """
@@ -36,6 +39,24 @@ def test_small_plan():
     assert (post.name, post.colour, post.height_m) == ('post', (7, 8, 9), 1.5)
     assert plan.discs().tolist() == [[3.0, 1.0, 0.5]]
     assert plan.starts == ((2.0, 1.0, 0.0),)
+
+
+def test_what_is_to_be_searched_for_stands_there_but_not_on_the_map():
+    plan = parse_plan(SMALL.replace('height: 1.5', 'height: 1.5, on_map: false'), 'room.yaml')
+    assert plan.distance(3.0, 1.0) == pytest.approx(-0.5)
+    grids = [grid_of_plan(plan), grid_of_plan(parse_plan(SMALL, 'room.yaml'))]
+    assert [math.dist((3.0, 1.0), place) < 0.5 for grid in grids
+            for place in [min(grid.taken(), key=lambda at: math.dist((3.0, 1.0), at))]] == [
+                False, True]
+
+
+def test_the_cans_of_the_search_drill_are_not_on_its_map():
+    rows = yaml.safe_load((DRILLS / 'search.yaml').read_text())
+    plan = parse_plan((DRILLS / 'plans' / rows['plan']).read_text(), rows['plan'])
+    taken = grid_of_plan(plan).taken()
+    for target in rows['targets']:
+        middle = np.array((target['x'], target['y']))
+        assert np.hypot(*(taken - middle).T).min() > 0.2, target['name']
 
 
 def test_plan_without_landmarks():

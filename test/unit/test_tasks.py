@@ -11,7 +11,7 @@ from mhri.core.config import ConfigError
 from mhri.core.robots.mocap import Pose
 from mhri.core.tasks.base import (
     BLOCKED, DONE, FAILED, LOST, STOPPED, TAKEN_OVER, TIMEOUT, WAITING)
-from mhri.core.tasks.retrace import Trail
+from mhri.core.tasks.retrace import Trail, without_loops
 from mhri.core.tasks.rows import BY_KEY, TASKS
 from mhri.core.tasks.run import BLOCKED_AFTER_S
 
@@ -144,6 +144,51 @@ def test_return_goes_back_along_its_trail():
     assert robot.run.state == DONE
     assert math.hypot(robot.body.odom_x, robot.body.odom_y) < 0.1
     assert furthest < 0.25
+
+
+def test_return_leaves_out_the_loops_of_its_trail():
+    """Out along a line, around a circle, and on: the way back is the line alone."""
+    turns = [2.0 * math.pi * number / 70 for number in range(1, 70)]
+    trail = [Pose(0.1 * number, 0.0, 0.0) for number in range(11)]
+    trail += [Pose(1.0 + math.sin(turn), 1.0 - math.cos(turn), turn) for turn in turns]
+    trail += [Pose(1.0 + 0.1 * number, 0.0, 0.0) for number in range(11)]
+    world = World()
+    robot = world.add('bot1', 2.0, 0.0, 0.0)
+    trail = [Pose(pose.x_m - 2.0, pose.y_m, pose.heading_rad) for pose in trail]
+    robot.begin(BY_KEY['return'], '', 0.0, trail=trail)
+    gone_m, furthest_m = 0.0, 0.0
+    while robot.run.state not in (DONE, BLOCKED):
+        before = robot.body.odom_x, robot.body.odom_y
+        world.step()
+        gone_m += math.dist(before, (robot.body.odom_x, robot.body.odom_y))
+        furthest_m = max(furthest_m, min(
+            math.hypot(pose.x_m - robot.body.odom_x, pose.y_m - robot.body.odom_y)
+            for pose in trail))
+    assert robot.run.state == DONE
+    assert math.dist((robot.body.odom_x, robot.body.odom_y), (-2.0, 0.0)) < 0.1
+    assert gone_m < 2.5 and furthest_m < 0.25
+
+
+@pytest.mark.parametrize('places, cut_m, kept', [
+    ([(0, 0)], 0.15, [(0, 0)]),
+    ([(0, 0), (0.1, 0), (0.2, 0)], 0.05, [(0, 0), (0.1, 0), (0.2, 0)]),
+    # There and back: the end is where it began.
+    ([(0, 0), (1, 0), (2, 0), (1, 0.1), (0, 0.1)], 0.15, [(0, 0), (0, 0.1)]),
+    # Past itself with more room between than may be cut: a wall may stand there.
+    ([(0, 0), (1, 0), (2, 0), (2, 0.5), (1, 0.2), (0, 0.2)], 0.15,
+     [(0, 0), (1, 0), (2, 0), (2, 0.5), (1, 0.2), (0, 0.2)]),
+    ([(0, 0), (1, 0), (1, 1), (0.9, 0), (0, 5)], 0.15, [(0, 0), (1, 0), (0.9, 0), (0, 5)])])
+def test_what_is_a_loop(places, cut_m, kept):
+    assert without_loops(places, cut_m) == tuple(kept)
+
+
+@pytest.mark.parametrize('task, parameters, key', [
+    ('square', '{side: 1, number: 1.5}', 'number'),
+    ('patrol', '{route: [[1, 0]], rounds: 0.5}', 'rounds')])
+def test_what_counts_is_a_whole_number(task, parameters, key):
+    with pytest.raises(ConfigError) as refused:
+        BY_KEY[task].read(parameters)
+    assert refused.value.key == key
 
 
 def test_a_team_returns_to_a_mark_side_by_side():

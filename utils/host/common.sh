@@ -188,6 +188,11 @@ needs_plain_path() {
     die "$1 cannot work in a path with a space in it: move the checkout ($REPO)"
 }
 
+# is_built TESTING TARGET: true if such a build would find nothing to do.
+is_built() {
+  [ -z "$2" ] && [ "$1" = OFF ] && [ ! -e "$WS/src" ] && nothing_changed "$WS/built"
+}
+
 # build_workspace TESTING [MAKE_TARGET]: builds this checkout in its own workspace; TESTING is ON or
 # OFF. The workspace is in build, which rosrun skips when it searches a package, and hidden, which
 # roslaunch skips: either would find every file of the package twice. The checkout itself is its
@@ -195,11 +200,20 @@ needs_plain_path() {
 # from here is Python; messages for other languages take half of the build.
 build_workspace() {
   local testing=$1 target=${2:-} stamp="$WS/built" log="$WS/build.log"
+  [[ $REPO != *[\'\"\$\\\`\;]* ]] ||
+    die "catkin and roslaunch cannot work in a path with a quote, a dollar, a backslash or a" \
+      "semicolon in it: move the checkout ($REPO)"
   mkdir -p "$WS" 2>/dev/null ||
     die "cannot write to $REPO: the workspace is built there, in build/.ws"
+  if ! (: >>"$WS/lock") 2>/dev/null; then
+    # Somebody else's, or on a disk that cannot be written: what is built there runs.
+    ! is_built "$testing" "$target" || return 0
+    die "cannot write to $WS, where the checkout has to be built (again, if it was): make it" \
+      "writable, or copy the checkout"
+  fi
   exec {BUILD_LOCK}>"$WS/lock"
   flock "$BUILD_LOCK"
-  if [ -z "$target" ] && [ "$testing" = OFF ] && [ ! -e "$WS/src" ] && nothing_changed "$stamp"; then
+  if is_built "$testing" "$target"; then
     exec {BUILD_LOCK}>&-
     return 0
   fi

@@ -14,7 +14,7 @@ MARGIN_M = 0.225
 def grid_of_plan(plan):
     """Return the :class:`Grid` of a :class:`mhri.sim.plan.Plan`, in the plan's own frame.
 
-    Everything within the building's outline counts as known.
+    Everything within the building's outline counts as known, but for what is to be searched for.
     """
     corners = plan.walls.reshape(-1, 2)
     left = corners.min(axis=0) - MARGIN_M
@@ -25,7 +25,7 @@ def grid_of_plan(plan):
         _fill(cells, np.linspace((x1, y1), (x2, y2), steps) - left)
     columns, rows = np.meshgrid(*(left[axis] + (np.arange(size[axis]) + 0.5) * RESOLUTION_M
                                   for axis in (0, 1)))
-    for x, y, radius in plan.discs():
+    for x, y, radius in plan.discs(map_only=True):
         cells[np.hypot(columns - x, rows - y) <= radius] = OCCUPIED
     return Grid(RESOLUTION_M, Pose(float(left[0]), float(left[1]), 0.0), cells)
 

@@ -14,7 +14,10 @@ Colour = Tuple[int, int, int]
 
 @dataclass(frozen=True)
 class Landmark:
-    """A coloured cylinder: centre, radius and height [m], colour (red, green, blue) 0 to 255."""
+    """A coloured cylinder: centre, radius and height [m], colour (red, green, blue) 0 to 255.
+
+    ``on_map`` is false for what is to be searched for.
+    """
 
     name: str
     colour: Colour
@@ -22,6 +25,7 @@ class Landmark:
     y_m: float
     radius_m: float
     height_m: float
+    on_map: bool = True
 
 
 @dataclass(frozen=True)
@@ -39,10 +43,13 @@ class Plan:
     landmarks: Tuple[Landmark, ...]
     starts: Tuple[Tuple[float, float, float], ...]
 
-    def discs(self):
-        """Return the landmarks as an array (n, 3) of x, y, radius [m]."""
-        return np.array([(item.x_m, item.y_m, item.radius_m) for item in self.landmarks],
-                        dtype=float).reshape(-1, 3)
+    def discs(self, map_only=False):
+        """Return the landmarks as an array (n, 3) of x, y, radius [m].
+
+        :param map_only: those that are drawn on the map
+        """
+        return np.array([(item.x_m, item.y_m, item.radius_m) for item in self.landmarks
+                         if item.on_map or not map_only], dtype=float).reshape(-1, 3)
 
     def distance(self, x, y):
         """Return the distance to the nearest wall or landmark [m], < 0 inside a landmark."""
@@ -108,7 +115,8 @@ def _landmark(row):
     landmark = Landmark(
         row.text('name'), read_colour(row, 'colour'),
         row.number('x', -1000.0, 1000.0), row.number('y', -1000.0, 1000.0),
-        row.number('radius', 0.01, 10.0), row.number('height', 0.01, 10.0))
+        row.number('radius', 0.01, 10.0), row.number('height', 0.01, 10.0),
+        row.flag('on_map', True))
     row.close()
     return landmark
 

@@ -3,6 +3,7 @@
 """A map of cells, as ``nav_msgs/OccupancyGrid`` and the files of map_server have it."""
 from dataclasses import dataclass
 import math
+import re
 from typing import Callable, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -15,6 +16,8 @@ UNKNOWN, FREE, OCCUPIED = -1, 0, 100
 # From here on a cell counts as something that stands there; map_server's own threshold.
 TAKEN_FROM = 65
 MOST_CELLS = 40_000_000
+# The kind, and two numbers behind spaces and comments.
+_PNM = re.compile(rb'P[1-6](?:\s+|#[^\n]*\n)+(\d{1,9})(?:\s+|#[^\n]*\n)+(\d{1,9})')
 TRINARY, SCALE, RAW = 'trinary', 'scale', 'raw'
 
 
@@ -87,10 +90,13 @@ def grid_of(resolution_m: float, origin: Pose, width: int, height: int,
 def read_map(text: str, origin: str, load_image: Callable[[str], Optional[np.ndarray]]) -> Grid:
     """Return the :class:`Grid` of a YAML file of map_server (http://wiki.ros.org/map_server).
 
+    Keys that nobody knows are ignored, as map_server does: other programs write some.
+
     :param text: the file's text
     :param origin: its name, for errors
-    :param load_image: function from the name of the picture in it to an array of 8 bits, (height,
-        width) or (height, width, channels) with the alpha last, None where it cannot be read
+    :param load_image: function from the name of the picture in it to an array of 8 or 16
+        bits, (height, width) or (height, width, channels) with the alpha last, None where it cannot
+        be read
     :raises ConfigError: names the file, the key and the remedy
     """
     section = parse_yaml(text, origin)
@@ -99,12 +105,14 @@ def read_map(text: str, origin: str, load_image: Callable[[str], Optional[np.nda
     taken = section.number('occupied_thresh', 0.0, 1.0)
     free = section.number('free_thresh', 0.0, 1.0)
     mode, negate = section.text('mode', TRINARY), _negate(section)
-    section.close()
     if mode not in (TRINARY, SCALE, RAW):
         raise section.error('mode', 'expected {}, {} or {}'.format(TRINARY, SCALE, RAW))
     if not free < taken:
         raise section.error('free_thresh', 'expected less than occupied_thresh')
     picture = load_image(image)
+    if picture is not None and picture.dtype == np.uint16:
+        # As map_server's SDL_image does.
+        picture = (picture >> 8).astype(np.uint8)
     if picture is None or picture.dtype != np.uint8 or picture.ndim not in (2, 3):
         raise section.error('image', '{!r} cannot be read as a picture'.format(image[:60]))
     problem = size_problem(resolution_m, corner, picture.shape[1], picture.shape[0])
@@ -112,6 +120,17 @@ def read_map(text: str, origin: str, load_image: Callable[[str], Optional[np.nda
         raise section.error('image', problem)
     cells = _cells(picture, negate, mode, taken, free)
     return Grid(resolution_m, corner, np.ascontiguousarray(cells[::-1]))
+
+
+def picture_size(head: bytes) -> Optional[Tuple[int, int]]:
+    """Return (width, height) as the first 1,000 bytes of a PNG, PNM or BMP say, None for others."""
+    if head.startswith(b'\x89PNG\r\n\x1a\n') and len(head) >= 24:
+        return (int.from_bytes(head[16:20], 'big'), int.from_bytes(head[20:24], 'big'))
+    if head.startswith(b'BM') and len(head) >= 26:
+        return (int.from_bytes(head[18:22], 'little'),
+                abs(int.from_bytes(head[22:26], 'little', signed=True)))
+    found = _PNM.match(head)
+    return (int(found.group(1)), int(found.group(2))) if found else None
 
 
 def _corner(section: Section) -> Pose:

@@ -29,6 +29,8 @@ KINDS = ('start', 'end', 'found', 'lost', 'mode', 'selection', 'control', 'stop'
 CAMERA_ALL, CAMERA_RATE, CAMERA_STILLS = 'all', 'rate_hz', 'stills'
 _BAG = re.compile(r'(\d{4,})\.bag(?:\.active)?\Z')
 _NAME = re.compile(r'\d{4}-\d\d-\d\d-\d\d-\d\d-\d\d(-\d+)?\Z')
+# As in XML 1.0.
+_NO_TEXT = re.compile('[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ud800-\udfff\ufffe\uffff]')
 # What is no letter, digit, "_" or "-" in a robot's name does not go into a file name.
 _UNFIT = re.compile(r'[^A-Za-z0-9_-]')
 
@@ -150,14 +152,15 @@ def _finite(value: Any) -> Any:
 def read_events(text: str) -> List[SessionEvent]:
     """Return the events of ``events.jsonl`` in the order of the file.
 
-    What is no event (a half last line of a killed program, a later format's) is left out.
+    What is no event (a half last line of a killed program, a later format's) is left out. What no
+    page may have in it (NUL, other control characters, half a pair of surrogates) becomes U+FFFD.
     """
     return [event for event in map(_read_line, text.split('\n')) if event is not None]
 
 
 def _read_line(line: str) -> Optional[SessionEvent]:
     try:
-        found = json.loads(line)
+        found = _readable(json.loads(line))
         data = found.get('data')
         wall, ros = float(found['wall']), float(found['ros'])
         if not (math.isfinite(wall) and math.isfinite(ros)):
@@ -167,6 +170,14 @@ def _read_line(line: str) -> Optional[SessionEvent]:
                             str(found.get('robot', '')), data if isinstance(data, dict) else {})
     except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
         return None
+
+
+def _readable(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {_readable(key): _readable(part) for key, part in value.items()}
+    if isinstance(value, list):
+        return [_readable(part) for part in value]
+    return _NO_TEXT.sub('\ufffd', value) if isinstance(value, str) else value
 
 
 def info_text(info: SessionInfo) -> str:

@@ -153,6 +153,7 @@ class Field:
     :param kind: NUMBER in [least, greatest], TEXT, or ROUTE: a list of [x, y] [m]
     :param choices: what a TEXT may be; empty: anything
     :param needs_place: where this is given, the robot has to be placed
+    :param whole: a NUMBER that counts something
     """
 
     name: str
@@ -164,6 +165,7 @@ class Field:
     kind: str = NUMBER
     choices: Tuple[str, ...] = ()
     needs_place: bool = False
+    whole: bool = False
 
 
 REQUIRED = '\0required'
@@ -264,8 +266,11 @@ def _value(section: Section, row: Field) -> Value:
         raise section.error(row.name, 'is missing: {}{}'.format(
             row.text, ' [{}]'.format(row.unit) if row.unit else ''))
     if row.kind == NUMBER:
-        return section.number(row.name, row.least, row.greatest,
-                              row.default if isinstance(row.default, float) else None)
+        value = section.number(row.name, row.least, row.greatest,
+                               row.default if isinstance(row.default, float) else None)
+        if row.whole and value is not None and not value.is_integer():
+            raise section.error(row.name, 'expected a whole number, got {:g}'.format(value))
+        return value
     if row.kind == TEXT:
         return _text(section, row)
     return _route(section, row.name)

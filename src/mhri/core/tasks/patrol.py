@@ -45,5 +45,5 @@ class Patrol(Task):
 
 ROW = TaskKind('patrol', 'Patrol', 'along a route, once or again and again', (
     Field('route', 'm', 'its corners: [[x, y], ...]', REQUIRED, kind=ROUTE),
-    Field('rounds', '', 'how often, 0 until it is ended', 0.0, 0.0, 10000.0), SPEED, FRAME,
-    TIMEOUT_S), lambda values, start: Patrol(start, values), needs_place=True)
+    Field('rounds', '', 'how often, 0 until it is ended', 0.0, 0.0, 10000.0, whole=True),
+    SPEED, FRAME, TIMEOUT_S), lambda values, start: Patrol(start, values), needs_place=True)

@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The task return: to a mark, or back along the robot's own trail, by odometry."""
 import math
-from typing import List, Optional, Tuple
+from typing import List, Optional, Sequence, Tuple
+
+import numpy as np
 
 from mhri.core.config import shown
 from mhri.core.robots.mocap import Pose
@@ -16,6 +18,8 @@ from mhri.core.tasks.pilot import Pilot
 STEP_M, MOST_PLACES = 0.1, 5000
 # A place counts as passed when the robot is this near [m]; the last one as reached.
 PASSED_M, THERE_M = 0.2, 0.06
+# Where a trail comes so near to itself again, what lies between is left out on the way back [m].
+CUT_M = 0.15
 
 
 class Trail:
@@ -85,7 +89,7 @@ class Path(Task):
 
 
 def make(values: Values, start: Start) -> Task:
-    """Begin: to a mark, side by side, or with the newest place of the trail.
+    """Begin: to a mark, side by side, or with the newest place of the trail, without its loops.
 
     :raises ValueError: there is no such mark, or the robot has no trail
     """
@@ -95,17 +99,32 @@ def make(values: Values, start: Start) -> Task:
             raise ValueError('there is no mark {}; there are: {}'.format(
                 shown(values.text('mark')), ', '.join(sorted(start.marks)) or 'none'))
         return Goto(start, *spread(mark, start.place), mark.heading_rad, values.number('speed'))
-    most_m, places, gone_m = values.number('distance'), list(reversed(start.trail)), 0.0
-    if not places:
+    most_m, trail, gone_m = values.number('distance'), list(reversed(start.trail)), 0.0
+    if not trail:
         raise ValueError('it has no trail yet: nobody has seen it move')
-    kept = [places[0]]
-    for pose in places[1:]:
+    kept = [trail[0]]
+    for pose in trail[1:]:
         gone_m += way(kept[-1], pose.x_m, pose.y_m)
         if most_m and gone_m > most_m:
             break
         kept.append(pose)
-    return Path(start, tuple((pose.x_m, pose.y_m) for pose in kept), values.number('speed'),
+    places = without_loops([(pose.x_m, pose.y_m) for pose in kept],
+                           min(CUT_M, start.body.radius_m))
+    return Path(start, places, values.number('speed'),
                 wrapped(kept[-1].heading_rad), by_odometry=True)
+
+
+def without_loops(places: Sequence[Tuple[float, float]], cut_m: float) -> Corners:
+    """Return a way with each loop left out: from a place on to the last that is so near to it [m].
+
+    So a robot drives where it has been, and beside it by no more than that.
+    """
+    kept, number, all_places = [places[0]], 0, np.array(places)
+    while number < len(places) - 1:
+        apart = np.hypot(*(all_places[number + 1:] - all_places[number]).T)
+        number += 1 + int(np.append(0, np.flatnonzero(apart <= cut_m))[-1])
+        kept.append(places[number])
+    return tuple(kept)
 
 
 def slots(values: Values, count: int, where: Where) -> Corners:

@@ -81,4 +81,4 @@ def make(values: Values, start: Start) -> Square:
 ROW = TaskKind(
     'square', 'Square', 'to the left, by odometry; says each corner, and how far off it ends',
     (Field('side', 'm', 'length of a side', REQUIRED, 0.2, 100.0),
-     Field('number', '', 'rounds', 1.0, 1.0, 100.0), SPEED, TIMEOUT_S), make)
+     Field('number', '', 'rounds', 1.0, 1.0, 100.0, whole=True), SPEED, TIMEOUT_S), make)

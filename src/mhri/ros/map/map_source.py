@@ -13,8 +13,9 @@ import numpy
 import rospy
 from rospy.numpy_msg import numpy_msg
 
+from mhri.core.config import ConfigError
 from mhri.core.map.floor import Floor
-from mhri.core.map.grid import grid_of, GridError, read_map
+from mhri.core.map.grid import grid_of, GridError, picture_size, read_map, size_problem
 from mhri.core.robots.mocap import Pose
 from mhri.ros.convert import yaw_of
 from mhri.ros.messages import bytes_of
@@ -35,7 +36,15 @@ def load_map(path):
         """Return the picture; its path counts from the folder of the file."""
         from mhri.core.opencv import cv2  # without a file, a start does not wait for it
         image = os.path.join(os.path.dirname(os.path.abspath(path)), name)
-        return cv2.imread(image, cv2.IMREAD_UNCHANGED) if os.path.isfile(image) else None
+        if not os.path.isfile(image):
+            return None
+        with open(image, 'rb') as file:
+            size = picture_size(file.read(1000))
+        # Before it is unpacked, which takes half a minute and all the memory for a large one.
+        problem = size and size_problem(1.0, Pose(0.0, 0.0, 0.0), *size)
+        if problem:
+            raise ConfigError(path, 'image', problem)
+        return cv2.imread(image, cv2.IMREAD_UNCHANGED)
 
     return read_map(read_text(path), path, load_image)
 

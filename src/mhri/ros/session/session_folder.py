@@ -83,13 +83,16 @@ class SessionFolder:
                 self._events.flush()
 
     def end_line(self):
-        """End a line that a killed program has left half.
+        """End a line that a killed program has left half; nothing where it left none.
 
-        :raises OSError: it cannot be written
+        :raises OSError: it cannot be read or written
         """
-        with self._lock:
-            self._events.write('\n')
-            self._events.flush()
+        with self._lock, open(self._events.name, 'rb') as file:
+            size = file.seek(0, os.SEEK_END)
+            file.seek(max(0, size - 1))
+            if file.read(1) not in (b'', b'\n'):
+                self._events.write('\n')
+                self._events.flush()
 
     def keep(self, name, data):
         """Write a file of the folder, e.g. a still.

@@ -72,12 +72,17 @@ class Starter:
     def prepare(self, key, values, team, names):
         """Open what a goal needs (blocking: it asks the master and reads files).
 
+        Where one of its robots is not there, none is started: somebody has mistyped its name.
+
         :param names: all robots that there are
         :returns: ({robot: its recorded drive}, why it cannot be or '')
         """
-        team = [name for name in team if name in names]
+        unknown = [name for name in team if name not in names]
         try:
             self.know(names)
+            if unknown:
+                return {}, 'the drive service does not know {}: add it to the list of robots; ' \
+                    'nobody was started'.format(', '.join(unknown))
             self._seen.open(team)
             bag = values.text('bag') if key == REPLAY.key else ''
             return {name: self._drive(bag, values.text('topic'), name)
@@ -121,9 +126,9 @@ class Starter:
         robot, kind, values = self._seen.get(name), self._kinds[goal.key], goal.values
         state, made, timeout_s = FAILED, None, values.number('timeout')
         placed = kind.placed(values)
-        if not problem and robot is None:
+        if robot is None:
             state = LOST
-            problem = 'the drive service does not know it: add it to the list of robots'
+            problem = problem or 'the drive service does not know it: add it to the list of robots'
         problem = problem or self._not_placed(robot, placed)
         if not problem:
             start = Start(name, goal.order, robot.body, robot.trail.places(),

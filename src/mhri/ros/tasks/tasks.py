@@ -21,7 +21,6 @@ import math
 import threading
 import time
 
-import actionlib
 from geometry_msgs.msg import Twist
 import rospy
 from std_msgs.msg import Bool
@@ -42,6 +41,7 @@ from mhri.ros.map.map_source import MapSource
 from mhri.ros.map.place_keeper import PlaceKeeper
 from mhri.ros.map.place_services import PlaceServices
 from mhri.ros.map.tf_feed import TfFeed
+from mhri.ros.tasks.run_server import RunServer
 from mhri.ros.tasks.seen_robots import SeenRobots
 from mhri.ros.tasks.starter import Starter
 from mhri.ros.tasks.words import kind_message, state_message
@@ -136,8 +136,8 @@ class Tasks:
         self._gates_force.start()
         self._mux_force.start()
         self._worker.start()
-        self._server = actionlib.ActionServer('/mhri_tasks/run', RunTaskAction, self._on_goal,
-                                              self._on_cancel, auto_start=False)
+        self._server = RunServer('/mhri_tasks/run', RunTaskAction, self._on_goal,
+                                 self._on_cancel, auto_start=False)
         self._server.start()
         # Whoever asked while this node was coming up may not be connected yet when a short task
         # ends: its result waits for it.
