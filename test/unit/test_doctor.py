@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The doctor's judgement of nodes, connections, robots, mhri's own nodes: a table of ailments."""
+from dataclasses import replace
 import json
 import os
 import sys
@@ -15,8 +16,8 @@ from mhri.core.doctor.robots import clock_offset, robots_of
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
 from support.doctor_world import (  # noqa: E402
-    add, answer, apart, at, BOOL, BOT_IP, change, IGNORE, links, ODOMETRY, parameter, seen_as,
-    seen_at, stream, TWIST, TYPES, without, World)
+    add, answer, apart, at, BOOL, BOT_IP, change, HOST_IP, IGNORE, links, ODOMETRY, parameter,
+    seen_as, seen_at, stream, TWIST, TYPES, without, World)
 
 
 def samples(ahead_s, count=20):
@@ -153,6 +154,59 @@ def test_ailment(case):
     for spoil in spoils:
         spoil(world)
     assert sorted(item.check for item in world.wrong()) == expected
+
+
+SCAN, IMAGE = 'sensor_msgs/LaserScan', 'sensor_msgs/Image'
+CAMERA = '/bot1/camera/rgb/image_raw'
+
+
+@pytest.mark.parametrize('seen, found', [
+    (dict(messages=0), ['scan_silent']), (dict(beams=(360, 0, 0)), ['scan_blind']),
+    (dict(beams=(360, 0, 360)), []), (dict(beams=(360, 20, 0)), [])])
+def test_a_laser(seen, found):
+    world = World()
+    add('/bot1/laser', ['/bot1/scan'], kind=SCAN, host=BOT_IP)(world)
+    stream('/bot1/scan', **seen)(world)
+    assert [item.check for item in world.wrong()] == found
+
+
+@pytest.mark.parametrize('host, topics, found', [
+    (BOT_IP, [CAMERA], ['camera_raw']), (BOT_IP, [CAMERA, CAMERA + '/compressed'], []),
+    (HOST_IP, [CAMERA], [])])
+def test_a_camera_that_takes_the_radio_for_itself(host, topics, found):
+    world = World()
+    add('/bot1/camera', topics[:1], kind=IMAGE, host=host)(world)
+    add('/bot1/camera', topics[1:], kind='sensor_msgs/CompressedImage', host=host)(world)
+    assert [item.check for item in world.wrong()] == found
+
+
+@pytest.mark.parametrize('frames, found', [
+    ((('odom', 'base_link'), ('odom', 'base_link')), ['frames_same']),
+    ((('bot1/odom', 'bot1/base'), ('bot2/odom', 'bot2/base')), []),
+    ((('map', 'bot1/base'), ('map', 'bot2/base')), []), ((('odom', ''), ('x', '')), [])])
+def test_two_robots_with_the_same_frames(frames, found):
+    world = World()
+    add('/bot2/base', ['/bot2/odom'], ['/bot2/cmd_vel'], kind=ODOMETRY, host=BOT_IP)(world)
+    world.kinds['/bot2/cmd_vel'] = TWIST
+    parameter(bot2={'robot_type': 'generic'})(world)
+    for name, of in zip(('bot1', 'bot2'), frames):
+        topic = '/{}/odom'.format(name)
+        world.streams[topic] = Stream(topic, '/{}/base'.format(name), ODOMETRY, 'same',
+                                      '/{}/base'.format(name), '', 0.6, 9, frames=of)
+    assert [item.check for item in world.wrong()] == found
+    world.wanted = ('bot2',)
+    assert [item.check for item in world.wrong()] == found
+
+
+def test_why_the_mux_does_not_start():
+    world = World()
+    without('/mux')(world)
+    facts = replace(world.facts(), mux_error='mux.yaml: sources: is missing')
+    found = [item for item in diagnose(facts, TYPES, IGNORE) if item.check == 'mux_config_bad']
+    assert [item.severity for item in found] == [FAULT] and 'mux.yaml' in found[0].problem
+    facts = replace(World().facts(), mux_error='mux.yaml: sources: is missing')
+    assert [item.check for item in diagnose(facts, TYPES, IGNORE)
+            if item.severity != FINE] == ['mux_config_bad']
 
 
 def test_the_base_of_a_turtlebot2_is_left_alone():

@@ -101,6 +101,8 @@ HOST = {
         [(WARNING, 'package_missing')]),
     'template bad': (replace(facts(), template_errors=('a.yaml: name: is missing',)),
                      [(FAULT, 'template_bad')]),
+    'pad bad': (replace(facts(), pad_errors=('my_pad.yaml: axes: is missing',)),
+                [(WARNING, 'pad_bad')]),
 }
 
 

@@ -95,7 +95,7 @@ def test_a_robot_names_no_window_but_one_that_is_installed(window, taken):
     kind, errors = resolve_robot_type(types, 'bot1', {'robot_type': 'turtlebot2', 'mhri': {
         'window': window, 'limits': {'linear_mps': 0.1}}})
     assert kind.window == (window if taken else 'turtlebot') and kind.limits.linear_mps == 0.1
-    assert [error.key for error in errors] == ([] if taken else ['window'])
+    assert [error.key for error in errors] == ([] if taken else ['mhri.window'])
 
 
 HARDWARE = {

@@ -10,7 +10,6 @@ import re
 import sys
 
 import genpy
-import rospy
 
 _KIND = re.compile(r'[A-Za-z][A-Za-z0-9_]*/[A-Za-z][A-Za-z0-9_]*\Z')
 
@@ -70,6 +69,8 @@ def bytes_of(kind):
 
     Unlike ``rospy.AnyMsg`` it refuses publishers of another type, and the master knows the type.
     """
+    # Slow to import: the doctor looks types up without it.
+    import rospy
     return type(kind.__name__, (rospy.AnyMsg,), {
         '__slots__': (), '_md5sum': kind._md5sum, '_type': kind._type,
         '_full_text': kind._full_text})

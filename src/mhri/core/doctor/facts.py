@@ -193,6 +193,8 @@ class Stream:
     ``problem`` says why there was no connection; ``listened_s`` is how long the doctor waited for
     messages [s], 0 if it did not; ``samples`` are (received, stamp) pairs by the clock here and the
     sender's [s]; ``refused`` what the gates refused, in their own words: '/node: twist, 3 times'.
+    ``frames`` are those that odometry names; ``beams`` of a scan are (how many, how many measured
+    something, how many say that nothing is there).
     """
 
     topic: str
@@ -205,6 +207,8 @@ class Stream:
     messages: int = 0
     samples: Tuple[Tuple[float, float], ...] = ()
     refused: Tuple[str, ...] = ()
+    frames: Tuple[str, ...] = ()
+    beams: Tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -246,7 +250,8 @@ class Facts:
     ``later`` is the graph, ``later_nodes`` the nodes asked once more at the end, if something
     looked odd: the doctor only reports what is odd both times. ``known`` maps message types to
     their md5 sum on this computer, None if it has none. ``wanted`` are the robots asked for, () for
-    all. ``linked`` are the links to robots on masters of their own.
+    all. ``pad_errors`` and ``mux_error`` say what is wrong with the files of pads and of the mux.
+    ``linked`` are the links to robots on masters of their own.
     """
 
     computer: Computer = Computer()
@@ -259,6 +264,8 @@ class Facts:
     later_nodes: Dict[str, Node] = field(default_factory=dict)
     wanted: Tuple[str, ...] = ()
     template_errors: Tuple[str, ...] = ()
+    pad_errors: Tuple[str, ...] = ()
+    mux_error: str = ''
     caller_id: str = '/mhri_doctor'
     linked: Tuple[LinkNote, ...] = ()
     keys: KeysSeen = KeysSeen()

@@ -20,7 +20,12 @@ def find_on_host(facts: Facts) -> List[Finding]:
                  Finding(FAULT, 'template_bad', HOST, 'a robot type is unusable: ' + text,
                          'robots of that type are driven as generic, or not offered',
                          'mend the file named above, or take it away')
-                 for text in facts.template_errors])
+                 for text in facts.template_errors] + [
+                 Finding(WARNING, 'pad_bad', HOST, 'a pad profile is left out: ' + text,
+                         'its pad drives with another profile, or not at all',
+                         'mend the file named above, or make it anew: rosrun mhri mhri_joy '
+                         '--calibrate <name>')
+                 for text in facts.pad_errors])
     return found
 
 

@@ -11,6 +11,7 @@ from mhri.core.robots.discovery import (
     Candidate, find_candidates, IgnoreList, NAME_PARAMETER, parameters_of, ROOT_PARAMETERS)
 from mhri.core.doctor.facts import ANSWERS, Facts, FAULT, FINE, Finding, Graph, listed, WARNING
 from mhri.core.doctor.nodes import start_robot
+from mhri.core.doctor.sensors import find_on_cameras, find_on_lasers, find_same_frames
 from mhri.core.doctor.system import gates
 from mhri.core.robots.names import topic_of
 from mhri.core.robots.robot_types import resolve_robot_type, RobotType
@@ -88,7 +89,8 @@ def find_on_robots(facts: Facts, types: Mapping[str, RobotType],
                 '; '.join('rosparam delete /' + key for key in _left_over(facts, candidate))))
         else:
             found += _robot(facts, types, robot)
-    return found
+    return found + find_same_frames(facts, {
+        robot.candidate.name: robot.topics('odometry') for robot in robots})
 
 
 def _left_over(facts: Facts, candidate: Candidate) -> List[str]:
@@ -125,7 +127,8 @@ def _robot(facts: Facts, types: Mapping[str, RobotType], robot: Robot) -> List[F
     if not any(facts.answering(node) for node in nodes):
         return found
     found += (_velocity(facts, robot) + _topics(facts, robot) + _odometry(facts, robot)
-              + _clock(facts, robot))
+              + _clock(facts, robot) + find_on_lasers(facts, name, robot.topics('scan'))
+              + find_on_cameras(facts, name, robot.topics('rgb', 'depth')))
     if all(item.severity == FINE for item in found):
         found.append(Finding(FINE, 'robot', name, '{}, {} nodes, can be driven'.format(
             robot.template.label, len(nodes))))

@@ -92,6 +92,11 @@ def _mux(facts: Facts) -> List[Finding]:
     running = muxes(facts)
     found = _silent(facts, MODE, 'mux_silent', ', so no stick and no task reaches the gates',
                     'rosrun mhri mux')
+    if facts.mux_error:
+        found.append(Finding(
+            WARNING if running else FAULT, 'mux_config_bad', SYSTEM, 'the mux cannot start{}: '
+            '{}'.format(' again' if running else '', facts.mux_error), _NOTHING,
+            'mend the file named above, then: rosrun mhri mux'))
     if not running and not found:
         found.append(_mux_missing(facts))
     if len(running) > 1:

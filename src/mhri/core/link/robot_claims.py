@@ -15,7 +15,7 @@ from mhri.core.link.carried import (
 from mhri.core.link.renaming import packed_transforms, renamer, rewritten, transforms
 from mhri.core.robots.robot_hardware import HardwareStopSpec, MotorPowerSpec, SET_BOOL
 from mhri.core.robots.robot_types import (
-    Limits, ODOMETRY_TYPES, resolve_robot_type, RobotType, TOPIC_KEYS)
+    Limits, ODOMETRY_TYPES, resolve_robot_type, RobotType, TOPIC_KEYS, WINDOW_KEY)
 from mhri.core.screen.text import tidy_text
 
 PARAMETERS = ('robot_type', 'robot_model', 'mhri')
@@ -107,7 +107,7 @@ def believed(robot: str, said: Mapping[str, object], types: Mapping[str, RobotTy
     base, _ = resolve_robot_type(types, robot, found)
     overrides = said.get('mhri')
     kind, errors = resolve_robot_type(types, robot, dict(found, mhri=overrides))
-    wrong = [error for error in errors if error.key.startswith('mhri')]
+    wrong = [error for error in errors if error.key.startswith('mhri') and error.key != WINDOW_KEY]
     if wrong or not isinstance(overrides, dict):
         kind, overrides = base, {}
     kept = {key: overrides[key] for key in _PLAIN if key in overrides}

@@ -370,6 +370,10 @@ def load_robot_types(
     return types, errors
 
 
+#: what the error of a robot's own choice of a window is called
+WINDOW_KEY = 'mhri.window'
+
+
 def resolve_robot_type(types: Mapping[str, RobotType], robot: str, params: Mapping[str, object],
                        seen: Seen = Seen()) -> Tuple[RobotType, List[ConfigError]]:
     """Choose and adjust the template of one robot.
@@ -405,7 +409,7 @@ def resolve_robot_type(types: Mapping[str, RobotType], robot: str, params: Mappi
             chosen, standard = _overridden(chosen, overrides, origin), chosen
             # To show a window is to run its code: a robot may only choose among those installed.
             if chosen.window not in {one.window for one in types.values()}:
-                errors.append(ConfigError(origin, 'window', 'no installed robot type has {!r}; '
+                errors.append(ConfigError(origin, WINDOW_KEY, 'no installed robot type has {!r}; '
                                           'export it from a package'.format(chosen.window[:80])))
                 chosen = replace(chosen, window=standard.window)
         except ConfigError as error:

@@ -5,7 +5,6 @@ import glob
 import os
 
 import rospkg
-import rospy
 
 from mhri.core.config import ConfigError
 from mhri.core.devices.pads import load_profiles
@@ -23,10 +22,10 @@ def shipped_names():
             for path in glob.glob(resource_path('pads', '*.yaml'))}
 
 
-def pad_profiles():
-    """Return every :class:`mhri.core.driving.profile.Profile` in the order of preference.
+def read_profiles():
+    """Return ([:class:`mhri.core.driving.profile.Profile`], [what is wrong with other files]).
 
-    Leave out an unusable file, and name it in the log once a minute.
+    The first ones are preferred.
     """
     shipped = shipped_names()
     files, problems = [], []
@@ -42,6 +41,14 @@ def pad_profiles():
         except (OSError, ConfigError) as error:
             problems.append(error)
     profiles, errors = load_profiles(files)
-    for problem in problems + errors:
+    return profiles, problems + errors
+
+
+def pad_profiles():
+    """Return every profile as :func:`read_profiles`; name others in the log once a minute."""
+    # Slow to import: the doctor reads profiles without it.
+    import rospy
+    profiles, problems = read_profiles()
+    for problem in problems:
         rospy.logwarn_throttle(60.0, 'a pad profile is left out: {}'.format(problem))
     return profiles

@@ -21,6 +21,8 @@ from mhri.core.doctor.host import find_on_host
 from mhri.core.doctor.linked import links_of
 from mhri.core.doctor.robots import robots_of
 from mhri.core.doctor.system import GATES_STATE, muxes
+from mhri.core.driving.sources import parse_mux_config
+from mhri.ros.devices.pad_profiles import read_profiles
 from mhri.ros.doctor.host import look_at_computer
 from mhri.ros.doctor.linked import LinkLook
 from mhri.ros.doctor.masters import look_elsewhere, parse_uri
@@ -28,7 +30,7 @@ from mhri.ros.doctor.probe import Probe
 from mhri.ros.graph.look import shipped_ignore_list
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.messages import message_class, MessageMissing
-from mhri.ros.resources import robot_types
+from mhri.ros.resources import profile_reader, read_text, resource_path, robot_types
 
 # Deadlines for asking the nodes and for asking again, counted from the start [s]; an examination
 # that began late has less time, but never less than a living node needs to answer.
@@ -58,8 +60,24 @@ def examine(robots=(), environ=None, begun=None):
         master = parse_uri(environ.get('ROS_MASTER_URI') or rosgraph.rosenv.DEFAULT_MASTER_URI)
         return find_on_host(Facts(computer=look_at_computer(environ, master.host), master=master))
     facts = replace(look(environ, types, ignore, begun, robots, caller_id),
-                    template_errors=tuple(str(error) for error in errors + faults))
+                    template_errors=tuple(str(error) for error in errors + faults),
+                    pad_errors=tuple(str(error) for error in read_profiles()[1]))
+    facts = replace(facts, mux_error=_mux_error(facts.graph.parameters))
     return diagnose(facts, types, ignore)
+
+
+def _mux_error(parameters):
+    """Return why the file that the mux reads cannot be used, '' if it can."""
+    mux = parameters.get('mux')
+    path = mux.get('config') if isinstance(mux, dict) else None
+    path = path if path and isinstance(path, str) else resource_path('mux.yaml')
+    try:
+        parse_mux_config(read_text(path), path, profile_reader(path))
+    except ConfigError as error:
+        return str(error)
+    except OSError as error:
+        return '{}: {}'.format(path, error.strerror)
+    return ''
 
 
 def _ignore_list():
@@ -163,11 +181,11 @@ def _why_not(master, error):
 
 
 def _ask_nodes(facts, robots, uris, deadline):
-    """Ask every node at once; listen to the gates, and to odometry and IMU of every robot."""
+    """Ask every node at once; listen to the gates, and to odometry, IMU and scans of robots."""
     probe = Probe(facts.caller_id, deadline)
     listened = {topic for robot in robots
                 if not facts.wanted or robot.candidate.name in facts.wanted
-                for topic in robot.topics('odometry', 'imu')} | {GATES_STATE}
+                for topic in robot.topics('odometry', 'imu', 'scan')} | {GATES_STATE}
     for name, uri in sorted(uris.items()):
         published = facts.graph.topics_of(name)[0]
         # Listening comes last: it takes time.

@@ -21,6 +21,7 @@ from mhri.core.doctor.facts import (
     ANSWERS, Connection, is_ipv4, Node, REFUSED, SILENT, STRANGER, Stream, UNRESOLVED)
 from mhri.ros.doctor.host import resolve
 from mhri.ros.graph.master_api import TimedTransport
+from mhri.ros.messages import installed_class, MessageMissing
 from mhri.ros.recording.raw_link import LinkError, RawLink
 
 # Not asked for: subscribing to them starts a camera, or brings megabytes.
@@ -33,7 +34,9 @@ STAMPED = ('nav_msgs/Odometry', 'sensor_msgs/Imu', GATES_STATE)
 LISTEN_S = 0.6
 ENOUGH_SAMPLES = 25
 _QUESTIONS = ('getPid', 'getPublications', 'getSubscriptions', 'getBusInfo')
-_STAMP = struct.Struct('<II')
+_STAMP, _LENGTH = struct.Struct('<II'), struct.Struct('<I')
+# The number and the stamp of a header.
+_BEFORE_FRAME = 12
 # As rospy and roscpp write it, and rosnode reads it: "... to [192.0.2.7:40623 on socket 6]".
 _OTHER_END = re.compile(r' to \[([0-9.]+):\d+ on socket ')
 
@@ -159,7 +162,8 @@ class Probe:
             begun = time.monotonic()
             messages, samples, newest = self._listen(link, fields['type'] in STAMPED)
             return Stream(*known, listened_s=time.monotonic() - begun, messages=messages,
-                          samples=tuple(samples), refused=_refused(fields, newest))
+                          samples=tuple(samples), refused=_refused(fields, newest),
+                          frames=_frames(fields, newest), beams=_beams(fields, newest))
         finally:
             link.close()
 
@@ -201,6 +205,31 @@ def _refused(fields, frame):
     # Senders believed by now were refused only while still unknown.
     return tuple(line for line in state.refused
                  if line.partition(':')[0] not in (state.mux, state.operator))
+
+
+def _frames(fields, frame):
+    """Return the frames that a frame of odometry names, () for any other topic."""
+    texts, at = [], _LENGTH.size + _BEFORE_FRAME
+    for _ in range(2 if fields['type'] == 'nav_msgs/Odometry' else 0):
+        if at + _LENGTH.size > len(frame):
+            return ()
+        begin = at + _LENGTH.size
+        at = begin + _LENGTH.unpack_from(frame, at)[0]
+        texts.append(frame[begin:at][:100].decode('utf-8', 'replace').lstrip('/'))
+    return tuple(texts)
+
+
+def _beams(fields, frame):
+    """Return (beams, those that measured, those with nothing in reach) of a scan, () for others."""
+    if fields['type'] != 'sensor_msgs/LaserScan' or not frame:
+        return ()
+    try:
+        scan = installed_class(fields['type'], fields['md5sum'])().deserialize(frame[_LENGTH.size:])
+    except (MessageMissing, genpy.DeserializationError):
+        return ()
+    measured = sum(max(scan.range_min, 0.0) <= one < scan.range_max and one > 0.0
+                   for one in scan.ranges)
+    return len(scan.ranges), measured, sum(one >= scan.range_max for one in scan.ranges)
 
 
 def _host_of(uri):
