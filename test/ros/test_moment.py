@@ -4,10 +4,17 @@
 import io
 from types import SimpleNamespace
 
+import cv2
 from nav_msgs.msg import Odometry
+import numpy as np
+import pytest
+from sensor_msgs.msg import CompressedImage, Image
 
+from mhri.core.camera.images import FrameError
+from mhri.core.camera.recompressed import recompressed
+from mhri.core.link.smaller import Smaller
 from mhri.ros.resources import robot_types
-from mhri.ros.session.moment import Moment
+from mhri.ros.session.moment import jpeg_of, Moment
 
 
 def moment(x_m, speed_mps):
@@ -27,3 +34,17 @@ def moment(x_m, speed_mps):
 def test_a_robot_is_nowhere_by_odometry_that_cannot_be():
     assert moment(1.5, 0.3).poses() == {'bot1': [1.5, 0.0, 0.0, 'bot1/odom']}
     assert moment(1e30, 0.3).poses() == moment(1.5, 1e30).poses() == {}
+
+
+def test_a_picture_that_is_too_large_for_a_jpeg_is_left_out():
+    pixels = np.zeros((1, 65501, 3), np.uint8)
+    message = CompressedImage(format='png', data=cv2.imencode('.png', pixels)[1].tobytes())
+    data = io.BytesIO()
+    message.serialize(data)
+    assert jpeg_of(b'    ' + data.getvalue()) is None
+    assert Smaller().fit(data.getvalue(), 100) == data.getvalue()
+    raw, data = Image(height=1, width=65501, encoding='rgb8', step=3 * 65501,
+                      data=pixels.tobytes()), io.BytesIO()
+    raw.serialize(data)
+    with pytest.raises(FrameError, match='65501'):
+        recompressed(data.getvalue())

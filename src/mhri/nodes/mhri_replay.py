@@ -48,8 +48,8 @@ def main():
                  '--replay)'.format(rosgraph.get_master_uri()))
     set_parameters(kept.robots, any(found.topic == GATES for found in kept.bags.connections()))
     Player(kept).start()
+    # The player may be reading when the node ends: its files are closed with the program.
     rospy.spin()
-    kept.bags.close()
 
 
 def set_parameters(robots, driven):

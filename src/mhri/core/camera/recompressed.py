@@ -8,7 +8,7 @@ import numpy as np
 
 from mhri.core.camera.depth_codec import encode_depth
 from mhri.core.camera.image_message import RAW_TYPE, read_raw, Wire
-from mhri.core.camera.images import Data
+from mhri.core.camera.images import Data, FrameError
 from mhri.core.camera.raw_image import decode_raw, decode_raw_depth, MM_PER_M
 from mhri.core.opencv import cv2
 
@@ -31,7 +31,10 @@ def recompressed(data: Data) -> Tuple[str, bytes]:
         suffix, (form, coded) = '/compressedDepth', encode_depth(mm, depth_max_m=66.0)
     else:
         bgr = cv2.cvtColor(decode_raw(image)[0], cv2.COLOR_RGB2BGR)
-        jpeg = cv2.imencode('.jpg', bgr, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])[1]
+        try:
+            jpeg = cv2.imencode('.jpg', bgr, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])[1]
+        except cv2.error:
+            raise FrameError('{} x {} pixels are too many for a jpeg'.format(*bgr.shape[1::-1]))
         suffix, form, coded = '/compressed', 'jpeg', jpeg.tobytes()
     return suffix, b''.join((_header(data), _sized(form.encode()), _sized(coded)))
 

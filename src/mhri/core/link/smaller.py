@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes compressed colour pictures smaller: harder compressed, then with fewer pixels."""
 import struct
+from typing import Optional
 
 import numpy as np
 
 from mhri.core.link.renaming import after_texts
 from mhri.core.opencv import cv2
 
+# More pixels a side no jpeg has.
+MAX_SIDE = 65500
 _LENGTH = struct.Struct('<I')
 # (how many times fewer pixels each way, jpeg quality), from large to small.
 STEPS = ((1, 60), (1, 40), (1, 25), (2, 70), (2, 50), (2, 30), (4, 70), (4, 45), (8, 50), (8, 20))
@@ -37,8 +40,8 @@ class Smaller:
         coded = np.frombuffer(data, np.uint8)[begin + 4:]
         while coded.size:
             factor, quality = STEPS[self._step]
-            pixels = cv2.imdecode(coded, cv2.IMREAD_COLOR)
-            if pixels is None:
+            pixels = _decoded(coded)
+            if pixels is None or max(pixels.shape) > MAX_SIDE * factor:
                 return data
             if factor > 1:
                 # OpenCV 4.2 does not know how to read fewer pixels from memory.
@@ -52,3 +55,11 @@ class Smaller:
                 return data[:begin] + _LENGTH.pack(len(found)) + found
             self._step += 1
         return data
+
+
+def _decoded(coded: 'np.ndarray') -> Optional['np.ndarray']:
+    try:
+        pixels: Optional['np.ndarray'] = cv2.imdecode(coded, cv2.IMREAD_COLOR)
+    except cv2.error:  # too many pixels
+        return None
+    return pixels

@@ -41,8 +41,11 @@ def jpeg_of(frame):
     if data.startswith(_JPEG):
         return data
     from mhri.core.opencv import cv2  # nearly every camera has jpegs: a start does not wait for it
-    pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
-    done, found = cv2.imencode('.jpg', pixels) if pixels is not None else (False, None)
+    try:
+        pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
+        done, found = cv2.imencode('.jpg', pixels) if pixels is not None else (False, None)
+    except cv2.error:
+        return None  # more pixels than a jpeg can have
     return found.tobytes() if done else None
 
 

@@ -228,6 +228,14 @@ class Player:
 
     def _run(self):
         """Play until the node ends."""
+        try:
+            self._play()
+        except rospy.ROSException:
+            # Its topics are closed before this thread hears of it.
+            if not rospy.is_shutdown():
+                raise
+
+    def _play(self):
         repeated_at = 0.0
         while not rospy.is_shutdown():
             with self._changed:

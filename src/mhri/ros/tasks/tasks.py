@@ -54,6 +54,8 @@ FEEDBACK_EVERY = 4
 ZEROS_S = 0.6
 # The gates speak at 2 Hz: a word late by this much is a word that does not come [s].
 SILENT_S = 0.9
+# So long the end waits for a status that is being published.
+JOIN_S = 0.5
 
 
 class _Goal:
@@ -157,6 +159,11 @@ class Tasks:
         self._finish()
         self._done.set()
         self._worker.stop()
+        # It would go on to publish on topics that are closed by then.
+        timer = getattr(self._server, 'status_timer', None)
+        if timer is not None:
+            timer.shutdown()
+            timer.join(JOIN_S)
 
     def is_busy(self, name):
         """Tell whether a robot is on a task."""
