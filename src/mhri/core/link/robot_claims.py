@@ -111,6 +111,8 @@ def believed(robot: str, said: Mapping[str, object], types: Mapping[str, RobotTy
     if wrong or not isinstance(overrides, dict):
         kind, overrides = base, {}
     kept = {key: overrides[key] for key in _PLAIN if key in overrides}
+    if isinstance(overrides.get('lasers'), list):
+        kept['lasers'] = overrides['lasers'][:MAX_TOPICS_EACH]
     kept.update(_topics(robot, kind, base))
     kept.update(_hardware(robot, kind, base, types))
     low = Limits(min(kind.limits.linear_mps, base.limits.linear_mps),
