@@ -120,16 +120,14 @@ class Standalone:
             self.window.showMaximized()
 
     def begin_afresh(self):
-        """Keep the saved settings until the operator changes robots, mode or limits in this run.
+        """Keep the saved settings until the operator changes robots or mode in this run.
 
         Call it when the robots of the command line are in the list.
         """
         self._remember = False
         self._robots_at_first = self.host.operator.selection.robots
-        panel = self.host.screen
-        # The mux publishes a mode and limits by itself, so their values do not tell who chose them.
-        for signal_ in (panel.mode_requested, panel.limits_requested, panel.together_requested):
-            signal_.connect(self._on_change)
+        # The mux publishes a mode by itself, so its value does not tell who chose it.
+        self.host.screen.mode_requested.connect(self._on_change)
 
     def _on_change(self, *_):
         self._remember = True

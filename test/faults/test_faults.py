@@ -33,7 +33,8 @@ class Bench:
         self.system = System()
         self.system.screen()
         self.system.start_master()
-        rospy.init_node('faults', disable_signals=True)
+        # As the node of the pedal: it may choose the mode.
+        rospy.init_node('mhri_pedal', disable_signals=True)
         self.watch = MasterWatch().start()
         self.mux = self.system.node('mux', '__name:=mux')
         self.gates = self.system.node('gates')

@@ -31,7 +31,7 @@ from mhri.presenters.settings_file import SettingsError, SettingsFile  # noqa: E
 EDITS = 4000 if is_long() else 60
 LONGEST_S, LONGEST_ERROR = 1.0, 300
 RESOURCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'resource')
-STATE = {'robots': ['bot1', 'bot2'], 'mode': 'pedal', 'limits': [0.5, 1.5], 'together': True,
+STATE = {'robots': ['bot1', 'bot2'], 'mode': 'pedal',
          'windows': {'bot1': [0, 0, 640, 480, False]},
          'looks': {'bot1': {'views': ['graph'], 'splitter': [100, 200], 'graph': {'seconds': 10}}},
          'panel': {'splitter': [200, 300], 'geometry': [0, 0, 800, 600, False]}}

@@ -165,7 +165,8 @@ def desk(tmp_path_factory):
     with System() as system:
         system.screen()
         system.start_master()
-        rospy.init_node('stop_while_hung_test', disable_signals=True)
+        # As the node of the pedal: it may choose the mode.
+        rospy.init_node('mhri_pedal', disable_signals=True)
         system.node('mux', '__name:=mux')
         system.node('gates')
         system.env['ROS_NAMESPACE'] = '/bot1'

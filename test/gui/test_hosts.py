@@ -57,7 +57,6 @@ def used_host():
     for name in ('bot2', 'bot1', 'rover_7'):
         host._add(name)
     host._select(['bot1'])
-    host.operator.request_limits(0.3, 0.8)
     host._request_mode('ps3joy')
     tear_off(host)
     return host
@@ -66,7 +65,6 @@ def used_host():
 def check_restored(host):
     assert host.operator.selection.robots == ('bot2', 'bot1', 'rover_7')
     assert host.operator.selection.selected == (), 'nothing is driven that was not chosen today'
-    assert host.operator.view().limits == (0.3, 0.8)
     assert host.operator._first_mode == 'ps3joy'
     host.tiles.make('bot1')
     assert host.windows['bot1'].torn_off
@@ -140,7 +138,6 @@ def test_standalone_keeps_its_settings_in_a_file(tmp_path):
     for name in ('bot2', 'bot1', 'rover_7'):
         first.host._add(name)
     first.host._select(['bot2'])
-    first.host.operator.request_limits(0.3, 0.8)
     first.host._request_mode('ps3joy')
     tear_off(first.host)
     first.window.close()
@@ -208,8 +205,8 @@ def test_a_demo_leaves_the_settings_alone(saved):
     (lambda host: host._add('bot2'), ['bot1', 'bot2']),
     (lambda host: host._remove('bot1'), []),
     (lambda host: host.screen.mode_requested.emit('ps3joy'), ['bot1']),
-    (lambda host: host.screen.limits_requested.emit(0.3, 0.8), ['bot1']),
-    (lambda host: host.screen.together_requested.emit(True), ['bot1']),
+    (lambda host: host.screen.limits_requested.emit(0.3, 0.8), ['kept']),
+    (lambda host: host.screen.together_requested.emit(True), ['kept']),
 ], ids=['none', 'a window', 'one more', 'one less', 'mode', 'limits', 'together'])
 def test_a_fresh_panel_keeps_the_settings_until_something_is_changed(saved, change, robots):
     program = Standalone(['panel'], saved)
@@ -236,7 +233,6 @@ def test_the_rqt_plugin_shows_the_panel_and_keeps_its_settings(plugin_class):
     host = plugin._host
     for name in ('bot2', 'bot1', 'rover_7'):
         host._add(name)
-    host.operator.request_limits(0.3, 0.8)
     host._request_mode('ps3joy')
     tear_off(host)
     plugin.save_settings(Settings(), settings)

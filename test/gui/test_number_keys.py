@@ -132,7 +132,7 @@ def test_after_a_restart_a_key_means_the_same_robot(start):
 
 def test_a_program_that_is_killed_has_kept_the_numbers(start, tmp_path):
     path = tmp_path / 'panel.json'
-    path.write_text(json.dumps({'state': {'limits': [0.3, 0.8]}}))
+    path.write_text(json.dumps({'state': {'mode': 'pedal'}}))
     screen = start()
     jobs = []
     screen.host.operator.do = lambda job, *arguments: jobs.append((job, arguments))
@@ -141,7 +141,7 @@ def test_a_program_that_is_killed_has_kept_the_numbers(start, tmp_path):
     for job, arguments in jobs:
         job(*arguments)
     kept = SettingsFile(str(path)).read()['state']
-    assert kept == {'limits': [0.3, 0.8], 'numbers': {'bot1': 1, 'bot2': 2}}
+    assert kept == {'mode': 'pedal', 'numbers': {'bot1': 1, 'bot2': 2}}
     screen.close()
     before = path.read_bytes()
     jobs[0][0](*jobs[0][1])

@@ -13,7 +13,7 @@ from mhri.gui.screen.geometry import geometry_of, restore_geometry
 from mhri.presenters.settings_file import SettingsFile, UNUSABLE
 from mhri.standalone import Standalone
 
-GOOD = {'robots': ['bot1'], 'limits': [0.3, 0.8]}
+GOOD = {'robots': ['bot1'], 'mode': 'pedal'}
 
 
 def state_with(**parts):
@@ -21,7 +21,7 @@ def state_with(**parts):
 
 
 def start_with(path, operator):
-    """Start the screen, draw it, and close it; return the robots and limits it began with."""
+    """Start the screen, draw it, and close it; return the robots it began with."""
     begun = time.process_time()
     program = Standalone(['panel'], path)
     program.restore()
@@ -30,17 +30,16 @@ def start_with(path, operator):
     program.host.tiles.make('bot9')
     operator.settle()
     program.window.grab()
-    view = program.host.operator.view()
-    found = [robot.name for robot in view.robots], view.limits
+    found = [robot.name for robot in program.host.operator.view().robots]
     program.window.close()
     assert time.process_time() - begun < 10.0
     return found
 
 
 @pytest.mark.parametrize('text, whole', [
-    (state_with(limits=[float('nan'), 1.0]), False),
-    (state_with(limits=['a', 'b']).replace('"a"', '1e999'), True),
-    (state_with(limits=['a', 'b']), True), (state_with(limits=[1e308, -1]), True),
+    (state_with(numbers=[float('nan'), 1.0]), False),
+    (state_with(numbers=['a', 'b']).replace('"a"', '1e999'), True),
+    (state_with(numbers=['a', 'b']), True), (state_with(numbers=[1e308, -1]), True),
     (state_with(panel={'splitter': [1e300, 5]}), True),
     (state_with(panel={'splitter': [2 ** 31, 2 ** 63]}), True),
     (state_with(windows={'bot9': [0, 0, 2 ** 31, 5, False]}), True),
@@ -51,12 +50,10 @@ def test_the_screen_starts(tmp_path, operator, text, whole):
     """Whole: what can be used of it is used."""
     path = tmp_path / 'panel.json'
     path.write_text(text)
-    robots, limits = start_with(str(path), operator)
+    robots = start_with(str(path), operator)
     assert robots == (['bot1'] if whole else [])
-    assert limits == ((0.3, 0.8) if whole and 'limits": [0.3' in text else (0.5, 1.5))
     assert (tmp_path / ('panel.json' + UNUSABLE)).read_text() == text, 'kept aside'
-    assert start_with(str(path), operator)[0] == robots, 'and the next start needs no help'
-    assert json.loads(path.read_text())['state']['limits'] == list(limits)
+    assert start_with(str(path), operator) == robots, 'and the next start needs no help'
 
 
 @pytest.mark.parametrize('lay', [
@@ -66,7 +63,7 @@ def test_the_screen_starts(tmp_path, operator, text, whole):
 def test_what_is_no_file_keeps_nobody_waiting(tmp_path, operator, lay):
     path = tmp_path / 'panel.json'
     lay(path)
-    assert start_with(str(path), operator) == ([], (0.5, 1.5))
+    assert start_with(str(path), operator) == []
 
 
 def test_nothing_in_it_is_run(tmp_path, operator):

@@ -6,6 +6,7 @@ import rospy
 
 from mhri.core.driving.gate import GateRule
 from mhri.core.driving.limits import ZERO
+from mhri.core.driving.settings import Settings
 from mhri.core.robots.robot_types import Limits
 from mhri.ros.driving import gates as module
 from mhri.ros.stand_by import Memory
@@ -47,7 +48,7 @@ def _robots(monkeypatch):
     # What is logged asks for the time, which a node has.
     monkeypatch.setattr(rospy.rostime, '_rostime_initialized', True)
     monkeypatch.setattr(module, 'RobotGate', make)
-    gates = module.Gates({}, Memory())
+    gates = module.Gates({}, Memory(), Settings(0.5, 1.5))
     for name in ('bot1', 'bot2', 'bot3'):
         gates._open(name, None)
     return gates, made

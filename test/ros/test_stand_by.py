@@ -234,14 +234,30 @@ def test_a_terminal_that_takes_nothing_keeps_nobody_from_taking_over(start, beat
 
 
 def test_what_is_kept_is_known_to_the_next_process():
-    memory = stand_by.Memory(size=16)
-    assert memory.names() == []
+    memory = stand_by.Memory(size=64)
+    assert memory.recall('robots', []) == []
     child = os.fork()
     if not child:
-        memory.keep(['bot1', 'bot2', 'much_too_long'])
-        memory.keep(['bot3', 'bot4'])
+        memory.keep('robots', ['bot1', 'bot2', 'bot3'])
+        memory.keep('limit', 0.12)
+        memory.keep('robots', ['bot3', 'bot4'])
         os._exit(0)
     os.waitpid(child, 0)
-    assert memory.names() == ['bot3', 'bot4']
-    memory.keep(['bot1', 'a_name_too_long'])
-    assert memory.names() == ['bot1', 'a_name_too_']
+    assert memory.recall('robots') == ['bot3', 'bot4'] and memory.recall('limit') == 0.12
+    assert not memory.keep('robots', ['a_name_too_long'] * 10), 'no room'
+    assert memory.recall('robots') == ['bot3', 'bot4'] and memory.recall('limit') == 0.12
+
+
+def test_a_process_that_is_killed_while_it_writes_leaves_what_was_kept():
+    memory = stand_by.Memory(size=65536)
+    memory.keep('word', 'first')
+    for _ in range(20):
+        child = os.fork()
+        if not child:
+            while True:
+                for letter in 'abc':
+                    memory.keep('word', letter * 60000)
+        time.sleep(0.01)
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+        assert len(set(memory.recall('word'))) in (1, 5)

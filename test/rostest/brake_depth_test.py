@@ -16,7 +16,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 from drive_tools import Hall, Hand, PATIENCE_S  # noqa: E402
 from gates_case import GatesCase  # noqa: E402
 from mhri.core.driving.brake import CRAWL_MPS, SCAN_OLD_S  # noqa: E402
-from mhri.msg import GroupSpeed, RobotGate  # noqa: E402
+from mhri.msg import RobotGate  # noqa: E402
 from mhri.ros.map.tf_feed import TfFeed  # noqa: E402
 from mhri.ros.resources import robot_types  # noqa: E402
 from mhri.ros.tasks.robot_senses import RobotSenses  # noqa: E402
@@ -31,7 +31,6 @@ class BrakeByDepth(GatesCase):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.group = rospy.Publisher('/gates_in/group_speed', GroupSpeed, queue_size=1, latch=True)
         cls.hall = Hall('bot1', 0.177)
         cls.end = VelocityEnd('/bot1/teleop/input')
 
@@ -41,11 +40,11 @@ class BrakeByDepth(GatesCase):
         self.state.wait_robot('bot1', lambda gate: gate.topic and gate.obeys == 'operator',
                               'the gate of bot1', PATIENCE_S)
         self.centre('bot1', self.end)
-        self.group.publish(brake=True)
+        self.operator.set(brake=True)
         self.says(RobotGate.BRAKE_ON)
 
     def tearDown(self):
-        self.group.publish(brake=False)
+        self.operator.set()
         self.state.wait(lambda state: not state.brake, 'the brake to be off')
 
     def says(self, word):

@@ -19,7 +19,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 from drive_tools import Hall, Hand, PATIENCE_S  # noqa: E402
 from gates_case import GatesCase, start_gates, ZERO  # noqa: E402
 from mhri.core.driving.brake import CRAWL_MPS  # noqa: E402
-from mhri.msg import GroupSpeed, RobotGate  # noqa: E402
+from mhri.msg import RobotGate  # noqa: E402
 from rostest_tools import measured  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.two_lasers import TwoLasers  # noqa: E402
@@ -35,7 +35,6 @@ class Brake(GatesCase):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.group = rospy.Publisher('/gates_in/group_speed', GroupSpeed, queue_size=1, latch=True)
         cls.hall = Hall('bot1', 0.177)
 
     def tearDown(self):
@@ -43,7 +42,7 @@ class Brake(GatesCase):
 
     def ask(self, brake):
         """Switch the brake on or off."""
-        self.group.publish(brake=brake)
+        self.operator.set(1.0, brake=brake)
         self.state.wait(lambda state: state.brake == brake, 'the brake to be {}'.format(brake))
 
     def hold(self, linear, angular=0.0):

@@ -22,7 +22,7 @@ from sensor_msgs.msg import Joy
 HERE = os.path.dirname(os.path.realpath(__file__))
 sys.path.insert(0, os.path.join(HERE, '..'))
 
-from mhri.msg import RobotGate  # noqa: E402
+from mhri.msg import DriveSettings, RobotGate  # noqa: E402
 from mhri.ros.screen.backend import ScreenBackend  # noqa: E402
 from support.fake_gates import FakeGates, moving  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
@@ -114,6 +114,30 @@ class ControlTest(unittest.TestCase):
         count = len(self.gates.selections)
         wait_for(lambda: len(self.said_by('/second_screen', count)) > 3, START_S, 'the new lease')
         self.assertEqual(self.said_by('/first_screen', count + 1), [])
+
+    def test_a_panel_sets_nothing_before_its_operator_has_moved_a_control(self):
+        """And then what is in force stays but for that."""
+        self.gates.say(settings=DriveSettings(0.125, 0.75, True, False, False))
+        first = self.screen('first_screen')
+        self.in_control(first)
+        wait_for(lambda: len(self.gates.wishes) > 4, START_S, 'the lease')
+        self.assertEqual({settings for _, settings in self.gates.wishes}, {None})
+        first.do('brake', 'on')
+        wait_for(lambda: self.gates.wishes[-1][1], START_S, 'the wish')
+        self.assertEqual(self.gates.wishes[-1][1], DriveSettings(0.125, 0.75, True, False, True))
+        count = len(self.gates.wishes)
+        wait_for(lambda: len(self.gates.wishes) > count + 3, START_S, 'the lease')
+        self.assertEqual(self.gates.wishes[-1][1].brake, True, 'it is repeated')
+        second = self.screen('second_screen')
+        second.do('limits', '1.0', '2.0')
+        second.do('take')
+        second.wait('its control', lambda view: view['ours'])
+        count = len(self.gates.wishes)
+        wait_for(lambda: len(self.gates.wishes) > count + 3, START_S, 'the new lease')
+        first.do('take')
+        first.wait('its control', lambda view: view['ours'])
+        wait_for(lambda: len(self.gates.wishes) > count + 8, START_S, 'the first lease again')
+        self.assertEqual({settings for _, settings in self.gates.wishes[count + 1:]}, {None})
 
     def test_the_lease_ends_where_the_thread_of_the_hands_hangs(self):
         screen = self.screen('hanging_screen')
@@ -247,11 +271,11 @@ class ControlTest(unittest.TestCase):
         early = ScreenBackend(['panel'])
         early.start()
         self.addCleanup(early.close)
-        wait_for(lambda: rospy.get_name() in publishers('/gates_in/group_speed'), START_S, 'it')
+        wait_for(lambda: rospy.get_name() in publishers('/mux_in/mode_select'), START_S, 'it')
         early.close(forget=True)
         wait_for(lambda: rospy.get_name() not in {
-            *publishers('/gates_in/group_speed'), *publishers('/mhri_joy/rumble'),
-            *publishers('/mux_in/mode_select')}, START_S, 'its topics to be given back')
+            *publishers('/mhri_joy/rumble'), *publishers('/mux_in/mode_select')},
+            START_S, 'its topics to be given back')
         late, = self.screens(1)
         self.assertTrue(late.view().control.ours)
 

@@ -142,15 +142,13 @@ class GatesGuardTest(GatesCase):
         self.assertLess(self.stalled_robot(back_too=False), 0.1)
 
     def test_round_trips_are_measured_and_may_slow_a_group(self):
-        from mhri.msg import GroupSpeed
         (name, receiver), = self.robots(1)
         guard = Process([sys.executable, GUARD, '_command:=cmd_vel'], env={'ROS_NAMESPACE': name})
         self.addCleanup(guard.end)
         self.state.wait_robot(name, lambda gate: gate.guarded and gate.round_trip_s < 0.1,
                               'a round trip', 20.0)
-        speed = rospy.Publisher('/gates_in/group_speed', GroupSpeed, queue_size=1, latch=True)
-        self.addCleanup(speed.unregister)
-        speed.publish(slow_with_link=True)
+        self.operator.set(slow_with_link=True)
+        self.addCleanup(self.operator.set)
         guard.send(signal.SIGSTOP)
         self.state.wait_robot(name, lambda gate: not gate.round_trip_s < 0.1, 'a hung node', 20.0)
         guard.send(signal.SIGCONT)

@@ -17,7 +17,6 @@ from std_srvs.srv import Trigger
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.msg import GroupSpeed  # noqa: E402
 from gates_case import GatesCase, NEXT_S, start_gates, ZERO  # noqa: E402
 from rostest_tools import measured, Process  # noqa: E402
 from support.deaf_robot import DeafRobot  # noqa: E402
@@ -101,19 +100,26 @@ class GatesTest(GatesCase):
         self.assertEqual(self.state.message.operator, rospy.get_name())
         caller = next(line for line in self.state.message.refused
                       if 'operator_process' in line).split(':')[0]
-        # As its own screen would ask for it; and one that selects nothing.
-        for taker, computer in (('/nobody', ''), (caller, 'localhost')):
-            subprocess.check_call([sys.executable, '-c', TAKE.format(taker)])
-            self.state.wait(lambda state: (state.operator, state.computer) == (taker, computer),
-                            'the other one in control')
+        # One that publishes no selection; and as its own screen would ask for it.
+        self.assertIn('success: False', self.take_as('/nobody'))
+        self.assertEqual(self.state.message.operator, rospy.get_name())
+        self.assertIn('success: True', self.take_as(caller))
+        self.state.wait(lambda state: (state.operator, state.computer) == (caller, 'localhost'),
+                        'the other one in control')
         self.state.wait_robot(name, lambda gate: gate.obeys == 'operator',
                               'the selection of the other one')
         self.centre(name, receiver)
         self.assertEqual(self.drive(receiver, 0.2), (0.2, 0.0))
         self.first_zero('operator killed', receiver, other.send(signal.SIGKILL), 0.05)
+        self.assertEqual(self.state.message.operator, caller, 'it may come back')
         self.state.wait(lambda state: state.operator == '', 'an empty seat')
         self.operator.check(name)
         self.state.wait(lambda state: state.operator == rospy.get_name(), 'who comes next')
+
+    @staticmethod
+    def take_as(caller):
+        """Take control under another name; return the answer."""
+        return subprocess.check_output([sys.executable, '-c', TAKE.format(caller)], text=True)
 
     def test_taking_control_stops_whoever_is_driven(self):
         (_, receiver), = self.robots(1)
@@ -235,16 +241,15 @@ class GatesTest(GatesCase):
         self.operator.check(slow, quick)
         self.state.wait(lambda state: [gate.obeys for gate in state.robots if gate.name in (
             slow, quick)] == ['operator'] * 2, 'both')
-        speed = rospy.Publisher('/gates_in/group_speed', GroupSpeed, queue_size=1, latch=True)
-        self.addCleanup(speed.unregister)
-        speed.publish(together=True)
+        self.operator.set(together=True)
+        self.addCleanup(self.operator.set)
         self.state.wait(lambda state: state.together, 'together')
         self.centre(slow, slow_end)
         self.centre(quick, quick_end)
         self.assertAlmostEqual(self.drive(quick_end, 0.5)[0], 0.22)
         wait_for(lambda: abs(slow_end.values()[-1][0] - 0.22) < 1e-6, what='the slow one')
         self.centre(quick, quick_end)
-        speed.publish(together=False)
+        self.operator.set()
         self.state.wait(lambda state: not state.together, 'each for itself')
         self.assertAlmostEqual(self.drive(quick_end, 0.5)[0], 0.5)
 

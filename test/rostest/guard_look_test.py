@@ -16,7 +16,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 
 from drive_tools import Hall, Hand, PATIENCE_S  # noqa: E402
 from gates_case import end, GatesCase, start_gates, ZERO  # noqa: E402
-from mhri.msg import GroupSpeed, RobotGate  # noqa: E402
+from mhri.msg import RobotGate  # noqa: E402
 from rostest_tools import measured, Process  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
@@ -97,10 +97,9 @@ class GuardLook(GatesCase):
         self.guarded('_brake:=true')
         self.state.wait_robot('bot1', lambda gate: gate.brake_on_robot
                               and gate.brake == RobotGate.BRAKE_ON, 'its word', PATIENCE_S)
-        group = rospy.Publisher('/gates_in/group_speed', GroupSpeed, queue_size=1, latch=True)
-        self.addCleanup(group.unregister)
+        self.addCleanup(self.operator.set)
         # Asked for here as well: the one on the robot is enough.
-        group.publish(brake=True)
+        self.operator.set(brake=True)
         self.state.wait(lambda state: state.brake, 'the wish')
         begun = time.monotonic()
         hand = self.hold(0.25)
@@ -117,7 +116,7 @@ class GuardLook(GatesCase):
         hand.let_go()
         self.mux.say(0.0)
         self.drive_to(10.9, -0.25)
-        group.publish(brake=False)
+        self.operator.set()
         self.state.wait(lambda state: not state.brake, 'the wish to be taken back')
 
     def test_of_two_lasers_the_one_that_falls_silent_closes_its_side(self):

@@ -10,7 +10,6 @@ import time
 import unittest
 
 from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import Twist
 from rostest_tools import (
     FORWARD, measured, moves, NEUTRAL, Recorder, rests, start_mux, Stick, twist_recorder,
     wait_until)
@@ -244,22 +243,6 @@ class MuxEnd(unittest.TestCase):
         select.publish(source=1000000 * 'x')
         wait_until(lambda: 'no source' in mux.said(), 'it is not said')
         self.assertLess(len(mux.said()), 5000)
-
-    def test_a_speed_limit_that_is_no_number_goes_nowhere(self):
-        limits = Recorder('/mux/speed_limit', Twist, lambda limit: (limit.linear.x,
-                                                                    limit.angular.z))
-        self.addCleanup(limits.close)
-        ask = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=10)
-        self._start()
-        wait_until(ask.get_num_connections, 'the mux does not listen')
-        for linear, angular in ((float('nan'), 1.0), (1e308, 1.0), (0.3, float('inf')),
-                                (-1.0, 1.0), (0.3, float('nan')), (0.25, 1.25)):
-            message = Twist()
-            message.linear.x, message.angular.z = linear, angular
-            asked = time.monotonic()
-            ask.publish(message)
-            limits.wait(lambda value: True, asked)
-        self.assertEqual({item.value for item in limits.since(0.0)}, {(0.5, 1.5), (0.25, 1.25)})
 
     def test_a_terminal_that_takes_nothing_holds_up_nothing(self):
         """Ctrl-S: whatever is said, the zeros come, the stop is answered, and the mux ends."""

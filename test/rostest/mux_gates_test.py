@@ -17,14 +17,14 @@ from geometry_msgs.msg import Twist, Vector3
 import psutil
 from rosgraph_msgs.msg import Log
 from rostest_tools import (
-    FORWARD, measured, moves, NEUTRAL, Recorder, rests, Stick, StickProcess, twist_recorder,
-    wait_until)
+    FORWARD, measured, moves, NEUTRAL, Process, Recorder, rests, Stick, StickProcess,
+    twist_recorder, wait_until)
 import rospy
 import rostest
 from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool, Trigger
 
-from mhri.msg import GatesState, RobotSelect, TeamTwist
+from mhri.msg import ControlMode, DriveSettings, GatesState, RobotSelect, TeamTwist
 
 # Commands are 50 ms apart: none for so long, and none comes any more [s].
 SILENCE_S = 0.4
@@ -135,6 +135,64 @@ class MuxGates(unittest.TestCase):
         select.publish(robots=['newcomer'])
         self.twists.wait(rests, start)
         select.unregister()
+
+    def test_the_limits_are_those_that_the_gates_say_and_a_moving_robot_follows(self):
+        limits = Recorder('/mux/speed_limit', Twist, lambda said: (said.linear.x, said.angular.z))
+        self.addCleanup(limits.close)
+        self.addCleanup(self.gates.say, settings=DriveSettings(0.5, 1.5, False, False, False))
+        self._drive()
+        begun = time.monotonic()
+        self.gates.say(settings=DriveSettings(0.25, 1.0, False, False, False))
+        got = self.twists.wait(lambda value: value == (0.25, 0.0), begun)
+        measured('speed limit to command', got.at - begun)
+        self.stick.hold((1.0, 0.0))
+        self.twists.wait(lambda value: value == (0.0, 1.0), begun)
+        limits.wait(lambda value: value == (0.25, 1.0))
+        nan, inf = float('nan'), float('inf')
+        for linear, angular in ((nan, 1.0), (1e30, 1.0), (0.3, inf), (-1.0, 1.0), (0.3, nan),
+                                (0.0, 0.0)):
+            start = time.monotonic()
+            self.gates.say(settings=DriveSettings(linear, angular, False, False, False))
+            self.twists.wait(lambda _: len(self.twists.since(start)) > 4)
+            self.assertEqual({item.value for item in self.twists.since(start)}, {(0.0, 1.0)})
+        self.assertEqual(limits.last(), (0.25, 1.0))
+
+    def test_the_mode_is_chosen_by_the_operator_or_an_input_node_and_by_nobody_else(self):
+        mode = Recorder('/mux/mode', ControlMode, lambda said: said.source)
+        self.addCleanup(mode.close)
+        mode.wait(lambda value: value == 'joy')
+        strange = Process(['rostopic', 'pub', '-r', '10', '/mux_in/mode_select',
+                           'mhri/ControlMode', 'pedal'])
+        self.addCleanup(strange.end)
+        mode.wait(lambda value: value == 'pedal')
+        self.addCleanup(self.gates.say, operator='')
+        self.gates.say(operator=rospy.get_name())
+        wish = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1)
+        self.addCleanup(wish.unregister)
+        wait_until(wish.get_num_connections, 'the mux does not listen')
+        begun = time.monotonic()
+        # From here on the stranger has no say.
+        wait_until(lambda: wish.publish(mode='joy') or mode.last() == 'joy', 'no joy')
+        for _ in range(40):
+            wish.publish(mode='joy')
+            rospy.rostime.wallsleep(0.02)
+        self.assertEqual({item.value for item in mode.since(begun)}, {'joy'})
+        strange.end()
+        voice = Process(['rostopic', 'pub', '-r', '10', '/mux_in/mode_select', 'mhri/ControlMode',
+                         'pedal', '__name:=mhri_voice'])
+        self.addCleanup(voice.end)
+        mode.wait(lambda value: value == 'pedal', begun)
+        voice.end()
+        # What is merely repeated chooses nothing.
+        begun = time.monotonic()
+        for _ in range(20):
+            wish.publish(mode='joy')
+            rospy.rostime.wallsleep(0.02)
+        self.assertEqual(mode.since(begun), [])
+        wish.publish(mode='voice')
+        mode.wait(lambda value: value == 'voice', begun)
+        wish.publish(mode='joy')
+        mode.wait(lambda value: value == 'joy', begun)
 
     def test_a_stop_that_the_gates_hold_for_a_second_is_the_muxs_as_well(self):
         self._drive()

@@ -37,12 +37,11 @@ class MuxPromises(unittest.TestCase):
         cls.advice = Recorder('/mux/advice', String, lambda message: message.data)
         cls.stick, cls.pedal = (Stick('/mux_in/' + name) for name in ('joy', 'pedal'))
         cls.select = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
-        cls.limit = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=10)
         cls.set_stop = rospy.ServiceProxy('/mux/set_stop_all', SetBool)
         cls.set_stop.wait_for_service(10.0)
         for stick in (cls.stick, cls.pedal):
             stick.wait_listener()
-        wait_until(lambda: cls.select.get_num_connections() and cls.limit.get_num_connections(),
+        wait_until(lambda: cls.select.get_num_connections(),
                    'the mux does not listen')
         for recorder in (cls.twists, cls.asked, cls.modes, cls.stops):
             recorder.wait_publisher()
@@ -138,8 +137,8 @@ class MuxPromises(unittest.TestCase):
 
     def test_killed_source_zero_within_550_ms(self):
         """SIGKILL of the process that holds the stick."""
-        self._mode('pedal')
-        source = StickProcess('/mux_in/pedal')
+        self._mode('voice')
+        source = StickProcess('/mux_in/voice')
         try:
             source.hold(NEUTRAL)
             self.waits.wait(lambda _: self.waits.last() == '')
@@ -188,18 +187,43 @@ class MuxPromises(unittest.TestCase):
         self._assert_interlock(self.stick, self.stick.hold(FORWARD))
 
     def test_neutral_interlock_after_a_newly_connected_device(self):
-        """Another publisher takes the stick over, held."""
+        """The node of a device is started again, with the stick held."""
+        self._mode('voice')
+        first = StickProcess('/mux_in/voice', 'the_device')
+        self.addCleanup(first.process.end)
+        first.hold(NEUTRAL)
+        self.waits.wait(lambda _: self.waits.last() == '')
+        first.hold(FORWARD)
+        self.twists.wait(moves, time.monotonic())
+        begun = first.process.send(9)
+        second = StickProcess('/mux_in/voice', 'the_device')
+        self.addCleanup(second.process.end)
+        self.twists.wait(rests, begun)
+        second.hold(FORWARD)
+        self.waits.wait(lambda _: self.waits.last() == 'neutral', begun)
+        self._assert_interlock(second, begun)
+
+    def test_a_second_publisher_of_a_source_drives_neither_while_the_first_is_silent_nor_lost(self):
         self._mode('pedal')
         self._drive(self.pedal)
-        source = StickProcess('/mux_in/pedal')
-        try:
-            source.hold(FORWARD)
-            begun = self.twists.wait(rests, time.monotonic()).at
-            self.pedal.silence()
-            self.waits.wait(lambda _: self.waits.last() == 'neutral')
-            self._assert_interlock(source, begun)
-        finally:
-            source.process.end()
+        second = StickProcess('/mux_in/pedal', 'second_pedal')
+        self.addCleanup(second.process.end)
+        second.hold(FORWARD)
+        self.advice.wait(lambda words: '/second_pedal publishes /mux_in/pedal as well' in words)
+        for way in ('silent', 'lost'):
+            with self.subTest(first=way):
+                if way == 'lost':
+                    with self.pedal.frame(' lost'):
+                        self.pedal.once(NEUTRAL)
+                begun = self.pedal.silence()
+                self.twists.wait(rests, begun)
+                for axes in (NEUTRAL, FORWARD, NEUTRAL, FORWARD):
+                    second.hold(axes)
+                    rospy.rostime.wallsleep(0.5)
+                self.assertEqual(self.waits.last(), 'source')
+                first = self.twists.wait(rests, begun).at
+                self.assertFalse([item for item in self.twists.since(first) if moves(item.value)])
+                self._drive(self.pedal)
 
     def test_a_second_virtual_joystick_is_refused_until_the_first_has_gone(self):
         """Two panels: they must not take turns; the second one is named."""
@@ -242,28 +266,6 @@ class MuxPromises(unittest.TestCase):
         self.waits.wait(lambda _: self.waits.last() == '')
         stick.hold(FORWARD)
         self.twists.wait(moves, begun)
-
-    def test_speed_limit_is_set_live(self):
-        """A robot that moves follows without a new stick event."""
-        self._drive()
-        limit = Twist()
-        try:
-            limit.linear.x, limit.angular.z = 0.2, 1.0
-            begun = time.monotonic()
-            self.limit.publish(limit)
-            got = self.twists.wait(lambda value: value == (0.2, 0.0), begun)
-            measured('speed limit to command', got.at - begun)
-            self.stick.hold((1.0, 0.0))
-            self.twists.wait(lambda value: value == (0.0, 1.0), begun)
-            limit.linear.x = float('nan')
-            self.limit.publish(limit)
-            start = time.monotonic()
-            self.twists.wait(lambda _: len(self.twists.since(start)) > 20)
-            self.assertEqual({item.value for item in self.twists.since(start)}, {(0.0, 1.0)})
-        finally:
-            limit.linear.x, limit.angular.z = 0.5, 1.5
-            self.limit.publish(limit)
-            self.twists.wait(lambda value: value == (0.0, 1.5), time.monotonic())
 
     def test_mode_is_latched_and_owned_by_the_mux(self):
         """Whoever comes late hears it; an unknown one changes nothing."""

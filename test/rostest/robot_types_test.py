@@ -52,10 +52,7 @@ class RobotTypesTest(unittest.TestCase):
         cls.processes = [start_mux('__name:=mux'),
                          Process([roslib.packages.find_node('mhri', 'gates')[0]])]
         cls.stick, cls.operator = Stick('/mux_in/joy'), FakeOperator()
-        limit = Twist()
-        limit.linear.x, limit.angular.z = 5.0, 5.0
-        cls.limit = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=1, latch=True)
-        cls.limit.publish(limit)
+        cls.operator.set(5.0, 5.0)
         cls.gates = GatesClient(lambda state, now: None).start()
         cls.worker = Worker('feeds').start()
         cls.stick.wait_listener()

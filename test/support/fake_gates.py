@@ -7,7 +7,7 @@ from geometry_msgs.msg import Twist
 import rospy
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
-from mhri.msg import GatesState, GroupSpeed, RobotGate, RobotSelect
+from mhri.msg import DriveSettings, GatesState, RobotGate, RobotSelect
 
 PERIOD_S = 0.5
 
@@ -22,20 +22,20 @@ def moving(linear_mps=0.1):
 class FakeGates:
     """Says a ``mhri/GatesState`` and keeps what it is asked, by caller id.
 
-    ``selections`` are (caller, robots), ``groups`` (together, slow_with_link, brake), ``takers``
+    ``selections`` are (caller, robots), ``wishes`` (caller, settings or None) of those, ``takers``
     and ``power`` what the services were called with.
     """
 
     def __init__(self):
-        self.state = GatesState(share=1.0, leased=True)
-        self.selections, self.groups, self.takers, self.power = [], [], [], []
+        self.state = GatesState(share=1.0, leased=True, settings=DriveSettings(
+            linear_mps=0.5, angular_rad_s=1.5))
+        self.selections, self.wishes, self.takers, self.power = [], [], [], []
         self._lock = threading.Lock()
         self._silent = threading.Event()
         self._ended = threading.Event()
         self._publisher = rospy.Publisher('/gates/state', GatesState, queue_size=10, latch=True)
         self._parts = [
             rospy.Subscriber('/robot_controller/robot_select', RobotSelect, self._hear),
-            rospy.Subscriber('/gates_in/group_speed', GroupSpeed, self._hear_group),
             self._publisher]
         self._services = [rospy.Service('/gates/take_control', Trigger, self._take),
                           rospy.Service('/gates/set_motor_power', SetBool, self._set_power)]
@@ -44,11 +44,10 @@ class FakeGates:
     def _hear(self, message):
         caller = message._connection_header['callerid']
         self.selections.append((caller, tuple(message.robots)))
+        self.wishes.append((caller, *message.settings[:1]) if message.settings
+                           else (caller, None))
         if not self.state.operator:
             self.say(operator=caller)
-
-    def _hear_group(self, message):
-        self.groups.append((message.together, message.slow_with_link, message.brake))
 
     def _take(self, request):
         caller = request._connection_header['callerid']

@@ -7,9 +7,10 @@ import time
 from geometry_msgs.msg import Twist
 import rospy
 from std_msgs.msg import Bool
-from std_srvs.srv import SetBool, SetBoolResponse
+from std_srvs.srv import SetBool, SetBoolResponse, Trigger
 
-from mhri.msg import GatesState, RobotSelect, TeamTwist
+from mhri.msg import DriveSettings, GatesState, RobotSelect, TeamTwist
+from support.graph import TAKE_CONTROL
 from support.ros_system import wait_for
 
 
@@ -49,20 +50,34 @@ class FakeMux:
 
 
 class FakeOperator:
-    """Repeats its selection at 2 Hz, as whoever is in control has to."""
+    """Repeats its wish at 2 Hz, as whoever is in control has to."""
 
     def __init__(self):
         self.select = rospy.Publisher('/robot_controller/robot_select', RobotSelect,
                                       queue_size=1, latch=True, tcp_nodelay=True)
         self._names = None
+        self._settings = []
         self._changed = threading.Event()
         threading.Thread(target=self._run, daemon=True).start()
 
     def check(self, *names):
         """Check exactly these robots; return when [s, monotonic]."""
         self._names = list(names)
+        return self._publish()
+
+    def set(self, linear_mps=0.5, angular_rad_s=1.5, **others):
+        """Wish these settings from now on (None: say nothing of them); return when."""
+        self._settings = [DriveSettings(linear_mps=linear_mps, angular_rad_s=angular_rad_s,
+                                        **others)] if linear_mps else []
+        return self._publish()
+
+    def take(self):
+        """Take control."""
+        wait_for(lambda: rospy.ServiceProxy(TAKE_CONTROL, Trigger)().success, what='control')
+
+    def _publish(self):
         when = time.monotonic()
-        self.select.publish(robots=self._names)
+        self.select.publish(robots=self._names or [], settings=self._settings)
         return when
 
     def fall_silent(self):
@@ -79,7 +94,7 @@ class FakeOperator:
         while not rospy.is_shutdown():
             self._changed.wait(0.5)
             if self._names is not None:
-                self.select.publish(robots=self._names)
+                self._publish()
 
 
 class StateEar:

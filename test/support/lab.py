@@ -196,7 +196,8 @@ class Operator:
         from support.robots import Stick, Witness
         self.system = lab.system
         self.system.screen()
-        rospy.init_node('lab', disable_signals=True)
+        # As the node of the pedal: it may choose the mode.
+        rospy.init_node('mhri_pedal', disable_signals=True)
         self.system.node('mux', '__name:=mux')
         self.system.node('gates')
         self.system.node('panel', '--fresh', '--select', 'bot1 bot2', '__name:=mhri_panel')

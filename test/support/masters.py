@@ -240,7 +240,8 @@ class Masters:
         from mhri.ros.graph.master_watch import MasterWatch
         from std_msgs.msg import String
         from support.robots import Stick, Witness
-        rospy.init_node('masters_test', disable_signals=True)
+        # As the node of the pedal: it may choose the mode.
+        rospy.init_node('mhri_pedal', disable_signals=True)
         MasterWatch().start()
         self.state = StateEar()
         self.operator = FakeOperator()

@@ -89,7 +89,8 @@ class World:
         import rospy
         from mhri.msg import ControlMode
         from mhri.ros.graph.master_watch import MasterWatch
-        rospy.init_node('random_events', disable_signals=True)
+        # As the node of the pad: it may choose the mode.
+        rospy.init_node('mhri_joy', disable_signals=True)
         MasterWatch().start()
         self._mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=1, latch=True)
         for key in ['mux', 'gates'] + [

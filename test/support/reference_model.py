@@ -206,8 +206,9 @@ class ReferenceModel:
         name = key[1]
         if starting:
             self.chosen[name] = frozenset()
-            # Who has just come may not have spoken yet.
-            if not any(now - self.parts['operator', other].back_at > UNSURE_S
+            # Who has just come may not have spoken yet; the seat of one that has gone gets empty.
+            if not any(self.parts['operator', other].well
+                       and now - self.parts['operator', other].back_at > UNSURE_S
                        for other in self.holders):
                 self.holders.add(name)
         elif part.lasted > LEASE_S + 0.5 and self.holders == {name}:
@@ -229,12 +230,11 @@ class ReferenceModel:
             self._wait(now, SAY_S if starting else GUARD_LOST_S, 'its guard is back', key[1])
 
     def _gone(self, name, now):
-        if name in self.holders:
+        """Take note of an operator's end: nobody gets its seat who was refused before."""
+        if self.holders == {name}:
+            self._all_wait(now, AT_ONCE_S, 'its operator has gone')
+        elif name in self.holders:
             self.holders.discard(name)
-            if not self.holders:
-                self.holders = {other for other in self.chosen
-                                if self.parts['operator', other].well}
-                self._all_wait(now, AT_ONCE_S, 'its operator has gone')
 
     def _unwell_until(self, when):
         self.well_since = max(self.well_since, when)

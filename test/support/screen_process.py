@@ -30,6 +30,8 @@ def carry_out(operator, word, *words):
     """Do one line."""
     {'add': lambda: operator.add(*words), 'select': lambda: operator.select(words),
      'take': operator.take_control, 'stop': operator.stop_all,
+     'limits': lambda: operator.request_limits(*map(float, words)),
+     'brake': lambda: operator.brake(words[0] == 'on'),
      'stick': lambda: operator.send_stick(*map(float, words)),
      'hang': lambda: time.sleep(float(words[0]))}[word]()
 

@@ -31,6 +31,19 @@ def test_a_claim(drives, heard, after):
     assert claim.drives == after
 
 
+def test_a_screen_that_is_refused_claims_nothing_until_it_takes_control():
+    claim = Claim(ME)
+    claim.hear('', 0.0, refused=True)
+    assert not claim.drives
+    for now in (1.0, 3.0, 10.0, 60.0):
+        claim.hear('', now)
+        assert not claim.drives
+    claim.hear(ME, 61.0)
+    assert claim.drives
+    claim.hear('', 62.0)
+    assert claim.drives
+
+
 @pytest.mark.parametrize('node, words', [
     ('/mhri_panel', 'panel'), ('/mhri_panel_2', 'panel'), (OTHER, 'panel in rqt'),
     ('/night_watch', 'night_watch')])

@@ -33,10 +33,22 @@ def test_the_owner_gone_frees_it():
 def test_whoever_takes_control_owns_it_as_soon_and_as_long_as_it_is_connected():
     ownership = Ownership()
     ownership.admits(A, {A})
-    assert ownership.take(B) and not ownership.take(B)
-    assert ownership.admits(A, {A}), 'nobody else is there'
-    assert not ownership.admits(A, {A, B}) and ownership.admits(B, {A, B})
+    assert not ownership.take(B, {A}), 'it is not there yet'
     assert ownership.admits(A, {A})
+    assert ownership.take(B, {A, B}) and not ownership.take(B, {A, B})
+    assert not ownership.admits(A, {A, B}) and ownership.admits(B, {A, B})
+    assert not ownership.admits(A, {A}), 'it has lost control'
+    assert ownership.take(A, {A, B}) and ownership.admits(A, {A, B})
+
+
+def test_whoever_was_refused_does_not_get_it_by_waiting():
+    ownership = Ownership()
+    ownership.admits(A, {A, B})
+    assert not ownership.admits(B, {A, B})
+    assert not ownership.admits(B, {B}), 'the first has gone'
+    assert ownership.admits(A, {A, B}), 'and is back'
+    ownership.admits(A, {A})
+    assert ownership.admits(B, {B}), 'started anew'
 
 
 def test_a_loop_that_comes_round_has_not_slept():

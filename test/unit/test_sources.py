@@ -69,7 +69,6 @@ def test_shipped_file_has_the_contract_s_sources():
         ('voice', '/mux_in/voice', '/mhri_voice/set_suspended', 0.5)]
     assert config.default == 'joy'
     for source in config.sources:
-        assert source.exclusive == (source.name == 'joy')
         if source.name != 'ps3joy':
             stick = source.profile.read((1.0, 0.5), ())
             assert (stick.turn, stick.forward) == (1.0, 0.5), 'axes[0] left +, axes[1] forward +'

@@ -6,19 +6,43 @@
 killed (:mod:`mhri.ros.stand_by`).
 """
 import gc
+import struct
 import sys
 
 import rospy
 
-from mhri.ros.driving.gates import Gates
+from mhri.core.config import ConfigError
+from mhri.core.driving.settings import Settings
+from mhri.core.driving.sources import parse_mux_config
+from mhri.ros.driving.gates import Gates, KEPT
 from mhri.ros.driving.gates_state import GatesSpeaker
 from mhri.ros.ending import init_node
 from mhri.ros.graph import log
 from mhri.ros.graph.handshake import limit_handshakes
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.graph.rospy_inside import ended_by_hand
-from mhri.ros.resources import robot_types
+from mhri.ros.resources import profile_reader, read_text, resource_path, robot_types
 from mhri.ros.stand_by import Memory, stand_by
+
+
+def first_settings():
+    """Return the :class:`Settings` until an operator sets others: the limits of ``mux.yaml``.
+
+    Where the mux's own file (``/mux/config``) cannot be used, those of the file that mhri brings.
+    """
+    usual = resource_path('mux.yaml')
+    path = rospy.get_param('/mux/config', usual)
+    for path in (path if isinstance(path, str) and path else usual, usual):
+        try:
+            config = parse_mux_config(read_text(path), path, profile_reader(path))
+            break
+        except (ConfigError, OSError) as error:
+            rospy.logwarn('the speed limits of %s cannot be read: %s', path, error)
+    else:
+        sys.exit('the gates cannot start: no speed limits')
+    # As the message carries them.
+    return Settings(*struct.unpack('<2f', struct.pack(
+        '<2f', config.linear_mps, config.angular_rad_s)))
 
 
 def main():
@@ -34,7 +58,9 @@ def main():
     rospy.on_shutdown(beat.end)
     log.install()
     by_hand = ended_by_hand()
-    gates = Gates(types, memory)
+    # The next process must not lose time over a file: robots wait for its zero.
+    settings = first_settings() if memory.recall(KEPT) is None else None
+    gates = Gates(types, memory, settings)
     speaker = GatesSpeaker(gates.read, gates.mux_heard, beat)
     gates.on_change = speaker.on_change
     rospy.on_shutdown(gates.close)

@@ -309,14 +309,14 @@ class ScreenHost(QObject):
         self._select([other for other in self.operator.selection.selected if other != name])
 
     def save_state(self):
-        """Return what is kept between runs as a plain dict: never which robots are selected."""
+        """Return what is kept between runs as a plain dict.
+
+        Never which robots are selected, nor how fast they drive: that is what is in force.
+        """
         places, looks, torn = self.tiles.save_state()
         selection = self.operator.selection
         state = {'robots': list(selection.robots), 'numbers': selection.numbers.kept(),
-                 'mode': self._mode,
-                 'limits': list(self.operator.view().limits), 'windows': places, 'torn_off': torn,
-                 'together': self.operator.view().together,
-                 'brake': self.operator.view().brake, 'looks': looks,
+                 'mode': self._mode, 'windows': places, 'torn_off': torn, 'looks': looks,
                  'panel': self.screen.save_settings(), 'events': self.events.save_settings(),
                  'map': self.map.save_settings()}
         return usable_state(state)[0]
@@ -334,10 +334,6 @@ class ScreenHost(QObject):
         if state.get('mode'):
             self._mode = state['mode']
             self.operator.restore_mode(state['mode'])
-        if state.get('limits'):
-            self.operator.request_limits(*state['limits'])
-        self.operator.keep_together(state.get('together') is True)
-        self.operator.brake(state.get('brake') is True)
         self.tiles.restore_state(state.get('windows', {}), state.get('looks', {}),
                                  state.get('torn_off', ()))
         self.screen.restore_settings(state.get('panel', {}))

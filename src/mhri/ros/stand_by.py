@@ -7,12 +7,14 @@ driven robots wait for their zero meanwhile. And roslaunch, which restarts a nod
 does nothing about one that hangs.
 """
 import ctypes
+import json
 import math
 import mmap
 import os
 import select
 import signal
 import sys
+import threading
 import time
 
 from mhri.core.driving.pulse import SLEPT_S
@@ -131,22 +133,43 @@ class Beat:
 
 
 class Memory:
-    """Names that the next process knows, too; make it before :func:`stand_by`.
+    """What the next process has to know, too: JSON values by name; make it before :func:`stand_by`.
 
-    :param size: most bytes; what is too long is cut
+    Each of two halves holds all of it in turn, and one byte says which counts: a process that is
+    killed while it writes leaves what was kept before.
+
+    :param size: most bytes of all values together; beyond that what was kept before stays
     """
 
-    def __init__(self, size=16384):
-        self._shared = mmap.mmap(-1, size)
+    def __init__(self, size=131072):
+        self._size = size
+        self._shared = mmap.mmap(-1, 1 + 2 * size)
+        self._lock = threading.Lock()
 
-    def keep(self, names):
-        """Keep these instead of those before."""
-        size = len(self._shared)
-        self._shared[:] = '\n'.join(names).encode()[:size].ljust(size, b'\0')
+    def keep(self, name, value):
+        """Keep a value instead of the one before; return whether there was room for it."""
+        with self._lock:
+            values = self._read()
+            if name in values and values[name] == value:
+                return True
+            text = json.dumps({**values, name: value}).encode()
+            if len(text) > self._size:
+                return False
+            half = 1 - self._shared[0]
+            self._shared[1 + half * self._size:1 + (half + 1) * self._size] = text.ljust(
+                self._size, b' ')
+            self._shared[0] = half
+            return True
 
-    def names(self):
-        """Return what was kept, as a list."""
-        return self._shared[:].rstrip(b'\0').decode(errors='replace').split()
+    def recall(self, name, default=None):
+        """Return what was kept, as JSON gives it back."""
+        with self._lock:
+            return self._read().get(name, default)
+
+    def _read(self):
+        begin = 1 + self._shared[0] * self._size
+        text = self._shared[begin:begin + self._size].rstrip(b' \0')
+        return json.loads(text.decode()) if text else {}
 
 
 class Watch:

@@ -6,6 +6,7 @@ from typing import FrozenSet, Optional, Tuple
 
 from mhri.core.driving.sources import JOY, Source, TWIST
 
+_SCREENS = '/mux_in/joy'
 MESSAGE_TYPES = {JOY: 'sensor_msgs/Joy', TWIST: 'geometry_msgs/Twist'}
 
 
@@ -35,11 +36,11 @@ def advice(source: Source, waits_for: str, heard: Heard) -> str:
     """
     if heard.refused:
         return '{}: {}'.format(source.label, heard.refused)
-    if waits_for == 'source':
-        return '{}: {}'.format(source.label, _silence(source, heard))
     if heard.rival:
         return '{} publishes {} as well and is not listened to: {} does so'.format(
             heard.rival[0], source.topic, heard.rival[1])
+    if waits_for == 'source':
+        return '{}: {}'.format(source.label, _silence(source, heard))
     return ''
 
 
@@ -56,8 +57,8 @@ def _silence(source: Source, heard: Heard) -> str:
     node = sorted(heard.publishers)[0]
     if not heard.spoke:
         return '{} has said nothing yet: move the stick once'.format(node)
-    if source.exclusive:
-        # The virtual joystick of a screen, which says all the time where it is.
+    if source.topic == _SCREENS:
+        # The virtual joystick, which says all the time where it is.
         return 'the screen is not heard; this computer may be too busy'
     return ('{} has fallen silent; if it sends changes only (joy_node without autorepeat_rate), '
             'write holds: true into its row of mux.yaml'.format(node))

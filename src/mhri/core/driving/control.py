@@ -4,7 +4,7 @@
 from typing import Optional
 
 # A screen claims control only after nobody has had it for this long: the screen that had it repeats
-# its selection every 0.5 s, and should get it back after a restart of the gates.
+# its selection every 0.5 s, and should get it back from gates that remember nothing.
 VACANT_S = 2.0
 
 
@@ -13,10 +13,11 @@ class Claim:
 
     States::
 
-        DRIVES  -> WATCHES  the gates name somebody else
+        DRIVES  -> WATCHES  the gates name somebody else, or nobody but refuse this one
         WATCHES -> DRIVES   the gates name this one, or nobody for VACANT_S
 
-    A screen begins by claiming; the gates decide. Nothing changes while they are not heard.
+    A screen begins by claiming; the gates decide. Nothing changes while they are not heard. One
+    that they refuse while nobody is in control claims nothing more: its operator takes control.
 
     :param name: the node of this screen, as the gates call it
     """
@@ -24,13 +25,15 @@ class Claim:
     def __init__(self, name: str) -> None:
         self._name = name
         self._vacant_since: Optional[float] = None
+        self._refused = False
         self.drives = True
 
-    def hear(self, operator: str, now: float) -> None:
-        """Take in whom the gates call the operator; '' for nobody."""
-        if operator:
+    def hear(self, operator: str, now: float, refused: bool = False) -> None:
+        """Take in whom the gates call the operator ('' for nobody), and if they refuse this one."""
+        self._refused = not operator and (self._refused or refused)
+        if operator or self._refused:
             self.drives = operator == self._name
-        if operator or self.drives:
+        if operator or self.drives or self._refused:
             self._vacant_since = None
         elif self._vacant_since is None:
             self._vacant_since = now

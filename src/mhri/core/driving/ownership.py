@@ -1,32 +1,44 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Which of several publishers of one topic to listen to."""
-from typing import Container, Optional
+from typing import AbstractSet, Optional, Set
 
 
 class Ownership:
-    """The first to speak owns the topic, until it has gone or another one takes control."""
+    """The first to speak owns the topic, until it has gone or another one takes control.
+
+    Whoever was refused gets it only by taking control, or once it was started anew: it must not
+    drive by waiting for the owner to go.
+    """
 
     def __init__(self) -> None:
         self.owner: Optional[str] = None
         self._claimed: Optional[str] = None
+        self._refused: Set[str] = set()
 
-    def admits(self, caller: str, connected: Container[str]) -> bool:
+    def admits(self, caller: str, connected: AbstractSet[str]) -> bool:
         """Tell whether a message counts.
 
         :param caller: the node that sent it
-        :param connected: all nodes that are connected as publishers
+        :param connected: all nodes that are connected as publishers, this one among them
         """
+        self._refused &= connected
         if self._claimed in connected:
             self.owner = self._claimed
-        elif self.owner is None or self.owner not in connected:
+        elif (self.owner is None or self.owner not in connected) and caller not in self._refused:
             self.owner = caller
+        if caller != self.owner:
+            self._refused.add(caller)
         return caller == self.owner
 
-    def take(self, caller: str) -> bool:
+    def take(self, caller: str, connected: AbstractSet[str]) -> bool:
         """Make a node the owner as soon as it is connected, and for as long.
 
-        :returns: whether that is a change
+        :returns: whether it is now, and was not before
         """
-        changed, self.owner, self._claimed = self.owner != caller, caller, caller
-        return changed
+        self._claimed = caller
+        self._refused.discard(caller)
+        if caller == self.owner or caller not in connected:
+            return False
+        self.owner = caller
+        return True

@@ -24,7 +24,7 @@ class Source:
     ``profile`` is None for a source of type ``twist``. ``timeout_s`` is the age [s] at which the
     last message no longer counts. ``suspend_service`` (type ``mhri/SetSuspended``) is called when
     the mode enters (False) and leaves (True) the source; None if there is nothing to suspend.
-    ``holds``: the source sends changes only. ``exclusive``: only one publisher at a time counts.
+    ``holds``: the source sends changes only.
     """
 
     name: str
@@ -35,7 +35,6 @@ class Source:
     suspend_service: Optional[str] = None
     kind: str = JOY
     holds: bool = False
-    exclusive: bool = False
 
     @property
     def rests(self) -> bool:
@@ -92,8 +91,8 @@ def parse_mux_config(text: str, origin: str, read_profile: ReadProfile) -> MuxCo
     if default not in [source.name for source in sources]:
         raise section.error('default', 'no source {!r}'.format(default))
     limits = section.section('speed_limit')
-    config = MuxConfig(tuple(sources), default, limits.number('linear_mps', 0.0, 5.0),
-                       limits.number('angular_rad_s', 0.0, 10.0),
+    config = MuxConfig(tuple(sources), default, limits.number('linear_mps', 0.01, 5.0),
+                       limits.number('angular_rad_s', 0.01, 10.0),
                        _enabling(section, sources), section.flag('automatic_switching', False))
     dead_man = section.flag('dead_man', True)
     limits.close()
@@ -141,8 +140,9 @@ def _source(row: Section, read_profile: ReadProfile) -> Source:
     holds = row.flag('holds', False)
     # A held value also expires: joy_node says nothing when its pad is pulled out.
     timeout_s = row.number('timeout_s', 0.05, 60.0 if holds else 2.0, 5.0 if holds else 0.5)
-    source = Source(name, label, topic, profile, timeout_s, service, kind, holds,
-                    row.flag('exclusive', False))
+    # Every source is, by now; files of before may say so.
+    row.flag('exclusive', True)
+    source = Source(name, label, topic, profile, timeout_s, service, kind, holds)
     row.close()
     return source
 

@@ -3,16 +3,14 @@
 """What the screen kept from its last run, checked: anybody may have edited it.
 
 A state is a dict of JSON values: ``robots`` (names), ``numbers`` ({robot: its own number}),
-``mode`` (a source), ``limits`` [m/s, rad/s], ``together``, ``brake``, ``windows`` ({robot:
-geometry}: where its tile was when it was torn off), ``torn_off`` (robots), ``looks`` ({robot: what
-its tile shows}) ``panel`` (``splitter``, ``drawer``, ``geometry``, ``layout``, ``theme``,
-``numbers``), ``events`` (``sounds``) and ``map`` (``shown``, ``follow``, ``turn``, ``by_link``). A
-geometry is [x, y, width, height, maximised] in pixels: a text that can be read, and no blob that Qt
-would have to trust.
+``mode`` (a source), ``windows`` ({robot: geometry}: where its tile was when it was torn off),
+``torn_off`` (robots), ``looks`` ({robot: what its tile shows}), ``panel`` (``splitter``,
+``drawer``, ``geometry``, ``layout``, ``theme``, ``numbers``), ``events`` (``sounds``) and ``map``
+(``shown``, ``follow``, ``turn``, ``by_link``). A geometry is [x, y, width, height, maximised] in
+pixels: a text that can be read, and no blob that Qt would have to trust.
 """
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
 
-from mhri.core.driving.limits import speed_limit_problem
 from mhri.core.robots.names import name_problem
 from mhri.core.robots.numbers import MOST_NUMBERS
 from mhri.core.screen.text import tidy_text
@@ -74,23 +72,6 @@ def _read_mode(value: Any) -> Optional[str]:
     if value is not None and not is_word(value):
         _refuse('the name of a source')
     return value or None
-
-
-def read_limits(value: Any) -> List[float]:
-    """Return a pair of speed limits [m/s, rad/s].
-
-    :raises ValueError: it is not one; the text says what was expected
-    """
-    if not isinstance(value, (list, tuple)) or len(value) != 2 or any(
-            type(part) not in (int, float) for part in value):
-        _refuse('two numbers, m/s and rad/s')
-    try:
-        problem = speed_limit_problem(*value)
-    except OverflowError:  # a whole number that no float can hold
-        problem = 'a speed limit beyond any number'
-    if problem:
-        raise ValueError(problem)
-    return [float(part) for part in value]
 
 
 def _read_flag(value: Any) -> bool:
@@ -224,8 +205,6 @@ _PANEL: Dict[str, _PartReader] = {
     'numbers': _plain(_read_flag)}
 _STATE: Dict[str, _PartReader] = {
     'robots': _plain(_read_robots), 'numbers': _plain(_read_numbers), 'mode': _plain(_read_mode),
-    'limits': _plain(read_limits), 'together': _plain(_read_flag),
-    'brake': _plain(_read_flag),
     'windows': _by_robot(read_geometry), 'torn_off': _plain(_read_torn),
     'looks': _by_robot(_read_look), 'panel': _read_panel, 'events': _read_events,
     'map': _read_map}

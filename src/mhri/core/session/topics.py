@@ -19,7 +19,7 @@ HOST_TOPICS = (
     '/mux_in/mode_select', '/mux/mode', '/mux/waits_for', '/mux/pushed', '/mux/advice',
     '/mux/dead_man', '/mux/speed_limit', '/robot_controller/twist', '/robot_controller/task_twist',
     '/robot_controller/stop_all', '/robot_controller/robot_select', '/gates/state',
-    '/gates_in/group_speed', '/mhri_tasks/list', '/mhri_tasks/places', '/mhri_tasks/run/feedback',
+    '/mhri_tasks/list', '/mhri_tasks/places', '/mhri_tasks/run/feedback',
     '/mhri_tasks/run/result', '/mhri_voice/heard', DRILL, '/tf', '/tf_static', '/map',
     EVENTS)
 _MOCAP = '/vrpn_client_node/{}/pose'

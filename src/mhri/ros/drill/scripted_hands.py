@@ -78,7 +78,6 @@ class ScriptedHands:
         self._select = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1,
                                        latch=True, tcp_nodelay=True)
         self._joy = rospy.Publisher('/mux_in/joy', Joy, queue_size=1, tcp_nodelay=True)
-        self._mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=1, latch=True)
         rospy.Subscriber('/tf', TFMessage, self._on_tf, queue_size=10, tcp_nodelay=True)
         rospy.Subscriber('/mux/waits_for', String, self._on_waits, queue_size=1)
         rospy.Subscriber('/gates/state', GatesState, self._on_gates, queue_size=1)
@@ -110,7 +109,6 @@ class ScriptedHands:
 
     def _run(self):
         rate = rospy.Rate(RATE_HZ)
-        self._mode.publish(ControlMode.VIRTUAL_JOYSTICK)
         try:
             self._take_control()
             while not self._done.is_set():
@@ -138,5 +136,6 @@ class ScriptedHands:
         now = time.monotonic()
         if act.robot != self._chosen or now - self._leased_at >= LEASE_S:
             self._chosen, self._leased_at = act.robot, now
-            self._select.publish(robots=[act.robot] if act.robot else [])
+            self._select.publish(robots=[act.robot] if act.robot else [],
+                                 mode=ControlMode.VIRTUAL_JOYSTICK)
         self._joy.publish(Joy(axes=[act.turn, act.forward]))

@@ -6,8 +6,8 @@ Interfaces (global names; SI units):
 
 - subscribes ``/robot_controller/twist`` (``geometry_msgs/Twist``), ``/robot_controller/task_twist``
   (``mhri/TeamTwist``) and ``/robot_controller/stop_all`` (``std_msgs/Bool``), all only from the
-  mux in force; ``/robot_controller/robot_select`` (``mhri/RobotSelect``) and
-  ``/gates_in/group_speed`` (``mhri/GroupSpeed``) only from the operator in control
+  mux in force; ``/robot_controller/robot_select`` (``mhri/RobotSelect``) only from the operator in
+  control
 - publishes ``/gates/state`` (``mhri/GatesState``, latched, on change and at 2 Hz), and for each
   robot the topics of :class:`mhri.ros.driving.robot_gate.RobotGate`
 - subscribes ``/tf`` and ``/tf_static`` while the obstacle brake is asked for
@@ -18,7 +18,6 @@ Everything runs on ROS threads and one thread of its own; a single lock guards a
 """
 import threading
 import time
-from urllib.parse import urlsplit
 
 import rospy
 from std_msgs.msg import Bool
@@ -26,21 +25,28 @@ from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 from mhri.core.driving.gate import common_limits
 from mhri.core.driving.pulse import Neighbour
-from mhri.core.driving.seat import ControlSeat, MOST_ROBOTS
+from mhri.core.driving.seat import Caller, ControlSeat, MOST_ROBOTS
+from mhri.core.driving.settings import Settings
 from mhri.core.robots.link_quality import link_share
 from mhri.core.robots.names import name_problem
-from mhri.msg import GroupSpeed, RobotSelect, TeamTwist
+from mhri.core.robots.robot_types import Limits
+from mhri.msg import DriveSettings, TeamTwist
 from mhri.ros.convert import from_twist, PlanarTwist
 from mhri.ros.driving.in_force import InForce, STOP_SERVICE, Strangers, TAKE_SERVICE
 from mhri.ros.driving.robot_gate import RobotGate
 from mhri.ros.driving.roster import Roster
+from mhri.ros.driving.wish_topic import WishTopic, wished_settings
 from mhri.ros.graph.prompt import hear_promptly
-from mhri.ros.graph.rospy_inside import caller_of, link_of, on_publisher_gone, publisher_uri
+from mhri.ros.graph.rospy_inside import caller_of, link_of, on_publisher_gone
 from mhri.ros.map.tf_feed import TfFeed
 
 TICK_S = 0.05
 # How long somebody who was refused is named [s].
 REFUSED_S = 30.0
+# Who takes control has a moment to be connected as a publisher of the selection [s].
+CONNECT_S = 1.0
+# Under this name the memory has seat and settings.
+KEPT = 'operator'
 
 
 class Gates:
@@ -48,23 +54,28 @@ class Gates:
 
     :param types: {name: RobotType}
     :param memory: :class:`mhri.ros.stand_by.Memory` of the gates before
+    :param settings: :class:`Settings` until an operator sets others; not needed if the memory has
+        some
     ``on_change`` is called when ``/gates/state`` may have changed; it must be quick.
 
     """
 
-    def __init__(self, types, memory, clock=time.monotonic):
+    def __init__(self, types, memory, settings, clock=time.monotonic):
         self._clock = clock
+        self._memory = memory
         self.on_change = lambda: None
         self._lock = threading.RLock()
         self._wake = threading.Condition(self._lock)
         self._gates = {}
         self._seat = ControlSeat()
-        self._select = None
+        self._wish = WishTopic(self._on_wish, self._on_operator_gone)
+        self._settings = settings
+        self._kept = None
+        self._recall()
         # None: the mux in force has not said it yet.
         self._stop = None
         self._stop_links = []
         self._command = None
-        self._together = self._slow_with_link = self._brake = False
         self._share = 1.0
         self._closed = False
         self._session = '{:x}'.format(time.time_ns())
@@ -82,16 +93,13 @@ class Gates:
         nodelay = dict(queue_size=1, tcp_nodelay=True)
         self._mux.start()
         self._roster.start()
-        self._select = rospy.Subscriber('/robot_controller/robot_select', RobotSelect,
-                                        self._on_select, **nodelay)
-        on_publisher_gone(self._select, self._on_operator_gone)
+        self._wish.start()
         twist = hear_promptly(rospy.Subscriber(
             '/robot_controller/twist', PlanarTwist, self._on_twist, **nodelay))
         on_publisher_gone(twist, self._on_mux_gone)
         rospy.Subscriber('/robot_controller/task_twist', TeamTwist, self._on_task, **nodelay)
         rospy.Subscriber('/robot_controller/stop_all', Bool, self._on_stop, queue_size=10,
                          tcp_nodelay=True)
-        rospy.Subscriber('/gates_in/group_speed', GroupSpeed, self._on_group_speed, queue_size=10)
         rospy.Service(TAKE_SERVICE, Trigger, self._on_take)
         rospy.Service('/gates/set_motor_power', SetBool, self._on_motor_power)
         threading.Thread(target=self._run, name='gates', daemon=True).start()
@@ -99,17 +107,15 @@ class Gates:
     def read(self):
         """Return the content of ``/gates/state``, as keyword arguments of the message.
 
-        The operator's computer is known while the selection comes from there; ``since`` is [s] of
-        this object's clock, None for nobody.
+        ``since`` is [s] of this object's clock, None for nobody.
         """
         with self._lock:
-            operator = self._seat.operator
-            uri = publisher_uri(self._select, operator) or ''
-            return dict(operator=operator, since=self._seat.since,
-                        computer=urlsplit(uri).hostname or '',
+            holder, settings = self._seat.holder or Caller(''), self._settings
+            return dict(operator=holder.name, since=self._seat.since, computer=holder.computer,
                         leased=self._seat.state == 'leased', mux=self._mux.caller,
-                        stop_all=bool(self._stop), together=self._together, share=self._share,
-                        brake=self._brake, refused=self._strangers.words(REFUSED_S),
+                        stop_all=bool(self._stop), together=settings.together, share=self._share,
+                        brake=settings.brake, settings=DriveSettings(*settings),
+                        refused=self._strangers.words(REFUSED_S),
                         robots=[gate.message() for gate in self._gates.values()])
 
     def mux_heard(self):
@@ -192,7 +198,7 @@ class Gates:
         rospy.loginfo('the mux in force is %s', caller)
         self._everybody_joins()
 
-    def _on_mux_gone(self, caller):
+    def _on_mux_gone(self, caller, _uri):
         """Send every moving robot a zero: the mux in force has ended."""
         if caller == self._mux.caller:
             self._everybody_joins()
@@ -203,41 +209,74 @@ class Gates:
             self._each(lambda gate: gate.send(gate.rule.join(now)))
             self.on_change()
 
-    def _on_select(self, message):
-        """Take in the operator's selection, which also renews the lease."""
+    def _recall(self):
+        """Take back what the gates before have kept: seat, who was refused, settings."""
+        kept = self._memory.recall(KEPT)
+        if kept:
+            self._seat.restore(kept['seat'], self._clock())
+            self._settings = Settings(*kept['settings'])
+
+    def _remember(self):
+        """Keep it for the next gates, if it has changed."""
+        state = self._seat.changes, self._settings
+        if state != self._kept:
+            self._kept = state
+            self._memory.keep(KEPT, {'seat': self._seat.kept(), 'settings': self._settings})
+
+    def _on_wish(self, caller, message):
+        """Take in the operator's wish, which also renews the lease."""
+        settings, problem = wished_settings(message)
         names = [name for name in message.robots[:1000] if name_problem(name) is None]
-        caller = caller_of(message)
         with self._lock:
-            operator, before = self._seat.operator, self._seat.checked
-            if not self._seat.on_selection(caller, dict.fromkeys(names), self._clock()):
-                self._refuse(caller, 'robot_select')
-            elif self._seat.checked != before or caller != operator:
-                self._strangers.forget(caller)
+            before = self._seat.holder, self._seat.checked, self._settings
+            if problem:
+                self._refuse(caller.name, 'settings')
+            elif not self._seat.on_selection(caller, dict.fromkeys(names), self._clock()):
+                self._refuse(caller.name, 'robot_select')
+            else:
+                self._settings = settings or self._settings
+            if (self._seat.holder, self._seat.checked, self._settings) != before:
+                self._strangers.forget(caller.name)
                 self._check()
+            self._remember()
+        if problem:
+            rospy.logwarn_throttle(1.0, 'refused from {}: {}'.format(caller.name, problem))
         if len(message.robots) > MOST_ROBOTS:
             rospy.logwarn_throttle(10.0, '{} selects {} names: no more than {} robots count'.format(
-                caller, len(message.robots), MOST_ROBOTS))
+                caller.name, len(message.robots), MOST_ROBOTS))
 
     def _on_operator_gone(self, caller):
         with self._lock:
-            lost = caller == self._seat.operator
-            self._seat.on_gone(caller)
-            self._strangers.forget(caller)
+            lost = self._seat.on_gone(caller, self._clock())
+            self._strangers.forget(caller.name)
             self._check()
             if lost:
                 self._everybody_joins()
 
     def _on_take(self, request):
         """Put the caller in control; every robot gets a zero and waits for neutral."""
-        caller = caller_of(request)
+        name = caller_of(request)
+        caller = self._connected(name)
+        if caller is None:
+            return TriggerResponse(False, '{} publishes no selection of robots: publish '
+                                   '/robot_controller/robot_select, then ask again'.format(name))
         with self._lock:
-            now = self._clock()
-            self._seat.take(caller, now)
+            self._seat.take(caller, self._clock())
             self._strangers.clear()
             self._check()
             self._everybody_joins()
-        rospy.loginfo('%s has taken control', caller)
-        return TriggerResponse(True, caller + ' is in control now: centre the stick to drive')
+            self._remember()
+        rospy.loginfo('%s has taken control', name)
+        return TriggerResponse(True, name + ' is in control now: centre the stick to drive')
+
+    def _connected(self, name):
+        """Return the :class:`Caller` of that name once it publishes the selection, else None."""
+        until = time.monotonic() + CONNECT_S
+        while True:
+            found = [caller for caller in self._wish.there() if caller.name == name]
+            if found or time.monotonic() >= until:
+                return found[-1] if found else None
+            time.sleep(TICK_S)
 
     def _on_motor_power(self, request):
         """Cut the power of all motors at any time; restore it unless a stop is in force."""
@@ -261,28 +300,19 @@ class Gates:
         self.on_change()
         self._wake.notify()
 
-    def _on_group_speed(self, message):
-        """Take in, from the operator in control, how the group stays together."""
-        with self._lock:
-            caller = caller_of(message)
-            if self._seat.operator not in ('', caller):
-                self._refuse(caller, 'group_speed')
-                return
-            self._together, self._slow_with_link = message.together, message.slow_with_link
-            self._brake = message.brake
-            self._keep_together()
-            self.on_change()
-
     def _keep_together(self):
         """Give every gate the limits, the share and the brake it must keep to."""
-        group = [gate for gate in self._gates.values() if gate.rule.checked]
-        common = common_limits([gate.rule.limits for gate in group]) \
-            if self._together and group else None
+        settings, group = self._settings, [gate for gate in self._gates.values()
+                                           if gate.rule.checked]
+        # Also here, and not at the mux alone: one that was just started may not know them yet.
+        most = Limits(*settings.limits)
+        if settings.together and group:
+            most = common_limits([most] + [gate.rule.limits for gate in group])
         trips = [gate.round_trip_s for gate in group if gate.round_trip_s == gate.round_trip_s]
-        self._share = link_share(max(trips, default=None)) if self._slow_with_link else 1.0
+        self._share = link_share(max(trips, default=None)) if settings.slow_with_link else 1.0
         for gate in self._gates.values():
-            gate.rule.hold_to(common or gate.rule.limits, self._share)
-            gate.ask_brake(self._brake)
+            gate.rule.hold_to(most, self._share)
+            gate.ask_brake(settings.brake)
 
     def _open(self, name, robot_type):
         """Open the gate of a robot, replacing the one it had (on the roster's thread)."""
@@ -350,13 +380,14 @@ class Gates:
 
     def _tick(self, now):
         before = self._seat.state
-        self._seat.tick(now)
+        self._seat.tick(now, self._wish.there())
+        self._remember()
         if self._seat.state != before:
             self._check()
             # A robot on a task is not checked, and nobody is there who could stop it.
             self._everybody_joins()
         self._each(lambda gate: gate.tick(now))
-        if self._slow_with_link:
+        if self._settings.slow_with_link:
             self._keep_together()
         news = self._neighbour.look(now)
         if news:

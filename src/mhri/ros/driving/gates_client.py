@@ -3,9 +3,8 @@
 """The panel's side of the gates: what they said last, and requests to them.
 
 Subscribes ``/gates/state`` (``mhri/GatesState``, 2 Hz and on change; it believes only the gates in
-force, :mod:`mhri.ros.driving.in_force`). Publishes
-``/gates_in/group_speed`` (``mhri/GroupSpeed``, latched). Calls ``/gates/take_control``
-(``std_srvs/Trigger``) and ``/gates/set_motor_power`` (``std_srvs/SetBool``) on a thread of its own.
+force, :mod:`mhri.ros.driving.in_force`). Calls ``/gates/take_control`` (``std_srvs/Trigger``) and
+``/gates/set_motor_power`` (``std_srvs/SetBool``) on a thread of its own.
 """
 import math
 import threading
@@ -15,7 +14,8 @@ import rospy
 from std_srvs.srv import SetBool, Trigger
 
 from mhri.core.driving.control import who_drives
-from mhri.msg import GatesState, GroupSpeed
+from mhri.core.driving.settings import Settings
+from mhri.msg import GatesState
 from mhri.ros.driving.in_force import InForce, Strangers, TAKE_SERVICE
 from mhri.ros.worker import Worker
 
@@ -42,8 +42,6 @@ class GatesClient:
         self._robots = {}
         self._heard_at = clock()
         self._first = threading.Event()
-        self._told = None
-        self._group = None
         self._topics = []
         self._worker = Worker('gates_calls')
         self.strangers = Strangers()
@@ -52,8 +50,7 @@ class GatesClient:
     def start(self):
         """Begin to listen; call it after ``rospy.init_node``."""
         self._heard_at = self._clock()
-        self._group = rospy.Publisher('/gates_in/group_speed', GroupSpeed, queue_size=1, latch=True)
-        self._topics = [self._group, self._force.subscribe(
+        self._topics = [self._force.subscribe(
             '/gates/state', GatesState, self._hear, queue_size=10, tcp_nodelay=True)]
         self._force.start()
         self._worker.start()
@@ -94,15 +91,16 @@ class GatesClient:
         return who_drives(state.operator, state.computer,
                           time.strftime('%H:%M', time.localtime(since)) if since else '')
 
-    def keep_together(self, together, slow_with_link, brake):
-        """Tell the gates how the selected robots stay together and off obstacles, if it is news."""
-        if self._group is not None and (together, slow_with_link, brake) != self._told:
-            self._told = (together, slow_with_link, brake)
-            self._group.publish(together=together, slow_with_link=slow_with_link, brake=brake)
+    def settings(self):
+        """Return the :class:`Settings` in force, as last heard; None before."""
+        said = self._state and self._state.settings
+        return Settings(said.linear_mps, said.angular_rad_s, said.together, said.slow_with_link,
+                        said.brake) if said and said.linear_mps > 0.0 else None
 
-    def leave_group(self):
-        """Forget what the gates were told, to tell them again when this screen drives again."""
-        self._told = None
+    def refuses(self, name):
+        """Tell whether they have lately refused the selection of a node."""
+        return self._state is not None and any(
+            line.startswith(name + ': robot_select') for line in self._state.refused)
 
     def take_control(self, on_answer):
         """Make this node the operator in control.

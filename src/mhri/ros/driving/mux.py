@@ -5,10 +5,9 @@
 Interfaces (all global names; units SI):
 
 - subscribes to each source's topic (``sensor_msgs/Joy`` or ``geometry_msgs/Twist``),
-  ``/mux_in/mode_select`` (``mhri/ControlMode``), ``/mux_in/speed_limit`` (``geometry_msgs/Twist``:
-  ``linear.x`` m/s, ``angular.z`` rad/s), ``/robot_controller/robot_select``
-  (``mhri/RobotSelect``), ``/gates/state`` (``mhri/GatesState``) and ``/mux_in/task``
-  (``mhri/TeamTwist``)
+  ``/mux_in/mode_select`` (``mhri/ControlMode``), ``/robot_controller/robot_select``
+  (``mhri/RobotSelect``), ``/gates/state`` (``mhri/GatesState``: the limits in force, and who may
+  choose the mode) and ``/mux_in/task`` (``mhri/TeamTwist``)
 - publishes ``/robot_controller/twist`` (``geometry_msgs/Twist``, on events and at 20 Hz),
   ``/robot_controller/stop_all`` (``std_msgs/Bool``, latched, and at 2 Hz: the mux's sign of life),
   ``/robot_controller/task_twist`` (``mhri/TeamTwist``), ``/mux/mode`` (``mhri/ControlMode``,
@@ -40,8 +39,9 @@ from mhri.core.driving.limits import ZERO
 from mhri.core.driving.profile import (
     is_pressed, JoyRefused, MARK, NEXT_ROBOT, PREVIOUS_ROBOT, read_twist, SELECT_ALL, STOP_ALL)
 from mhri.core.driving.pulse import Pulse
+from mhri.core.driving.settings import Settings, settings_problem
 from mhri.core.driving.sources import TWIST
-from mhri.msg import ControlMode, PanelRequest, RobotSelect
+from mhri.msg import ControlMode, PanelRequest
 from mhri.ros.convert import packed_twist, to_twist
 from mhri.ros.devices.device_profiles import DeviceProfiles
 from mhri.ros.graph.master_api import MasterError
@@ -53,6 +53,7 @@ from mhri.ros.driving.mux_gates import GatesWatch
 from mhri.ros.driving.source_topic import LONGEST_TEXT, SourceTopic
 from mhri.ros.driving.suspender import Suspender
 from mhri.ros.driving.task_mux import TaskMux
+from mhri.ros.driving.wish_topic import WishTopic, wished_settings
 from mhri.ros.graph.prompt import PromptPublisher
 from mhri.ros.graph.rospy_inside import caller_of
 from mhri.ros.worker import Worker
@@ -102,6 +103,8 @@ class Mux:
                                     tcp_nodelay=True)
         services = {source.name: source.suspend_service for source in config.sources
                     if source.suspend_service}
+        # Nodes that may choose the mode though they are not in control: "use pedal".
+        self._inputs = frozenset(service.rsplit('/', 1)[0] for service in services.values())
         self._suspender = Suspender(services.values(), awake=[
             service for name, service in services.items()
             if config.automatic_switching or name == config.enabling])
@@ -115,7 +118,10 @@ class Mux:
                  'suspend_service': source.suspend_service or ''} for source in config.sources]},
             period_s=MASTER_PERIOD_S, patience_s=MASTER_PATIENCE_S)
         self._config = config
-        strangers = Strangers(clock)
+        self._strangers = strangers = Strangers(clock)
+        self._wish = WishTopic(self._on_wish)
+        # The last mode that an operator wished, and who that was.
+        self._wished = None
         self._topics = {source.name: SourceTopic(source, strangers, clock)
                         for source in config.sources}
         self._remembering = threading.Lock()
@@ -142,11 +148,7 @@ class Mux:
         for begin in (
                 partial(rospy.Subscriber, '/mux_in/mode_select', ControlMode, self._on_mode,
                         queue_size=10),
-                partial(rospy.Subscriber, '/mux_in/speed_limit', Twist, self._on_limit,
-                        queue_size=1),
-                partial(rospy.Subscriber, '/robot_controller/robot_select', RobotSelect,
-                        self._on_selection, queue_size=1, tcp_nodelay=True),
-                self._gates.start, self._tasks.start, self._advice.start,
+                self._wish.start, self._gates.start, self._tasks.start, self._advice.start,
                 *(partial(topic.open, self._on_source) for topic in self._topics.values())):
             # Registering after a newer mux has taken the name would end it as well (ros_comm#2018).
             if not self._closing:
@@ -260,13 +262,18 @@ class Mux:
         self._send(self._arbiter.engage_stop_all(self._clock()))
         self._stop.publish(data=True)
 
-    def _on_gates(self, must_stop, operator):
+    def _on_gates(self, must_stop, operator, settings):
         """Take in the state of the gates."""
         with self._changed:
+            limits = settings.linear_mps, settings.angular_rad_s
+            # Zero: gates that have none.
+            if limits != self._arbiter.limits and not settings_problem([Settings(*limits)]):
+                self._send(self._arbiter.set_limits(*limits, self._clock()))
+                self._limit.publish(to_twist(*limits))
             if must_stop:
                 self._engage_stop()
             for topic in self._topics.values() if operator else ():
-                if topic.ownership and topic.ownership.take(operator):
+                if topic.ownership.take(operator, topic.connected()):
                     self._send(self._arbiter.on_lost(topic.source.name, 'operator', self._clock()))
         if must_stop:
             self._memory.do(self._remember_stop)
@@ -284,12 +291,21 @@ class Mux:
         with self._changed:
             return (self._topics[self._arbiter.mode], self._arbiter.waits_for(self._clock()))
 
-    def _on_selection(self, message):
-        if not self._gates.in_control(caller_of(message)):
-            # Two operators taking turns would look like robots that join, twice a second.
+    def _on_wish(self, caller, message):
+        """Take in the operator's wish: who joins, and the mode where that is another than before.
+
+        From others it is nothing: two operators taking turns would look like robots that join,
+        twice a second.
+        """
+        if not self._gates.in_control(caller.name) or wished_settings(message)[1]:
             return
         with self._changed:
             self._send(self._arbiter.on_selection(message.robots, self._clock()))
+        mode = message.mode[:LONGEST_TEXT]
+        if caller.name == self._gates.operator and self._wished != (caller, mode):
+            self._wished = caller, mode
+            if mode:
+                self._choose(mode)
 
     def _tell_mode(self, changed):
         """Publish a new mode, and wake and suspend the input nodes (with the lock held)."""
@@ -299,7 +315,16 @@ class Mux:
             self._profiles.forget()
 
     def _on_mode(self, message):
-        wanted = message.source[:LONGEST_TEXT]
+        """Take in a request; from others than the operator only while nobody is in control."""
+        caller = caller_of(message)
+        if self._gates.in_control(caller) or caller in self._inputs:
+            self._choose(message.source[:LONGEST_TEXT])
+            return
+        self._strangers.refuse(caller, '/mux_in/mode_select')
+        rospy.logwarn_throttle(1.0, '{} may not choose the mode: {} is in control'.format(
+            caller, self._gates.operator))
+
+    def _choose(self, wanted):
         try:
             with self._changed:
                 before = self._arbiter.mode
@@ -313,18 +338,6 @@ class Mux:
             return
         if changed:
             rospy.loginfo('driving with %s', wanted)
-
-    def _on_limit(self, message):
-        problem = None
-        with self._changed:
-            try:
-                self._send(self._arbiter.set_limits(
-                    message.linear.x, message.angular.z, self._clock()))
-            except ValueError as error:
-                problem = error
-            self._limit.publish(to_twist(*self._arbiter.limits))
-        if problem:
-            rospy.logwarn_throttle(1.0, '{}; the old one stays'.format(problem))
 
     def _on_stop_all(self, request):
         """Serve ``/mux/set_stop_all``."""

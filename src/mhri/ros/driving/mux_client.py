@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The panel's side of the mux: requests to it, and what it said last.
 
-Publishes ``/mux_in/mode_select`` (``mhri/ControlMode``) and ``/mux_in/speed_limit``
-(``geometry_msgs/Twist``, latched); while this screen drives also ``/mux_in/joy``
-(``sensor_msgs/Joy``) and ``/robot_controller/robot_select`` (``mhri/RobotSelect``, latched).
+Publishes ``/mux_in/mode_select`` (``mhri/ControlMode``); while this screen drives also
+``/mux_in/joy`` (``sensor_msgs/Joy``) and ``/robot_controller/robot_select`` (``mhri/RobotSelect``,
+latched).
 Subscribes ``/mux/mode``, ``/mux/speed_limit``, ``/mux/waits_for``, ``/mux/pushed``,
 ``/mux/advice``, ``/mux/dead_man``, ``/mux/asked`` and ``/robot_controller/stop_all``, and believes
 only the mux in force (:mod:`mhri.ros.driving.in_force`). Calls ``/mux/set_stop_all`` on a thread of
@@ -20,8 +20,7 @@ from std_msgs.msg import Bool, String
 
 from mhri.core.driving.limits import speed_limit_problem
 from mhri.core.screen.text import tidy_text
-from mhri.msg import ControlMode, RobotSelect
-from mhri.ros.convert import to_twist
+from mhri.msg import ControlMode, DriveSettings, RobotSelect
 from mhri.ros.driving.in_force import InForce, STOP_SERVICE, Strangers
 from mhri.ros.driving.stop_line import LOOK_S, StopLine
 from mhri.ros.graph.prompt import PromptPublisher
@@ -65,10 +64,9 @@ class MuxClient:
         self._wheel = None
         # Held while publishing, so that nothing is unregistered while in use.
         self._wheel_lock = threading.Lock()
-        self._select_mode = self._speed = None
+        self._select_mode = None
         if speaks:
             self._select_mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
-            self._speed = rospy.Publisher('/mux_in/speed_limit', Twist, queue_size=1, latch=True)
         self.strangers = Strangers()
         # An older mux may keep its end of the line.
         self._force = InForce(STOP_SERVICE, self.strangers.refuse,
@@ -84,7 +82,7 @@ class MuxClient:
                 ('/mux/dead_man', Bool, self._on_dead_man),
                 ('/robot_controller/stop_all', Bool, self._hear_stop),
                 ('/mux/asked', Twist, self._on_asked)) if speaks or kind != Twist]
-        self._topics = list(filter(None, (self._heard, self._select_mode, self._speed, *heard)))
+        self._topics = list(filter(None, (self._heard, self._select_mode, *heard)))
         self._force.start()
         self._stopper.start()
         if pressed:
@@ -163,16 +161,15 @@ class MuxClient:
         if self._select_mode is not None:
             self._select_mode.publish(source=name)
 
-    def request_limits(self, linear_mps, angular_rad_s):
-        """Ask for another speed limit."""
-        if self._speed is not None:
-            self._speed.publish(to_twist(linear_mps, angular_rad_s))
+    def select(self, names, settings=None):
+        """Publish the operator's wish; repeating this renews the lease.
 
-    def select(self, names):
-        """Publish the checked robots; repeating this renews the operator's lease."""
+        :param names: the checked robots
+        :param settings: :class:`mhri.core.driving.settings.Settings`, None: as they are
+        """
         with self._wheel_lock:
             if self._wheel is not None:
-                self._wheel.select(names)
+                self._wheel.select(names, settings)
 
     @property
     def at_wheel(self):
@@ -262,9 +259,10 @@ class Wheel:
         message.header.stamp = rospy.Time.now()
         self._joy.publish(message)
 
-    def select(self, names):
-        """Publish the checked robots."""
-        self._select.publish(robots=list(names))
+    def select(self, names, settings):
+        """Publish the operator's wish."""
+        self._select.publish(robots=list(names), settings=[DriveSettings(*settings)]
+                             if settings else [])
 
     def unregister(self):
         """Unregister both (blocking: it asks the master)."""

@@ -84,6 +84,6 @@ class MuxDiagnostics:
                 words += '; {}: {}'.format(service, self._words['suspend'](service))
             status.add(source.name, words)
             ownership = self._topics[source.name].ownership
-            if ownership and ownership.owner:
+            if ownership.owner:
                 status.add(source.name + ': listened to', ownership.owner)
         return status

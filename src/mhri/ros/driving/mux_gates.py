@@ -13,7 +13,8 @@ from mhri.ros.graph.rospy_inside import caller_of
 class GatesWatch:
     """Subscribes ``/gates/state`` (``mhri/GatesState``), and believes only the gates in force.
 
-    :param on_state: called on rospy's threads with (the mux must stop, operator or '')
+    :param on_state: called on rospy's threads with (the mux must stop, operator if that is a new
+        one, else '', ``mhri/DriveSettings``)
     :param is_stopped: returns whether the mux is stopped
     :param hold: called when the gates are others than before, and by :meth:`look` when they have
         been silent for 0.9 s
@@ -25,7 +26,8 @@ class GatesWatch:
         self._is_stopped = is_stopped
         self._clock = clock
         self._echo = StopEcho()
-        self._operator = ''
+        #: caller id of the operator in control, as the gates said last; '' for nobody
+        self.operator = ''
         self._force = InForce(TAKE_SERVICE, strangers.refuse, lambda caller: hold())
         self._hold = hold
         self._neighbour = Neighbour('the gates')
@@ -42,7 +44,7 @@ class GatesWatch:
 
     def in_control(self, caller):
         """Tell whether a node may be the operator in control, by what the gates have said."""
-        return self._operator in ('', caller)
+        return self.operator in ('', caller)
 
     def words(self):
         """Return what is known about the gates, in words."""
@@ -62,7 +64,7 @@ class GatesWatch:
 
     def _on_message(self, message):
         self._neighbour.beat(caller_of(message), self._clock())
-        took, self._operator = message.operator != self._operator, message.operator
+        took, self.operator = message.operator != self.operator, message.operator
         self._on_state(
             self._echo.must_stop(message.stop_all, self._is_stopped(), self._clock()),
-            message.operator if took else '')
+            message.operator if took else '', message.settings)

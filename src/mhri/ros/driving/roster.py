@@ -110,14 +110,14 @@ class Roster:
         if not self._recalled:
             self._recalled = True
             # A master started anew knows nothing of those who were driven.
-            self._ever.update(dict.fromkeys(driven + _names(self._memory.names())))
+            self._ever.update(dict.fromkeys(driven + _names(self._memory.recall('robots'))))
         listed = frozenset(listed)
         gone, self._listed = self._listed - listed - self._checked, listed
         self._ever.update(dict.fromkeys(sorted(self._checked)))
         for name in gone:
             self._ever.pop(name, None)
         known = list(self._ever)[:MOST_ROBOTS]
-        self._memory.keep(known)
+        self._memory.keep('robots', known)
         if known != driven:
             # Before their gates open: never drive a robot that is not noted.
             api.call('setParam', DRIVEN_PARAMETER, known)

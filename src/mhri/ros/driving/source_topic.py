@@ -29,7 +29,7 @@ class SourceTopic:
     def __init__(self, source, strangers, clock=time.monotonic):
         self.source = source
         self._strangers = strangers
-        self.ownership = Ownership() if source.exclusive else None
+        self.ownership = Ownership()
         self._clock = clock
         self._subscriber = None
         self._is_twist = source.kind == TWIST
@@ -50,10 +50,10 @@ class SourceTopic:
         return publishers(self._subscriber) if self._subscriber else set()
 
     def admits(self, message):
-        """Tell whether a message counts; a second publisher's may not."""
+        """Tell whether a message counts; a second publisher's does not."""
         caller = caller_of(message)
         # Its own connection may not be in rospy's list yet.
-        if self.ownership and not self.ownership.admits(caller, self.connected() | {caller}):
+        if not self.ownership.admits(caller, self.connected() | {caller}):
             self._rival = (self._clock(), caller)
             self._strangers.refuse(caller, self.source.topic)
             return False

@@ -6,8 +6,8 @@ Nobody develops rospy any further (ros_comm was archived in 2025), but a distrib
 this module looks at import for all it relies on, and an :class:`ImportError` says what is missing.
 How messages go in and out on the driving path is in :mod:`mhri.ros.graph.prompt`.
 
-:func:`caller_of`, :func:`listeners`, :func:`on_publisher_gone` and :func:`publisher_uri` tell who
-is at the other end of a connection, and when it is gone.
+:func:`caller_of`, :func:`listeners`, :func:`on_publisher_gone`, :func:`publisher_processes` and
+:func:`publisher_uri` tell who is at the other end of a connection, and when it is gone.
 """
 import rospy
 from rospy.impl.masterslave import ROSHandler
@@ -72,9 +72,26 @@ def publisher_uri(subscriber, caller=None):
 
     :param caller: the caller id of that node; default: any
     """
+    return next((uri for name, uri in publisher_processes(subscriber)
+                 if uri and caller in (None, name)), None)
+
+
+def publisher_processes(subscriber):
+    """Return (caller id, XML-RPC address) of each publisher that is connected, as a list."""
+    impl = subscriber.impl
+    return [(link.callerid_pub, link.endpoint_id) for link in (impl.connections if impl else ())]
+
+
+def sender_uri(subscriber, message):
+    """Return the XML-RPC address of whoever sent a message to a subscriber, '' if unknown."""
     impl = subscriber.impl
     return next((link.endpoint_id for link in (impl.connections if impl else ())
-                 if link.endpoint_id and caller in (None, link.callerid_pub)), None)
+                 if link.header is link_of(message)), None) or ''
+
+
+def latches(message):
+    """Tell whether the publisher of a message keeps its last one for whoever connects later."""
+    return str((message._connection_header or {}).get('latching', '0')) == '1'
 
 
 def on_publisher_gone(subscriber, call):
@@ -83,7 +100,8 @@ def on_publisher_gone(subscriber, call):
     rospy reports that only for subscribers. A killed publisher on this computer shows within
     milliseconds: the kernel closes its connections.
 
-    :param call: called with the publisher's caller id on the connection's thread; must be quick
+    :param call: called with the publisher's caller id and the XML-RPC address of its process on the
+        connection's thread; must be quick
     """
     impl = subscriber.impl
     plain = impl.remove_connection
@@ -91,9 +109,9 @@ def on_publisher_gone(subscriber, call):
     def remove_connection(connection):
         """Let rospy forget the connection, then tell."""
         plain(connection)
-        caller = connection.callerid_pub
-        if not any(other.callerid_pub == caller for other in impl.connections):
-            call(caller)
+        who = connection.callerid_pub, connection.endpoint_id
+        if who not in publisher_processes(subscriber):
+            call(*who)
 
     impl.remove_connection = remove_connection
 
@@ -214,4 +232,4 @@ require([(ROSHandler, ('getPid',)),
                        'is_shutdown_requested'))],
         [(rospy.topics._TopicImpl.__init__, (
             'connections', 'connection_poll', 'closed', 'resolved_name')),
-         (TCPROSTransport.__init__, ('callerid_pub', 'endpoint_id'))])
+         (TCPROSTransport.__init__, ('callerid_pub', 'endpoint_id', 'header'))])

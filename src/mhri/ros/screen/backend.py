@@ -5,6 +5,7 @@
 Its methods are called on the GUI thread and return at once; slow work runs on
 other threads, and its results wait in :meth:`ScreenBackend.take_events`.
 """
+import math
 import queue
 import threading
 import time
@@ -41,6 +42,8 @@ from mhri.ros.worker import Worker
 
 NODE_NAME = 'mhri_panel'
 FLUSH_S = 0.1
+# So long this screen publishes a selection to take control, if it is not given it [s].
+TAKING_S = 3.0
 OTHER_SCREEN = 'another screen of this program'
 
 
@@ -68,10 +71,13 @@ class ScreenBackend:
                             told=lambda text: self._events.put(('told', text)))
         self.controls = self._fleet.controls
         self._jobs = PanelJobs(self._types, self._events)
-        self._together = self._brake = self._pressed = self._stopped_by_gates = False
+        self._pressed = self._stopped_by_gates = False
+        # What the operator has set on this screen, None before; what is still to be added.
+        self._wish, self._changes, self._slow = None, {}, False
+        self._taking_until = -math.inf
         self._asked = AskedAndDone()
         self._mux = self._watch = self._requests = self._diagnostics = self._devices = None
-        self._claim = self._first_limits = self._first_mode = None
+        self._claim = self._first_mode = None
         self._stop_note, self._ros = '', ROS_STARTING
         self._closing = threading.Event()
         self._worker = Worker('panel_jobs', self._supervise)
@@ -112,8 +118,6 @@ class ScreenBackend:
         if self.drives():
             mux.take_wheel()
         self._mux = mux
-        if self._first_limits:
-            mux.request_limits(*self._first_limits)
         self.repeat_selection()
         self._requests = PanelRequests(self._events)
         self._devices = DeviceClient()
@@ -153,7 +157,7 @@ class ScreenBackend:
 
     def _on_gates(self, state, now):
         """Take in the state of the gates (on a ROS thread)."""
-        self._claim.hear(state.operator, now)
+        self._claim.hear(state.operator, now, self._gates.refuses(rospy.get_name()))
         self._fleet.on_gates(state.robots)
         if state.stop_all != self._stopped_by_gates:
             self._stopped_by_gates = state.stop_all
@@ -177,52 +181,69 @@ class ScreenBackend:
         self._first_mode = name
 
     def request_limits(self, linear_mps, angular_rad_s):
-        """Ask the mux for another speed limit [m/s, rad/s]."""
-        self._first_limits = (linear_mps, angular_rad_s)
-        if self._mux:
-            self._mux.request_limits(linear_mps, angular_rad_s)
+        """Wish another speed limit [m/s, rad/s]."""
+        self._change(linear_mps=linear_mps, angular_rad_s=angular_rad_s)
 
     def keep_together(self, together):
         """Keep all selected robots to the pace of the slowest, or let each do its best."""
-        self._together = together
-        self.repeat_selection()
+        self._change(together=together)
 
     def brake(self, on):
         """Let what is driven by hand slow down for obstacles, or not."""
-        self._brake = on
-        self.repeat_selection()
+        self._change(brake=on)
+
+    def _change(self, **settings):
+        """Wish these settings; does nothing while somebody else is in control."""
+        if self.drives():
+            self._changes.update(settings)
+            self.repeat_selection()
+
+    def _wished(self):
+        """Return the :class:`Settings` that this screen wishes, None while its operator set none.
+
+        What was not set here stays as it is in force, which has to be known first.
+        """
+        if self.settings.slow_with_link != self._slow:
+            self._slow = self.settings.slow_with_link
+            self._changes['slow_with_link'] = self._slow
+        known = self._wish or self._gates.settings()
+        if self._changes and known:
+            self._wish, self._changes = known._replace(**self._changes), {}
+        return self._wish
 
     def select(self, names):
         """Drive exactly these robots; does nothing while somebody else is in control."""
         if self.drives():
             self.selection.check(names)
             if self._mux:
-                self._mux.select(self.selection.selected)
+                self._mux.select(self.selection.selected, self._wished())
 
     def drives(self):
         """Tell whether this screen may speak for the operator, as far as it knows."""
         return self._seat.holds(self) and (self._claim is None or self._claim.drives)
 
     def repeat_selection(self):
-        """Repeat which robots are checked, at 2 Hz: this renews the operator's lease.
+        """Repeat the operator's wish, at 2 Hz: this renews the lease.
 
         Call it only on the GUI thread: if that hangs, the lease must end. A screen that has lost
-        control drops its selection: nothing comes back unasked.
+        control drops its selection and its settings: nothing comes back unasked.
         """
         if self._mux is None or self._closing.is_set():
             return
         if self.drives():
-            self._mux.select(self.selection.selected)
-            self._gates.keep_together(self._together, self.settings.slow_with_link, self._brake)
+            self._mux.select(self.selection.selected, self._wished())
         else:
             self.selection.check(())
-            self._gates.leave_group()
-        if self.drives() != self._mux.at_wheel:
+            self._wish, self._changes, self._slow = None, {}, False
+        if self._wants_wheel() != self._mux.at_wheel:
             self._worker.do(self._settle_wheel)
+
+    def _wants_wheel(self):
+        return self.drives() or self._seat.holds(self) and self.clock() < self._taking_until
 
     def _settle_wheel(self):
         """Register the topics of the screen that drives, or unregister them (on the worker)."""
-        if self.drives() and not self._closing.is_set():
+        if self._wants_wheel() and not self._closing.is_set():
             if self._mux.take_wheel():
                 # What another screen of this program selected no longer counts.
                 self._mux.select(self.selection.selected)
@@ -233,8 +254,12 @@ class ScreenBackend:
         """Become the operator in control, whoever it is now; every robot gets a zero."""
         self._seat.take(self)
         self.selection.check(())
+        self._wish, self._changes, self._slow = None, {}, False
+        # The gates give it only to somebody who publishes a selection.
+        self._taking_until = self.clock() + TAKING_S
         self.repeat_selection()
-        self._gates.take_control(lambda done, text: done or self._events.put(('told', text)))
+        self._worker.do(self._gates.take_control,
+                        lambda done, text: done or self._events.put(('told', text)))
 
     def set_motor_power(self, on):
         """Cut the motor power of all robots that offer it (False), or restore it (True)."""
@@ -348,11 +373,11 @@ class ScreenBackend:
                                       for name in self.selection.robots), asked, self.clock())
         answers = self._mux is None or self._gates.answers()
         gates = self._gates.state() if answers else None
-        together, share = (gates.together, gates.share) if gates else (self._together, 1.0)
+        together, share = (gates.together, gates.share) if gates else (False, 1.0)
         view = PanelView(
-            ros=self._state_of_ros(), mode=mode, brake=gates.brake if gates else self._brake,
+            ros=self._state_of_ros(), mode=mode, brake=bool(gates and gates.brake),
             stop_all=self._stopped_by_gates or (self._mux.stopped if self._mux else self._pressed),
-            stop_note=self._stop_note, limits=limits or self._first_limits or (0.5, 1.5),
+            stop_note=self._stop_note, limits=limits or (0.5, 1.5),
             robots=robots, together=together, pace=pace_words(robots, together, share),
             slowed=share < 1.0, camera_bits_per_s=self._fleet.camera_bits_per_s(),
             **(self._devices.view() if self._devices else {}),
