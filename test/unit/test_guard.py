@@ -180,7 +180,8 @@ def test_its_lasers_are_read(monkeypatch, value, found):
 @pytest.mark.parametrize('value, found', [
     ('', {}), ('nan,inf', {None: (math.nan, math.inf)}), (0.0, {None: (0.0,)}),
     ([math.nan, '.inf'], {None: (math.nan, math.inf)}),
-    ('0,inf@3.5 nan,inf@8', {3.5: (0.0, math.inf), 8.0: (math.nan, math.inf)}),
+    ('0,inf@3.5 0,nan,inf@100',
+     {3.5: (0.0, math.inf), 100.0: (0.0, math.nan, math.inf)}),
     ('x', None), ('0,@3', None), ('0@a', None), (True, None)])
 def test_what_says_that_nothing_is_there_is_read(monkeypatch, value, found):
     monkeypatch.setattr(GUARD['rospy'], 'get_param', lambda name, default: value, raising=False)

@@ -19,7 +19,7 @@ from support.beam_world import (  # noqa: E402
 
 NAN, INF = math.nan, math.inf
 MEASURED, FREE, UNSURE, NOTHING = 'measured', 'free', 'unsure', 'nothing'
-LDS = {3.5: (0.0, INF), 8.0: (NAN, INF)}
+LDS = {3.5: (0.0, INF), 100.0: (0.0, NAN, INF)}
 
 
 def classes(ranges, limits, no_return):
@@ -41,8 +41,8 @@ def classes(ranges, limits, no_return):
     # A TurtleBot3 with an LDS-01, simulated with inf, and with an LDS-02.
     (0.0, (0.12, 3.5), LDS, UNSURE), (INF, (0.12, 3.5), LDS, FREE),
     (NAN, (0.12, 3.5), LDS, NOTHING),
-    (NAN, (0.02, 8.0), LDS, UNSURE), (0.0, (0.02, 8.0), LDS, NOTHING),
-    (INF, (0.02, 8.0), LDS, FREE),
+    (NAN, (0.0, 100.0), LDS, UNSURE), (0.0, (0.0, 100.0), LDS, UNSURE),
+    (INF, (0.0, 100.0), LDS, FREE),
     (0.0, (0.02, 12.0), LDS, NOTHING), (INF, (0.02, 12.0), LDS, FREE),
     # A driver with a number of its own; it comes as a float32.
     (float(np.float32(5.6)), (0.1, 5.0), {None: (5.6,)}, UNSURE),

@@ -198,7 +198,7 @@ def test_what_the_lasers_of_the_shipped_types_send_for_nothing():
     """NaN is not equal to itself."""
     types = shipped()
     assert repr(types['turtlebot2'].no_return) == '{None: (nan, inf)}'
-    assert repr(types['turtlebot3'].no_return) == '{3.5: (0.0, inf), 8.0: (nan, inf)}'
+    assert repr(types['turtlebot3'].no_return) == '{3.5: (0.0, inf), 100.0: (0.0, nan, inf)}'
     assert types['generic'].no_return == {}
 
 

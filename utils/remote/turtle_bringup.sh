@@ -187,7 +187,7 @@ prepare_turtlebot3() {
     die "which TurtleBot3 is this? TURTLEBOT3_MODEL is '$MODEL': give --model burger, waffle or" \
       "waffle_pi"
   export TURTLEBOT3_MODEL=$MODEL
-  local lds="0,inf@3.5 nan,inf@8"
+  local lds="0,inf@3.5 0,nan,inf@100"
   if [ "$MODEL" = burger ]; then limit_guard 0.22 2.84 0.22 -0.032 "$lds"
   else limit_guard 0.26 1.82 0.22 -0.064 "$lds"; fi
   if [ -z "$LDS_MODEL" ] &&
