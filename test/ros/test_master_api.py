@@ -96,7 +96,7 @@ def test_roster_and_in_force_go_on_asking(master, monkeypatch, kind):
     rospy.rostime.set_rostime_initialized(True)
     monkeypatch.setattr('mhri.ros.driving.roster.PERIOD_S', 0.02)
     roster = Roster({}, lambda *_: None, lambda name: None, lambda: 5, Memory(), dict,
-                    lambda *_: None).start()
+                    lambda *_: None, dict).start()
     force = InForce('/service').start()
     try:
         for _ in range(3):
