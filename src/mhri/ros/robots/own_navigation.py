@@ -52,7 +52,7 @@ class OwnNavigation:
         if message.goal_id.id.startswith(PREFIX):
             self._sent[caller_of(message)] = message.goal_id.id
 
-    def _on_sender_gone(self, caller):
+    def _on_sender_gone(self, caller, _uri):
         goal = self._sent.pop(caller, None)
         if goal is not None:
             self._cancel.publish(GoalID(id=goal), urgent=True)
