@@ -47,7 +47,7 @@ def running(node, uri=None):
     types = dict(master.getTopicTypes())
     found = {('publishes', name, types[name]) for name, nodes in publishers
              if node in nodes and name not in EVERYWHERE}
-    found |= {('subscribes', name, types.get(name)) for name, nodes in subscribers
+    found |= {('subscribes', name, types.get(name, '')) for name, nodes in subscribers
               if node in nodes and name not in EVERYWHERE}
     found |= {('serves', name, SERVICES.get(name.rpartition('/')[2], 'std_srvs/SetBool'))
               for name, nodes in services
@@ -57,7 +57,7 @@ def running(node, uri=None):
 
 def always(node):
     """Return what a node has, without the camera and laser that a tile on show subscribes."""
-    of_tile = ('/scan', '/tf_static') if node == 'mhri_panel' else ('/scan',)
+    of_tile = ('/scan', '/tf', '/tf_static') if node == 'mhri_panel' else ('/scan',)
     return {row for row in running('/' + node) if row[0] != 'subscribes'
             or '/camera/' not in row[1] and not row[1].endswith(of_tile)}
 
