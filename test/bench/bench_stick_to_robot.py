@@ -96,10 +96,12 @@ class Mhri:
             robots = system.launch('sim.launch', 'n:={}'.format(len(names)), 'types:=turtlebot2')
         for name in names:
             rospy.set_param('/{}/robot_type'.format(name), 'turtlebot2' if streaming else 'generic')
+        if brake:
+            ask_for_brakes()
         settings = os.path.join(system.home, 'screen.json')
         with open(settings, 'w', encoding='utf-8') as stream:
             looks = {name: {'views': ['imu', 'rgb']} for name in names}
-            json.dump({'state': {'brake': brake, 'looks': looks}}, stream)
+            json.dump({'state': {'looks': looks}}, stream)
         panel = system.node('panel', '--settings', settings, '--select', ' '.join(names))
         self.receiver = Receiver(['/{}/{}'.format(
             name, 'teleop/input' if streaming else 'cmd_vel') for name in names])
@@ -132,6 +134,22 @@ class Mhri:
     def send(self, value):
         """Deflect the stick forward; the operator's limit makes it half as many m/s."""
         self._joy.publish(self._joy_class(axes=[0.0, value]))
+
+
+def ask_for_brakes():
+    """Switch the obstacle brake on as an operator who then goes: the settings in force stay."""
+    import rospy
+    from mhri.msg import DriveSettings, GatesState, RobotSelect
+    said = []
+    ear = rospy.Subscriber('/gates/state', GatesState, lambda message: said.append(message.brake))
+    wish = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1)
+
+    def asked():
+        wish.publish(settings=[DriveSettings(0.5, 1.5, False, False, True)])
+        return said and said[-1]
+    wait_for(asked, 60, 'the brake', poll_s=0.1)
+    wish.unregister()
+    ear.unregister()
 
 
 def wait_for_brakes(names):
@@ -342,7 +360,8 @@ def run(robots, table, streaming, brake, short):
                                                             'ROS_LOG_DIR')})
         system.screen()
         system.start_master()
-        rospy.init_node('bench', disable_signals=True)
+        # As an input node it may choose the mode, whoever is in control.
+        rospy.init_node('mhri_pedal', disable_signals=True)
         mhri, chain = Mhri(system, names, streaming, brake), Chain(system, names)
         if streaming:
             compare_streaming(mhri, chain, robots, events, table, short)
