@@ -237,6 +237,33 @@ class WishTest(unittest.TestCase):
         self.assertFalse([gate.name for gate in said.robots if gate.obeys])
         other.end()
 
+    def pushed(self):
+        """Return the speed at which the robot goes with the stick pushed fully [m/s]."""
+        self.drive()
+        return round(self.ends[self.ours].received[-1][1], 3)
+
+    def test_a_limit_that_rises_counts_once_the_robot_is_selected_anew(self):
+        self.operator.set(1.0, 1.0)
+        self.assertEqual(self.pushed(), 0.5)
+        limits = '/{}/mhri'.format(self.ours)
+        rospy.set_param(limits, {'limits': {'linear_mps': 0.1}})
+        # One that falls counts as soon as it is seen.
+        wait_for(lambda: self.pushed() == 0.1, 60.0, 'the lower limit')
+        when = time.monotonic()
+        rospy.delete_param(limits)
+        self.state.wait_robot(self.ours, lambda gate: gate.limit_raised, 'the sign')
+        self.assertEqual(self.pushed(), 0.1)
+        self.kill('gates')
+        self.operator.check(self.ours)
+        self.assertEqual(self.pushed(), 0.1)
+        self.state.wait_robot(self.ours, lambda gate: gate.limit_raised, 'the sign')
+        self.assertLessEqual(max(entry[1] for entry in self.ends[self.ours].after(when)), 0.1)
+        self.operator.check()
+        self.state.wait_robot(self.ours, lambda gate: not gate.obeys, 'it to be let go')
+        self.operator.check(self.ours)
+        self.assertEqual(self.pushed(), 0.5)
+        self.assertFalse(self.state.robot(self.ours).limit_raised)
+
     def test_who_publishes_no_selection_is_not_put_in_control(self):
         answer = subprocess.check_output(['rosservice', 'call', '/gates/take_control'], text=True)
         self.assertIn('False', answer)

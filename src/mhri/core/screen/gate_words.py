@@ -15,6 +15,7 @@ STANDS_WORDS: Dict[str, str] = {
     'two_robots': 'kept standing: two computers are this robot; end one of them',
 }
 NO_WITNESS = 'its odometry does not follow commands'
+LIMIT_RAISED = 'its speed limit was raised: uncheck and check it to use that'
 _MAX_NAMES = 3
 
 

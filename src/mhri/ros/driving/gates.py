@@ -23,6 +23,7 @@ import rospy
 from std_msgs.msg import Bool
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
+from mhri.core.driving.driven_limits import DrivenLimits
 from mhri.core.driving.gate import common_limits
 from mhri.core.driving.pulse import Neighbour
 from mhri.core.driving.seat import Caller, ControlSeat, MOST_ROBOTS
@@ -70,6 +71,7 @@ class Gates:
         self._seat = ControlSeat()
         self._wish = WishTopic(self._on_wish, self._on_operator_gone)
         self._settings = settings
+        self._driven = DrivenLimits()
         self._kept = None
         self._recall()
         # None: the mux in force has not said it yet.
@@ -210,18 +212,20 @@ class Gates:
             self.on_change()
 
     def _recall(self):
-        """Take back what the gates before have kept: seat, who was refused, settings."""
+        """Take back what the gates before have kept: seat, who was refused, settings, limits."""
         kept = self._memory.recall(KEPT)
         if kept:
             self._seat.restore(kept['seat'], self._clock())
             self._settings = Settings(*kept['settings'])
+            self._driven.restore(kept['driven'])
 
     def _remember(self):
         """Keep it for the next gates, if it has changed."""
-        state = self._seat.changes, self._settings
+        state = self._seat.changes, self._settings, self._driven.kept()
         if state != self._kept:
             self._kept = state
-            self._memory.keep(KEPT, {'seat': self._seat.kept(), 'settings': self._settings})
+            self._memory.keep(KEPT, {'seat': self._seat.kept(), 'settings': self._settings,
+                                     'driven': state[2]})
 
     def _on_wish(self, caller, message):
         """Take in the operator's wish, which also renews the lease."""
@@ -235,6 +239,7 @@ class Gates:
                 self._refuse(caller.name, 'robot_select')
             else:
                 self._settings = settings or self._settings
+                self._driven.select(names if self._seat.holder == before[0] else ())
             if (self._seat.holder, self._seat.checked, self._settings) != before:
                 self._strangers.forget(caller.name)
                 self._check()
@@ -294,6 +299,8 @@ class Gates:
     def _check(self):
         """Let the gates know which robots are checked now."""
         now, checked = self._clock(), self._seat.checked
+        for gate in self._gates.values():
+            gate.hold_to(self._driven.of(gate.name, gate.robot_type.limits))
         self._each(lambda gate: gate.send(gate.rule.check(gate.name in checked, now)))
         self._keep_together()
         self._roster.check(checked)
@@ -325,6 +332,7 @@ class Gates:
             if self._closed:
                 return
             self._gates[name] = gate
+            gate.hold_to(self._driven.of(name, robot_type.limits))
             gate.send(gate.rule.stop(bool(self._stop), now))
             gate.send(gate.rule.check(name in self._seat.checked, now))
             self._keep_together()
@@ -381,6 +389,9 @@ class Gates:
     def _tick(self, now):
         before = self._seat.state
         self._seat.tick(now, self._wish.there())
+        for gate in self._gates.values():
+            if gate.rule.checked and not gate.rule.sent.is_zero():
+                self._driven.note(gate.name, gate.robot_type.limits)
         self._remember()
         if self._seat.state != before:
             self._check()

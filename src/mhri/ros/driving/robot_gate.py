@@ -229,6 +229,24 @@ class RobotGate:
                  if at is not None and at < math.inf]
         return min(times, default=None)
 
+    @property
+    def limit_raised(self):
+        """Whether its parameters allow more than it is held to."""
+        return self.rule.limits != self.robot_type.limits
+
+    def hold_to(self, limits):
+        """Hold it to limits that are no higher than those of its type; say where they are lower.
+
+        :param limits: :class:`mhri.core.robots.robot_types.Limits`
+        """
+        if limits == self.rule.limits:
+            return
+        self.rule.limits = limits
+        if self.limit_raised:
+            rospy.logwarn('%s: its limit was raised to %.2f m/s, %.2f rad/s while it was driven: it '
+                          'counts once the robot is selected anew', self.name,
+                          self.robot_type.limits.linear_mps, self.robot_type.limits.angular_rad_s)
+
     def also_commanded_by(self, now):
         """Return the sorted caller ids of the other nodes that command the robot now."""
         names = {name for name, _ in self._foreign(self._others.heard(now))}
@@ -485,7 +503,7 @@ class RobotGate:
         return RobotGateMessage(
             name=self.name, obeys=rule.obeys,
             stands=self._held_by if rule.stands == HELD else rule.stands,
-            also_commanded_by=self.also_commanded_by(self._clock()),
+            also_commanded_by=self.also_commanded_by(self._clock()), limit_raised=self.limit_raised,
             odometry_follows=self.odometry_follows,
             topic=chosen.resolved_name if chosen else '', guarded=self._guarded,
             stop_confirmed=self._guarded and self._guard.stop_confirmed,
