@@ -12,7 +12,7 @@ from mhri.core.robots.robot_types import load_robot_types
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'robots')
 TYPES = load_robot_types([(name, open(os.path.join(FOLDER, name), encoding='utf-8').read())
                           for name in sorted(os.listdir(FOLDER))])[0]
-IGNORE = IgnoreList(('/rosout',), ('mux', 'gates', 'robot_controller', 'mhri_*'))
+IGNORE = IgnoreList(('/rosout', '/mux', '/mhri_*'), ('mux', 'gates', 'robot_controller', 'mhri_*'))
 TWIST, ODOMETRY, BOOL = 'geometry_msgs/Twist', 'nav_msgs/Odometry', 'std_msgs/Bool'
 HOST_IP, BOT_IP = '192.0.2.1', '192.0.2.7'
 COMPUTER = Computer(

@@ -162,7 +162,8 @@ def test_every_kind_is_shown_by_a_case_or_is_a_note():
     shown = {kind for _, kind, _ in (*ROBOT_CASES.values(), *PANEL_CASES.values())}
     other = {kind for kind in KINDS if kind.startswith((
         'drill.', 'recording.', 'session.', 'task'))}
-    assert set(KINDS) - shown == other | {'screen.note', 'screen.trouble', 'camera.budget'}
+    assert set(KINDS) - shown == other | {
+        'screen.note', 'screen.trouble', 'screen.remote', 'stick.let_go', 'camera.budget'}
     assert {severity for severity, _ in KINDS.values()} == set(SEVERITIES)
     assert len({sound for _, sound in KINDS.values()} - {''}) <= 3
     assert [kind for kind, (_, sound) in KINDS.items() if sound == LOST_TONE] == ['link.lost']

@@ -3,6 +3,7 @@
 """Which parts of a ROS graph are robots: the rules of "Look for Connected Bots"."""
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
+from functools import partial
 from typing import (
     Container, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple)
 
@@ -319,8 +320,11 @@ class Survey:
 
         A multiplexer, a smoother. A navigation, which reads none, drives beside us.
         """
+        # Of a robot without a namespace, mhri's own nodes are beside it, not in it.
+        ignored = partial(self._ignore.covers, namespace=namespace) if namespace == ROOT \
+            else self._ignored
         writers = {node for node in self._publishers.get(topic, ())
-                   if split(node)[0] == namespace and not self._ignored(node)}
+                   if split(node)[0] == namespace and not ignored(node)}
         return bool(writers) and any(
             self._topic_types.get(other) == TWIST and not writers.isdisjoint(nodes)
             for other, nodes in self._subscribers.items() if other != topic)

@@ -243,8 +243,8 @@ class RobotGate:
             return
         self.rule.limits = limits
         if self.limit_raised:
-            rospy.logwarn('%s: its limit was raised to %.2f m/s, %.2f rad/s while it was driven: it '
-                          'counts once the robot is selected anew', self.name,
+            rospy.logwarn('%s: its limit was raised to %.2f m/s, %.2f rad/s while it was driven; '
+                          'that counts once the robot is selected anew', self.name,
                           self.robot_type.limits.linear_mps, self.robot_type.limits.angular_rad_s)
 
     def also_commanded_by(self, now):
