@@ -92,21 +92,30 @@ class Hostile:
 
         :param class_of: function from a ROS type, e.g. ``geometry_msgs/Twist``, to its class
         """
+        return self._message(kind, class_of, False)
+
+    def _message(self, kind, class_of, listed):
+        """Return one; as an item of an array (``listed``) its own arrays are short.
+
+        Arrays of arrays of texts would be larger than any of the other attacks.
+        """
         made = kind()
         for slot, ros_type in zip(kind.__slots__, kind._slot_types):
-            setattr(made, slot, self._field(ros_type, class_of))
+            setattr(made, slot, self._field(ros_type, class_of, listed))
         return made
 
-    def _field(self, ros_type, class_of):
+    def _field(self, ros_type, class_of, listed):
         array = re.match(r'(.+)\[(\d*)\]\Z', ros_type)
         if array:
             count = int(array.group(2)) if array.group(2) else self.count()
+            if listed and not array.group(2):
+                count = min(count, 3)
             item = array.group(1)
             if item in ('uint8', 'char'):
                 return self.torn(count)
             if count <= 300:
-                return [self._field(item, class_of) for _ in range(count)]
-            return [self._field(item, class_of) for _ in range(10)] * (count // 10)
+                return [self._field(item, class_of, True) for _ in range(count)]
+            return [self._field(item, class_of, True) for _ in range(10)] * (count // 10)
         if ros_type == 'string':
             return self.text()
         if ros_type in ('float64', 'float32'):
@@ -117,8 +126,8 @@ class Hostile:
             return self.whole(ros_type)
         if ros_type in ('time', 'duration'):
             return self._time(class_of(ros_type), ros_type == 'time')
-        return self.message(class_of('std_msgs/Header' if ros_type == 'Header' else ros_type),
-                            class_of)
+        return self._message(class_of('std_msgs/Header' if ros_type == 'Header' else ros_type),
+                             class_of, listed)
 
     def _time(self, kind, is_time):
         made = kind()

@@ -155,3 +155,13 @@ def test_the_advice_names_reason_and_remedy(source, waits_for, heard, words):
     said = advice(source, waits_for, heard)
     assert words in said and bool(said) == bool(words)
     assert source.kind in (JOY, TWIST)
+
+
+def test_who_was_displaced_has_its_source_back_once_another_one_takes_control():
+    ownership, both = Ownership(), {'/pedal', '/attacker'}
+    assert ownership.admits('/pedal', both) and not ownership.admits('/attacker', both)
+    for changed in (True, False, False):
+        assert ownership.take('/attacker', both) == changed
+        assert ownership.admits('/attacker', both) and not ownership.admits('/pedal', both)
+    assert ownership.take('/panel', both)
+    assert ownership.admits('/pedal', both) and not ownership.admits('/attacker', both)

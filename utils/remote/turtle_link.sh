@@ -53,10 +53,10 @@ start_master() {
 # limit_callers: lets each address call this robot's link ten times at once, and then twice a second:
 # zenoh takes a tenth of a second over each call that fails, and a host would wait behind them.
 limit_callers() {
-  local port=${LISTEN##*:} admin=(sudo -n)
+  local link_port=${LISTEN##*:} admin=(sudo -n)
   if [ -n "$ROUTER" ] || [[ $LISTEN == udp/* ]]; then return; fi
   [ "$(id -u)" != 0 ] || admin=()
-  LIMITS=mhri_link_$port
+  LIMITS=mhri_link_$link_port
   if ! "${admin[@]}" env "PATH=$PATH:/usr/sbin:/sbin" nft -f - <<RULES 2>/dev/null
 table inet $LIMITS
 delete table inet $LIMITS
@@ -66,7 +66,7 @@ table inet $LIMITS {
   chain input {
     type filter hook input priority -10; policy accept;
     iif lo accept
-    tcp dport $port tcp flags & (syn | ack) == syn jump limited
+    tcp dport $link_port tcp flags & (syn | ack) == syn jump limited
   }
   chain limited {
     update @callers4 { ip saddr limit rate over 2/second burst 10 packets } drop
@@ -77,7 +77,7 @@ table inet $LIMITS {
 RULES
   then
     LIMITS=
-    warn "nothing limits how often somebody may call port $port (nft is not there, or wants root):" \
+    warn "nothing limits how often somebody may call port $link_port (nft is not there, or wants root):" \
       "who reaches it can keep the host out with calls that fail; see 'Keys in five minutes'"
   fi
 }
