@@ -97,19 +97,20 @@ class Mhri:
         for name in names:
             rospy.set_param('/{}/robot_type'.format(name), 'turtlebot2' if streaming else 'generic')
         if brake:
-            ask_for_brakes()
+            ask_for_brakes(system)
         settings = os.path.join(system.home, 'screen.json')
         with open(settings, 'w', encoding='utf-8') as stream:
             looks = {name: {'views': ['imu', 'rgb']} for name in names}
             json.dump({'state': {'looks': looks}}, stream)
-        panel = system.node('panel', '--settings', settings, '--select', ' '.join(names))
         self.receiver = Receiver(['/{}/{}'.format(
             name, 'teleop/input' if streaming else 'cmd_vel') for name in names])
         self._joy = rospy.Publisher('/mux_in/pedal', Joy, queue_size=1, tcp_nodelay=True)
         mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=1)
         wait_for(lambda: self._joy.get_num_connections() and mode.get_num_connections(), 15,
                  'the mux')
+        # While nobody is in control anybody may choose the mode.
         mode.publish('pedal')
+        panel = system.node('panel', '--settings', settings, '--select', ' '.join(names))
         wait_for(self.receiver.connected, 60, 'the gates')
         if brake:
             system.start(sys.executable, os.path.abspath(__file__), '--play', *names)
@@ -136,19 +137,18 @@ class Mhri:
         self._joy.publish(self._joy_class(axes=[0.0, value]))
 
 
-def ask_for_brakes():
+def ask_for_brakes(system):
     """Switch the obstacle brake on as an operator who then goes: the settings in force stay."""
     import rospy
-    from mhri.msg import DriveSettings, GatesState, RobotSelect
+    from mhri.msg import GatesState
     said = []
-    ear = rospy.Subscriber('/gates/state', GatesState, lambda message: said.append(message.brake))
-    wish = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1)
-
-    def asked():
-        wish.publish(settings=[DriveSettings(0.5, 1.5, False, False, True)])
-        return said and said[-1]
-    wait_for(asked, 60, 'the brake', poll_s=0.1)
-    wish.unregister()
+    ear = rospy.Subscriber('/gates/state', GatesState, said.append)
+    wish = system.start('rostopic', 'pub', '-r', '5', '/robot_controller/robot_select',
+                        'mhri/RobotSelect', '{settings: [{linear_mps: 0.5, angular_rad_s: 1.5, '
+                        'brake: true}]}')
+    wait_for(lambda: said and said[-1].brake, 60, 'the brake')
+    system.kill(wish)
+    wait_for(lambda: not said[-1].operator, 60, 'an empty seat')
     ear.unregister()
 
 
@@ -360,8 +360,7 @@ def run(robots, table, streaming, brake, short):
                                                             'ROS_LOG_DIR')})
         system.screen()
         system.start_master()
-        # As an input node it may choose the mode, whoever is in control.
-        rospy.init_node('mhri_pedal', disable_signals=True)
+        rospy.init_node('bench', disable_signals=True)
         mhri, chain = Mhri(system, names, streaming, brake), Chain(system, names)
         if streaming:
             compare_streaming(mhri, chain, robots, events, table, short)

@@ -247,8 +247,9 @@ class WishTest(unittest.TestCase):
         self.assertEqual(self.pushed(), 0.5)
         limits = '/{}/mhri'.format(self.ours)
         rospy.set_param(limits, {'limits': {'linear_mps': 0.1}})
-        # One that falls counts as soon as it is seen.
-        wait_for(lambda: self.pushed() == 0.1, 60.0, 'the lower limit')
+        # One that falls counts as soon as it is seen, which lets the robot wait for neutral.
+        self.state.wait_robot(self.ours, lambda gate: gate.stands == 'joining', 'the lower limit')
+        self.assertEqual(self.pushed(), 0.1)
         when = time.monotonic()
         rospy.delete_param(limits)
         self.state.wait_robot(self.ours, lambda gate: gate.limit_raised, 'the sign')
