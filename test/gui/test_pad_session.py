@@ -105,6 +105,8 @@ def test_a_pad_by_its_name_from_the_list_to_the_robot_and_the_page(session, joy,
     session.until(lambda: 'plug one in' in operator.view().status, what='the remedy')
     pad = joy.do('attach', name=PS3)
     shown(session, PS3)
+    joy.do('set', number=pad, axes={0: 0.0, 1: 0.0}, buttons={L1: 0})
+    session.until(lambda: 'hold the dead-man button' in operator.view().status, what='the pad')
     joy.do('set', number=pad, axes={0: 0.0, 1: 0.0}, buttons={L1: 1})
     session.until(lambda: operator.view().status.endswith('ready'), what='the pad to be centred')
     says = session.host.windows['bot1'].hud

@@ -47,6 +47,10 @@ class Rig:
             name, device, self.now, lambda: self.profiles[name].read(axes, buttons),
             buttons[:1] == HELD))
 
+    def let_go(self, device='/pad'):
+        """Show the dead-man button released once, the stick out, as it has to be seen."""
+        self.joy(FORWARD, RELEASED, device=device)
+
     def run(self, seconds):
         """Let time pass as the timer of the mux does, tick by tick."""
         end = self.now + seconds
@@ -83,6 +87,7 @@ def assert_20_hz(times):
 def rig_in(state, **options):
     """Return a rig in a state, its source fresh and every zero long sent."""
     rig = Rig(**options)
+    rig.let_go()
     if state == WAIT_NEUTRAL:
         rig.heard(1.0, FORWARD)
     else:
@@ -282,6 +287,7 @@ def test_nothing_moves_until_neutral_after(state, cause):
     assert rig.arbiter.state == WAIT_NEUTRAL
     assert bool(rig.zeros()) == ((state, cause) in AT_ONCE)
     assert rig.arbiter.waits_for(rig.now) == 'neutral'
+    rig.let_go('/pad2')
     rig.joy(NEUTRAL, device='/pad2')
     assert rig.joy(FORWARD, device='/pad2') == DRIVE
 

@@ -191,6 +191,7 @@ def enabled_rig(**changes):
     """A rig whose second source is an enabling pedal."""
     rig = Rig()
     rig.arbiter = Arbiter(replace(make_config(), enabling='other', **changes), rig.now)
+    rig.let_go()
     return rig
 
 
@@ -280,6 +281,7 @@ def test_a_robot_that_joins_while_others_are_driven_makes_all_wait_for_neutral()
 def automatic_rig():
     rig = Rig()
     rig.arbiter = Arbiter(replace(make_config(), automatic_switching=True), rig.now)
+    rig.let_go()
     rig.heard(1.0, NEUTRAL)
     return rig
 
@@ -324,3 +326,28 @@ def test_a_source_left_while_it_is_held_out_does_not_take_over_again():
     assert rig.joy(FORWARD) is None and rig.arbiter.mode == 'other'
     rig.joy(NEUTRAL)
     assert rig.joy(FORWARD) == ZERO and rig.arbiter.mode == 'stick'
+
+
+@pytest.mark.parametrize('event', ['start', 'mode', 'another device'])
+def test_a_dead_man_button_that_never_changes_counts_for_nothing(event):
+    """One that is taped down: it is asked for once."""
+    rig, device = Rig(), '/pad'
+    if event != 'start':
+        rig = rig_in(DRIVING)
+    if event == 'mode':
+        rig.arbiter.on_mode('other', rig.now)
+        rig.arbiter.on_mode('stick', rig.now)
+    if event == 'another device':
+        device = '/pad2'
+    for axes in (NEUTRAL, FORWARD, NEUTRAL, FORWARD):
+        rig.joy(axes, device=device)
+        rig.forget()
+        rig.joy(axes, device=device)
+        rig.zeros()
+    assert rig.arbiter.waits_for(rig.now) == 'dead_man'
+    rig.joy(NEUTRAL, RELEASED, device=device)
+    rig.joy(NEUTRAL, device=device)
+    assert rig.joy(FORWARD, device=device) == DRIVE
+    rig.arbiter.on_lost('stick', 'lost', rig.now)
+    rig.joy(NEUTRAL, device=device)
+    assert rig.joy(FORWARD, device=device) == DRIVE, 'not again'

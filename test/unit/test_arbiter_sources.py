@@ -135,6 +135,7 @@ def holding_rig(timeout_s=5.0):
     config = make_config(timeout_s=timeout_s)
     rig.arbiter = Arbiter(replace(config, sources=(
         replace(config.sources[0], holds=True),) + config.sources[1:]), rig.now)
+    rig.let_go()
     return rig
 
 

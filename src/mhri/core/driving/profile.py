@@ -52,13 +52,14 @@ class Stick(NamedTuple):
 
     ``forward`` and ``turn`` (left +) are in [-1, 1] and already zero while the dead-man button is
     released; ``neutral`` tells whether the stick itself is at rest; ``held`` whether the dead-man
-    button (if the profile names one) is pressed.
+    button (if the profile names one, as ``has_dead_man`` tells) is pressed.
     """
 
     forward: float
     turn: float
     neutral: bool
     held: bool = True
+    has_dead_man: bool = False
 
     def is_zero(self) -> bool:
         """Tell whether nothing is asked for."""
@@ -74,7 +75,7 @@ class Asked:
     """What a source of velocities asks for; the arbiter treats it like a :class:`Stick`."""
 
     wanted: Velocity
-    held = True
+    held, has_dead_man = True, False
 
     @property
     def neutral(self) -> bool:
@@ -162,12 +163,14 @@ class Profile:
         # A stick that counts as let go moves nothing.
         rests = min(self.neutral, self.dead_zone) if self.dead_zone else self.neutral
         neutral = max(abs(forward), abs(turn)) <= rests
+        guarded = self.dead_man is not None
         if neutral or not held:
-            return Stick(0.0, 0.0, neutral, held)
+            return Stick(0.0, 0.0, neutral, held, guarded)
         # A pad without that button is slow, never fast.
         slow = self.turbo is not None and not is_pressed(buttons, self.turbo)
         factor = self.without_turbo if slow else 1.0
-        return Stick(factor * self._respond(forward), factor * self._respond(turn), neutral)
+        return Stick(factor * self._respond(forward), factor * self._respond(turn), neutral,
+                     has_dead_man=guarded)
 
     def _held(self, buttons: Sequence[int]) -> bool:
         """Tell whether the dead-man button is held; always true if there is none.
