@@ -80,8 +80,8 @@ class Events:
     def drive(self):
         """Centre the stick that drives for a moment, and deflect it."""
         stick = self.world.active()
-        if stick == PAD and not self.world.model.sticks[PAD].held:
-            self.world.dead_man(True)
+        if stick == PAD:
+            self.world.press_once()
         if not self.world.stick(stick, False):
             return False
         self.world.wait(self.dice.uniform(0.1, 0.5))
@@ -190,6 +190,9 @@ class Events:
     def calm(self):
         """Make all well, centre, deflect: every robot has to drive."""
         self.world.recover(rival=self.dice.random() < 0.4)
+        if self.world.active() == PAD:
+            self.world.press_once()
+            self.world.wait(max(0.0, self.world.model.well_since - time.monotonic()) + 0.5)
         self.world.stick(self.world.active(), True)
         self.world.wait(3.5)
         self.done.append((time.monotonic(), 'all well'))

@@ -69,10 +69,9 @@ class Handover(unittest.TestCase):
             recorder.close()
 
     def drive(self, stick=None, axes=FORWARD):
-        """Centre a stick, push it, and wait for motion."""
+        """Centre a stick, with its buttons pressed anew, push it, and wait for motion."""
         stick = stick or self.joy
-        stick.hold(NEUTRAL)
-        self.waits.wait(lambda _: self.waits.last() == '')
+        stick.press(self.waits)
         begun = stick.hold(axes)
         self.twists.wait(moves, begun)
 
@@ -131,6 +130,21 @@ class Handover(unittest.TestCase):
         self.assertIn('no_such_pad', self.process.said())
         with self.pad.frame('profile:ps3'):
             self.assert_held_until_neutral(begun, self.pad, PS3_UP)
+
+    def test_a_dead_man_button_that_is_taped_down_is_asked_for(self):
+        """It drives nothing before it was seen released once; nor with another device."""
+        self.mux()
+        self.mode.publish(source='ps3joy')
+        self.modes.wait(lambda value: value == 'ps3joy')
+        for frame in ('', 'profile:ps4'):
+            with self.pad.frame(frame):
+                self.pad.hold(NEUTRAL)
+                self.waits.wait(lambda _: self.waits.last() == 'dead_man')
+                begun = self.pad.hold(PS3_UP)
+                wait_until(lambda start=begun: self.pad.last_sent > start + 0.5, 'nothing sent')
+                self.assertFalse([item for item in self.twists.since(begun) if moves(item.value)])
+                self.assertEqual(self.waits.last(), 'dead_man')
+                self.drive(self.pad, PS3_UP)
 
     def test_dead_man_buttons_can_be_turned_off_and_that_is_said(self):
         self.mux()

@@ -43,7 +43,7 @@ class MuxLab(unittest.TestCase):
         cls.diagnostics = Recorder('/diagnostics', DiagnosticArray, _counts)
         cls.log = Recorder('/rosout', Log, lambda message: (message.name, message.level,
                                                             message.msg))
-        cls.pad, cls.wheel = Stick('/mux_in/joy'), Stick('/lab/wheel')
+        cls.pad, cls.wheel = Stick('/mux_in/joy', HELD), Stick('/lab/wheel')
         cls.select = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=10)
         for stick in (cls.pad, cls.wheel):
             stick.wait_listener()
@@ -56,36 +56,11 @@ class MuxLab(unittest.TestCase):
         self.wheel.silence()
         self.select.publish(source='joy')
         self.modes.wait(lambda _: self.modes.last() == 'joy')
-        self._press()
-
-    def _press(self):
-        """Let the dead-man button go and press it, until the mux has seen both."""
-        def both():
-            for buttons in (RELEASED, HELD):
-                begun = self.pad.hold(NEUTRAL, buttons)
-                wait_until(lambda: self.pad.last_sent > begun + 0.1, 'nothing is sent')
-            return self.waits.last() == ''
-        wait_until(both, 'the dead-man button is not seen')
+        self.pad.press(self.waits)
 
     def _drive(self):
         start = self.pad.hold(FORWARD, HELD)
         self.twists.wait(lambda value: value == DRIVE, start)
-
-    def test_a_dead_man_button_that_is_taped_down_is_asked_for(self):
-        """After a change of mode it drives nothing before it was let go once."""
-        self._drive()
-        self.pad.hold(NEUTRAL, HELD)
-        self.wheel.hold(NEUTRAL)
-        for mode in ('wheel', 'joy'):
-            begun = time.monotonic()
-            self.select.publish(source=mode)
-            self.modes.wait(lambda value: value == mode, begun)
-        self.waits.wait(lambda _: self.waits.last() == 'dead_man')
-        held = self.pad.hold(FORWARD, HELD)
-        self.waits.wait_silence(0.5)
-        self.assertEqual([item for item in self.twists.since(held) if moves(item.value)], [])
-        self._press()
-        self._drive()
 
     def test_dead_man_released_means_zero(self):
         """At once, then silence; pressed again on the stick held out it drives nothing."""

@@ -199,6 +199,15 @@ class Stick:
             self._changed.notify()
             return now
 
+    def press(self, waits, axes=NEUTRAL):
+        """Let its buttons go and press them, until a mux has seen both and waits for nothing."""
+        def seen():
+            for buttons in ((0,) * len(self._buttons), self._buttons):
+                begun = self.hold(axes, buttons)
+                wait_until(lambda: self.last_sent > begun + 0.1, 'nothing is sent')
+            return waits.last() == ''
+        wait_until(seen, 'the mux waits for something')
+
     def silence(self):
         """Send nothing from now on; return when the last message was sent."""
         with self._changed:

@@ -302,6 +302,15 @@ class World:
         word = 'out' if self.model.sticks[PAD].out else 'centred'
         return self.say('pad', '{} {:d}'.format(word, held), 'dead_man', held)
 
+    def press_once(self):
+        """Hold the dead-man button; where the mux has not seen it released, it is let go before."""
+        if self.model.sticks[PAD].held:
+            if self.model.sticks[PAD].let_go:
+                return True
+            self.dead_man(False)
+            self.wait(0.4)
+        return self.dead_man(True)
+
     def check(self, operator, names):
         """Check exactly these robots."""
         names = sorted(names)

@@ -47,10 +47,13 @@ class Part:
 
 
 class Stick:
-    """What one source says: since when it is out, and when it was centred last."""
+    """What one source says: since when it is out, and when it was centred last.
+
+    ``let_go``: the mux has seen its dead-man button released.
+    """
 
     def __init__(self):
-        self.out, self.held = False, True
+        self.out, self.held, self.let_go, self.released_at = False, True, False, 0.0
         self.changed_at, self.centred_at, self.centred_since = 0.0, 0.0, 0.0
 
     def say(self, out, now):
@@ -139,6 +142,11 @@ class ReferenceModel:
         stick = self.sticks[PAD]
         if held and not stick.held and stick.out:
             self._all_wait(now, AT_ONCE_S, 'the dead-man button was pressed', PAD)
+        if stick.held and not held:
+            stick.released_at = now
+        elif held and not stick.held and now - max(
+                stick.released_at, self.mode_at, self.parts['mux'].back_at + UNSURE_S) > CENTRED_S:
+            stick.let_go = stick.let_go or self._modes(now) == {PAD}
         stick.held = held
         if held:
             self._unwell_until(now + SAY_S)
@@ -186,6 +194,8 @@ class ReferenceModel:
     # What comes back.
 
     def _back_mux(self, now, _key, part, starting):
+        if starting:
+            self.sticks[PAD].let_go = False
         if starting or part.lasted > SILENT_S + 0.5:
             self._all_wait(part.since, SILENT_S, 'the mux was away')
 
@@ -199,6 +209,8 @@ class ReferenceModel:
             self._all_wait(part.since, MASTER_S, 'the master was lost')
 
     def _back_pad(self, now, _key, part, starting):
+        if starting:
+            self.sticks[PAD].let_go = False
         if starting or part.lasted > SILENT_S + 0.5:
             self._all_wait(part.since if starting else now, SILENT_S, 'the pad was away', PAD)
 
@@ -395,6 +407,8 @@ class ReferenceModel:
         if len(speakers) != 1 or len(self.holders) != 1:
             return False
         stick = self.sticks[next(iter(speakers))]
+        if PAD in speakers and not (stick.held and stick.let_go):
+            return False
         ready = max(stick.centred_since, self.well_since, self.causes[name][0])
         return stick.out and stick.changed_at - ready >= CENTRED_S and (
             now - stick.changed_at >= DRIVES_WITHIN_S + slack_s)

@@ -107,11 +107,16 @@ def test_what_was_ended_waits_for_neutral(event, back):
 def test_the_dead_man_button_on_a_stick_that_is_out():
     model = driven()
     model.tell(30.0, 'mode', PAD)
-    model.tell(35.0, 'stick', PAD, True)
-    assert says(model, 38.0) == DRIVE
-    model.tell(38.0, 'dead_man', False)
-    assert says(model, 38.2) == STAND
-    model.tell(39.0, 'dead_man', True)
+    model.tell(31.0, 'stick', PAD, True)
+    assert says(model, 34.0) == EITHER, 'taped down: asked for once'
+    model.tell(34.0, 'stick', PAD, False)
+    model.tell(34.0, 'dead_man', False)
+    model.tell(34.5, 'dead_man', True)
+    model.tell(37.0, 'stick', PAD, True)
+    assert says(model, 39.45) == DRIVE
+    model.tell(39.5, 'dead_man', False)
+    assert says(model, 39.7) == STAND
+    model.tell(40.5, 'dead_man', True)
     assert says(model, 45.0) == STAND
 
 

@@ -18,11 +18,11 @@ States and what leads out of them::
 These lead from READY and DRIVING to WAIT_NEUTRAL: a silent, suspended, lost or exchanged source, a
 change of mode, a robot that joins the selection, the release of the enabling pedal, a dead-man
 button pressed while the stick is deflected, and the loss of the master or of the gates. A dead-man
-button counts as released until it was seen released once since the start, a change of mode, or
-another device came: one that is taped down is none. Stop-all leads from anywhere to STOPPED. Each
-of these starts the zeros (except silence at rest, after which they have already been sent): one at
-once, more at :data:`REPEAT_HZ` for :data:`ZEROS_S`, then silence, since endless zeros would block a
-robot's own navigation behind its ``cmd_vel_mux`` (rqt_common_plugins#180).
+button counts as released until its device was seen to release it once: one that is taped down is
+none. Stop-all leads from anywhere to STOPPED. Each of these starts the zeros (except silence at
+rest, after which they have already been sent): one at once, more at :data:`REPEAT_HZ` for
+:data:`ZEROS_S`, then silence, since endless zeros would block a robot's own navigation behind its
+``cmd_vel_mux`` (rqt_common_plugins#180).
 """
 import collections
 import math
@@ -62,8 +62,8 @@ class Arbiter:
         self._stick: Wanted = _UNHEARD
         self._stick_at = -math.inf
         self._device: object = None
-        # The device whose dead-man button was seen released since the mode was chosen.
-        self._let_go: object = None
+        # Of each source, the device whose dead-man button was seen released.
+        self._let_go: Dict[str, object] = {}
         self._selected: FrozenSet[str] = frozenset()
         self._enabling, self._enabled_at = config.enabling, -math.inf
         self._automatic = config.automatic_switching
@@ -150,6 +150,10 @@ class Arbiter:
         except JoyRefused as refusal:
             self.refused[refusal.kind] += 1
             raise
+        if not stick.held:
+            self._let_go[name] = device
+        elif stick.has_dead_man and self._let_go.get(name) != device:
+            stick = Stick(0.0, 0.0, stick.neutral, held=False, has_dead_man=True)
         before, self._last[name] = self._last.get(name, (_UNHEARD, None)), (stick, device)
         if active:
             return self._on_active(stick, device, now)
@@ -163,10 +167,6 @@ class Arbiter:
 
     def _on_active(self, stick: Wanted, device: object, now: float) -> Optional[Velocity]:
         """Take in what the active source asks for."""
-        if not stick.held:
-            self._let_go = device
-        if isinstance(stick, Stick) and stick.has_dead_man and self._let_go != device:
-            stick = stick._replace(forward=0.0, turn=0.0, held=False)
         exchanged = self._device not in (None, device) and self._state in (READY, DRIVING)
         was_fresh, before = self._fresh(now), self._stick
         self._stick, self._stick_at, self._device = stick, now, device
@@ -241,7 +241,6 @@ class Arbiter:
         self._mode = name
         rests = self.source.rests and name in self._last
         self._stick, self._device = self._last[name] if rests else (_UNHEARD, None)
-        self._let_go = None
         self._stick_at = now if rests else -math.inf
         return self.on_hold('mode', now)
 
