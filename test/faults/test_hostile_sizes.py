@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A selection of 20,000 names, and a robot with 2,000 velocity topics, against the gates.
+"""Messages of 100 MB, a selection of 20,000 names, a robot with 2,000 velocity topics.
 
 The operator is killed while it drives: the first zero comes within 50 ms, whatever it had selected.
 """
@@ -17,6 +17,7 @@ from support.ros_system import wait_for  # noqa: E402
 from support.under_fire import HERE, ROBOTS, STOP_S, table, UnderFire  # noqa: E402
 
 NAMES, TOPICS = 20000, 2000
+GROWTH_MB = 60.0
 OPERATOR = os.path.join(HERE, '..', 'rostest', 'operator_process.py')
 
 
@@ -33,6 +34,31 @@ def last_word(fire, since):
     wait_for(lambda: not any(log.moves() for log in fire.robots.values()), 3.0, 'zeros')
     return max(next(word[0] for word in log.after(since) if not any(word[1:]))
                for log in fire.robots.values()) - since
+
+
+def test_messages_of_100_mb(fire):
+    """Mux, gates and screen do not even read them, and go on with what others say."""
+    import rospy
+    from mhri.msg import GatesState, RobotSelect, TeamTwist
+    from std_msgs.msg import String
+    for topic, kind, field in (('/robot_controller/robot_select', RobotSelect, 'mode'),
+                               ('/gates/state', GatesState, 'operator'),
+                               ('/mux_in/task', TeamTwist, 'robots'),
+                               ('/mux/waits_for', String, 'data')):
+        publisher = rospy.Publisher(topic, kind, queue_size=1)
+        before = publisher.get_num_connections
+        wait_for(before, 6.0, 'somebody to listen to ' + topic)
+        text = 'a' * (100 * 1000 * 1000)
+        publisher.publish(**{field: [text] if field == 'robots' else text})
+        wait_for(lambda: publisher.impl.message_data_sent > 10 ** 8 or not before(), 10.0,
+                 'it to be sent')
+        publisher.unregister()
+    for name, (memory, _, _) in fire.sizes().items():
+        assert memory - fire.begun[name][0] <= GROWTH_MB, name
+    fire.drive()
+    assert fire.stop_all() <= STOP_S
+    fire.check_alive()
+    fire.check_straight()
 
 
 def gates_state():

@@ -22,8 +22,8 @@ from std_srvs.srv import SetBool, SetBoolResponse
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.ros.graph import handshake  # noqa: E402
-from mhri.ros.graph.handshake import limit_handshakes  # noqa: E402
+from mhri.ros.graph import peers  # noqa: E402
+from mhri.ros.graph.peers import limit_peers  # noqa: E402
 from mhri.ros.recording.raw_link import RawLink  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
@@ -132,7 +132,7 @@ class HandshakeTest(unittest.TestCase):
 
     def test_a_publisher_that_does_not_answer_is_called_again(self):
         heard = []
-        with mock.patch.object(handshake, 'LIMIT_S', 1.0):
+        with mock.patch.object(peers, 'LIMIT_S', 1.0):
             publisher = SilentAtFirst('/late_word', 'at last')
             self.addCleanup(publisher.close)
             listener = rospy.Subscriber('/late_word', String, heard.append)
@@ -148,6 +148,6 @@ class HandshakeTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    limit_handshakes()
+    limit_peers()
     rospy.init_node('handshake_test')
     rostest.rosrun('mhri', 'handshake', HandshakeTest)

@@ -18,7 +18,7 @@ from mhri.ros.driving.gates import Gates, KEPT
 from mhri.ros.driving.gates_state import GatesSpeaker
 from mhri.ros.ending import init_node
 from mhri.ros.graph import log
-from mhri.ros.graph.handshake import limit_handshakes
+from mhri.ros.graph.peers import limit_peers
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.graph.rospy_inside import ended_by_hand
 from mhri.ros.resources import profile_reader, read_text, resource_path, robot_types
@@ -53,7 +53,7 @@ def main():
     types, errors = robot_types()
     memory = Memory()
     beat = stand_by('the gates', beats=True)
-    limit_handshakes()
+    limit_peers()
     init_node('mhri_gates', disable_rostime=True)
     rospy.on_shutdown(beat.end)
     log.install()

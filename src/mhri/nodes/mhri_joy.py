@@ -18,7 +18,7 @@ import rospy
 from mhri.inputs.pad import PadReader
 from mhri.ros.devices.input_node import InputNode
 from mhri.ros.graph import log
-from mhri.ros.graph.handshake import limit_handshakes
+from mhri.ros.graph.peers import limit_peers
 from mhri.ros.graph.live_parameter import LiveParameter
 from mhri.ros.devices.pad_profiles import own_folder, pad_profiles, shipped_names
 from mhri.ros.devices.rumble import Rumble
@@ -31,7 +31,7 @@ def main():
     if '--calibrate' in argv:
         from mhri.inputs.pad_calibration import calibrate
         sys.exit(calibrate(argv, own_folder(), shipped_names()))
-    limit_handshakes()
+    limit_peers()
     init_node('mhri_joy')
     log.install()
     reader = PadReader(pad_profiles)

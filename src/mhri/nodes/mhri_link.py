@@ -33,7 +33,7 @@ from mhri.core.robots.names import name_problem, tidy_name
 from mhri.ros.diagnostics import publish_diagnostics
 from mhri.ros.ending import init_node
 from mhri.ros.graph import log
-from mhri.ros.graph.handshake import limit_handshakes
+from mhri.ros.graph.peers import limit_peers
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.link.carrier import (
     Carrier, CarrierError, LibraryMissing, load_library, MAX_FROM_ROBOT, MAX_TO_ROBOT)
@@ -184,7 +184,7 @@ def main():
     if options.side == 'router':
         route(options)
         return
-    limit_handshakes()
+    limit_peers()
     if rospy.get_namespace() == '/':
         # Started by hand. On the host it has to be a node of the robot; rospy knows its namespace
         # from the start only.

@@ -24,7 +24,7 @@ from mhri.inputs.pedal import PedalReader
 from mhri.ros.devices.enabling_node import EnablingNode
 from mhri.ros.devices.input_node import InputNode
 from mhri.ros.graph import log
-from mhri.ros.graph.handshake import limit_handshakes
+from mhri.ros.graph.peers import limit_peers
 from mhri.ros.graph.live_parameter import LiveParameter
 from mhri.ros.devices.pedal_profiles import PedalProfiles
 from mhri.ros.ending import init_node
@@ -32,7 +32,7 @@ from mhri.ros.ending import init_node
 
 def main():
     """Run until shut down; exit with 1 if the role is invalid."""
-    limit_handshakes()
+    limit_peers()
     init_node('mhri_pedal')
     log.install()
     role = rospy.get_param('~role', DRIVE)

@@ -19,7 +19,7 @@ from mhri.core.session.folder import BAG_S, CAMERA_ALL, CAMERA_STILLS
 from mhri.ros import parameters
 from mhri.ros.ending import init_node
 from mhri.ros.graph import log
-from mhri.ros.graph.handshake import limit_handshakes
+from mhri.ros.graph.peers import limit_peers
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.graph.rospy_inside import ended_by_hand
 from mhri.ros.resources import robot_types
@@ -76,7 +76,7 @@ def main():
     """Run until shut down, and close what is recorded; exit with 1 for a wrong parameter."""
     types, _ = robot_types()
     stand_by('the session')
-    limit_handshakes()
+    limit_peers()
     init_node('mhri_session')
     log.install()
     by_hand = ended_by_hand()

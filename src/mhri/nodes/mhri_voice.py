@@ -24,7 +24,7 @@ from mhri.ros import parameters
 from mhri.ros.devices.input_node import InputNode
 from mhri.ros.ending import init_node
 from mhri.ros.graph import log
-from mhri.ros.graph.handshake import limit_handshakes
+from mhri.ros.graph.peers import limit_peers
 from mhri.ros.graph.live_parameter import LiveParameter
 from mhri.ros.resources import read_text, resource_path
 from mhri.ros.voice.voice import VoiceLink
@@ -32,7 +32,7 @@ from mhri.ros.voice.voice import VoiceLink
 
 def main():
     """Run until shut down; exit with 1 if the language's file cannot be used."""
-    limit_handshakes()
+    limit_peers()
     init_node('mhri_voice')
     log.install()
     try:

@@ -16,7 +16,7 @@ from mhri.core.config import ConfigError
 from mhri.core.driving.sources import enabling_problem, parse_mux_config
 from mhri.ros import parameters
 from mhri.ros.graph import log
-from mhri.ros.graph.handshake import limit_handshakes
+from mhri.ros.graph.peers import limit_peers
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.driving.mux import Mux, STOP_PARAMETER
 from mhri.ros.driving.mux_takeover import end_other_muxes
@@ -63,7 +63,7 @@ def main():
         config = parse_mux_config(read_text(path), path, profile_reader(path))
     except (ConfigError, OSError, MasterError) as error:
         sys.exit('the mux cannot start: {}'.format(error))
-    limit_handshakes()
+    limit_peers()
     init_node('mux')
     rospy.on_shutdown(beat.end)
     log.install()

@@ -26,7 +26,7 @@ from mhri.core.sensors.readings import no_return_of
 from mhri.ros import parameters
 from mhri.ros.ending import init_node
 from mhri.ros.graph import log
-from mhri.ros.graph.handshake import limit_handshakes
+from mhri.ros.graph.peers import limit_peers
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.map.map_source import publish_map
 from mhri.ros.resources import read_resource, read_text, resource_path, robot_types
@@ -147,7 +147,7 @@ def build(name, of_robot):
 
 def main():
     """Run until shut down; exit with 1 and a reason if the robot cannot be built."""
-    limit_handshakes()
+    limit_peers()
     init_node('base')
     log.install()
     name = rospy.get_namespace().strip('/')

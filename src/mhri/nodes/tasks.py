@@ -17,7 +17,7 @@ from mhri.ros import parameters
 from mhri.ros.diagnostics import publish_diagnostics
 from mhri.ros.ending import init_node
 from mhri.ros.graph import log
-from mhri.ros.graph.handshake import limit_handshakes
+from mhri.ros.graph.peers import limit_peers
 from mhri.ros.graph.master_watch import MasterWatch
 from mhri.ros.graph.rospy_inside import ended_by_hand
 from mhri.ros.map.map_source import load_map
@@ -57,7 +57,7 @@ def main():
     types, _ = robot_types()
     kinds, errors = task_kinds()
     beat = stand_by('the tasks', beats=True)
-    limit_handshakes()
+    limit_peers()
     init_node('mhri_tasks', disable_rostime=True)
     rospy.on_shutdown(beat.end)
     log.install()

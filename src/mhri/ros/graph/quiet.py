@@ -14,8 +14,9 @@ _LONGEST_KEY = 200
 # So many characters of a line are examined, at both ends.
 _LOOKED_AT = 500
 # rospy.msg, deserialize_messages; rospy.impl.tcpros_base, receive_once and receive_loop;
-# rospy.topics, _invoke_callback.
-_REPEATED = ('cannot deserialize', 'error deserializing incoming request', 'bad callback')
+# rospy.topics, _invoke_callback; and of mhri.ros.graph.peers.
+_REPEATED = ('cannot deserialize', 'error deserializing incoming request', 'bad callback',
+             'a message was not read')
 # The loggers of rospy.
 _LOGGERS = ('rosout', 'rospy.internal', 'rospy.msg')
 

@@ -26,7 +26,7 @@ from mhri.core.screen.views import (
 from mhri.ros.devices.device_client import DeviceClient
 from mhri.ros.robots.fleet import Fleet
 from mhri.ros.driving.gates_client import GatesClient
-from mhri.ros.graph.handshake import limit_handshakes
+from mhri.ros.graph.peers import limit_peers
 from mhri.ros.graph.log import start_screen_node
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.graph.master_watch import MasterWatch
@@ -104,7 +104,7 @@ class ScreenBackend:
                 self._closing.wait(1.0)
         if self._closing.is_set():
             return
-        limit_handshakes()
+        limit_peers()
         start_screen_node(NODE_NAME, self._argv)
         for error in self._type_errors:
             rospy.logwarn('robot type left out: %s', error)

@@ -1,20 +1,23 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whoever connects to a node has so long to say who it is, and keeps nobody else waiting."""
+"""A peer has so long to say who it is, keeps nobody else waiting, and may say so much at a time."""
 import importlib
 import os
 import queue
 import socket
 import struct
 import sys
+import threading
 import time
 
 import pytest
 import rosgraph.network
-from rospy.impl import tcpros_base
+from rospy.exceptions import TransportTerminated
+from rospy.impl import tcpros_base, tcpros_pubsub
+from std_msgs.msg import String
 
-from mhri.ros.graph import handshake
-from mhri.ros.graph.handshake import Doorman, MOST_BYTES
+from mhri.ros.graph import peers
+from mhri.ros.graph.peers import Doorman, MOST_BYTES
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
@@ -113,6 +116,36 @@ def test_of_too_many_the_one_that_waited_longest_goes():
     assert {door.entered.get(timeout=START_S)[0] for _ in range(4)} == {2, 3, 4, 5}
 
 
+@pytest.fixture
+def limits():
+    """The limits in force, and rospy as it was afterwards."""
+    before = [(owner, name, getattr(owner, name)) for owner, name in (
+        (tcpros_base.TCPROSServer, '_tcp_server_callback'),
+        (tcpros_base.TCPROSTransport, 'read_header'),
+        (tcpros_base.TCPROSTransportProtocol, 'read_messages'),
+        (tcpros_pubsub, 'robust_connect_subscriber'))]
+    peers.limit_peers()
+    yield
+    for owner, name, value in before:
+        setattr(owner, name, value)
+
+
+@pytest.mark.parametrize('buffer, most', [
+    (1 << 16, peers.LARGEST_OTHER_BYTES), (peers.LARGE_BUFFER, peers.LARGEST_BYTES)])
+def test_who_announces_more_than_its_topic_may_need_is_cut_off(limits, buffer, most):
+    """Before it has sent it; what is as large as it may be is waited for."""
+    sender, receiver = socket.socketpair()
+    transport = tcpros_base.TCPROSTransport(
+        tcpros_pubsub.TCPROSSub('/said', String, buff_size=buffer), '/said')
+    transport.set_socket(receiver, 'here')
+    text = b'a' * (most - 4)
+    threading.Thread(target=sender.sendall, daemon=True, args=(
+        struct.pack('<II', most, len(text)) + text + struct.pack('<I', most + 1),)).start()
+    assert transport.receive_once()[0].data == text.decode()
+    with pytest.raises(TransportTerminated, match=str(most + 1)):
+        transport.receive_once()
+
+
 class Other:
     """A server of another rospy."""
 
@@ -127,6 +160,6 @@ class Other:
 def test_another_rospy_is_noticed_at_import(monkeypatch, name):
     monkeypatch.setattr(tcpros_base, name, Other)
     with pytest.raises(ImportError, match='cannot work with this rospy'):
-        importlib.reload(handshake)
+        importlib.reload(peers)
     monkeypatch.undo()
-    importlib.reload(handshake)
+    importlib.reload(peers)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Puts a time limit on the handshake of whoever connects to this node's TCPROS port.
+"""Limits what a TCPROS peer may take: time for its handshake, memory for a message.
 
 rospy reads the header of a new connection on the thread that accepts connections, for as long as it
 takes (``TCPServer.run`` of ``rospy/impl/tcpros_base.py``): one silent connection locks out every
@@ -11,6 +11,9 @@ And when a connection of our own breaks in the middle of a message, or brings ga
 what it has read: it takes that for the beginning of the next header, finds it invalid, and never
 connects again (``TCPROSTransport.read_header``). Here each header begins afresh. Nor does it ever
 connect again where a connection broke while the publisher lives on: here it does.
+
+rospy collects whatever a peer announces, up to 4 GB, before it looks at it, and 20 MB of small
+objects become 100 MB. Here whoever announces more than its topic can need is cut off.
 """
 import collections
 import logging
@@ -21,7 +24,7 @@ import threading
 import time
 
 import rospy
-from rospy.exceptions import TransportInitError
+from rospy.exceptions import TransportInitError, TransportTerminated
 from rospy.impl import tcpros_base, tcpros_pubsub
 from rospy.impl.registration import get_topic_manager
 from rospy.impl.tcpros_pubsub import check_if_still_publisher
@@ -31,6 +34,9 @@ from mhri.ros.graph.rospy_inside import meet_publishers, require
 LIMIT_S = 10.0
 # A header is a few hundred bytes. One that claims more is no header: "GET " is 541 million.
 MOST_BYTES = 64 * 1024
+# The largest message of a topic that is heard with a large buffer (pictures, clouds, maps), and of
+# any other: thousands of names, beams or transforms fit into that.
+LARGE_BUFFER, LARGEST_BYTES, LARGEST_OTHER_BYTES = 1 << 20, 64 << 20, 1 << 20
 # Threads that wait at a time; beyond that the one that has waited longest must go.
 MOST_WAITING = 32
 _LOOK_AGAIN_S = 0.01
@@ -44,6 +50,8 @@ require([], [
     (tcpros_base.TCPServer.run, ('accept', 'inbound_handler')),
     (tcpros_base.TCPROSServer._tcp_server_callback, ('read_ros_handshake_header',)),
     (tcpros_base.TCPROSTransport.read_header, ('read_buff', 'read_ros_handshake_header')),
+    (tcpros_base.TCPROSTransport.receive_once, ('read_messages', 'tell', 'TransportTerminated')),
+    (tcpros_base.TCPROSTransportProtocol.__init__, ('buff_size', 'resolved_name')),
     (tcpros_pubsub.robust_connect_subscriber, ('connect', 'receive_loop'))])
 
 
@@ -169,8 +177,24 @@ def _call_again():
     tcpros_pubsub.robust_connect_subscriber = robust_connect_subscriber
 
 
-def limit_handshakes():
-    """Allow every connection to this process's TCPROS port :data:`LIMIT_S` for its header.
+def _cut_off_large_messages():
+    """Hang up on who announces a message that is larger than any of its topic needs to be."""
+    read = tcpros_base.TCPROSTransportProtocol.read_messages
+
+    def read_messages(self, b, msg_queue, sock):
+        """Read what has come, unless the message that it begins with is too large."""
+        size = _LENGTH.unpack_from(b.getbuffer())[0]
+        most = LARGEST_BYTES if self.buff_size >= LARGE_BUFFER else LARGEST_OTHER_BYTES
+        if size > most:
+            _LOG.warning('%s: a message was not read: it has %.0f MB, %.0f MB are the most',
+                         self.resolved_name, size * 1e-6, most * 1e-6)
+            raise TransportTerminated('a message of {} bytes'.format(size))
+        read(self, b, msg_queue, sock)
+    tcpros_base.TCPROSTransportProtocol.read_messages = read_messages
+
+
+def limit_peers():
+    """Allow each connection to this process :data:`LIMIT_S` for its header, and so much a message.
 
     The process's own connections begin each header afresh, and wait for it so long. Call it before
     or after ``rospy.init_node``; further calls do nothing.
@@ -188,6 +212,7 @@ def limit_handshakes():
     callback.limited = True
     server_class._tcp_server_callback = callback
     _begin_headers_afresh()
+    _cut_off_large_messages()
     _call_again()
     running = tcpros_base._tcpros_server
     if running is not None and running.tcp_ros_server is not None:
