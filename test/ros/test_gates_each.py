@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """A gate that fails keeps the zero from no other robot."""
+from types import SimpleNamespace
+
 import pytest
 import rospy
 
@@ -20,6 +22,9 @@ class Broken:
         self.rule = GateRule(Limits(0.5, 1.0), ZERO)
         self.round_trip_s = float('nan')
         self.fails = name == 'bot1'
+
+    def hold_to(self, limits):
+        """Have limits that nobody lowers."""
 
     def ask_brake(self, asked):
         """Have no brake."""
@@ -50,7 +55,7 @@ def _robots(monkeypatch):
     monkeypatch.setattr(module, 'RobotGate', make)
     gates = module.Gates({}, Memory(), Settings(0.5, 1.5))
     for name in ('bot1', 'bot2', 'bot3'):
-        gates._open(name, None)
+        gates._open(name, SimpleNamespace(limits=Limits(0.5, 1.0)))
     return gates, made
 
 
