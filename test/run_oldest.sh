@@ -78,6 +78,6 @@ else
   TESTS=(test/gui/test_widgets_*.py)
 fi
 # Nothing of a workspace or of ROS is on the path.
-PYTHONPATH="$REPO/src" ROS_PACKAGE_PATH="$REPO" timeout --kill-after=10 300 "$HOME_OF_IT/bin/python" -m pytest \
+PYTHONPATH="$REPO/src" ROS_PACKAGE_PATH="$REPO" timeout --kill-after=10 1200 "$HOME_OF_IT/bin/python" -m pytest \
   -p no:cacheprovider -q -rs -W ignore::DeprecationWarning -o faulthandler_timeout=120 \
   --junitxml="$XML" "${TESTS[@]}"

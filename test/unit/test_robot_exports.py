@@ -112,7 +112,7 @@ def test_manifest_that_cannot_be_read(workspace, monkeypatch):
 
 
 WRONG = {
-    'too_large': ('is larger than 1 MB', lambda path: path.write_bytes(b'#' * 10000000)),
+    'too_large': ('is larger than 250 kB', lambda path: path.write_bytes(b'#' * 10000000)),
     'endless': ('is not a regular file', lambda path: path.symlink_to('/dev/zero')),
     'pipe': ('is not a regular file', os.mkfifo),
     'tag': ("line 1: 'maybe' is no bool", lambda path: path.write_text('name: !!bool maybe')),

@@ -9,7 +9,7 @@ import yaml
 Default = TypeVar('Default')
 
 # Limits for a configuration. The shipped ones have at most 2 kB, 300 values and 6 levels.
-MAX_BYTES = 1000 * 1000
+MAX_BYTES = 250 * 1000
 MAX_VALUES, MAX_DEPTH = 10 * 1000, 40
 # Words of one text without quotes, each of which costs PyYAML a search; digits of a number or date.
 MAX_WORDS, MAX_DIGITS = 50 * 1000, 64
@@ -294,5 +294,5 @@ def short(error: Exception) -> str:
 
 def too_large(origin: str) -> ConfigError:
     """Return (not raise) the :class:`ConfigError` of a file larger than :data:`MAX_BYTES`."""
-    return ConfigError(origin, '', 'is larger than {} MB; a configuration of mhri is a few kB: is '
-                       'this the right file?'.format(MAX_BYTES // 1000000))
+    return ConfigError(origin, '', 'is larger than {} kB; a configuration of mhri is a few: is '
+                       'this the right file?'.format(MAX_BYTES // 1000))
