@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What the gates need of the world, played by the test's own node: a mux, an operator, robots."""
+import collections
 import threading
 import time
 
@@ -98,15 +99,22 @@ class FakeOperator:
 
 
 class StateEar:
-    """The newest ``/gates/state``."""
+    """The newest ``/gates/state``, and those before it."""
 
     def __init__(self):
         self.message = None
         self.at = None
-        self._subscriber = rospy.Subscriber('/gates/state', GatesState, self._hear, queue_size=1)
+        self._heard = collections.deque(maxlen=1000)
+        self._subscriber = rospy.Subscriber('/gates/state', GatesState, self._hear, queue_size=100)
 
     def _hear(self, message):
         self.message, self.at = message, time.monotonic()
+        self._heard.append((self.at, message))
+
+    def said(self, good, what, since):
+        """Wait until it has been good since a time, for however short a while; return when."""
+        return wait_for(lambda: next((at for at, message in list(self._heard)
+                                      if at >= since and good(message)), None), 5.0, what)
 
     def wait(self, good, what, timeout_s=60.0):
         """Wait until the state is good; return it."""
