@@ -32,10 +32,10 @@ ZERO, GO = (0.0, 0.0), (0.3, 0.1)
 class Driver:
     """A guard, what drives through it, and the end that the robot has."""
 
-    def __init__(self, name, *options, output=None):
+    def __init__(self, name, *options, output=None, topic='cmd_vel'):
         self.process = subprocess.Popen([sys.executable, GUARD, *options], stderr=output,
                                         stdout=output, env=dict(os.environ, ROS_NAMESPACE=name))
-        self.end = VelocityEnd('/{}/cmd_vel'.format(name))
+        self.end = VelocityEnd('/{}/{}'.format(name, topic))
         self.echoes, self.dropped = [], []
         self._topic = '/{}/mhri_guard/'.format(name)
         self.link = GuardLink(name)
@@ -134,6 +134,34 @@ class GuardTest(unittest.TestCase):
         wait_for(lambda: len(driver.end.after(begun)) > 50, START_S, 'zeros')
         self.assertEqual({entry[1:] for entry in driver.end.after(begun)}, {ZERO})
 
+    def test_what_its_own_navigation_says_is_passed_on_and_no_stop_lets_it_through(self):
+        """The base listens to the guard alone; the stop holds with nobody there any more."""
+        driver = self.driver('alone', '_command:=mhri_guard/velocity', '_pass_on:=cmd_vel',
+                             '_max_linear_mps:=0.4', topic='mhri_guard/velocity')
+        other, nav = self.other('/alone/cmd_vel'), (0.4, 0.0)
+        wait_for(lambda: driver.end.values()[-1:] == [nav], START_S, 'its own navigation')
+        since = driver.drive()
+        for _ in range(20):
+            driver.say(GO)
+            time.sleep(0.02)
+        self.assertEqual({entry[1:] for entry in driver.end.after(since)}, {GO})
+        since = time.monotonic()
+        wait_for(lambda: [one for one in driver.end.after(since) if one[1:] == nav], START_S,
+                 'its own navigation again')
+        driver.say(ZERO, stop=True)
+        wait_for(lambda: driver.link.stop_confirmed, START_S, 'the guard to hold it')
+        begun = time.monotonic()
+        driver.leave()
+        wait_for(lambda: time.monotonic() - begun > 2.0, 20.0, 'it to end', poll_s=0.05)
+        self.assertEqual({entry[1:] for entry in driver.end.after(begun)}, {ZERO})
+        driver.connect('next')
+        driver.say(ZERO)
+        wait_for(lambda: driver.end.values()[-1:] == [nav], START_S, 'its own navigation')
+        when = time.monotonic()
+        other.kill()
+        self.assertLess(measured('own navigation killed: zero', driver.zero_after(when) - when),
+                        1.3, 'promised: 1 s; see the figure')
+
     def test_a_lease_and_its_echo(self):
         driver = self.driver('lease')
         since = driver.drive()
@@ -214,6 +242,7 @@ class GuardTest(unittest.TestCase):
                 ('max_linear_mps', '.nan', '~max_linear_mps is nan: give a number from 0 to 100'),
                 ('max_angular_rad_s', 'true', '~max_angular_rad_s is True: give a number'),
                 ('max_linear_mps2', '-0.1', 'such as 0 (no limit)'),
+                ('pass_on', 'cmd_vel', "~pass_on is 'cmd_vel', which is ~command, too"),
                 ('command', '5', '~command is 5: give the name of a velocity topic'),
                 ('command', "'a b'", "~command is 'a b': give the name of a velocity topic")):
             with self.subTest(name=name, value=value):

@@ -129,6 +129,15 @@ def test_turtlebot3(model, monkeypatch):
     assert remaps['cv_camera/image_raw'] == 'camera/rgb/image_raw'
 
 
+def test_turtlebot3_listens_to_its_guard_alone(monkeypatch):
+    monkeypatch.setenv('TURTLEBOT3_MODEL', 'burger')
+    arguments = 'mhri_turtlebot3.launch', 'name:=bot3', 'model:=burger'
+    for guarded in (True, False):
+        config = load(*arguments, 'guarded:={}'.format(guarded).lower())
+        remaps = dict(nodes(config)['/bot3/turtlebot3_core'].remap_args)
+        assert remaps.get('cmd_vel') == ('mhri_guard/velocity' if guarded else None)
+
+
 @pytest.mark.parametrize('model', ['burger', 'waffle', 'waffle_pi'])
 def test_turtlebot3_of_older_releases(model, monkeypatch, tmp_path):
     """From 1.1.0 to 1.2.5 there was no argument called model, and up to 1.0.0 none at all."""

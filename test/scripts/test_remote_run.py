@@ -148,6 +148,16 @@ def test_turtlebot3(remote, master):
     assert remote.running() == []
 
 
+def test_turtlebot3_listens_to_its_guard_alone(remote, master):
+    process = remote.start('bot3', '--type', 'turtlebot3_burger')
+    await_topics(process, master, '/bot3/odom', '/bot3/mhri_guard/velocity')
+    wait_for(lambda: subscribers(master, '/bot3/cmd_vel') == ['/bot3/mhri_guard'], START_S,
+             'the guard before the base', poll_s=0.1)
+    # The guard reads what others say there, too.
+    assert sorted(subscribers(master, '/bot3/mhri_guard/velocity')) == [
+        '/bot3/mhri_guard', '/bot3/turtlebot3_core']
+
+
 def test_turtlebot3_of_an_older_release(remote, master):
     """Its launch file knows no model, and its camera has a launch file of its own."""
     process = remote.start('bot3', '--type', 'turtlebot3_waffle_pi',

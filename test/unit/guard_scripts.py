@@ -109,6 +109,63 @@ SCRIPTS = {
         5.01 A!:3:b 0 0 = 0 0
         5.02 Z!:1: 0 0 = none
         5.03 A:4:b 0 0 = 0 0''',
+    'what the robot says itself is passed on, and holds for a second': '''
+        0.00 own 0.3 0.1 = 0.3 0.1
+        0.90 own 0.2 0 = 0.2 0
+        1.89 tick = none
+        1.90 tick = 0 0
+        2.00 own 0 0 = 0 0
+        9.00 tick = none''',
+    'a command comes before what the robot says itself, for as long as it holds': '''
+        0.00 echo a = -:0:*
+        0.01 own 0.3 0 = 0.3 0
+        0.02 A:1:a 0.1 0 = 0.1 0
+        0.03 own 0.3 0 = none
+        0.31 own 0.3 0 = none
+        0.32 tick = 0 0
+        0.33 own 0.3 0 = 0.3 0
+        0.34 A:2:a 0 0 = 0 0
+        0.63 own 0.3 0 = none
+        0.64 own 0.3 0 = 0.3 0
+        0.65 A:3:a 0.1 0 = 0.1 0
+        0.95 tick = 0 0''',
+    'nothing that the robot says itself passes a stop': '''
+        0.00 echo a = -:0:*
+        0.01 own 0.3 0 = 0.3 0
+        0.02 A!:1: 0 0 = 0 0
+        0.03 own 0.3 0 = none
+        60.0 own 0.3 0 = none
+        60.1 echo b = A:1:*!
+        60.2 A:2:b 0 0 = 0 0
+        60.3 own 0.3 0 = none
+        60.5 own 0.3 0 = 0.3 0
+        60.6 close = 0 0
+        60.7 own 0.3 0 = none''',
+    'what the robot says itself is slowed down, and braked': '''
+        with {"speeds": [0.22, 1.0], "brake": true}
+        0.00 move 0 0 0
+        0.00 see 5.0
+        0.01 own 0.44 1 = 0.22 0.5
+        0.02 own nan 0 = 0 0
+        0.03 own inf 0 = 0 0
+        0.04 see 0.25
+        0.05 own 0.2 0 = 0 0''',
+    'what went back alone takes nothing from the robot itself': '''
+        with {"back": [1.0, 5.0, 0.1]}
+        0.00 echo a = -:0:*
+        0.00 move 0 0 0
+        0.01 A:1:a 0.3 0 = 0.3 0
+        0.20 move 0.5 0 0
+        0.31 tick = 0 0
+        1.00 move 1.0 0 0
+        1.00 see 5.0
+        1.10 tick = 0 0.4
+        1.11 own 0.3 0 = none
+        1.12 answer = 0 0
+        1.13 own 0.3 0 = none
+        1.14 echo b = A:1:*
+        1.15 A:2:b 0 0 = 0 0
+        1.50 own 0.3 0 = 0.3 0''',
     'a stop survives the loss of the link': '''
         0.00 echo a = -:0:*
         0.01 A!:1:a 0 0 = 0 0

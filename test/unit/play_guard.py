@@ -6,6 +6,7 @@ Usage: play_guard.py GUARD <SCRIPTS.json >ANSWERS.json; a script is a list of li
 
     0.00 echo a                   an echo, whose token is called "a" from here on
     0.01 A:1:a 0.3 0.1            a command; the token stands as it is where no echo has that name
+    0.02 own 0.3 0.1              a program of the robot's own says this where it is passed on
     0.31 tick
     0.40 close
     0.41 move 1.0 0.0 180         where the robot is by its odometry [m, m, degrees]
@@ -25,6 +26,7 @@ import types
 
 STAND_INS = {'rospy': (), 'geometry_msgs': (), 'geometry_msgs.msg': ('Twist', 'TwistStamped'),
              'std_msgs': (), 'std_msgs.msg': ('Header', 'String')}
+CALLS = {'own': 'on_own', 'answer': 'on_answer', 'tick': 'tick', 'close': 'close'}
 
 
 def load(path):
@@ -77,10 +79,9 @@ def play(names, lines):
             sight.see([float(words[2])] + [float('inf')] * 359, 0.0, 0.017453293, 0.1, 10.0, now)
         elif what == 'heard':
             answers.append(written(guard.on_heard(tokens[words[2]] if words[2:] else '', now)))
-        elif what == 'answer':
-            answers.append(written(guard.on_answer(now)))
-        elif what in ('tick', 'close'):
-            answers.append(written(getattr(guard, what)(now)))
+        elif what in CALLS:
+            velocity = [tuple(map(float, words[2:]))] if words[2:] else []
+            answers.append(written(getattr(guard, CALLS[what])(*velocity + [now])))
         else:
             head, _, token = what.rpartition(':')
             said, fault = guard.on_command(head + ':' + tokens.get(token, token),

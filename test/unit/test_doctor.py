@@ -221,6 +221,36 @@ def test_the_base_of_a_turtlebot2_is_left_alone():
     assert not any(base in item.remedy for item in diagnose(world.facts(), TYPES, IGNORE))
 
 
+def guarded_turtlebot3():
+    """Return a system whose robot's base listens to its guard alone, with navigation of its own."""
+    world = World()
+    topics = ['/bot1/cmd_vel', '/bot1/mhri_guard/velocity']
+    world.parameters = {'bot1': {'robot_type': 'turtlebot3', 'robot_model': 'burger'}}
+    world.subscribe.pop(topics[0])
+    add('/bot1/base', (), topics[1:], kind=TWIST, host=BOT_IP)(world)
+    add('/bot1/mhri_guard', topics[1:], topics, kind=TWIST, host=BOT_IP)(world)
+    add('/mhri_gates', (), topics[:1], kind=TWIST)(world)
+    add('/bot1/move_base', topics[:1], kind=TWIST, host=BOT_IP)(world)
+    return world
+
+
+def test_a_base_that_listens_to_its_guard_alone_is_right():
+    world = guarded_turtlebot3()
+    assert world.wrong() == []
+    # Somebody else there is named, behind the guard and past it.
+    for topic, said in (('/bot1/cmd_vel', 'its guard passes'),
+                        ('/bot1/mhri_guard/velocity', 'past the gates')):
+        world = guarded_turtlebot3()
+        add('/rogue', [topic], kind=TWIST)(world)
+        found = world.wrong()
+        assert [item.check for item in found] == ['velocity_foreign'] and (
+            topic in found[0].problem and said in found[0].problem)
+    world = guarded_turtlebot3()
+    for node in ('/bot1/mhri_guard', '/bot1/base'):
+        without(node)(world)
+    assert 'velocity_unheard' in [item.check for item in world.wrong()]
+
+
 def test_what_heals_by_itself_is_not_told():
     """Only what is wrong in both looks counts: nodes come and go all the time."""
     for spoil in ('forgotten topic', 'same name twice', 'forgotten node', 'does not reach back',

@@ -195,7 +195,10 @@ prepare_turtlebot3() {
     die "LDS_MODEL is not set: put 'export LDS_MODEL=LDS-01' (or LDS-02, see the label on the" \
       "lidar) into ~/.bashrc on this robot"
   fi
-  BASE_LAUNCH=("$HERE/mhri_turtlebot3.launch" "name:=$NAME" "model:=$MODEL")
+  BASE_LAUNCH=("$HERE/mhri_turtlebot3.launch" "name:=$NAME" "model:=$MODEL" "guarded:=$GUARD")
+  # The base listens to the guard alone, which passes on what the robot's own programs say.
+  GUARD_TOPIC=mhri_guard/velocity
+  GUARD_LIMITS+=("_pass_on:=cmd_vel")
   # The Burger has no camera. The Waffle Pi's starts with its base since turtlebot3_bringup 1.2.6,
   # and has its own launch file before that.
   if [ "$MODEL" = waffle ] && [ -f "$folder/launch/turtlebot3_realsense.launch" ] &&

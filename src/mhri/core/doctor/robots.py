@@ -163,6 +163,9 @@ def _velocity(facts: Facts, robot: Robot) -> List[Finding]:
     guard = '/' + GUARD if robot.candidate.seen.at_root else topic_of(name, GUARD)
     # Gates and guard read what others say there, and obey none of it.
     drivers = [GATES, guard] + gates(facts)
+    # Where the base listens to its guard alone, the guard reads these and writes another.
+    topics += [topic for topic in facts.graph.topics_of(guard)[0]
+               if topic.startswith(guard + '/') and facts.graph.types.get(topic) == TWIST]
     alive = {topic: [node for node in facts.graph.subscribers.get(topic, ())
                      if facts.nodes[node].state == ANSWERS and node not in drivers]
              for topic in topics}
@@ -183,8 +186,12 @@ def _velocity(facts: Facts, robot: Robot) -> List[Finding]:
             node for node in others if _runs_on(facts, robot, node, hosts)]
         found += _beside(facts, name, topic, own)
         foreign = [node for node in others if node not in own]
-        if foreign and (alive[topic] if topic in alive else facts.graph.subscribers.get(topic)):
+        heard = facts.graph.subscribers.get(topic, ())
+        if foreign and (alive[topic] if topic in alive else heard):
             found.append(_foreign(name, topic, foreign))
+        elif foreign and guard in heard and chosen:
+            # The base listens to the guard alone.
+            found.append(_passed_on(name, topic, foreign))
     return found + (_hidden(facts, name, chosen, alive[chosen]) if chosen else [])
 
 
@@ -236,6 +243,15 @@ def _foreign(name: str, topic: str, nodes: List[str]) -> Finding:
         'the robot twitches, or goes on although the gates send zero: stop all does not reach that '
         'program', 'rosnode kill {}   # or let it publish into a cmd_vel_mux'.format(
             ' '.join(nodes)))
+
+
+def _passed_on(name: str, topic: str, nodes: List[str]) -> Finding:
+    """Say who drives a robot through its guard, beside mhri."""
+    return Finding(
+        WARNING, 'velocity_foreign', name, '{} {} {} from another computer, and its guard passes '
+        'that on'.format(listed(nodes), 'publishes' if len(nodes) == 1 else 'publish', topic),
+        'the robot goes on as soon as mhri does not drive it; it obeys stop all',
+        'rosnode kill {}   # if it should not drive this robot'.format(' '.join(nodes)))
 
 
 def _uri(text: str) -> str:
