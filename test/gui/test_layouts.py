@@ -17,7 +17,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 
 from mhri.gui.driving.stop_button import StopButton  # noqa: E402
 from mhri.gui.screen import theme  # noqa: E402
-from mhri.gui.screen.labels import TextLine  # noqa: E402
+from mhri.gui.screen.labels import Pill, TextLine  # noqa: E402
 from mhri.gui.screen.torn_off import TornOff  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.scenes import colour_at, KINDS  # noqa: E402
@@ -34,6 +34,7 @@ LAYOUTS = [
     ((1366, 768), 6, 'dark', 1.0, 'stopped', True), ((1366, 768), 12, 'dark', 1.0, 'plain', False),
     (LARGE, 1, 'dark', 1.0, 'plain', True), (LARGE, 3, 'light', 1.0, 'group', True),
     (LARGE, 6, 'contrast', 1.0, 'stopped', False), (LARGE, 12, 'dark', 1.0, 'plain', True),
+    (SMALL, 12, 'dark', 1.0, 'stopped', True), ((1024, 600), 12, 'light', 2.0, 'plain', True),
     (LARGE, 6, 'dark', 2.0, 'long', True), ((3840, 2160), 3, 'dark', 2.0, 'plain', True),
     ((3840, 2160), 12, 'light', 2.0, 'long', True), ((794, 700), 3, 'dark', 1.0, 'long', False),
     ((794, 700), 6, 'light', 1.0, 'plain', True), ((794, 700), 3, 'dark', 1.0, 'stopped', False)]
@@ -88,6 +89,12 @@ def assert_no_text_is_elided(screen):
             assert words <= button.width() - 4, (button.objectName(), button.text())
 
 
+def assert_no_word_of_a_state_is_cut_off(screen):
+    for pill in visible(screen, Pill):
+        words = theme.text_width(theme.larger(pill.font(), 0.92, bold=True), pill.word)
+        assert not pill.word or words <= pill.width(), (pill.word, pill.width())
+
+
 def assert_text_can_be_read(screen, pixels):
     """Look at the pixels of each line: the ground is what most of them are."""
     for line in visible(screen, TextLine):
@@ -112,6 +119,7 @@ def test_layout(scene, size, count, name, font, kind, drawer):
     assert_tiles_are_apart(screen)
     assert_nothing_is_outside(screen)
     assert_no_text_is_elided(screen)
+    assert_no_word_of_a_state_is_cut_off(screen)
     assert_text_can_be_read(screen, made.pixels())
 
 

@@ -127,7 +127,16 @@ class Session:
 
 
 @pytest.fixture
-def session(operator, panel, ui_dir):
+def font(application, request):
+    """Have letters so many times as large."""
+    before = application.font()
+    application.setFont(theme.larger(before, getattr(request, 'param', 1.0)))
+    yield
+    application.setFont(before)
+
+
+@pytest.fixture
+def session(operator, font, panel, ui_dir):
     """Return a screen with a map; it is closed afterwards."""
     panel.resize(1500, 1000)
     made = Session(operator, panel, ui_dir)
@@ -192,18 +201,29 @@ def test_nothing_lies_over_anything(session):
                     assert not part.geometry().intersects(other.geometry())
 
 
-@pytest.mark.parametrize('size', [(1024, 600), (1280, 720), (1920, 1080)])
+@pytest.mark.parametrize('size, font', [
+    ((1024, 600), 1.0), ((1280, 720), 1.0), ((1920, 1080), 1.0), ((1024, 600), 2.0),
+    ((1280, 720), 2.0)], indirect=['font'])
 def test_its_buttons_fit(session, size):
     session.panel.resize(*size)
     press_m(session)
-    session.take(gesture.ROUTE)
-    session.operator.settle()
     pane = session.pane
+    canvas = pane.view.geometry()
+    session.take(gesture.ROUTE)
+    session.draw()
+    assert (session.panel.width(), session.panel.height()) == size
+    assert pane.view.geometry() == canvas, 'the map has moved beneath the pointer'
+    areas = {}
     for button in (*pane.tools.values(), pane.fit_button, pane.done_button, pane.cancel_button,
-                   pane.closer, pane.trails_button):
-        assert button.isVisible() and pane.rect().contains(button.rect().translated(
-            button.mapTo(pane, button.rect().topLeft()))), button.text()
+                   pane.closer, pane.wider, pane.all_button, pane.follow_button, pane.turn_button,
+                   pane.trails_button, pane.strip):
+        area = button.rect().translated(button.mapTo(pane, button.rect().topLeft()))
+        assert button.isVisible() and pane.rect().contains(area), button.objectName()
+        assert button.visibleRegion().boundingRect() == button.rect(), button.objectName()
         assert min(button.width(), button.height()) >= theme.SMALLEST_TOUCH_PX
+        for name, other in areas.items():
+            assert not area.intersects(other), (button.objectName(), name)
+        areas[button.objectName()] = area
 
 
 def test_keys_zoom_the_map_and_drive_as_before(session, heard):

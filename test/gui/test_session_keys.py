@@ -63,8 +63,11 @@ def test_1_r_records(session):
 def test_2_n_marks_and_asks_what_is_here(session):
     session.to_the_pictures()
     # Nothing is checked: keys do not drive, and the note has the keyboard at once.
+    stop = session.screen.stop_bar.stop_button
+    before = stop.mapToGlobal(stop.rect().topLeft()), stop.size()
     session.key('n')
     session.until(lambda: session.note.isVisible() and session.note.edit.hasFocus(), 'the note')
+    assert (stop.mapToGlobal(stop.rect().topLeft()), stop.size()) == before, 'STOP ALL has moved'
     session.xdotool('type', 'a red door, seen from W')
     session.until(lambda: session.note.edit.text().endswith('W'), 'the typing')
     session.key('Return')

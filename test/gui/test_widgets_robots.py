@@ -9,6 +9,7 @@ from python_qt_binding.QtTest import QTest
 
 from mhri.core.link.control import ASK_FOR, TAKE_IT
 from mhri.core.screen import views
+from mhri.core.screen.gate_words import also_words, LIMIT_RAISED, NOT_ALONE, STANDS_WORDS
 from mhri.core.screen.views import ProofView, RobotView
 from mhri.gui.screen import theme
 from mhri.gui.screen.labels import BatteryLine
@@ -51,6 +52,17 @@ def test_a_row_says_state_by_shape_and_word(operator, view, sign, word, age, sec
     visible = row.trouble if row.trouble.isVisible() else row.linear
     assert visible.text() == second
     assert row.trouble.isVisible() != row.turn.isVisible()
+
+
+@pytest.mark.parametrize('note', [
+    NOT_ALONE.format(also_words(['/lab_navigation/move_base'])), LIMIT_RAISED,
+    *(STANDS_WORDS[code] for code in ('not_heard', 'two_robots', 'unreachable'))])
+def test_in_a_drawer_of_a_small_monitor_a_warning_says_what_it_is(robots, operator, note):
+    robots.resize(385, 300)
+    robots.show_robots([replace(LIVE, slow=True, note=note)])
+    operator.settle()
+    shown = robots.row('bot1').trouble.shown_text()
+    assert note.startswith(shown) and len(shown.split()) > 1, shown
 
 
 @pytest.mark.parametrize('changes', [

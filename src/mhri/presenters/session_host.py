@@ -46,6 +46,7 @@ class SessionHost:
         self._screen.small_row.insertWidget(1, self.button)
         self.note_bar = NoteBar(self._screen.foot)
         self._screen.foot_column.insertWidget(1, self.note_bar)
+        self._screen.arrangement.foot.add_passing(self.note_bar)
 
     def _connect(self):
         """Wire keys, button and note."""

@@ -3,19 +3,24 @@
 """What the gates say of a robot, in codes and names, as words for the screen: one table."""
 from typing import Dict, Sequence
 
-# Why a robot stands, by the codes of mhri/RobotGate; '' where other words say it.
+# Why a robot stands, by the codes of mhri/RobotGate; '' where other words say it. A narrow row has
+# room for what is before the colon.
 STANDS_WORDS: Dict[str, str] = {
     'stopped': '',
     'joining': 'centre the stick to drive',
-    'not_heard': 'kept standing: the drive service does not hear it',
-    'guard_version': 'kept standing: its guard is of another version; send it this one with '
-                     'turtlebot_deploy.sh',
-    'unreachable': 'kept standing: its own multiplexer writes its velocity; set its parameter '
+    'not_heard': 'not heard: the drive service keeps it standing',
+    'guard_version': 'guard version: its guard has another one, so it is kept standing; send it '
+                     'this one with turtlebot_deploy.sh',
+    'unreachable': 'own mux: that writes its velocity, so it is kept standing; set its parameter '
                    'mhri/command to an input of that',
-    'two_robots': 'kept standing: two computers are this robot; end one of them',
+    'two_robots': 'two robots: two computers are this one, so it is kept standing; end one of '
+                  'them',
 }
 NO_WITNESS = 'its odometry does not follow commands'
-LIMIT_RAISED = 'its speed limit was raised: uncheck and check it to use that'
+ODOMETRY_STUCK = 'odometry stuck: it does not follow commands'
+LIMIT_RAISED = 'limit raised: deselect and select it to use its new speed limit'
+_ALSO = 'also commanded by {}'
+NOT_ALONE = 'not alone: {}'
 _MAX_NAMES = 3
 
 
@@ -32,5 +37,5 @@ def also_words(nodes: Sequence[str]) -> str:
     if not nodes:
         return ''
     more = len(nodes) - _MAX_NAMES
-    return 'also commanded by {}{}'.format(
-        ', '.join(nodes[:_MAX_NAMES]), ' and {} more'.format(more) if more > 0 else '')
+    return _ALSO.format(', '.join(nodes[:_MAX_NAMES]) + (
+        ' and {} more'.format(more) if more > 0 else ''))

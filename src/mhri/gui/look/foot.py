@@ -30,6 +30,8 @@ class Foot:
     def __init__(self, screen):
         self._screen = screen
         self._below_px = 0
+        #: what comes and goes in it, and must not move STOP ALL by that; each with show_narrow()
+        self.passing = []
         #: BELOW, IN_DRAWER or COLUMN
         self.place = None
         self.move(BELOW)
@@ -40,7 +42,7 @@ class Foot:
         :param drawer_px: width of the open drawer, 0 while it is closed
         """
         screen = self._screen
-        if self.place == BELOW:
+        if self.place == BELOW and all(part.isHidden() for part in self.passing):
             self._below_px = screen.foot.sizeHint().height()
         width, height = screen.width(), screen.height()
         below = screen.stage.picture_px(width - drawer_px, height - self._below_px)
@@ -56,6 +58,11 @@ class Foot:
         worth = share > (1.0 if self.place == other else WORTH_MOVING)
         return other if needed <= height and worth and (drawer_px or screen.stage.names) else BELOW
 
+    def add_passing(self, part):
+        """Take in a part that comes and goes."""
+        self.passing.append(part)
+        part.show_narrow(self.place == COLUMN)
+
     def move(self, place):
         """Put the foot there."""
         screen = self._screen
@@ -67,7 +74,7 @@ class Foot:
         screen.small_row.setDirection(
             QBoxLayout.TopToBottom if place == COLUMN else QBoxLayout.LeftToRight)
         screen.stop_bar.show_narrow(narrow, place == COLUMN)
-        for bar in (screen.control_bar, screen.leave_bar):
+        for bar in (screen.control_bar, screen.leave_bar, *self.passing):
             bar.show_narrow(place == COLUMN)
         screen.status_line.show_wrapped(narrow)
         screen.drill_line.show_wrapped(narrow)

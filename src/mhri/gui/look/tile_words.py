@@ -17,7 +17,7 @@ def sentence_of(view, charge, looked_at):
     """
     if view.proof is not None:
         return '; '.join(filter(None, (view.proof.text, view.why))), \
-            theme.PROOF_SIGNS[view.proof.state], ()
+            theme.PROOF_SIGNS[view.proof.state], words.proof_shorter(view.proof)
     if view.why:
         return view.why, _ATTENTION, ()
     troubles, sign, shorter = _troubles(view, charge)

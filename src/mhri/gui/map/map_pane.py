@@ -3,15 +3,17 @@
 """The map on the screen: tools above it, zoom at its side, and below it what came of an act."""
 from python_qt_binding.QtCore import QPoint, QSize, Qt, Signal
 from python_qt_binding.QtGui import QPainter, QPalette
-from python_qt_binding.QtWidgets import QHBoxLayout, QMenu, QPushButton, QVBoxLayout, QWidget
+from python_qt_binding.QtWidgets import (
+    QHBoxLayout, QMenu, QPushButton, QSizePolicy, QVBoxLayout, QWidget)
 
 from mhri.core.map import gesture
 from mhri.core.map.canvas import place_words
 from mhri.gui.driving.stop_clear import room_px
+from mhri.gui.look.flow import FlowLayout, let_height_follow
 from mhri.gui.map.map_canvas import MapCanvas
 from mhri.gui.map.map_menu import fit_rows, menu_rows
 from mhri.gui.map.map_strip import NameField, UnplacedStrip
-from mhri.gui.screen import theme
+from mhri.gui.screen import theme, words
 from mhri.gui.screen.labels import TextLine
 
 TOOLS = {gesture.GOTO: 'Go to', gesture.ROUTE: 'Route', gesture.LEADER: 'Leader',
@@ -26,6 +28,8 @@ NO_MARK_NAME = 'The mark needs a name.'
 # Tools that mean robots.
 _FOR_ROBOTS = (gesture.GOTO, gesture.ROUTE, gesture.LEADER, gesture.PLACE)
 TRAILS = ('By time', 'By link')
+# Between two buttons [px].
+_GAP = 4
 
 
 class MapPane(QWidget):
@@ -81,17 +85,7 @@ class MapPane(QWidget):
         self.place_label = TextLine(self)
         self.place_label.setFont(theme.number_font(self.font()))
         self.place_label.fix_width(place_words(-888.88, -888.88))
-        self.head = QWidget(self)
-        row = QHBoxLayout(self.head)
-        row.setContentsMargins(4, 4, 4, 0)
-        row.setSpacing(4)
-        self.tools = {tool: self._button('tool_' + tool, text, row, _TIPS[tool], True)
-                      for tool, text in TOOLS.items()}
-        self.fit_button = self._button(
-            'fit_button', 'Fit', row, 'let what its laser sees say where the robot is')
-        row.addStretch(1)
-        self.done_button = self._button('done_button', 'Done', row, 'end what is drawn (Enter)')
-        self.cancel_button = self._button('cancel_button', 'Cancel', row, 'drop it (Esc)')
+        self._build_head()
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(3)
@@ -104,12 +98,32 @@ class MapPane(QWidget):
         column.addLayout(foot)
         self._build_over()
 
+    def _build_head(self):
+        """Make the tools, on a second line where one is too short."""
+        self.head = QWidget(self)
+        self.head.setContentsMargins(_GAP, _GAP, _GAP, 0)
+        row = FlowLayout(self.head, _GAP, _GAP)
+        let_height_follow(self.head)
+        self.tools = {tool: self._button('tool_' + tool, text, row, _TIPS[tool], True)
+                      for tool, text in TOOLS.items()}
+        self.fit_button = self._button(
+            'fit_button', 'Fit', row, 'let what its laser sees say where the robot is')
+        space = QWidget(self.head)
+        space.setMinimumSize(1, 1)
+        space.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
+        row.addWidget(space)
+        self.done_button = self._button('done_button', 'Done', row, 'end what is drawn (Enter)')
+        self.cancel_button = self._button('cancel_button', 'Cancel', row, 'drop it (Esc)')
+        for button in (self.done_button, self.cancel_button):
+            # The map must not move when they come: somebody is about to draw on it.
+            policy = button.sizePolicy()
+            policy.setRetainSizeWhenHidden(True)
+            button.setSizePolicy(policy)
+
     def _build_over(self):
         """Make what lies over the map."""
         self.side = QWidget(self.view)
-        column = QVBoxLayout(self.side)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(4)
+        column = FlowLayout(self.side, _GAP, _GAP)
         self.closer = self._button('closer', '+', column, 'larger (+)')
         self.wider = self._button('wider', '−', column, 'smaller (-)')
         self.all_button = self._button('all_button', 'All', column, 'show everything')
@@ -120,6 +134,9 @@ class MapPane(QWidget):
         self.trails_button = self._button(
             'trails_button', TRAILS[0], column,
             'what the colour of a trail says: when a robot was there, or how good its link was')
+        buttons = self.side.findChildren(QPushButton)
+        for button in buttons:
+            button.setMinimumWidth(max(each.minimumWidth() for each in buttons))
         self.strip = UnplacedStrip(self.view)
         self.name_field = NameField(self.view)
 
@@ -229,7 +246,8 @@ class MapPane(QWidget):
             self.line.show_text(*self._answer)
         else:
             who = [self._to_place] if drawn.tool == gesture.PLACE else self._names
-            self.line.show_text(gesture.HINTS[drawn.tool].format(' and '.join(who)), theme.DRIVE)
+            hint = gesture.HINTS[drawn.tool].format(' and '.join(who))
+            self.line.show_text(hint, theme.DRIVE, words.beginnings(hint))
 
     def _show_choices(self):
         """Show how the map is looked at."""
@@ -356,11 +374,21 @@ class MapPane(QWidget):
     def _place_over(self):
         """Place buttons and strip: at the right, and at the upper left."""
         gap = self.fontMetrics().height() // 3
-        size = self.side.sizeHint()
+        size = self._side_size(self.view.height() - 2 * gap)
         self.side.setGeometry(self.view.width() - size.width() - gap, gap, size.width(),
                               size.height())
         room = self.view.width() - 2 * gap - (size.width() + gap if self.large else 0)
         self.strip.fit(QPoint(gap, gap), room)
+
+    def _side_size(self, room_px):
+        """Return the size [px] of the buttons at the right: as few columns as the height allows."""
+        buttons, wide = self.side.layout(), self.closer.minimumWidth()
+        for columns in range(1, buttons.count() + 1):
+            size = QSize(columns * (wide + _GAP) - _GAP, 0)
+            size.setHeight(buttons.heightForWidth(size.width()))
+            if size.height() <= room_px:
+                break
+        return size
 
     def clear_of_buttons(self, place):
         """Return a :class:`QRect` of this pane, moved to the left of the buttons over the map."""

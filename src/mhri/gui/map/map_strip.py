@@ -81,9 +81,13 @@ class UnplacedStrip(QFrame):
 
     def fit(self, corner, width):
         """Be at a corner, no wider than there is room."""
+        buttons = [self._column.itemAt(index).widget() for index in range(1, self._column.count())]
+        for button in buttons:
+            whole, metrics = button.toolTip(), button.fontMetrics()
+            button.setText(theme.fitting_text(
+                metrics, (whole, whole.partition(' is ')[0]), width - metrics.height()))
         hint = max([theme.text_width(self.note.font(), self.note.text())] + [
-            self._column.itemAt(index).widget().sizeHint().width()
-            for index in range(1, self._column.count())])
+            button.sizeHint().width() for button in buttons])
         self.setGeometry(corner.x(), corner.y(), max(1, min(width, hint)),
                          self.sizeHint().height())
 

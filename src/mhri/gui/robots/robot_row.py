@@ -277,7 +277,7 @@ class RobotRow(QWidget):
                           filled=False)
         if view.proof is not None:
             shorter = words.endings(view.proof.text) \
-                if view.proof.state == views.PROOF_STOPPED else ()
+                if view.proof.state == views.PROOF_STOPPED else words.proof_shorter(view.proof)
             self._show_trouble(theme.PROOF_SIGNS[view.proof.state], view.proof.text, *shorter,
                                loud=view.proof.state == views.PROOF_NOT_CONFIRMED)
         elif view.link != views.LIVE:
@@ -311,7 +311,9 @@ class RobotRow(QWidget):
         if font.bold() != loud:
             font.setBold(loud)
             self.trouble.setFont(font)
-        self.trouble.show_text(text, shorter=shorter or words.beginnings(text, most=3))
+        # Where hardly a letter has room, beside a pill, the sign says enough.
+        self.trouble.show_text(text, shorter=shorter or (
+            *words.beginnings(text, most=3), *(('',) if with_state and self.pill.word else ())))
         # A sentence takes the room of a state that there is none of.
         state = state and bool(self.pill.word or not speaking)
         if (speaking, state, sign is None) == self._trouble_shown:

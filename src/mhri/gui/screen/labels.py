@@ -12,6 +12,8 @@ from mhri.gui.screen import theme, words
 
 # Of a text that may be wrapped.
 MOST_LINES = 3
+# What the two round ends of a pill need beside its word, at the least.
+_PILL_EDGE_PX = 6
 
 
 def plain_tip(text):
@@ -249,6 +251,10 @@ class Pill(QWidget):
         return QSize(theme.text_width(self._bold(), *self._words) + height, height + 2)
 
     minimumSizeHint = sizeHint
+
+    def spare_px(self):
+        """Return by how much it may be narrower than it asks for [px], its word still whole."""
+        return self.sizeHint().width() - theme.text_width(self._bold(), self._word) - _PILL_EDGE_PX
 
     def _bold(self):
         """Return the font of the word."""

@@ -14,6 +14,9 @@ from mhri.gui.screen import theme
 MAP_CLOSED, MAP_BESIDE, MAP_LARGE = 'closed', 'beside', 'large'
 # Beside the pictures it has room on a stage of this size [heights of a line]; else it is behind M.
 _MAP_UNITS = (78.0, 38.0)
+# Large on a stage that is lower than this it is there alone: beside its buttons, tiles would leave
+# nothing of it. M brings the pictures.
+_MAP_ALONE_UNITS = 16.0
 _GAP_PX = 4
 # Least size of a small tile, in heights of a line: its name and a picture that can be made out.
 _LEAST_UNITS = (9.0, 6.5)
@@ -229,7 +232,8 @@ class Stage(QWidget):
     def _with_map(self, large, small, the_map, width, height):
         """Return what is large and what is small on a stage of this size, the map among it."""
         if self._map_state == MAP_LARGE:
-            return (the_map,), large + small
+            alone = height < _MAP_ALONE_UNITS * self.fontMetrics().height()
+            return (the_map,), () if alone else large + small
         if self._map_state == MAP_BESIDE and self.has_room_beside(width, height):
             return large, small + (the_map,)
         return large, small
@@ -253,8 +257,9 @@ class Stage(QWidget):
                 tile.full_rate = index < count
         large, small = self._with_map(tiles[:count], tiles[count:], self._map, self.width(),
                                       self.height()) if tiles else ((), ())
-        if self._map is not None and self._map not in large + small:
-            self._map.hide()
+        for part in (self._map, *tiles):
+            if part is not None and part not in large + small:
+                part.hide()
         if not tiles:
             return
         found = self._arranged(self.width(), self.height())

@@ -159,7 +159,6 @@ class TileHeader(QWidget):
         """Say in the pill how the robot is driven; small tiles leave out that it is not."""
         if word:
             self.pill.say(word, *LOOKS[word][:2])
-        self.pill.setVisible(bool(word) and (self.large or word != NOT_SELECTED))
         self.fit()
 
     def fit(self):
@@ -169,6 +168,8 @@ class TileHeader(QWidget):
         name.setSizePolicy(QSizePolicy.Preferred, QSizePolicy.Fixed)
         name.setMaximumWidth(natural)
         name.setMinimumWidth(1)
+        self.pill.setVisible(bool(self.pill.word) and (
+            self.large or self.pill.word != NOT_SELECTED))
         self.number_label.fix_width(self.number_label.text() or '0')
         first, end = (0, len(_LEFT_OUT) + 1) if self.large else (_OF_SMALL, len(_LEFT_OUT))
         shortest = theme.text_width(name.font(), (name.text(), *words.name_ends(name.text()))[-1])
@@ -176,6 +177,9 @@ class TileHeader(QWidget):
             self._leave_out(_LEFT_OUT[:count])
             if self._needed(natural if count < _BEFORE_NAME else shortest) <= self.width():
                 break
+        if self._needed(1) - self.width() > self.pill.spare_px():
+            # A word that is cut off says something else; edge and sentence tell the same.
+            self.pill.hide()
         # Showing a part that was left out after all has squeezed the others.
         self._row.activate()
 

@@ -188,9 +188,20 @@ def beginnings(text, marks=('; ', ': ', ' after '), most=0):
 
 
 def endings(text):
-    """Return the ends of a phrase whose figure comes last: "stopped in 38 ms", "in 38 ms", ..."""
-    parts = text.split()
-    return tuple(' '.join(parts[first:]) for first in range(1, len(parts) - 1))
+    """Return the ends of a phrase whose figure comes last: "stopped in 38 ms", "in 38 ms", ...
+
+    What follows after a comma is left out first.
+    """
+    phrase = text.partition(', ')[0]
+    parts = phrase.split()
+    return (*((phrase,) if phrase != text else ()),
+            *(' '.join(parts[first:]) for first in range(1, len(parts) - 1)))
+
+
+def proof_shorter(proof):
+    """Return shorter texts of a stop that is not confirmed, () of another."""
+    return (*beginnings(proof.text), 'not confirmed', 'not sure') \
+        if proof.state == views.PROOF_NOT_CONFIRMED else ()
 
 
 def type_text(view):

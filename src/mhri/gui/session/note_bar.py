@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Asks over the foot of the screen what a mark is about; nobody has to answer."""
 from python_qt_binding.QtCore import Qt, QTimer, Signal
-from python_qt_binding.QtWidgets import QHBoxLayout, QLineEdit, QPushButton, QSizePolicy, QWidget
+from python_qt_binding.QtWidgets import QBoxLayout, QLineEdit, QPushButton, QSizePolicy, QWidget
 
 from mhri.gui.screen import theme
 
@@ -33,6 +33,7 @@ class NoteBar(QWidget):
     def __init__(self, parent=None):
         super().__init__(parent)
         self._mark = AskedMark()
+        self._problem = ''
         self._build()
         self._connect()
 
@@ -49,7 +50,7 @@ class NoteBar(QWidget):
         side = theme.touch_size(self)
         for part in (self.edit, self.keep_button):
             part.setMinimumHeight(side)
-        row = QHBoxLayout(self)
+        row = self._row = QBoxLayout(QBoxLayout.LeftToRight, self)
         row.setContentsMargins(2, 0, 2, 0)
         row.addWidget(self.edit, 1)
         row.addWidget(self.keep_button)
@@ -97,13 +98,18 @@ class NoteBar(QWidget):
         if mark.text:
             self._tell(mark, mark.text)
         if mark is self._mark:
-            self.edit.setPlaceholderText(problem or self._words())
+            self._problem = problem
+            self._show_words()
 
     def take_keyboard(self):
         """Let it be typed from now on."""
         self._timer.stop()
         self.edit.setFocus(Qt.OtherFocusReason)
-        self.edit.setPlaceholderText(self._words())
+        self._show_words()
+
+    def show_narrow(self, narrow):
+        """Have the button below the field, or beside it."""
+        self._row.setDirection(QBoxLayout.TopToBottom if narrow else QBoxLayout.LeftToRight)
 
     def _ask(self, mark, take_keyboard):
         """Begin anew."""
@@ -113,13 +119,22 @@ class NoteBar(QWidget):
         self._timer.start()
         if take_keyboard:
             self.edit.setFocus(Qt.OtherFocusReason)
-        self.edit.setPlaceholderText(self._words())
+        self._problem = ''
+        self._show_words()
 
-    def _words(self):
-        """Return what is asked."""
+    def _show_words(self):
+        """Ask in the field, in as many words as it has room for."""
         saved = 'Mark {} saved. '.format(self._mark.name[1:]) if self._mark.name else ''
-        return saved + ('Add a note?' if self.has_keyboard else
-                        'N again, or a click, to add a note')
+        texts = ('Add a note?',) if self.has_keyboard else (
+            'N again, or a click, to add a note', 'N again to add a note')
+        metrics = self.edit.fontMetrics()
+        self.edit.setPlaceholderText(self._problem or theme.fitting_text(
+            metrics, (saved + texts[0], *texts), self.edit.width() - metrics.height()))
+
+    def resizeEvent(self, event):  # noqa: N802
+        """Fit the width."""
+        super().resizeEvent(event)
+        self._show_words()
 
     def _finish(self):
         """Keep what is typed, if anything is."""

@@ -21,7 +21,8 @@ from mhri.core.robots.names import topic_of
 from mhri.core.robots.stamp_age import delay_of, StampAge
 from mhri.core.robots.stop_proof import StopProof
 from mhri.core.screen.brake_view import back_words, brake_words, BrakeView
-from mhri.core.screen.gate_words import also_words, LIMIT_RAISED, NO_WITNESS, stands_words
+from mhri.core.screen.gate_words import (
+    also_words, LIMIT_RAISED, NOT_ALONE, ODOMETRY_STUCK, stands_words)
 from mhri.core.screen.views import LIVE, RobotView, UNANSWERED
 from mhri.core.sensors.plausible import BATTERY, can_be
 from mhri.msg import RobotGate
@@ -322,8 +323,9 @@ def seen_by_gates(view, gate, answers):
     stands = stands_words(gate.stands) if gate.obeys or gate.stands in (
         RobotGate.GUARD_VERSION, RobotGate.TWO_ROBOTS, RobotGate.UNREACHABLE) else ''
     also = tuple(gate.also_commanded_by)
-    warning = stands or also_words(also) or ('' if gate.odometry_follows else NO_WITNESS) or (
-        LIMIT_RAISED if gate.limit_raised else '')
+    warning = stands or (NOT_ALONE.format(also_words(also)) if also else '') or (
+        '' if gate.odometry_follows else ODOMETRY_STUCK) or (
+            LIMIT_RAISED if gate.limit_raised else '')
     brake = BrakeView(gate.brake, gate.free_way_m, gate.brake_on_robot, gate.back_after_s)
     return with_stop_words(replace(
         view, driven=is_driven(gate) and bool(gate.topic), guarded=gate.guarded,
