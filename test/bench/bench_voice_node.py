@@ -54,16 +54,19 @@ def drive(room, joys):
     raise AssertionError('no motion is obeyed')
 
 
-def measure_delay(room, joys, text, good, times):
+def measure_delay(room, joys, refused, text, good, times):
     """Print how long after the end of a sentence the first Joy comes that is good(axes).
 
     Sentences that are not obeyed are said again, and counted.
+
+    :param refused: list of why utterances were refused, which goes on by itself
     """
     delays, missed = [], 0
+    del refused[:]
     while len(delays) < times:
-        drive(room, joys)
-        if text == 'robot drive forward':
-            wait_for(lambda: not any(joys[-1][1]), 10.0, 'the end of the motion')
+        wait_for(lambda: not any(joys[-1][1]), 10.0, 'the end of the motion before')
+        if text == 'stop':
+            drive(room, joys)
         del joys[:-1]
         begun = time.monotonic()
         out = room.say(text, VOICE) - silent_tail_s(text)
@@ -73,23 +76,28 @@ def measure_delay(room, joys, text, good, times):
         except AssertionError:
             missed += 1
             if missed > 20:
+                print('refused:', refused, flush=True)
                 raise
             continue
         delays.append(1000.0 * (found[0] - out))
     delays.sort()
-    print('{:<46} {:>12.0f} {:>12.0f}   n = {}, missed {}'.format(
-        '"{}"'.format(text), delays[len(delays) // 2], delays[-1], times, missed), flush=True)
+    print('{:<46} {:>12.0f} {:>12.0f} {:>12.0f}   n = {}, missed {}'.format(
+        '"{}"'.format(text), delays[len(delays) // 2], delays[len(delays) * 99 // 100], delays[-1],
+        times, missed), *refused, sep='\n  refused: ', flush=True)
 
 
 def measure(system, seconds, times):
     """Print both tables."""
     import rospy
     from sensor_msgs.msg import Joy
+    from mhri.msg import Heard
     from mhri.srv import SetSuspended
     rospy.init_node('bench_voice_node', disable_signals=True)
-    joys, room = [], Room()
+    joys, refused, room = [], [], Room()
     rospy.Subscriber('/mux_in/voice', Joy, lambda joy: joys.append((time.monotonic(), joy.axes)),
                      queue_size=1000, tcp_nodelay=True)
+    rospy.Subscriber('/mhri_voice/heard', Heard, lambda heard: heard.accepted or refused.append(
+        '"{0.text}" ({0.confidence:.2f}): {0.reason}'.format(heard)), queue_size=100)
     node = system.node('mhri_voice', '_source:=microphone:none of this name')
     rospy.wait_for_service(SERVICE, 30.0)
     set_suspended = rospy.ServiceProxy(SERVICE, SetSuspended)
@@ -103,9 +111,10 @@ def measure(system, seconds, times):
     measure_cpu(node, seconds, 'listening to a quiet room')
     measure_cpu(node, seconds, 'listening to talk without an end',
                 lambda: room.say(TALK, VOICE))
-    print('{:<46} {:>12} {:>12}'.format('end of the sound to the Joy [ms]', 'median', 'longest'))
-    measure_delay(room, joys, 'robot drive forward', any, times)
-    measure_delay(room, joys, 'stop', lambda axes: not any(axes), times)
+    print('{:<46} {:>12} {:>12} {:>12}'.format(
+        'end of the sound to the Joy [ms]', 'median', '99 %', 'longest'))
+    measure_delay(room, joys, refused, 'robot drive forward', any, times)
+    measure_delay(room, joys, refused, 'stop', lambda axes: not any(axes), times)
     set_suspended(True)
     print('{:<46} {:>12}'.format('mhri_voice', '% of a core'))
     measure_cpu(node, seconds, 'suspended again')
@@ -116,10 +125,11 @@ def main():
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--short', action='store_true', help='fewer seconds and sentences')
+    parser.add_argument('--times', type=int, default=10, help='how often each sentence is said')
     options = parser.parse_args()
     with System() as system:
         system.start_master()
-        measure(system, *((1.0, 1) if options.short else (15.0, 10)))
+        measure(system, *((1.0, 1) if options.short else (15.0, options.times)))
 
 
 if __name__ == '__main__':

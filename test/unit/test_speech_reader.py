@@ -8,13 +8,16 @@ from pathlib import Path
 import sys
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from mhri.core.voice.speech import STOP_RECORDING_S
 from mhri.core.voice.grammar import STOP
 from mhri.core.voice.language import parse_language
-from mhri.inputs import listening
+from mhri.core.voice.sound import BLOCK_BYTES
+from mhri.inputs import listening, session
 from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reading
+from mhri.inputs.recogniser import Hypothesis
 from mhri.inputs.voice import VoiceReader
 
 PATH = Path(__file__).resolve().parents[2] / 'resource' / 'voice' / 'english.yaml'
@@ -83,6 +86,16 @@ def test_a_command_that_waited_in_a_queue_moves_nothing_and_a_stop_stops(desk):
     assert not desk.heard[-1].accepted and desk.reader.read(0.0) is None
     desk.say('ended', text='stop', confidence=0.9, age_s=1.0, spoken_s=spoken_s)
     assert [act.kind for act in desk.acts] == [STOP]
+
+
+def test_what_was_recognised_slowly_moves_unless_something_was_said_since(desk):
+    late = {'text': 'robot drive forward', 'confidence': 0.9, 'age_s': 1.0, 'computed_s': 2.0}
+    desk.now += 8.0
+    desk.say('began')
+    desk.say('ended', **late, spoken_s=desk.now - 2.2, spoken_on=True)
+    assert not desk.heard[-1].accepted and desk.heard[-1].reason
+    desk.say('began')
+    assert desk.say('ended', **late, spoken_s=desk.now - 2.2) == FORWARD
 
 
 def test_read_returns_as_a_motion_ends_not_as_its_patience_does(desk):
@@ -256,3 +269,55 @@ def test_who_holds_push_to_talk_is_told_something_else(desk):
         desk.reader.push_to_talk(True)
         desk.ended('drive forward', 0.1)
     assert desk.heard[-1].reason.endswith('drive another way, or teach it your voice')
+
+
+class SlowRecogniser:
+    """Hears "robot drive forward" in everything; meanwhile more sound comes."""
+
+    def __init__(self, source, meanwhile):
+        self.source, self.meanwhile = source, meanwhile
+
+    def begin(self, sound):
+        return ''
+
+    go_on = begin
+
+    def end(self):
+        """Do nothing."""
+
+    def recognise(self, sound):
+        self.source.blocks += self.meanwhile
+        return Hypothesis('robot drive forward', 0.9)
+
+
+class Blocks:
+    """A source whose sound is there already."""
+
+    def __init__(self, blocks):
+        self.blocks = blocks
+
+    def read(self, timeout_s):
+        return self.blocks.pop(0) if self.blocks else b''
+
+    def waits(self):
+        return bool(self.blocks)
+
+
+@pytest.mark.parametrize('more, spoken_on', [((), False), ((True,) * 20, True)])
+def test_what_is_said_while_it_is_recognised_is_told_with_it(monkeypatch, more, spoken_on):
+    def sound(*loud):
+        noise = np.random.RandomState(1).standard_normal(BLOCK_BYTES // 2)
+        return [(noise * (3000.0 if each else 8.0)).astype('<i2').tobytes() for each in loud]
+    source, said = Blocks(sound(*[False] * 50, *[True] * 40, *[False] * 9)), []
+    monkeypatch.setattr(session, 'Recogniser', lambda *_, **__: SlowRecogniser(
+        source, sound(*[False] * 30, *more)))
+    listens = session.Session(parse_language(PATH.read_text(), str(PATH)), source, 'x', (), '',
+                              0.0, said.append)
+    while not said or said[-1]['kind'] != 'ended':
+        listens.step()
+    assert said[-1]['spoken_on'] == spoken_on and said[-1]['computed_s'] >= 0.0
+    # It is listened to all the same.
+    heard = len(said)
+    for _ in range(100):
+        listens.step()
+    assert any(event['kind'] == 'began' for event in said[heard:]) == spoken_on

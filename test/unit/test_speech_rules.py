@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from mhri.core.voice.speech import (
-    MAX_AGE_S, REST, STOP_RECORDING_S, SURE, SURE_OF_STOP, SURE_WHEN_HELD, VoiceRules)
+    MAX_AGE_S, MAX_COMPUTED_S, REST, STOP_RECORDING_S, SURE, SURE_OF_STOP, SURE_WHEN_HELD,
+    VoiceRules)
 from mhri.core.voice.grammar import Grammar, STOP
 from mhri.core.voice.language import parse_language
 
@@ -24,10 +25,9 @@ class Talker:
         self.rules = VoiceRules(LANGUAGE)
         self.now = 100.0
 
-    def say(self, text, confidence=0.9, lasts_s=1.0, age_s=0.0):
+    def say(self, text, confidence=0.9, lasts_s=1.0, **late):
         began, self.now = self.now, self.now + lasts_s
-        return self.rules.hear(text, GRAMMAR.parse(text), confidence, began, self.now,
-                               age_s)
+        return self.rules.hear(text, GRAMMAR.parse(text), confidence, began, self.now, **late)
 
     def stick(self, later_s=0.0):
         return self.rules.stick(self.now + later_s)
@@ -254,10 +254,24 @@ def test_what_was_said_too_long_ago_moves_nothing(talk, text):
     assert talk.say(text, age_s=MAX_AGE_S - 0.1).accepted
 
 
+@pytest.mark.parametrize('late, accepted', [
+    ({'age_s': 2.0, 'computed_s': 1.2}, True), ({'age_s': 2.0, 'computed_s': 0.8}, False),
+    ({'age_s': 2.0, 'computed_s': 1.2, 'spoken_on': True}, False),
+    # What is as new as on any computer needs no more.
+    ({'age_s': MAX_AGE_S, 'computed_s': 1.2, 'spoken_on': True}, True),
+    ({'age_s': 60.0, 'computed_s': 60.0}, False),
+    ({'age_s': MAX_AGE_S + MAX_COMPUTED_S - 0.1, 'computed_s': 60.0}, True),
+    ({'age_s': MAX_AGE_S + MAX_COMPUTED_S + 0.1, 'computed_s': 60.0}, False)])
+def test_a_slow_computer_hears_late_but_nothing_waits(talk, late, accepted):
+    heard = talk.say('robot drive forward', **late)
+    assert heard.accepted == accepted and (talk.stick() != REST) == accepted
+    assert accepted or heard.reason
+
+
 @pytest.mark.parametrize('text', ('stop', 'robot stop', 'robot drive stop'))
 def test_a_stop_is_never_too_old(talk, text):
     talk.say('robot drive forward')
-    assert talk.say(text, age_s=60.0).act.kind == STOP and talk.stick() == REST
+    assert talk.say(text, age_s=60.0, spoken_on=True).act.kind == STOP and talk.stick() == REST
 
 
 def test_a_wake_word_that_waited_wakes_for_no_longer(talk):

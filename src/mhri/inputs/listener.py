@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Turns a stream of sound into what was heard: stops at once, commands when they have ended."""
 from dataclasses import dataclass
+import time
 from typing import Optional
 
 from mhri.core.voice.endpointing import BEGIN, Endpointer, GO_ON
@@ -26,11 +27,15 @@ class Spotted:
 
 @dataclass(frozen=True)
 class Ended:
-    """An utterance has ended; ``hypothesis`` is None if it fits no command."""
+    """An utterance has ended; ``hypothesis`` is None if it fits no command.
+
+    ``computed_s`` is what the processor took to recognise it [s]: no waiting for anything.
+    """
 
     began_s: float
     at_s: float
     hypothesis: Optional[Hypothesis]
+    computed_s: float = 0.0
 
 
 # A short utterance is looked at after so much silence already: noise may have hidden a stop from
@@ -56,6 +61,12 @@ class Listener:
         self._sound = []
         self._at_s = self._began_s = 0.0
         self._early = _NOT_LOOKED
+        self._computed_s = 0.0
+
+    @property
+    def floor_db(self):
+        """What counts as silence [dB of one step of 16 bit]."""
+        return self._endpointer.floor_db
 
     @property
     def speaking(self):
@@ -69,7 +80,7 @@ class Listener:
         if state == BEGIN:
             lead = self._endpointer.lead()
             self._sound, self._began_s = [lead], self._at_s
-            self._early = _NOT_LOOKED
+            self._early, self._computed_s = _NOT_LOOKED, 0.0
             return [Began(self._at_s)] + self._spotted(self._recogniser.begin(lead))
         if state == GO_ON:
             self._sound.append(block)
@@ -89,7 +100,7 @@ class Listener:
             return []
         if self._early is not _NOT_LOOKED or self._at_s - self._began_s > _SHORT_S:
             return []
-        self._early = found = self._recogniser.recognise(b''.join(self._sound))
+        self._early = found = self._recognise(b''.join(self._sound))
         return [Spotted(self._at_s, found.text)] if found and self._is_stop(found) else []
 
     def finish(self):
@@ -100,5 +111,12 @@ class Listener:
         self._recogniser.end()
         found = self._early
         if found is _NOT_LOOKED:
-            found = self._recogniser.recognise(sound)
-        return [Ended(self._began_s, self._at_s, found)]
+            found = self._recognise(sound)
+        return [Ended(self._began_s, self._at_s, found, self._computed_s)]
+
+    def _recognise(self, sound):
+        """Return what the recogniser makes of a sound; add up what that takes."""
+        before_s = time.thread_time()
+        found = self._recogniser.recognise(sound)
+        self._computed_s += time.thread_time() - before_s
+        return found

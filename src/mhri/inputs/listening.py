@@ -14,7 +14,9 @@ where the orders end, so does the process. Events are ``{"kind": ...}`` with one
 - ``absent`` or ``lost`` (``reason``): the process ends
 - ``began``, ``spotted`` (``word``)
 - ``ended`` (``text``, ``confidence``, ``age_s``: how long ago the utterance began, ``spoken_s``:
-  when the pause behind it was over [s, monotonic], however long the sound waited to be read)
+  when the pause behind it was over [s, monotonic], however long the sound waited to be read,
+  ``computed_s``: how long the processor took to recognise it, ``spoken_on``: somebody speaks in the
+  sound that has come meanwhile)
 """
 import importlib.util
 import json

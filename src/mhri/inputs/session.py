@@ -1,15 +1,21 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Listening to one source: its sound through the recogniser, as events for the node."""
+from collections import deque
+import contextlib
 import time
 
 from mhri.core.voice.backlog import Backlog
+from mhri.core.voice.endpointing import has_speech
 from mhri.core.voice.speech import SURE_OF_STOP
 from mhri.core.voice.grammar import Grammar, STOP
 from mhri.inputs.listener import Began, Ended, Listener, Spotted
+from mhri.inputs.reader import DeviceLost
 from mhri.inputs.recogniser import Dictionary, Recogniser
 
 _WAIT_S = 0.2
+# So much of what came while an utterance was recognised is looked at: 6 s.
+_MOST_AHEAD = 300
 
 
 class Session:
@@ -37,6 +43,7 @@ class Session:
         self._robots = None
         self._backlog = Backlog(opened_s)
         self._spoken_s = opened_s
+        self._ahead = deque()
         self._say_open()
 
     def _new_grammar(self, robots):
@@ -60,16 +67,29 @@ class Session:
 
         :raises DeviceLost: there will be none any more
         """
-        block = self._source.read(_WAIT_S)
+        block = self._ahead.popleft() if self._ahead else self._source.read(_WAIT_S)
         if block:
-            self._spoken_s = self._backlog.take(time.monotonic(), self._source.waits())
+            self._spoken_s = self._backlog.take(
+                time.monotonic(), bool(self._ahead) or self._source.waits())
         for event in self._listener.feed(block) if block else ():
-            self._say(_as_mapping(event, self._spoken_s))
+            spoken_on = isinstance(event, Ended) and self._look_ahead()
+            self._say(_as_mapping(event, self._spoken_s, spoken_on))
         if self._robots is not None and not self._listener.speaking:
             robots, self._robots = self._robots, None
             self._grammar = self._new_grammar(robots)
             self._recogniser.set_grammar(self._grammar)
             self._say_open()
+
+    def _look_ahead(self):
+        """Tell whether somebody speaks in the sound that waits to be listened to."""
+        # What ends the source is met again by the next read.
+        with contextlib.suppress(DeviceLost):
+            while len(self._ahead) < _MOST_AHEAD and self._source.waits():
+                block = self._source.read(0.0)
+                if not block:
+                    break
+                self._ahead.append(block)
+        return has_speech(self._ahead, self._listener.floor_db)
 
     def finish(self):
         """Say what is left, and close the source."""
@@ -78,10 +98,11 @@ class Session:
         self._source.close()
 
 
-def _as_mapping(event, spoken_s):
+def _as_mapping(event, spoken_s, spoken_on=False):
     """Return what is said of an event of the listener.
 
     :param spoken_s: when the newest sound was spoken [s, monotonic]
+    :param spoken_on: somebody speaks in what came since
     """
     if isinstance(event, Began):
         return {'kind': 'began'}
@@ -90,6 +111,7 @@ def _as_mapping(event, spoken_s):
     assert isinstance(event, Ended)
     found = event.hypothesis
     return {'kind': 'ended', 'age_s': round(event.at_s - event.began_s, 3),
-            'spoken_s': round(spoken_s, 3),
+            'spoken_s': round(spoken_s, 3), 'computed_s': round(event.computed_s, 3),
+            'spoken_on': spoken_on,
             'text': found.text if found else '',
             'confidence': round(found.confidence, 3) if found else 0.0}

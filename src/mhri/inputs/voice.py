@@ -189,7 +189,8 @@ class VoiceReader(Reader):
         began = min(now, max(self._began, now - event['age_s'] - 1.0))
         with self._lock:
             heard = self._rules.hear(text, self._grammar.parse(text), event['confidence'], began,
-                                     now, now - event.get('spoken_s', now))
+                                     now, now - event.get('spoken_s', now),
+                                     event.get('computed_s', 0.0), event.get('spoken_on', False))
             held = self._rules.talking(began)
         if heard.act is not None:
             self._on_act(heard.act)

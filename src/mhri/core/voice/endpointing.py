@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Where speech begins and ends in a stream of sound: energy over a floor that follows the noise."""
 from collections import deque
-from typing import Deque
+from typing import Deque, Iterable
 
 import numpy as np
 
@@ -35,6 +35,11 @@ def loudness_db(block: bytes) -> float:
         return -10.0
     samples -= samples.mean()
     return float(10.0 * np.log10(np.dot(samples, samples) / samples.size + 0.1))
+
+
+def has_speech(blocks: Iterable[bytes], floor_db: float) -> bool:
+    """Tell whether somebody speaks in some blocks, over a floor as :class:`Endpointer` has it."""
+    return sum(loudness_db(block) > floor_db + _OVER_DB for block in blocks) >= _BEGIN_BLOCKS
 
 
 class Endpointer:

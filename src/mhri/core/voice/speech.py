@@ -21,9 +21,12 @@ SURE = 0.5
 SURE_WHEN_HELD = 0.25
 # A stop is believed much sooner: one too many does no harm.
 SURE_OF_STOP = 0.18
-# What was said so long ago moves nothing, whatever kept it: the pipe of a process that hung, a busy
-# computer [s]. It counts from the end of the pause that ends an utterance.
+# What has waited for so long moves nothing, whatever kept it: the pipe of a process that hung, a
+# busy computer [s]. It counts from the end of the pause that ends an utterance.
 MAX_AGE_S = 1.0
+# Not counted is what the processor took to recognise it, up to this [s]: a slow computer hears
+# late, but nothing has waited. Then nothing must have been said since that is not listened to yet.
+MAX_COMPUTED_S = 2.5
 # Why a voice that is not understood is refused.
 UNCLEAR = NO_COMMAND, NOT_SURE = 'no command', 'not sure enough'
 
@@ -47,9 +50,9 @@ class VoiceRules:
     """Decides what spoken commands do. Times are seconds of one clock that never goes back.
 
     Motion, and all but a stop, needs the wake word in front, the wake word alone shortly before, or
-    push-to-talk at the beginning. A stop is obeyed always, motion within :data:`MAX_AGE_S` only.
-    Nothing moves for longer than the
-    language's ``lasts_s``, at most 2 s, unless it is said again.
+    push-to-talk at the beginning. A stop is obeyed always, motion within :data:`MAX_AGE_S` only,
+    beside what it takes to recognise it. Nothing moves for longer than the language's ``lasts_s``,
+    at most 2 s, unless it is said again.
 
     :param language: :class:`mhri.core.voice.language.Language`
     """
@@ -141,7 +144,8 @@ class VoiceRules:
     # What the recogniser makes of a whole utterance.
 
     def hear(self, text: str, command: Optional[Command], confidence: float, began: float,
-             now: float, age_s: float = 0.0) -> Heard:
+             now: float, age_s: float = 0.0, computed_s: float = 0.0,
+             spoken_on: bool = False) -> Heard:
         """Judge an utterance; return :class:`Heard`.
 
         :param text: the words, '' if they fit nothing
@@ -150,11 +154,14 @@ class VoiceRules:
             0.25 and more
         :param began: when the utterance began
         :param age_s: how long ago it ended
+        :param computed_s: how much of that the processor took to recognise it
+        :param spoken_on: something was said since, not listened to yet
         """
         waiting, self._stop_due = self._stop_due is not None, None
         window, self._woken_until = self._woken_until, -math.inf
         heard = Heard(text, command.words if command else '', confidence=confidence)
-        problem = self._problem(command, confidence, began, window) or _too_old(command, age_s)
+        problem = self._problem(command, confidence, began, window) or _too_old(
+            command, age_s, computed_s, spoken_on)
         recorder = command is not None and command.action == 'stop_recording'
         hidden = (confidence >= SURE_OF_STOP
                   and any(word in self._language.stop for word in text.split()))
@@ -220,11 +227,15 @@ class VoiceRules:
         self._until = now + (motion.little_s if command.manner == 'little' else motion.lasts_s)
 
 
-def _too_old(command: Optional[Command], age_s: float) -> str:
+def _too_old(command: Optional[Command], age_s: float, computed_s: float,
+             spoken_on: bool) -> str:
     """Say that a motion was said too long ago; '' where it was not."""
     if command is None or command.kind not in (DRIVE, PACE) or age_s <= MAX_AGE_S:
         return ''
-    return 'said {:.1f} s ago: this computer is too busy, say it again'.format(age_s)
+    if age_s - min(computed_s, MAX_COMPUTED_S) > MAX_AGE_S:
+        return 'said {:.1f} s ago: this computer is too {}, say it again'.format(
+            age_s, 'slow' if computed_s > MAX_COMPUTED_S else 'busy')
+    return 'said {:.1f} s ago, and more since: say it again'.format(age_s) if spoken_on else ''
 
 
 def _refused(heard: Heard, reason: str) -> Heard:
