@@ -24,6 +24,7 @@ from support.ros_system import free_port, wait_for  # noqa: E402
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / 'utils/host/mhri_keys.sh'
 LISTS = ('authority.pem', 'peers', 'withdrawn', 'withdrawn.pem')
 LONG_S = 60.0
+NODE = 'from mhri.nodes.mhri_link import main; main()'
 
 
 class Authority:
@@ -134,6 +135,27 @@ def test_options_that_do_not_go_together(words, said, capsys):
     with pytest.raises(SystemExit) as ended:
         parse(words.split())
     assert ended.value.code == 2 and said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('more, routes', [
+    (['--listen', '0.0.0.0:{}'], False), (['--listen', '127.0.0.1:{}'], True),
+    (['--listen', '0.0.0.0:{}', '--keys', 'off'], True)])
+def test_a_computer_without_a_key_listens_to_others_only_where_that_is_said(tmp_path, more, routes):
+    words = [word.format(free_port()) for word in more]
+    environment = dict(os.environ, HOME=str(tmp_path), XDG_CONFIG_HOME=str(tmp_path))
+    with (tmp_path / 'log').open('w') as log:
+        router = subprocess.Popen([sys.executable, '-u', '-c', NODE, '--side', 'router', *words],
+                                  env=environment, stdout=log, stderr=subprocess.STDOUT)
+    try:
+        said = wait_for(lambda: (tmp_path / 'log').read_text().rstrip(), LONG_S, 'a word of it')
+        if routes:
+            assert 'routing on' in said and 'without keys' in said
+        else:
+            assert router.wait(LONG_S) == 1
+            assert words[1] in said and 'mhri_keys.sh' in said and '--keys off' in said
+    finally:
+        router.kill()
+        router.wait()
 
 
 @pytest.mark.parametrize('words', [

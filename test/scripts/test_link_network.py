@@ -93,9 +93,17 @@ def test_link_is_sent_to_the_robot_once(lab):
     assert status == 0, output
 
 
+def test_robot_without_a_key_listens_to_nobody_unless_that_is_said(lab):
+    terminal = lab.connect('bot1', '--type', 'turtlebot2', '--link')
+    assert terminal.process.wait(LONG_S) == 1
+    wait_for(lambda: '--keys off' in terminal.text(), 10, 'the remedy')
+    assert left(lab.robots['bot1']) == []
+    lab.terminals.remove(terminal)
+
+
 def test_robot_on_its_own_master_is_driven(lab, operator):
     import rosgraph
-    terminal = lab.connect('bot1', '--type', 'turtlebot2', '--link')
+    terminal = lab.connect('bot1', '--type', 'turtlebot2', '--link', '--keys', 'off')
     wait_for(lambda: operator[1].live() or terminal.process.poll() is not None, START_S,
              'bot1', poll_s=0.1)
     assert terminal.process.poll() is None, terminal.text()
@@ -165,7 +173,7 @@ def start_router(lab, machine):
     log = lab.folder / 'router'
     process = subprocess.Popen(
         machine.command(sys.executable, '-c', 'from mhri.nodes.mhri_link import main; main()',
-                        '--side', 'router', '--listen', ROUTER),
+                        '--side', 'router', '--listen', ROUTER, '--keys', 'off'),
         env=lab.system.env, stdin=subprocess.DEVNULL, stdout=log.open('w'),
         stderr=subprocess.STDOUT)
     wait_for(lambda: 'routing on' in log.read_text() or process.poll() is not None, LONG_S,

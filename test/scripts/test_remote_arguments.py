@@ -197,8 +197,9 @@ def test_wrong_command_lines_say_what_is_wrong(run, script, arguments, said):
     (['--back-after', '3601'], "--back-after: '3601' is no whole number"),
     (['--brake', '--no-guard'], 'leave out --no-guard'),
     (['--no-guard', '--back-after', '10'], 'leave out --no-guard'),
-    (['--listen', '0.0.0.0:7447'], '--listen, --router and --keep-mb go with --link'),
-    (['--keep-mb', '700'], '--listen, --router and --keep-mb go with --link'),
+    (['--listen', '0.0.0.0:7447'], '--listen, --router, --keys and --keep-mb go with --link'),
+    (['--keep-mb', '700'], '--listen, --router, --keys and --keep-mb go with --link'),
+    (['--keys', 'off'], '--listen, --router, --keys and --keep-mb go with --link'),
     (['--router', 'somewhere'], "--router: 'somewhere' is not an endpoint such as"),
     (['--listen', 'http/0.0.0.0:7447'], "--listen: 'http/0.0.0.0:7447' is not an endpoint"),
 ])
@@ -211,6 +212,7 @@ def test_what_the_robot_would_refuse_is_refused_before_the_login(run, arguments,
 @pytest.mark.parametrize('arguments, said', [
     (['--link', '--no-guard'], 'a linked robot is driven through its guard alone'),
     (['--link', '--ip', '192.168.0.7'], '--ip does not go with --link'),
+    (['--link', '--keys', '/tmp/keys'], "--keys: '/tmp/keys' is not off"),
     (['--link', '--keep-mb', '5'], "--keep-mb: '5' is not a number of MB from 10 to"),
     (['--link', '--listen', '0.0.0.0:1', '--router', '192.0.2.1:1'], 'in place of --listen'),
 ])

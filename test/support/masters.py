@@ -156,8 +156,8 @@ class Masters:
         if part == 'master':
             return ['rosmaster', '--core', '-p', str(self.host.port)], {}
         link = [sys.executable, '-c', NODE.format('mhri_link')]
-        if self._keys:
-            link += ['--keys', str(self._keys['router' if part == 'router' else place])]
+        link += ['--keys', str(self._keys['router' if part == 'router' else place])
+                 if self._keys else 'off']
         if part.startswith('link_'):
             name = part[5:]
             where = ['--connect', '{}/{}:{}'.format(self._protocol, self.computers[name].ip,

@@ -110,8 +110,15 @@ def test_silent_robots_are_named_with_their_keys_and_their_router():
     assert 'mhri_keys.sh check' in remedy and 'date' in remedy
     remedy = wrong(linked_world(heard='never', router=True), ANSWERS)[0].remedy
     assert 'turtle_remote.sh --link bot1 --router ' + END in remedy
-    assert '--listen 0.0.0.0:7447' in wrong(
+    assert '--listen 0.0.0.0:7447 --keys off' in wrong(
         linked_world(heard='never', router=True), REFUSED)[0].remedy
+
+
+@pytest.mark.parametrize('secret', [False, True])
+@pytest.mark.parametrize('reach', [ANSWERS, REFUSED, SILENT])
+def test_a_robot_without_a_key_is_told_to_listen_without(reach, secret):
+    remedy = wrong(linked_world(heard='never', secret=secret), reach)[0].remedy
+    assert ('turtle_remote.sh --link bot1 --keys off' in remedy) is not secret
 
 
 def test_link_that_has_ended():

@@ -4,7 +4,7 @@
 import pytest
 
 from mhri.core.link.keys import (
-    access, access_of_router, called, check_own, endpoint, host_of, Keys, KeysError, marked,
+    access, access_of_router, called, check_open, check_own, endpoint, host_of, Keys, KeysError, marked,
     may_drive, partners, read_lists, split)
 
 PEERS = frozenset((
@@ -123,6 +123,22 @@ def test_a_list_that_the_authority_did_not_sign(withdrawn):
     ('udp/10.0.0.1:7447', True, 'udp/10.0.0.1:7447'), ('', True, '')])
 def test_an_endpoint_without_a_protocol(text, secret, full):
     assert endpoint(text, secret) == full
+
+
+@pytest.mark.parametrize('end', [
+    'tcp/0.0.0.0:7447', 'udp/0.0.0.0:7447', 'tcp/192.168.0.7:7447', 'tcp/[::]:7447',
+    'tcp/[fe80::1]:7447', 'tcp/bot1.local:7447', 'tcp/localhost.evil.org:7447',
+    'tcp/127.0.0.1.evil.org:7447', 'tcp/[::ffff:10.0.0.1]:7447'])
+def test_without_keys_nobody_beyond_this_computer_is_listened_to(end):
+    with pytest.raises(KeysError, match='mhri_keys.sh.*--keys off') as refused:
+        check_open(['tcp/127.0.0.1:7447', end])
+    assert end in str(refused.value)
+
+
+@pytest.mark.parametrize('listen', [
+    [], ['tcp/127.0.0.1:7447'], ['udp/127.1.2.3:1', 'tcp/localhost:7447', 'tcp/[::1]:7447']])
+def test_without_keys_this_computer_may_call_itself(listen):
+    check_open(listen)
 
 
 def test_a_router_lets_everybody_speak_below_the_own_name():

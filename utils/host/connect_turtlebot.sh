@@ -38,6 +38,9 @@ the robot's password unless ssh has a key for it.
                        with turtle_remote.sh, and give mhri_run.sh --link here
   --listen ENDPOINT    with --link: where the robot is called (default 0.0.0.0:7447)
   --router ENDPOINT    with --link: robot and host call this router instead, e.g. 192.0.2.1:7447
+  --keys off           with --link: both sides go without keys: whoever reaches the link may drive.
+                       Else both use the keys in place (mhri_keys.sh), and a robot without one does
+                       not start
   --keep-mb MB         with --link: of what this computer misses the robot keeps so much (500)
   --keep WHAT          with --link, not passed on: what the robot records for later while it is out
                        of reach, see 'mhri_run.sh --help'
@@ -48,7 +51,7 @@ turtle_remote.sh: 1 could not start or the robot's launch ended, 129, 130 or 143
 Examples
   connect_turtlebot.sh turtlebot 192.168.0.7 bot1
   connect_turtlebot.sh pi 192.168.0.8 bot2 --type turtlebot3_burger
-  connect_turtlebot.sh ubuntu 192.168.0.9 bot3 --link
+  connect_turtlebot.sh ubuntu 192.168.0.9 bot3 --link --keys off
 HELP
 }
 
@@ -70,6 +73,7 @@ BACK_AFTER=
 LINK=false
 LISTEN=
 ROUTER=
+KEYS=
 KEEP=
 KEEP_MB=
 PASSED_ON=()
@@ -94,7 +98,7 @@ parse_arguments() {
       --ssh-port) SSH_PORT=$(value "$@"); shift ;;
       --to) FOLDER=$(value "$@"); shift ;;
       --type | --model | --launch | --setup | --ip | --port | --listen | --router | \
-        --keep-mb)
+        --keys | --keep-mb)
         text=$(value "$@")
         option=${1#--}
         option=${option/-/_}
@@ -170,7 +174,7 @@ link_here() {
   make_scratch
   ROS_MASTER_URI="http://$master:$PORT" ROS_IP=$master ROS_HOSTNAME=$master MHRI_RUN_ID=$RUN_ID \
     setsid setpriv --pdeathsig TERM roslaunch mhri link.launch side:=host "name:=$NAME" "$address" \
-    "keep:=${KEEP:-session}" </dev/null >"$SCRATCH/link.log" 2>&1 &
+    "keys:=${KEYS:-auto}" "keep:=${KEEP:-session}" </dev/null >"$SCRATCH/link.log" 2>&1 &
   LINK_PID=$!
 }
 

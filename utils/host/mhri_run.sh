@@ -40,7 +40,8 @@ Robots
                        runs as the operator's guide says ("Robots on a bad radio"). ADDR may also be
                        an endpoint such as udp/192.168.0.7:7447. Installs the library for it, zenoh,
                        below build/.ws. Where mhri_keys.sh has put a key in place on this computer,
-                       the link is by keys (TLS) alone.
+                       the link is by keys (TLS) alone; a robot without one listens to nobody
+                       unless it is started with --keys off.
   --keys FOLDER        with --link: the keys are in FOLDER; off: link without keys
   --router ENDPOINT    a router, such as 192.0.2.1:7447, behind which those robots of --link are
                        that it gives no address for: --link "bot1 bot2=192.168.0.8"

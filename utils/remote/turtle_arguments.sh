@@ -80,15 +80,17 @@ check_endpoint() {
   fi
 }
 
-# check_link_options: LISTEN, ROUTER and KEEP_MB, beside LINK, GUARD and IP.
+# check_link_options: LISTEN, ROUTER, KEYS and KEEP_MB, beside LINK, GUARD and IP.
 check_link_options() {
   [ -z "$LISTEN" ] || check_endpoint --listen "$LISTEN"
   [ -z "$ROUTER" ] || check_endpoint --router "$ROUTER"
   if ! "$LINK"; then
-    [ -z "$LISTEN$ROUTER$KEEP_MB" ] ||
-      usage_error "--listen, --router and --keep-mb go with --link"
+    [ -z "$LISTEN$ROUTER$KEYS$KEEP_MB" ] ||
+      usage_error "--listen, --router, --keys and --keep-mb go with --link"
     return
   fi
+  [[ $KEYS =~ ^(off|)$ ]] ||
+    usage_error "--keys: '$KEYS' is not off; where a key is in place (mhri_keys.sh put) it is used"
   [[ $KEEP_MB =~ ^([1-9][0-9]{1,5}|)$ ]] ||
     usage_error "--keep-mb: '$KEEP_MB' is not a number of MB from 10 to 999999"
   [ -z "$LISTEN" ] || [ -z "$ROUTER" ] || usage_error "--router stands in place of --listen"

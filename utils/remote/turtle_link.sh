@@ -12,9 +12,26 @@ LIMITS=
 # What the archive of turtlebot_deploy.sh --link becomes.
 LINK_PLACE=$HERE/link
 
-# prepare_link: unpacks mhri_link where the archive is new, and sees that it can start here.
+# What mhri_link is told.
+LINK_WORDS=()
+
+# choose_link: sets LINK_WORDS.
+choose_link() {
+  LINK_WORDS=(--side robot --name "$NAME" --listen "$LISTEN")
+  [ -z "$ROUTER" ] || LINK_WORDS=(--side robot --name "$NAME" --router "$ROUTER")
+  [ -z "$KEEP_MB" ] || LINK_WORDS+=(--keep-mb "$KEEP_MB")
+  # Beside these files is where mhri_keys.sh puts them.
+  if [ -n "$KEYS" ]; then
+    LINK_WORDS+=(--keys "$KEYS")
+  elif [ -e "$HERE/keys/own.pem" ]; then
+    LINK_WORDS+=(--keys "$HERE/keys")
+  fi
+}
+
+# prepare_link: unpacks mhri_link where the archive is new, and sees that it can start here, and that
+# it would listen.
 prepare_link() {
-  local archive=$HERE/mhri_link.tar.gz sum problem
+  local archive=$HERE/mhri_link.tar.gz sum problem status=0
   "$LINK" || return 0
   "$GUARD_PYTHON" -c 'import sys; sys.exit(sys.version_info < (3, 8))' ||
     die "mhri_link needs Python 3.8, and this robot's ROS runs $("$GUARD_PYTHON" -V 2>&1): leave" \
@@ -30,8 +47,13 @@ prepare_link() {
   LINK_ENV=("PYTHONPATH=$LINK_PLACE/src:$LINK_PLACE/library${PYTHONPATH:+:$PYTHONPATH}"
     "ROS_PACKAGE_PATH=$LINK_PLACE${ROS_PACKAGE_PATH:+:$ROS_PACKAGE_PATH}"
     "ROS_NAMESPACE=/$NAME")
-  problem=$(cd / && env "${LINK_ENV[@]}" "$GUARD_PYTHON" -B -c 'import mhri.nodes.mhri_link, zenoh' \
-    2>&1) || die "mhri_link cannot start on this robot (${problem##*$'\n'}): send it again with" \
+  choose_link
+  problem=$(cd / && env "${LINK_ENV[@]}" "$GUARD_PYTHON" -B -c 'import sys, zenoh
+from mhri.nodes.mhri_link import refuses
+sys.exit(refuses(sys.argv[1:]))' "${LINK_WORDS[@]}" 2>&1) || status=$?
+  [ "$status" != 2 ] || die "${problem##*$'\n'}"
+  [ "$status" = 0 ] ||
+    die "mhri_link cannot start on this robot (${problem##*$'\n'}): send it again with" \
       "'turtlebot_deploy.sh --link', or install what this names"
 }
 
@@ -92,13 +114,8 @@ unlimit_callers() {
 }
 
 start_link() {
-  local where=(--listen "$LISTEN")
-  [ -z "$ROUTER" ] || where=(--router "$ROUTER")
-  [ -z "$KEEP_MB" ] || where+=(--keep-mb "$KEEP_MB")
-  # Beside these files is where mhri_keys.sh puts them.
-  [ ! -e "$HERE/keys/own.pem" ] || where+=(--keys "$HERE/keys")
-  held env "${LINK_ENV[@]}" "$GUARD_PYTHON" "$LINK_PLACE/scripts/mhri_link" --side robot \
-    --name "$NAME" "${where[@]}" </dev/null &
+  held env "${LINK_ENV[@]}" "$GUARD_PYTHON" "$LINK_PLACE/scripts/mhri_link" "${LINK_WORDS[@]}" \
+    </dev/null &
   LINK_PID=$!
 }
 

@@ -58,10 +58,12 @@ A bad radio
                        in the guide. No HOST_IP: the host calls, now or later. Needs ROS Noetic,
                        and 'turtlebot_deploy.sh --link' once
   --listen ENDPOINT    with --link: where the host calls (default 0.0.0.0:7447). On a radio that
-                       loses packets make keys (mhri_keys.sh), or try udp/0.0.0.0:7447
+                       loses packets give keys, too (mhri_keys.sh), or try udp/0.0.0.0:7447
   --router ENDPOINT    with --link: instead call a router that the host calls, too, such as
                        192.0.2.1:7447
-                       With a key in place (mhri_keys.sh put), the link is by keys alone
+                       With a key in place (mhri_keys.sh put), the link is by keys alone; without
+                       one nobody is listened to
+  --keys off           with --link: without keys; whoever reaches the link may drive this robot
   --keep-mb MB         with --link: of what the host missed while it was out of reach this robot
                        keeps so much on its disk, the newest (default 500)
 
@@ -79,7 +81,7 @@ Examples
   turtle_remote.sh 192.168.0.103 bot1
   turtle_remote.sh 192.168.0.103 bot2 --type turtlebot3_burger --ip 192.168.0.8
   turtle_remote.sh 192.168.0.103 husky1 --type generic --launch husky_base/base.launch
-  turtle_remote.sh --link bot1
+  turtle_remote.sh --link bot1 --keys off
 HELP
 }
 
@@ -96,6 +98,7 @@ BACK_AFTER=
 LINK=false
 LISTEN=
 ROUTER=
+KEYS=
 KEEP_MB=
 IP=
 PORT=11311
@@ -129,6 +132,7 @@ parse_arguments() {
       --link) LINK=true ;;
       --listen) LISTEN=$(value "$@"); shift ;;
       --router) ROUTER=$(value "$@"); shift ;;
+      --keys) KEYS=$(value "$@"); shift ;;
       --keep-mb) KEEP_MB=$(value "$@"); shift ;;
       --ip) IP=$(value "$@"); shift ;;
       --port) PORT=$(value "$@"); shift ;;

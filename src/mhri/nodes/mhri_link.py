@@ -14,6 +14,8 @@ router --listen 0.0.0.0:7447``, which needs no ROS master.
 With keys (``utils/host/mhri_keys.sh``) the endpoints are ``tls/`` or ``quic/``, and who has none,
 or one that was withdrawn, is not let in. Keys that are replaced take effect within seconds. By
 ``tls/`` what is said goes as sealed datagrams where those pass, to the UDP port of that number.
+Without keys it listens to this computer alone, unless ``--keys off`` says that whoever reaches it
+may drive.
 
 It is called ``/<name>/mhri_link`` on both masters.
 """
@@ -27,7 +29,8 @@ import sys
 import rospy
 
 from mhri.core.link.carried import SHARED_FRAMES, split_frames
-from mhri.core.link.keys import endpoint, host_of, is_host, KeysError, marked
+from mhri.core.link.keys import (
+    check_open, endpoint, host_of, is_host, KeysError, marked)
 from mhri.core.link.records import IN_SESSIONS, KEEPS
 from mhri.core.robots.names import name_problem, tidy_name
 from mhri.ros.diagnostics import publish_diagnostics
@@ -40,7 +43,7 @@ from mhri.ros.link.carrier import (
 from mhri.ros.link.computer import facts
 from mhri.ros.link.host_side import HostSide
 from mhri.ros.link.keeper import keeper_of, MOST_MB
-from mhri.ros.link.key_folder import AUTO, find_folder, KeyFolder, watch_keys
+from mhri.ros.link.key_folder import AUTO, find_folder, KeyFolder, OFF, watch_keys
 from mhri.ros.link.note import Note
 from mhri.ros.link.knocks import tell_knocks
 from mhri.ros.resources import robot_types
@@ -87,8 +90,9 @@ def parse(words):
                         help='frames that do not get its name, the same on both sides (default: '
                         '%(default)s)')
     parser.add_argument('--keys', default=AUTO, metavar='FOLDER',
-                        help='where the keys are, or off; by default where mhri_keys.sh puts '
-                        'them, and without any: off')
+                        help='where the keys are, or off: whoever reaches --listen may drive. By '
+                        'default where mhri_keys.sh puts them; without any --listen is refused, '
+                        'but on this computer alone')
     parser.add_argument('--host', default=host_of(socket.gethostname()), metavar='NAME',
                         help='on a host without keys: its name on the link (default: %(default)s); '
                         'a mark of the computer is added')
@@ -120,6 +124,30 @@ def check(parser, options):
         parser.error('give --listen, --connect or --router, e.g. --connect tcp/192.168.0.7:7447')
 
 
+def called_ends(options, secret):
+    """Return (endpoints to listen on, endpoints to call).
+
+    :param secret: keys are in place
+    :raises KeysError: others reach one of the first, without keys, and ``--keys off`` is not said
+    """
+    listen, connect = [[endpoint(word, secret) for word in words.split()]
+                       for words in (options.listen, options.connect or options.router)]
+    if not secret and options.keys != OFF:
+        check_open(listen)
+    return listen, connect
+
+
+def refuses(words):
+    """Say why a link with these options would not listen; return the exit status, 0 if it would."""
+    options = parse(words)
+    try:
+        called_ends(options, bool(find_folder(options.keys)))
+    except KeysError as error:
+        print(error)
+        return 2
+    return 0
+
+
 def call(options):
     """Return (:class:`KeyFolder` or None, :class:`Carrier`).
 
@@ -128,12 +156,11 @@ def call(options):
     :raises LibraryMissing: there is no zenoh
     """
     folder = find_folder(options.keys)
+    ends = called_ends(options, bool(folder))
     keys = KeyFolder(folder, options.side, options.name, bool(options.router)) if folder else None
     secrets = keys.read() if keys else None
     if keys:
         tell_knocks(load_library(), options.name or options.side)
-    ends = [[endpoint(word, bool(keys)) for word in words.split()]
-            for words in (options.listen, options.connect or options.router)]
     place = 'router' if options.side == 'router' else 'routed' if options.router else 'peer'
     return keys, Carrier(*ends, secrets=secrets, place=place, own=keys.keys.own if keys else '',
                          max_bytes=MAX_TO_ROBOT if options.side == 'robot' else MAX_FROM_ROBOT)

@@ -119,6 +119,8 @@ def _silent(note: LinkNote) -> List[Finding]:
     if note.heard == 'yes':
         return []
     where, robot = note.endpoint, note.robot
+    # Without a key nobody is listened to, unless that is said.
+    keys_off = '' if note.secret else ' --keys off'
     if note.reach in _TAKEN:
         check, problem, remedy = _TAKEN[note.reach]
         return [Finding(FAULT, check, robot, 'is not heard over its link ({}): {}'.format(
@@ -127,8 +129,8 @@ def _silent(note: LinkNote) -> List[Finding]:
         return [Finding(
             FAULT, 'router_unreachable', robot, 'the router {} between this computer and the robot '
             '{}'.format(where, _reached(note.reach)), _STANDS, 'on the computer of the router: '
-            'rosrun mhri mhri_link --side router --listen 0.0.0.0:{}   # and its firewall'.format(
-                where.rpartition(':')[2]))]
+            'rosrun mhri mhri_link --side router --listen 0.0.0.0:{}{}   # and its firewall'.format(
+                where.rpartition(':')[2], keys_off))]
     words = 'was never heard over its link ({})' if note.heard == 'never' else \
         'is not heard over its link any more ({})'
     keys = '; utils/host/mhri_keys.sh check, and there: date, ls ~/mhri/keys' if note.secret else ''
@@ -137,13 +139,13 @@ def _silent(note: LinkNote) -> List[Finding]:
             FAULT, 'link_silent', robot, words.format(
                 '{} answers, but not for {}'.format(where, robot)), _STANDS,
             'on the robot: turtle_remote.sh --link {}{}   # of this very name{}{}'.format(
-                robot, ' --router ' + where if note.router else '',
+                robot, ' --router ' + where if note.router else keys_off,
                 ', and with a key or without as here', keys))]
     return [Finding(
         FAULT, 'link_silent', robot, words.format('{} {}'.format(
             where, _reached(note.reach) if note.reach else 'does not say whether it is there')),
-        _STANDS, 'on the robot: turtle_remote.sh --link {}{}'.format(
-            robot, '' if note.reach == REFUSED else '   # in reach? ping {}'.format(
+        _STANDS, 'on the robot: turtle_remote.sh --link {}{}{}'.format(
+            robot, keys_off, '' if note.reach == REFUSED else '   # in reach? ping {}'.format(
                 where.rpartition('/')[2].rpartition(':')[0])))]
 
 

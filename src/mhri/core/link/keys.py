@@ -19,6 +19,8 @@ ROUTER = 'router'
 _NAME = re.compile(r'(host|watch|robot|watched|router):([A-Za-z0-9_-]{1,64})'
                    r'(\.[0-9]{1,6}|\.x[0-9a-f]{8})?\Z')
 _ODD = re.compile(r'[^A-Za-z0-9_-]')
+# An endpoint that nobody outside this computer reaches.
+_HERE = re.compile(r'([a-z]+/)?(127\.[0-9.]+|localhost|\[::1\]):[0-9]+\Z')
 _SERIAL = re.compile(r'^\s*Serial Number:\s*([0-9A-Fa-f]+)\s*$', re.MULTILINE)
 ALONE, TLS = ('tcp', 'udp'), ('tls', 'quic')
 # What who may only watch says: that it is there, and its key for datagrams.
@@ -212,6 +214,22 @@ class _Table:
         """Return zenoh's ``access_control``."""
         return {'enabled': True, 'default_permission': 'deny', 'rules': self._rules,
                 'subjects': self._subjects, 'policies': self._policies}
+
+
+def check_open(listen: Iterable[str]) -> None:
+    """Refuse to listen without keys where another computer may call: it could drive the robot.
+
+    Who wants that says ``--keys off``, and is not asked here.
+
+    :param listen: endpoints
+    :raises KeysError: names the first that others reach, and the remedy
+    """
+    for end in listen:
+        if not _HERE.match(end):
+            raise KeysError(
+                'there is no key in place, and whoever reaches {} could drive: make keys '
+                '(mhri_keys.sh, five minutes), or say --keys off (keys:=off to a launch '
+                'file)'.format(end))
 
 
 def endpoint(text: str, secret: bool) -> str:
