@@ -29,6 +29,8 @@ from support.linked import Linked, LONG_S, Operator  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 ATTACK_S = 2.0
+# How long a certificate is good that runs out, and how soon after that its owner is out.
+VALID_S, OUT_S = 30.0, 8.0
 BOT1 = RobotView('bot1', link=LIVE)
 
 
@@ -317,6 +319,30 @@ def test_a_key_is_out_though_its_thief_takes_all_descriptors(lab):
     finally:
         attacker.close()
     wait_for(lab.is_linked, LONG_S, 'the others to be linked again')
+
+
+def test_who_has_a_certificate_that_runs_out_is_out_within_seconds(lab):
+    """TLS hangs up by itself; datagrams passed for ten minutes more."""
+    lab.authority.run('host', 'guest', '--days', '1', shift_s=int(VALID_S) - 86400)
+    lab.authority.put('bot1')
+    end_s = lab.authority.end_s('guest')
+    attacker = Attacker(lab, lab.authority.put('guest'), ('host:guest',))
+
+    def is_out():
+        """Tell whether nothing is heard for a while."""
+        attacker.heard.clear()
+        return not attacker.attack(lambda: attacker.heard, 1.0)
+    try:
+        assert attacker.attack(lambda: 'bot1 with guest: sealed datagrams ' + PASS in lab.said(),
+                               VALID_S), 'before that it is let in'
+        attacker.attack(lambda: time.time() > end_s, VALID_S)
+        wait_for(is_out, OUT_S, 'it to be hung up on')
+        print('MEASURED who has a certificate that ran out is out after {:.1f} s'.format(
+            time.time() - 1.0 - end_s))
+        assert not attacker.attack(lab.moves, ATTACK_S) and attacker.heard == set()
+    finally:
+        attacker.close()
+    assert lab.is_linked(), 'nobody else is disturbed'
 
 
 class Flood:

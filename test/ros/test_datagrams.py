@@ -39,8 +39,13 @@ class Ends:
         self.robot = datagrams.open_port(['tls/127.0.0.1:{}'.format(self.port)], [])
         self.host = datagrams.open_port([], [calls or 'tls/localhost:{}'.format(self.port)])
         self.at_robot, self.at_host = [], []
-        self.down = self.host.way('bot1', lambda data: self.up.on_offer(data), lambda topic: True)
-        self.up = self.robot.way('lab', lambda data: self.down.on_offer(data), topics)
+        # Whether TLS carries what seals datagrams.
+        self.tls = True
+        ends = ('bot1', 'host:lab')
+        self.down = self.host.way('bot1', ends, lambda data: self.tls and self.up.on_offer(data),
+                                  lambda topic: True)
+        self.up = self.robot.way('lab', ends, lambda data: self.tls and self.down.on_offer(data),
+                                 topics)
         self.up.listen(lambda *row: self.at_robot.append(row))
         self.down.listen(lambda *row: self.at_host.append(row))
 
@@ -124,6 +129,25 @@ def test_with_other_keys_they_agree_again(ends):
     assert ends.up.lane.run != before
     ends.passes(ends.up, 'odom', b'2')
     wait_for(lambda: ends.at_host == [('odom', b'2')], LONG_S, 'it to come')
+
+
+@pytest.mark.parametrize('at, owners, goes_on', [
+    ('robot', {'host:lab'}, False), ('host', {'robot:bot1.2'}, False),
+    ('host', {'watched:bot1'}, False), ('robot', {'host:desk', 'host:lab.2', 'robot:bot2'}, True)])
+def test_whose_certificate_has_run_out_is_not_heard_until_tls_knows_it(ends, at, owners, goes_on):
+    sender, heard = (ends.down, ends.at_robot) if at == 'robot' else (ends.up, ends.at_host)
+    ends.passes(sender, 'odom', b'before')
+    wait_for(lambda: heard, LONG_S, 'it to come')
+    ends.tls = False
+    here = getattr(ends, at)
+    here.refused.clear()
+    here.forget(owners)
+    sender.send('odom', b'after')
+    wait_for(lambda: heard[1:] or here.refused[STRANGER], LONG_S, 'the datagram')
+    assert (heard[1:] == [('odom', b'after')]) is goes_on
+    ends.tls = True
+    wait_for(lambda: sender.send('odom', b'again') and heard[-1][1] == b'again', LONG_S,
+             'it to be heard again', 0.02)
 
 
 def test_a_port_that_is_taken_is_no_end_of_the_link(caplog):

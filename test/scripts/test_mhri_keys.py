@@ -10,6 +10,8 @@ import subprocess
 from conftest import REPO
 import pytest
 
+from mhri.core.link.keys import read_lists
+
 SCRIPT = str(REPO / 'utils' / 'host' / 'mhri_keys.sh')
 AUTHORITY, PLACE = '.config/mhri/authority', '.config/mhri/keys'
 FILES = {'authority.pem', 'own.key', 'own.pem', 'peers', 'withdrawn', 'withdrawn.pem'}
@@ -63,6 +65,10 @@ class Operator:
 
     def key(self, name):
         return self.authority / 'keys' / name
+
+    def peers(self):
+        """Return the names that have a key, once for each certificate."""
+        return [line.split()[0] for line in (self.authority / 'peers').read_text().splitlines()]
 
 
 @pytest.fixture
@@ -188,7 +194,7 @@ def test_withdrawn_key_is_refused_and_its_name_is_not_used_again(lab):
     assert [line.split()[1] for line in withdrawn] == ['host:lab'] * 2, 'and the one before'
     lab.does('host', 'lab')
     assert meet(lab) == 'host:lab.2'
-    assert (lab.authority / 'peers').read_text().split() == ['host:lab.2', 'robot:bot1']
+    assert lab.peers() == ['host:lab.2', 'robot:bot1']
     lab.does('withdraw', 'lab')
     lab.does('host', 'lab', '--watch')
     assert meet(lab) == 'watch:lab.3'
@@ -196,7 +202,7 @@ def test_withdrawn_key_is_refused_and_its_name_is_not_used_again(lab):
 
 
 def test_openssl_verifies_them(lab):
-    for name in ('lab', 'bot1'):
+    for name, owner in (('lab', 'host:lab'), ('bot1', 'robot:bot1')):
         said = subprocess.run(
             ['openssl', 'verify', '-x509_strict', '-purpose', 'sslclient', '-CAfile',
              str(lab.authority / 'authority.pem'), str(lab.key(name) / 'own.pem')],
@@ -207,8 +213,21 @@ def test_openssl_verifies_them(lab):
 def test_roles_are_in_the_common_name(lab):
     lab.does('host', 'gallery', '--watch')
     lab.does('robot', 'bot2', '--watch')
-    assert set((lab.authority / 'peers').read_text().split()) == {
-        'host:lab', 'robot:bot1', 'watch:gallery', 'watched:bot2'}
+    assert lab.peers() == ['host:lab', 'robot:bot1', 'watch:gallery', 'watched:bot2']
+
+
+def test_others_know_when_each_certificate_runs_out(lab):
+    """Of one that was made anew there are two, and the old one is good until its own end."""
+    lab.does('renew', 'lab', '--days', '2')
+    lab.does('renew', 'bot1', '--days', '500')
+    assert lab.peers() == ['host:lab', 'host:lab', 'robot:bot1', 'robot:bot1']
+    keys = read_lists('host:lab', (lab.authority / 'peers').read_text(), '', '')
+    for name, owner in (('lab', 'host:lab'), ('bot1', 'robot:bot1')):
+        said = subprocess.run(
+            ['openssl', 'x509', '-in', str(lab.key(name) / 'own.pem'), '-noout', '-enddate'],
+            stdout=subprocess.PIPE, check=True, universal_newlines=True).stdout
+        end_s = ssl.cert_time_to_seconds(said.strip().partition('=')[2])
+        assert keys.ended(end_s - 1.0, end_s) == {owner}
 
 
 def test_renewed_key_keeps_name_and_address(lab):
@@ -291,7 +310,7 @@ def test_two_at_once(lab):
     processes = [lab.start('robot', 'bot{}'.format(number)) for number in range(2, 6)]
     assert [process.communicate(timeout=120)[0] and process.returncode
             for process in processes] == [0] * 4
-    assert len((lab.authority / 'peers').read_text().split()) == 6
+    assert len(lab.peers()) == 6
 
 
 @pytest.mark.parametrize('damage, said', [

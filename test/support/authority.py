@@ -4,9 +4,11 @@
 import os
 import pathlib
 import shutil
+import ssl
 import subprocess
 
 REPO = pathlib.Path(__file__).resolve().parents[2]
+DATE = '#!/bin/bash\nexec /bin/date "${{@/#now/now {:+d} seconds}}"\n'
 LISTS = ('peers', 'withdrawn', 'withdrawn.pem', 'authority.pem')
 
 
@@ -20,11 +22,27 @@ class Authority:
         self.folder = folder
         self.run('new')
 
-    def run(self, *words):
-        """Run the script with a command."""
+    def run(self, *words, shift_s=0):
+        """Run the script with a command.
+
+        :param shift_s: what the script takes for the time is so much later than it is
+        """
+        tools = self.folder / 'tools'
+        tools.mkdir(parents=True, exist_ok=True)
+        (tools / 'date').write_text(DATE.format(shift_s))
+        (tools / 'date').chmod(0o755)
         subprocess.run([str(REPO / 'utils/host/mhri_keys.sh'), *words, '--folder',
                         str(self.folder / 'authority')], check=True, stdout=subprocess.DEVNULL,
-                       env=dict(os.environ, HOME=str(self.folder)))
+                       env=dict(os.environ, HOME=str(self.folder), PATH='{}:{}'.format(
+                           tools, os.environ['PATH'])))
+
+    def end_s(self, name):
+        """Return when somebody's certificate runs out [s since 1970]."""
+        said = subprocess.run(
+            ['openssl', 'x509', '-noout', '-enddate', '-in',
+             str(self.folder / 'authority' / 'keys' / name / 'own.pem')],
+            check=True, stdout=subprocess.PIPE, universal_newlines=True).stdout
+        return ssl.cert_time_to_seconds(said.strip().partition('=')[2])
 
     def put(self, name):
         """Return a folder with the key of somebody, and the lists as they are now."""

@@ -4,8 +4,8 @@
 import pytest
 
 from mhri.core.link.keys import (
-    access, access_of_router, called, check_open, check_own, endpoint, host_of, Keys, KeysError, marked,
-    may_drive, partners, read_lists, split)
+    access, access_of_router, called, check_open, check_own, endpoint, host_of, is_of, Keys,
+    KeysError, marked, may_drive, partners, read_lists, split)
 
 PEERS = frozenset((
     'host:lab', 'host:desk.2', 'watch:gallery', 'robot:bot1', 'robot:bot2', 'watched:bot3'))
@@ -110,6 +110,30 @@ def test_lists():
     keys = read_lists('host:lab', 'host:lab\nrobot:bot1\n', '0aff12 host:x\n77 robot:y\n', SIGNED)
     assert keys == Keys('host:lab', frozenset(('host:lab', 'robot:bot1')),
                         frozenset(('host:x', 'robot:y')))
+
+
+def test_when_certificates_run_out():
+    """One of a name ends, another one goes on; RFC 5280 writes the year with two digits or four."""
+    keys = read_lists('robot:bot1', 'host:lab 261125000000Z\nhost:lab 271125000001Z\n'
+                      'watch:gallery 20510101000000Z\nrobot:bot1\n', '0aff12 x\n77 y\n', SIGNED)
+    assert keys.peers == {'host:lab', 'watch:gallery', 'robot:bot1'}
+    end_s, late_s = 1795564800.0, 2556144000.0
+    assert keys.ended(end_s - 1.0, end_s) == {'host:lab'} == keys.ended(end_s, end_s + 4e7)
+    assert keys.ended(end_s, end_s + 1e7) == frozenset() == keys.ended(end_s + 1.0, end_s - 1.0)
+    assert keys.ended(late_s - 1.0, late_s) == {'watch:gallery'}
+
+
+@pytest.mark.parametrize('end', ['soon', '261325000000Z', '261125000000', '1e999', '-'])
+def test_an_end_that_none_can_be(end):
+    with pytest.raises(KeysError, match='put the key in place again'):
+        read_lists('host:lab', 'host:lab ' + end, '0aff12 x\n77 y\n', SIGNED)
+
+
+@pytest.mark.parametrize('owner, found', [
+    ('host:lab', True), ('host:lab.2', False), ('robot:bot1', True), ('robot:bot1.3', True),
+    ('watched:bot1', True), ('robot:bot10', False), ('host:bot1', False), ('router:hub', False)])
+def test_whose_link_it_is(owner, found):
+    assert is_of(owner, 'bot1', 'host:lab') is found
 
 
 @pytest.mark.parametrize('withdrawn', ['', '77 robot:y', '0AFF12 a\n77 b\n78 c', '0AFF12\n77 b'])

@@ -73,19 +73,19 @@ subjectKeyIdentifier = hash
 SETTINGS
 }
 
-# with_state V|R: prints serial and common name of the certificates that are good or withdrawn.
+# with_state V|R: prints serial, common name and end of the certificates that are good or withdrawn.
 with_state() {
-  awk -F '\t' -v state="$1" '$1 == state { sub(".*/CN=", "", $6); print $4, $6 }' \
+  awk -F '\t' -v state="$1" '$1 == state { sub(".*/CN=", "", $6); print $4, $6, $2 }' \
     "$AUTHORITY/index.txt" | grep -v ' authority:' || true
 }
 
-# write_lists: who has a key (peers), which are withdrawn, and the same signed.
+# write_lists: who has a key and until when (peers), which are withdrawn, and the same signed.
 write_lists() {
   local own=authority.pem
   [ -e "$AUTHORITY/$own" ] || own=authority.new
   run_openssl "look through its list" ca -config authority.cnf -cert "$own" -updatedb
-  with_state V | cut -d ' ' -f 2 | sort -u >"$AUTHORITY/peers"
-  with_state R >"$AUTHORITY/withdrawn"
+  with_state V | cut -d ' ' -f 2,3 | sort -u >"$AUTHORITY/peers"
+  with_state R | cut -d ' ' -f 1,2 >"$AUTHORITY/withdrawn"
   run_openssl "sign the list" ca -config authority.cnf -cert "$own" -gencrl -out withdrawn.pem
 }
 

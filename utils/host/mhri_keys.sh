@@ -235,7 +235,7 @@ withdraw() {
   local common serial other others=()
   known
   common=$(owner "$NAME")
-  while read -r serial other; do
+  while read -r serial other _; do
     [ "$other" = "$common" ] || continue
     run_openssl "withdraw the key" ca -config authority.cnf -revoke "issued/$serial.pem"
   done < <(with_state V)
@@ -261,7 +261,7 @@ look() {
 list() {
   local serial common
   look || true
-  while read -r serial common; do
+  while read -r serial common _; do
     printf '%-32s %-32s %s\n' '' "$common" "withdrawn, serial number $serial"
   done < <(with_state R)
 }

@@ -8,6 +8,7 @@ A name is ``host:lab`` (may drive), ``watch:lab`` (may only watch), ``robot:bot1
 a mark of the computer where nothing else tells two of one name apart (``host:lab.x0c5e21a9``).
 """
 from dataclasses import dataclass
+from datetime import datetime, timezone
 import hashlib
 import re
 from typing import Dict, FrozenSet, Iterable, List, Sequence, Tuple
@@ -38,11 +39,18 @@ class Keys:
     :param own: the name in the own certificate
     :param peers: names of those who have a key
     :param withdrawn: names whose keys were taken back
+    :param ends: (a name of those, when one of its certificates runs out [s since 1970]), as far as
+        that is known
     """
 
     own: str
     peers: FrozenSet[str] = frozenset()
     withdrawn: FrozenSet[str] = frozenset()
+    ends: FrozenSet[Tuple[str, float]] = frozenset()
+
+    def ended(self, since: float, now: float) -> FrozenSet[str]:
+        """Return the names that have a certificate which ran out in between [s since 1970]."""
+        return frozenset(owner for owner, end in self.ends if since < end <= now)
 
 
 def split(owner: str) -> Tuple[str, str]:
@@ -99,7 +107,8 @@ def marked(host: str, facts: Iterable[str]) -> str:
 def read_lists(own: str, peers: str, withdrawn: str, signed: str) -> Keys:
     """Return the keys that lists tell of.
 
-    :param peers: a name on each line
+    :param peers: on each line a name and when its certificate runs out, as X.509 writes that; that
+        of an older mhri has names alone
     :param withdrawn: a serial number and a name on each line
     :param signed: what ``openssl crl -text`` says of the signed list
     :raises KeysError: the lists do not belong together
@@ -111,7 +120,28 @@ def read_lists(own: str, peers: str, withdrawn: str, signed: str) -> Keys:
             serial.lower() for serial in _SERIAL.findall(signed)}:
         raise KeysError('the list of those withdrawn is not the one that the authority signed: put '
                         'the key in place again')
-    return Keys(own, frozenset(peers.split()), frozenset(row[1] for row in rows))
+    known = [line.split() for line in peers.splitlines() if line.strip()]
+    return Keys(own, frozenset(row[0] for row in known), frozenset(row[1] for row in rows),
+                frozenset((row[0], _moment(row[1])) for row in known if row[1:]))
+
+
+def _moment(text: str) -> float:
+    """Return the time of X.509 (RFC 5280, 4.1.2.5) in words as s since 1970.
+
+    :raises KeysError: it is none
+    """
+    try:
+        found = datetime.strptime(text, '%y%m%d%H%M%SZ' if len(text) == 13 else '%Y%m%d%H%M%SZ')
+    except ValueError:
+        raise KeysError('the list of those who have a key cannot be read: put the key in place '
+                        'again') from None
+    return found.replace(tzinfo=timezone.utc).timestamp()
+
+
+def is_of(owner: str, robot: str, host: str) -> bool:
+    """Tell whether a name in a certificate is that of one end of a robot's link with a host."""
+    role, name = split(owner)
+    return owner == host or role in (ROBOT, WATCHED) and name == robot
 
 
 def check_own(keys: Keys, side: str, robot: str) -> None:

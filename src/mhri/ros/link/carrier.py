@@ -156,6 +156,14 @@ class Carrier:
         if session is not None:
             session.close()
 
+    def agree_again(self, owners):
+        """Let those with these names in their certificates show by TLS once more who they are.
+
+        Until they have, no datagram of theirs counts.
+        """
+        if self._datagrams is not None:
+            self._datagrams.forget(owners)
+
     def _publisher(self, key, urgency):
         priorities = {COMMAND: self._zenoh.Priority.REAL_TIME,
                       PICTURE: self._zenoh.Priority.DATA_LOW,
@@ -251,7 +259,7 @@ class Between:
         root = key_of(self._robot, self._host, way, '')
         back = key_of(self._robot, self._host, 'up' if way == 'down' else 'down', OFFER)
         self._way = self._carrier.way(
-            '{} with {}'.format(self._robot, called(self._host)),
+            '{} with {}'.format(self._robot, called(self._host)), (self._robot, self._host),
             self._carrier.sender(back, COMMAND),
             lambda topic: way == 'up' or self._carrier.lets(self._host, topic))
         if self._way is not None:

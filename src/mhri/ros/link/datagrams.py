@@ -13,6 +13,7 @@ import socket
 import threading
 
 from mhri.core.link.frames import FrameError
+from mhri.core.link.keys import is_of
 from mhri.core.link.sealed import Lane, MOST_BYTES, OFFER, REPLAYED, run_of, SealError, STRANGER
 from mhri.ros.link.clock import boot_clock
 
@@ -106,14 +107,15 @@ class Datagrams:
         threading.Thread(target=self._run, name='datagrams', daemon=True).start()
         return self
 
-    def way(self, name, offer, topics):
+    def way(self, name, ends, offer, topics):
         """Return the way to one other end.
 
         :param name: of it, for the log
+        :param ends: (robot, host) whose link it is
         :param offer: called with bytes to be told to it over TLS
         :param topics: called with a topic, tells whether it may say that
         """
-        found = Way(name, self, self._lane(), offer, topics)
+        found = Way(name, ends, self, self._lane(), offer, topics)
         with self._lock:
             self._ways.append(found)
         return found
@@ -123,10 +125,14 @@ class Datagrams:
         with self._lock:
             self._ways = [other for other in self._ways if other is not way]
 
-    def forget(self):
-        """Agree on new keys with everybody; meanwhile all goes over TLS."""
+    def forget(self, owners=None):
+        """Agree on new keys with some or everybody; meanwhile all goes over TLS.
+
+        :param owners: names in certificates; None for everybody
+        """
         for way in list(self._ways):
-            way.forget()
+            if owners is None or any(is_of(owner, *way.ends) for owner in owners):
+                way.forget()
 
     def close(self):
         """Send and take in nothing more."""
@@ -233,8 +239,8 @@ class _Call:
 class Way:
     """Datagrams to and from one other end; made by :meth:`Datagrams.way`."""
 
-    def __init__(self, name, port, lane, offer, topics):
-        self.name, self.lane = name, lane
+    def __init__(self, name, ends, port, lane, offer, topics):
+        self.name, self.ends, self.lane = name, ends, lane
         # The socket and the address from where the newest datagram came.
         self.place = None
         self._port, self._offer, self._topics = port, offer, topics

@@ -4,6 +4,7 @@
 import os
 import subprocess
 import threading
+import time
 
 import rospy
 
@@ -18,6 +19,8 @@ PLACES = ('~/.config/mhri/keys', '~/mhri/keys')
 _MOST_BYTES = 1 << 20
 # The files are looked at this often [s].
 _LOOK_S = 1.0
+# TLS has hung up on whose certificate has run out for so long [s].
+_SURE_S = 1.0
 # For openssl, its pipes, and the files.
 _RESERVED = 24
 _TLS = 'transport/link/tls/'
@@ -161,19 +164,25 @@ def watch_keys(folder, carrier):
     """Let a :class:`mhri.ros.link.carrier.Carrier` take up keys that are replaced; returns at once.
 
     Where they cannot be used it hangs up until they can: one of those who are linked may be whom
-    they keep out. Another name in the own key wants a new start, and ends the process: its keys
-    name it.
+    they keep out. Whose certificate runs out is hung up on by TLS at once, and loses its datagrams
+    two seconds later, where the lists in place tell when that is. Another name in the own key wants
+    a new start, and ends the process: its keys name it.
     """
     threading.Thread(target=_watch, args=(folder, carrier, Reserve()), name='keys',
                      daemon=True).start()
 
 
 def _watch(folder, carrier, reserve):
-    failed = False
+    failed, looked_at = False, time.time()
     # Not rospy.sleep: this is to go on whatever the clock of ROS does.
     pause = threading.Event()
     while not rospy.is_shutdown():
         pause.wait(_LOOK_S)
+        before, looked_at = looked_at, time.time() - _SURE_S
+        ended = folder.keys.ended(before, looked_at)
+        if ended:
+            rospy.logwarn('a certificate has run out: %s', ', '.join(sorted(ended)))
+            carrier.agree_again(ended)
         if not (failed or folder.changed()):
             reserve.take()
             continue
