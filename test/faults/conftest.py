@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A master, a publisher and disks for recordings that go wrong."""
+"""A master, a publisher and disks for recordings that go wrong; a network of a test's own."""
 import os
 import subprocess
 import sys
@@ -10,6 +10,7 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
+from support import bad_radio  # noqa: E402
 from support.ros_system import System  # noqa: E402
 
 
@@ -42,6 +43,26 @@ def sender(system):
     yield publisher
     done.set()
     thread.join()
+
+
+@pytest.fixture
+def in_own_network(request):
+    """Return a function that runs the test's file as a program, for so many seconds at most.
+
+    In a network of its own, so that the radio's addresses meet nobody else's.
+    """
+    why_not = bad_radio.why_not()
+    if why_not is not None:
+        pytest.skip(why_not)
+
+    def run(timeout_s):
+        done = subprocess.run(
+            ['unshare', '--net', 'sh', '-c', 'ip link set lo up && exec "$0" "$1"', sys.executable,
+             str(request.fspath)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            timeout=timeout_s, universal_newlines=True)
+        print(done.stdout)
+        assert done.returncode == 0, done.stdout[-3000:]
+    return run
 
 
 @pytest.fixture

@@ -5,19 +5,14 @@
 After an outage TCP says nothing on an old connection for as long again, a STOP ALL neither.
 """
 import os
-import subprocess
 import sys
 import time
 
-import pytest
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from support import bad_radio  # noqa: E402
 from support.graph import SET_STOP_ALL  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
-WHY_NOT = bad_radio.why_not()
 CLEAN = {'at_s': 0, 'delay_ms': 20}
 LONG_S = 120.0
 # Half a second is promised; the rest is for a busy computer.
@@ -25,20 +20,13 @@ STANDS_S = 1.2
 AFTER_S, SPEED_MPS = 2.0, 0.1
 
 
-@pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))
-def test_the_way_back_ends_where_the_radio_is_there_again():
-    # In a network of its own, so that the radio's addresses meet nobody else's.
-    done = subprocess.run(['unshare', '--net', sys.executable, os.path.abspath(__file__)],
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=3 * LONG_S,
-                          universal_newlines=True)
-    print(done.stdout)
-    assert done.returncode == 0, done.stdout[-3000:]
+def test_the_way_back_ends_where_the_radio_is_there_again(in_own_network):
+    in_own_network(3 * LONG_S)
 
 
 def inside():
     """Be the operator; end with an AssertionError where something is not so."""
     from support.behind_radio import path_m, TCPROS, World
-    subprocess.run(['ip', 'link', 'set', 'lo', 'up'], check=True)
     with World([TCPROS], 1, ['_back_after_s:={}'.format(AFTER_S),
                              '_back_speed:={}'.format(SPEED_MPS)]) as world:
         import rospy

@@ -2,35 +2,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A robot linked by keys behind a radio that loses a fifth of 1 Mbit/s, and then everything."""
 import os
-import subprocess
 import sys
-
-import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from support import bad_radio  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
-WHY_NOT = bad_radio.why_not()
 BAD = {'at_s': 0, 'delay_ms': 200, 'loss_percent': 20, 'rate_mbit': 1}
 LONG_S = 120.0
 
 
-@pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))
-def test_pictures_get_small_the_row_says_so_and_nothing_moves_after_an_outage():
-    # In a network of its own, so that the radio's addresses meet nobody else's.
-    done = subprocess.run(['unshare', '--net', sys.executable, os.path.abspath(__file__)],
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=6 * LONG_S,
-                          universal_newlines=True)
-    print(done.stdout)
-    assert done.returncode == 0, done.stdout[-3000:]
+def test_pictures_get_small_the_row_says_so_and_nothing_moves_after_an_outage(in_own_network):
+    in_own_network(6 * LONG_S)
 
 
 def inside():
     """Be the operator; end with an AssertionError where something is not so."""
     from support.behind_radio import path_m, World
-    subprocess.run(['ip', 'link', 'set', 'lo', 'up'], check=True)
     with World(['tls'], 1) as world:
         world.start()
         world.look('tls')

@@ -7,27 +7,16 @@ import subprocess
 import sys
 import time
 
-import pytest
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from support import bad_radio  # noqa: E402
-
-WHY_NOT = bad_radio.why_not()
 BAD = {'delay_ms': 200, 'loss_percent': 20, 'rate_mbit': 1}
 LONG_S, DRIVE_S = 120.0, 15.0
 # Without the watcher it is 100 %; on a busy computer a little less.
 LEAST_PERCENT = 70.0
 
 
-@pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))
-def test_a_watcher_that_never_reports_does_not_take_the_radio():
-    # In a network of its own, so that the radio's addresses meet nobody else's.
-    done = subprocess.run(['unshare', '--net', sys.executable, os.path.abspath(__file__)],
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=3 * LONG_S,
-                          universal_newlines=True)
-    print(done.stdout)
-    assert done.returncode == 0, done.stdout[-3000:]
+def test_a_watcher_that_never_reports_does_not_take_the_radio(in_own_network):
+    in_own_network(3 * LONG_S)
 
 
 def watch(endpoint):
@@ -59,7 +48,6 @@ def watch(endpoint):
 def inside():
     """Be the operator; end with an AssertionError where something is not so."""
     from support.behind_radio import FAR_IP, FIRST_PORT, World
-    subprocess.run(['ip', 'link', 'set', 'lo', 'up'], check=True)
     with World(['udp'], 1) as world:
         world.start()
         world.look('udp')
