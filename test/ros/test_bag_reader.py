@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 
+from geometry_msgs.msg import Twist, TwistStamped
 from nav_msgs.msg import Odometry
 import pytest
 import rosbag
@@ -13,6 +14,7 @@ import rospy
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
 from mhri.core.session.folder import NotASession  # noqa: E402
+from mhri.msg import LinkControl  # noqa: E402
 from mhri.ros.link.host_record import join  # noqa: E402
 from mhri.ros.messages import message_class, MessageMissing  # noqa: E402
 from mhri.ros.session.bag_set import open_session  # noqa: E402
@@ -94,6 +96,22 @@ def test_what_is_of_another_robot_is_not_fetched_from_this_one(tmp_path):
     with rosbag.Bag(joined) as bag:
         assert {topic for topic, _, _ in bag.read_messages()} == {'/bot1/odom'}
     assert len(left_out) == 1 and '/gates/state' in left_out[0] and '/bot2/scan' in left_out[0]
+
+
+def test_a_robot_that_kept_what_it_may_not_say_is_not_believed(tmp_path):
+    """Below its own name, too: nothing of mhri's own, no command, no name that none can be."""
+    path, joined = str(tmp_path / 'piece.bag'), str(tmp_path / 'joined.bag')
+    with rosbag.Bag(path, 'w') as bag:
+        for topic, message in (
+                ('/bot1/odom', Odometry()), ('/bot1/mhri_guard/command', TwistStamped()),
+                ('/bot1/cmd_vel', Twist()), ('/bot1/mhri_link/state', LinkControl()),
+                ('/bot1/a\x1b[2Jb', Odometry())):
+            bag.write(topic, message, rospy.Time(1))
+    left_out = join('bot1', [path], joined, ['odom', 'mhri_guard/command'])
+    with rosbag.Bag(joined) as bag:
+        assert {topic for topic, _, _ in bag.read_messages()} == {
+            '/bot1/odom', '/bot1/mhri_guard/command'}
+    assert '/bot1/cmd_vel' in left_out[0] and '/bot1/mhri_link/state' in left_out[0]
 
 
 def test_types_of_another_version_are_left_out_and_named(tmp_path):

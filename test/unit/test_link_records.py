@@ -155,7 +155,8 @@ def test_what_is_no_ask_is_refused(body):
         unpack_ask(body)
 
 
-@pytest.mark.parametrize('body', [b'', b'[[1]]', b'[[1,2,3,4,-5]]', b'[["a",1,1,1,1]]', b'{}'])
+@pytest.mark.parametrize('body', [b'', b'[[1]]', b'[[1,2,3,4,-5]]', b'[["a",1,1,1,1]]', b'{}',
+                                  b'[[1,2,3,1000000000000000000,5]]'])
 def test_what_is_no_offer_is_refused(body):
     with pytest.raises(FrameError):
         unpack_offer(body)

@@ -7,7 +7,9 @@ import struct
 import pytest
 
 from mhri.core.link.renaming import first_text, transforms
-from mhri.core.link.robot_claims import believed, fits, is_offer, MAX_TOPICS_EACH, OwnFrames
+from mhri.core.link.robot_claims import (
+    believed, fits, is_offer, MAX_OFFERED_BYTES, MAX_PIECE_BYTES, MAX_TOPICS_EACH, offer_problem,
+    OwnFrames, recorded_name)
 from mhri.core.robots.robot_types import parse_robot_type, resolve_robot_type
 
 TYPES = {kind.name: kind for kind in (
@@ -196,3 +198,36 @@ def test_a_message_with_its_own_frames_is_left_as_it_is():
 def test_bytes_that_are_no_message(topic, kind):
     with pytest.raises(ValueError):
         OwnFrames('bot1').of(topic, kind, b'\xff' * 9)
+
+
+@pytest.mark.parametrize('place, number, word', [
+    (0, 10 ** 10, 'number'), (1, 10 ** 15, 'begin'), (2, 10 ** 9, 'length'),
+    (3, MAX_PIECE_BYTES + 1, 'size'), (3, 10 ** 18, 'size'), (3, 10 ** 4000, 'size'),
+    (4, 1 << 32, 'checksum')])
+def test_a_recording_that_is_too_large_is_not_fetched(place, number, word):
+    row = [1700000000, 1700000000123, 10000, 50000000, 77]
+    assert offer_problem([row]) == ''
+    problem = offer_problem([row, row[:place] + [number] + row[place + 1:]])
+    assert word in problem and len(problem) < 200
+
+
+def test_nor_are_many_that_are_too_large_together():
+    row = [1, 1, 1, MAX_PIECE_BYTES, 1]
+    most = MAX_OFFERED_BYTES // MAX_PIECE_BYTES
+    assert offer_problem([row] * most) == ''
+    assert str(MAX_OFFERED_BYTES) in offer_problem([row] * (most + 1))
+
+
+@pytest.mark.parametrize('topic, kind, name', [
+    ('/bot1/odom', ODOMETRY, '/bot1/odom'), ('/turtle/odom', ODOMETRY, '/bot1/odom'),
+    ('/odom', ODOMETRY, '/bot1/odom'), ('/bot2/odom', ODOMETRY, '/bot1/odom'),
+    ('/bot1/later/scan', 'sensor_msgs/LaserScan', '/bot1/later/scan'),
+    ('/bot1/mhri_guard/command', 'geometry_msgs/TwistStamped', '/bot1/mhri_guard/command'),
+    ('/tf', 'tf2_msgs/TFMessage', '/tf'), ('/tf', 'std_msgs/String', ''),
+    ('/bot2/scan', 'sensor_msgs/LaserScan', ''), ('/gates/state', 'mhri/GatesState', ''),
+    ('/bot1/cmd_vel', 'geometry_msgs/Twist', ''), ('/bot1/odom', 'std_msgs/String', ''),
+    ('/bot1/mhri_guard/heard', 'std_msgs/String', ''), ('/bot1/a\nb', ODOMETRY, ''),
+    ('/bot1/mhri_link/state', 'mhri/LinkControl', ''), ('/bot1/../bot2/imu', 'sensor_msgs/Imu', ''),
+    ('/bot1//imu', 'sensor_msgs/Imu', ''), ('/bot1/' + 300 * 'x', ODOMETRY, ''), ('', '', '')])
+def test_names_in_what_a_robot_recorded_are_its_own(topic, kind, name):
+    assert recorded_name('bot1', topic, kind, ['odom', 'mhri_guard/command']) == name

@@ -14,6 +14,7 @@ from typing import Collection, Dict, List, Optional, Tuple
 import zlib
 
 from mhri.core.link.frames import FrameError, read_rows
+from mhri.core.link.robot_claims import offer_problem
 
 RECORD = 'record'
 # What a host has kept for it on the robot: in a session alone, always, always and with pictures.
@@ -133,10 +134,9 @@ def unpack_offer(body: bytes) -> List[Piece]:
     :raises FrameError: they say none
     """
     found = read_rows(body)
-    for row in found:
-        if not (isinstance(row, list) and len(row) == 5
-                and all(type(part) is int and part >= 0 for part in row)):
-            raise FrameError('a recording that none can be')
+    problem = offer_problem(found)
+    if problem:
+        raise FrameError(problem)
     return [Piece(*row) for row in found[:MOST_PIECES]]
 
 

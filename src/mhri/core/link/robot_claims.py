@@ -8,10 +8,10 @@ and its limits only fall. Parameters that the lab sets on the host's own master 
 """
 from dataclasses import replace
 import re
-from typing import Dict, Mapping, Optional, Tuple, Union
+from typing import Collection, Dict, Mapping, Optional, Sequence, Tuple, Union
 
 from mhri.core.link.carried import (
-    FRAME_NAMES, GUARD_ECHO, SHARED_FRAMES, TF, TF_STATIC, TF_TYPE)
+    FRAME_NAMES, GUARD_COMMAND, GUARD_ECHO, SHARED_FRAMES, TF, TF_STATIC, TF_TYPE)
 from mhri.core.link.renaming import packed_transforms, renamer, rewritten, transforms
 from mhri.core.robots.robot_hardware import HardwareStopSpec, MotorPowerSpec, SET_BOOL
 from mhri.core.robots.robot_types import (
@@ -26,6 +26,10 @@ MAX_TOPICS_EACH = 8
 MAX_LABEL = 40
 # A message of pictures or points, and any other [bytes].
 MAX_PICTURE_BYTES, MAX_STATE_BYTES = 1 << 25, 1 << 22
+# A piece of a recording, all that are offered, and when one begins: before 2100 [bytes, ms].
+MAX_PIECE_BYTES, MAX_OFFERED_BYTES, MAX_BEGUN_MS = 1 << 32, 10 ** 12, 4102444800000
+# Its number and how long it is have to go into the name of its file.
+MAX_PIECE_NUMBER, MAX_LASTS_MS = 10 ** 10 - 1, 10 ** 9 - 1
 PICTURE_TYPES = ('sensor_msgs/Image', 'sensor_msgs/CompressedImage', 'sensor_msgs/PointCloud2')
 _GUARD = {GUARD_ECHO: 'geometry_msgs/TwistStamped',
           'mhri_guard/dropped': 'geometry_msgs/TwistStamped', 'mhri_guard/state': 'std_msgs/String'}
@@ -59,6 +63,44 @@ def is_offer(topic: object, kind: object) -> bool:
 def fits(kind: str, data: bytes) -> bool:
     """Tell whether a message is not larger than one of its type can be."""
     return len(data) <= (MAX_PICTURE_BYTES if kind in PICTURE_TYPES else MAX_STATE_BYTES)
+
+
+def offer_problem(rows: Sequence[object]) -> str:
+    """Return what is wrong with the recordings that a robot offers, '' for nothing.
+
+    :param rows: of each its number, begin [ms], length [ms], size [bytes] and checksum
+    """
+    limits = (('number', MAX_PIECE_NUMBER), ('begin [ms]', MAX_BEGUN_MS),
+              ('length [ms]', MAX_LASTS_MS), ('size [bytes]', MAX_PIECE_BYTES),
+              ('checksum', (1 << 32) - 1))
+    size = 0
+    for row in rows:
+        if not (isinstance(row, list) and len(row) == len(limits)
+                and all(type(part) is int and part >= 0 for part in row)):
+            return 'it offers a recording that none can be'
+        for part, (what, most) in zip(row, limits):
+            if part > most:
+                return 'it offers a recording whose {} is more than {}'.format(what, most)
+        size += row[3]
+    if size > MAX_OFFERED_BYTES:
+        return 'it offers more than {} bytes of recordings'.format(MAX_OFFERED_BYTES)
+    return ''
+
+
+def recorded_name(robot: str, topic: str, kind: str, carried: Collection[str]) -> str:
+    """Return the name on the host of a topic in a robot's recording, '' if it is not its own.
+
+    :param topic: as the recording has it: absolute, with whatever namespace the robot has there
+    :param carried: the topics of the robot, relative to its namespace
+    """
+    if topic in (TF, TF_STATIC):
+        return topic if is_offer(topic, kind) else ''
+    start = '/{}/'.format(robot)
+    own = [name for name in carried if topic.endswith('/' + name)]
+    name = max(own, key=len) if own else topic[len(start):] if topic.startswith(start) else ''
+    # What the host itself commanded is in there, too.
+    its = name == GUARD_COMMAND and kind == 'geometry_msgs/TwistStamped'
+    return start + name if its or is_offer(name, kind) else ''
 
 
 class OwnFrames:

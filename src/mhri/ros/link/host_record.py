@@ -13,12 +13,13 @@ import rospy
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, SetBoolResponse
 
-from mhri.core.link.carried import GUARD_COMMAND, TF, TF_STATIC
+from mhri.core.link.carried import GUARD_COMMAND
 from mhri.core.link.records import (
     ASK, crc_of, Fetch, FETCHING, IN_SESSIONS, OFFER, pack_ask, PART, PICTURES, piece_of, RECORD,
     unpack_offer, unpack_part)
-from mhri.core.link.robot_claims import OwnFrames
-from mhri.core.recording.recording import ros_home
+from mhri.core.link.robot_claims import fits, OwnFrames, recorded_name
+from mhri.core.recording.recording import MB, ros_home
+from mhri.core.screen.text import tidy_text
 from mhri.core.session.folder import NotASession
 from mhri.msg import SessionState
 from mhri.ros.link.keeper import folder_of
@@ -48,9 +49,9 @@ def join(robot, paths, target, topics):
     with rosbag.Bag(target, 'w') as bag:
         for recorded in _messages(paths, problems):
             kind, data = recorded.connection.kind, recorded.data
-            name = on_host(robot, recorded.connection.topic, topics)
-            if not _of(robot, name):
-                strange.add(name)
+            name = recorded_name(robot, recorded.connection.topic, kind, topics)
+            if not name or not fits(kind, data):
+                strange.add(recorded.connection.topic)
                 continue
             # Not the message: with pictures that many take gigabytes.
             key = name, len(data), hash(data)
@@ -83,16 +84,6 @@ def _messages(paths, problems):
                 yield from piece.after(piece.start_ns - 1)
         except (NotASession,) + DAMAGED as error:
             problems.append('{}: {}'.format(os.path.basename(path), error))
-
-
-def _of(robot, topic):
-    return topic in (TF, TF_STATIC) or topic.startswith('/{}/'.format(robot))
-
-
-def on_host(robot, topic, topics):
-    """Return the name on the host of a topic on the robot."""
-    own = [name for name in topics if topic.endswith('/' + name)]
-    return '/{}/{}'.format(robot, max(own, key=len)) if own else topic
 
 
 class HostRecord:
@@ -210,8 +201,11 @@ class HostRecord:
                 file.write(data)
 
     def _check(self, piece):
+        crc = 0
         with open(self._part, 'rb') as file:
-            good = crc_of(file.read()) == piece.crc
+            for data in iter(lambda: file.read(MB), b''):
+                crc = crc_of(data, crc)
+        good = crc == piece.crc
         if good:
             os.rename(self._part, self._path(piece))
         else:
@@ -231,7 +225,8 @@ class HostRecord:
         left_out = join(self._side.name, paths, target,
                         list(self._topics()) + [GUARD_COMMAND])
         for sentence in left_out:
-            rospy.logwarn('%s: left out: %s', os.path.basename(target), sentence)
+            # It has names in it that the robot chose.
+            rospy.logwarn('%s: left out: %s', os.path.basename(target), tidy_text(sentence, 500))
         for path in paths:
             os.unlink(path)
         self.text = 'fetched {:.0f} s from {}: {}'.format(
