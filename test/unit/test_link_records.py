@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Fetching what a robot kept during an outage, over a radio that loses things."""
+import heapq
 import json
 import random
 
@@ -66,6 +67,61 @@ def test_all_comes_whole_whatever_is_lost(loss):
     assert came == FILES and robot.kept == {}
     # What is lost is not sent many times over.
     assert robot.sent < (1.0 + 12.0 * loss) * sum(map(len, FILES.values())) + 1
+
+
+class Radio:
+    """Carries asks and parts, one after the other; times are [s].
+
+    :param rate: of what it bears [bytes/s]
+    :param delay_s: how long anything is on its way, without what waits before it
+    :param loss: share of the parts
+    """
+
+    def __init__(self, rate, delay_s, loss=0.0):
+        self._rate, self._delay_s, self._loss = rate, delay_s, loss
+        self._free_at, self._dice = 0.0, random.Random(1)
+        #: the longest that anything would have waited behind parts
+        self.waits_s = 0.0
+
+    def _answered(self, ask, size, now):
+        """Yield (when it comes, offset, bytes) of each part that comes."""
+        self._free_at = max(self._free_at, now + self._delay_s)
+        for offset in range(ask.offset, min(size, ask.offset + ask.count * PART_BYTES), PART_BYTES):
+            data = bytes(min(PART_BYTES, size - offset))
+            self._free_at += len(data) / self._rate
+            if self._dice.random() >= self._loss:
+                yield self._free_at + self._delay_s, offset, data
+        self.waits_s = max(self.waits_s, self._free_at - now - self._delay_s)
+
+    def fetches(self, size, until_s=200.0):
+        """Return how many bytes a second come of a piece."""
+        fetch, on_way, now = Fetch(asked=True), [], 0.0
+        fetch.on_offer([Piece(1, 1, 1, size, 1)], now)
+        while now < until_s:
+            ask = fetch.ask(now)
+            for row in self._answered(ask, size, now) if ask else ():
+                heapq.heappush(on_way, row)
+            # As the host's side does: it looks when something comes, and ten times a second.
+            now = min([now + 0.1] + [row[0] for row in on_way[:1]])
+            while on_way and on_way[0][0] <= now:
+                fetch.on_part(1, *heapq.heappop(on_way)[1:], now)
+            if fetch.whole():
+                return size / now
+        return 0.0
+
+
+@pytest.mark.parametrize('rate, delay_s, loss, least', [
+    (10e6, 0.001, 0.0, 0.7), (10e6, 0.001, 0.02, 0.2), (1e6, 0.005, 0.0, 0.6),
+    (1e6, 0.005, 0.05, 0.2), (2e5, 0.02, 0.0, 0.4)])
+def test_it_takes_what_a_radio_bears_and_holds_up_others_for_a_moment_alone(
+        rate, delay_s, loss, least):
+    radio = Radio(rate, delay_s, loss)
+    share = radio.fetches(int(5.0 * rate)) / rate
+    print('MEASURED of {:.1f} MB/s: {:.0%}, others wait {:.0f} ms'.format(
+        1e-6 * rate, share, 1e3 * radio.waits_s))
+    assert share > least
+    # Of a slow radio one part is more.
+    assert radio.waits_s < 0.05 + 2.0 * PART_BYTES / rate
 
 
 def test_it_goes_on_where_it_had_got_to():

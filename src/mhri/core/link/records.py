@@ -25,10 +25,11 @@ FETCHING, FETCHING_WORD = 'mhri_link/fetching', 'fetching'
 ASK, OFFER, PART = '_ask', '_offer', '_part'
 PIECE_S = 10.0
 PART_BYTES = 8192
-# At once so many parts are asked for, not sooner than that after the last time [s].
-MOST_PARTS, ASK_S = 16, 0.05
-# Without an answer it is asked again, for less [s].
-AGAIN_S = 1.0
+# So many parts are asked for at once, and fewer where they come over a longer time than this [s]:
+# for so long a pose or a command may wait behind them.
+MOST_PARTS, HOLD_S = 16, 0.03
+# Without an answer it is asked again, for less; after so many times as an answer takes, within [s].
+AGAIN_S, LEAST_AGAIN_S, ANSWERS = 1.0, 0.1, 4.0
 # Who has nothing to fetch says so every so often [s].
 IDLE_S = 1.0
 # What a host asked a robot to keep is all there once it has nothing to offer for so long [s].
@@ -177,9 +178,11 @@ class Fetch:
         self._told = False
         self._offered: Dict[int, Piece] = {}
         self._done = {piece.number: piece for piece in done}
-        self._asked_at = self._heard_at = -1e9
+        self._asked_at = self._heard_at = self._first_at = -1e9
         self._until = 0
         self._window = window
+        # Of the parts that were asked for last one is missing; how long an answer takes [s].
+        self._torn, self._answer_s = False, AGAIN_S
 
     def on_offer(self, pieces: Collection[Piece], now: float) -> None:
         """Take in what there is to fetch; nothing, unless this host asked the robot to keep it."""
@@ -195,14 +198,22 @@ class Fetch:
 
     def on_part(self, number: int, offset: int, data: bytes, now: float) -> bool:
         """Take in a part; return whether it is the next one, and to be written."""
-        piece = self.wanted()
-        if piece is None or number != piece.number or offset != self._got.get(number, 0) \
-                or offset + len(data) > piece.size:
+        piece, end = self.wanted(), offset + len(data)
+        if piece is None or number != piece.number or end > piece.size:
             return False
+        got = self._got.get(number, 0)
+        if offset != got:
+            # Behind the last one comes none of those that are missing.
+            self._torn = self._torn or got < offset and end >= self._until
+            return False
+        if self._first_at < self._asked_at:
+            self._first_at = now
+            self._answer_s += 0.2 * (now - self._asked_at - self._answer_s)
         self._heard_at = now
-        self._got[number] = offset + len(data)
-        if self._got[number] >= self._until:
-            self._window = min(MOST_PARTS, self._window + 1)
+        self._got[number] = end
+        if end >= self._until:
+            held = now - self._first_at > HOLD_S
+            self._window = max(1, self._window // 2) if held else min(MOST_PARTS, self._window + 1)
         return True
 
     def wanted(self) -> Optional[Piece]:
@@ -228,21 +239,20 @@ class Fetch:
         piece = self.wanted()
         base = Ask(self.keep, tuple(sorted(set(self._done) & set(self._offered))),
                    pictures=self.pictures)
-        since_s = now - self._asked_at
         if piece is None:
-            if since_s < IDLE_S:
+            if now - self._asked_at < IDLE_S:
                 return None
             self._asked_at = now
             return base
         got = self._got.get(piece.number, 0)
         if got < self._until:
-            if now - max(self._asked_at, self._heard_at) < AGAIN_S:
+            again_s = min(AGAIN_S, max(LEAST_AGAIN_S, ANSWERS * self._answer_s))
+            if not self._torn and now - max(self._asked_at, self._heard_at) < again_s:
                 return None
             # What was lost was too much for the radio.
             self._window = max(1, self._window // 2)
-        elif since_s < ASK_S:
-            return None
-        self._asked_at = now
+            self._answer_s = min(AGAIN_S, self._answer_s * (1.0 if self._torn else 2.0))
+        self._asked_at, self._torn = now, False
         self._until = min(piece.size, got + self._window * PART_BYTES)
         return replace(base, number=piece.number, offset=got, count=self._window)
 

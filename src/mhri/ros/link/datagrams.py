@@ -30,6 +30,8 @@ TOLD_S = 10.0
 PASS = 'pass: what is lost holds up nothing'
 PASS_NOT = 'do not pass: all goes over TLS'
 _LARGEST = 65536
+# Of a socket: the usual one does not hold the parts of a recording that are asked for at once.
+BUFFER_BYTES = 1 << 20
 # Of one port so many are read before others are served.
 _AT_ONCE = 64
 # That of rospy, which need not be there.
@@ -100,6 +102,9 @@ class Datagrams:
 
     def _add(self, bound):
         bound.setblocking(False)
+        for buffer in (socket.SO_RCVBUF, socket.SO_SNDBUF):
+            # Linux gives what it may.
+            bound.setsockopt(socket.SOL_SOCKET, buffer, BUFFER_BYTES)
         self._selector.register(bound, selectors.EVENT_READ)
 
     def start(self):
