@@ -169,7 +169,10 @@ def test_ten_plugins_that_were_closed_leave_nothing(gates, plugins, operator):
         operator.wait_until(lambda: statuses)
         end(plugin)
         del host, plugin
-        operator.wait_until(lambda: registered() <= at_first)
+        try:
+            operator.wait_until(lambda: registered() <= at_first)
+        finally:
+            print('left at the master:', sorted(registered() - at_first))
     open_and_close()
     operator.settle()
     before = held()

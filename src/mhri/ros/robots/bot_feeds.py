@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What a tile can show of its robot: a feed for each view, opened while it is wanted."""
+import threading
+
 import rospy
 
 from mhri.core.map.tf_tree import OdometryFrames
@@ -31,6 +33,7 @@ class BotFeeds:
         self._feeds[MOCAP] = MocapFeed(robot)
         self._wanted = frozenset()
         self._open = frozenset()
+        self._switching = threading.Lock()
 
     def offers(self):
         """Return the keys of the views that a robot of this type can have."""
@@ -44,16 +47,21 @@ class BotFeeds:
             self._worker.do(self._switch)
 
     def _switch(self):
-        """Open and close feeds until they match the newest wish (blocking, on the worker)."""
-        wanted, before = self._wanted, self._open
-        self._open = before & wanted
-        for feeds, act in ((before - wanted, 'close'), (wanted - before, 'open')):
-            for key in feeds:
-                try:
-                    getattr(self._feeds[key], act)()
-                except Exception as error:  # of rospy: it must not keep the others as they are
-                    rospy.logerr('%s: cannot %s its %s: %r', self._robot, act, key, error)
-        self._open = wanted
+        """Open and close feeds until they match the newest wish (blocking)."""
+        # The worker may be opening what the end of the screen closes.
+        with self._switching:
+            wanted, before = self._wanted, self._open
+            self._open = before & wanted
+            for feeds, act in ((before - wanted, 'close'), (wanted - before, 'open')):
+                for key in feeds:
+                    self._do(key, act)
+            self._open = wanted
+
+    def _do(self, key, act):
+        try:
+            getattr(self._feeds[key], act)()
+        except Exception as error:  # of rospy: it must not keep the others as they are
+            rospy.logerr('%s: cannot %s its %s: %r', self._robot, act, key, error)
 
     def close(self):
         """Close every feed (blocking: it asks the master)."""

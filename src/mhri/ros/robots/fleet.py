@@ -89,10 +89,14 @@ class Fleet:
         link = RobotLink(name, robot_type, self._gates, BotFeeds(name, robot_type, self._worker),
                          self._clock, self._wall, self.quality)
         with self._lock:
-            self._links[name] = link
-            self.controls.watch(name)
+            wanted = name in self._wanted
+            if wanted:
+                self._links[name] = link
+                self.controls.watch(name)
             stopped = self._stopped
-        if stopped:
+        if not wanted:  # forgotten meanwhile
+            link.close()
+        elif stopped:
             link.on_stop(True, self._clock())
 
     def _report(self, name, errors):
