@@ -13,7 +13,7 @@ from mhri.gui.screen import theme, words
 # Of a text that may be wrapped.
 MOST_LINES = 3
 # What the two round ends of a pill need beside its word, at the least.
-_PILL_EDGE_PX = 6
+_PILL_EDGE_PX = 2
 
 
 def plain_tip(text):
