@@ -316,3 +316,25 @@ def test_a_hostile_session_has_a_report_of_bounded_size(session, tmp_path):
     text = report_text(folder, tmp_path / 'report')
     assert len(text) < 3000000
     assert '<script' not in text and 'of 10003 marks' in text and 'make no sense' in text
+
+
+def test_a_still_of_any_shape_does_not_end_the_report(session, tmp_path):
+    """No jpeg has more than 65,500 pixels a side, and small, the other side has none."""
+    folder = tmp_path / 'session'
+    shutil.copytree(str(session), str(folder))
+    (folder / 'stills' / 'm3_bot2.jpg').write_bytes(
+        cv2.imencode('.png', np.zeros((1, 65501, 3), np.uint8))[1].tobytes())
+    text = report_text(folder, tmp_path / 'report')
+    assert text.count('data:image/jpeg') == 2
+
+
+def test_pictures_that_cannot_be_encoded_are_said_and_the_report_goes_on(
+        session, tmp_path, monkeypatch):
+    def refuse(*_):
+        raise cv2.error('too many pixels')
+    monkeypatch.setattr(cv2, 'imencode', refuse)
+    output = tmp_path / 'report'
+    text = report_text(session, output)
+    assert 'data:image' not in text and 'smoke' in text
+    assert re.search('the map: .* [0-9]+ x [0-9]+ pixels', text)
+    assert [path.name for path in output.iterdir()] == ['report.html']

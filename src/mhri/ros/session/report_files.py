@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The files of a report: page, map and world file, each written whole or not at all."""
 import base64
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from dataclasses import replace
 import os
 
 import numpy as np
@@ -21,6 +22,10 @@ _STILL_PX, _STILL_BYTES = 800, 20 * 10 ** 6
 _QUALITY = 82
 # A line on the map may leave the way by so many pixels.
 _WITHIN_PX = 0.7
+
+
+class NoPicture(ValueError):
+    """A picture that cannot be encoded: how large it is."""
 
 
 def folder_for(name, env):
@@ -51,20 +56,33 @@ def write_report(report, grid, session, folder):
     :raises OSError: they cannot be written
     """
     os.makedirs(folder, exist_ok=True)
-    ways = ways_of(report.robots, 0.0)
-    spots = spots_of(report.marks, report.placed, report.info.frame)
     paths, drawing, note = [], '', ''
-    if grid is not None or ways or spots:
-        sheet = sheet_of(grid, bounds_points(ways, spots))
-        ways = ways_of(report.robots, _WITHIN_PX * sheet.px_m)
-        base = ground(sheet, grid)
-        drawing = map_svg(sheet, _uri('png', _encoded('.png', base)), ways, spots)
-        note = 'As a file: {} with its world file {}, {:.4g} mm a pixel.'.format(
-            MAP, WORLD, 1e3 * sheet.px_m)
-        paths.append(_write(folder, MAP, _encoded('.png', drawn(sheet, base, ways, spots))))
-        paths.append(_write(folder, WORLD, sheet.world_file().encode('ascii')))
+    try:
+        drawing, note, files = _map_of(report, grid)
+        paths = [_write(folder, name, data) for name, data in files]
+    except NoPicture as error:
+        report = replace(report, problems=report.problems + ('the map: {}'.format(error),))
     page = page_of(report, drawing, _stills(report, session), note)
     return [_write(folder, PAGE, page.encode('utf-8', 'replace'))] + paths
+
+
+def _map_of(report, grid):
+    """Return the drawing of the map, what is said of its files, and these: [(name, bytes)].
+
+    :raises NoPicture: it cannot be encoded
+    """
+    ways = ways_of(report.robots, 0.0)
+    spots = spots_of(report.marks, report.placed, report.info.frame)
+    if grid is None and not ways and not spots:
+        return '', '', []
+    sheet = sheet_of(grid, bounds_points(ways, spots))
+    ways = ways_of(report.robots, _WITHIN_PX * sheet.px_m)
+    base = ground(sheet, grid)
+    note = 'As a file: {} with its world file {}, {:.4g} mm a pixel.'.format(
+        MAP, WORLD, 1e3 * sheet.px_m)
+    return map_svg(sheet, _uri('png', _encoded('.png', base)), ways, spots), note, [
+        (MAP, _encoded('.png', drawn(sheet, base, ways, spots))),
+        (WORLD, sheet.world_file().encode('ascii'))]
 
 
 def _write(folder, name, data):
@@ -76,9 +94,13 @@ def _write(folder, name, data):
 
 
 def _encoded(ending, picture, options=()):
-    done, data = cv2.imencode(ending, picture, list(options))
+    try:
+        done, data = cv2.imencode(ending, picture, list(options))
+    except cv2.error:
+        done = False
     if not done:
-        raise OSError('a picture of {} x {} cannot be encoded'.format(*picture.shape[:2]))
+        raise NoPicture('a picture of {} x {} pixels cannot be encoded'.format(
+            *picture.shape[1::-1]))
     return data.tobytes()
 
 
@@ -87,15 +109,16 @@ def _uri(kind, data):
 
 
 def _stills(report, session):
-    """Return {name: data URI} of the stills that are pictures."""
+    """Return {name: data URI} of the stills that are pictures; the page says how many are not."""
     names = [name for mark in report.marks[:MOST_MARKS] for name in mark.stills]
     names += [name for _, name in report.extra_stills]
     found = {}
     for name in dict.fromkeys(names):
         picture = _picture(os.path.join(session, name)) if is_still(name) else None
         if picture is not None:
-            found[name] = _uri('jpeg', _encoded('.jpg', picture, (cv2.IMWRITE_JPEG_QUALITY,
-                                                                  _QUALITY)))
+            with suppress(NoPicture):
+                found[name] = _uri('jpeg', _encoded('.jpg', picture, (cv2.IMWRITE_JPEG_QUALITY,
+                                                                      _QUALITY)))
         if len(found) == MOST_STILLS:
             break
     return found
@@ -114,5 +137,8 @@ def _picture(path):
     if picture is None:
         return None
     scale = _STILL_PX / max(picture.shape[:2])
-    return cv2.resize(picture, None, fx=scale, fy=scale,
-                      interpolation=cv2.INTER_AREA) if scale < 1.0 else picture
+    if scale >= 1.0:
+        return picture
+    # A side of a very long picture may come to nothing.
+    return cv2.resize(picture, tuple(max(1, round(scale * side)) for side in picture.shape[1::-1]),
+                      interpolation=cv2.INTER_AREA)
