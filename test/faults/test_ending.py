@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A signal ends a node whatever its main thread does, and its last words are said whole."""
+"""A signal ends a node whatever its threads do, and its last words are said whole."""
 import os
 import signal
 import sys
@@ -10,6 +10,7 @@ import rosgraph
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
+from support import made_session  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
 # The main thread holds what the last words need, as it does in the middle of a question to the
@@ -73,6 +74,24 @@ rospy.spin()
 '''
 
 
+# A busy computer does something else between the look at whether a node ends and what it publishes.
+LATE = '''
+import importlib, sys, time
+import rospy
+
+def late(self, *words, **named):
+    if self.resolved_name == topic:
+        print('speaks', flush=True)
+        time.sleep(0.3)
+    return publish(self, *words, **named)
+
+node, topic = sys.argv[1:3]
+del sys.argv[1:3]
+publish, rospy.Publisher.publish = rospy.Publisher.publish, late
+importlib.import_module('mhri.nodes.' + node).main()
+'''
+
+
 @pytest.fixture(scope='module')
 def system():
     with System(adopt=False) as made:
@@ -109,6 +128,18 @@ def test_a_node_that_goes_does_not_register_again(system):
     assert process.wait(60) == 0 and 'registered again' not in text(process), text(process)
     with pytest.raises(rosgraph.MasterError):
         rosgraph.Master('/test', system.env['ROS_MASTER_URI']).lookupNode('/watched')
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize('node, topic', [
+    ('mhri_replay', '/bot1/odom'), ('tasks', '/mhri_tasks/run/status')])
+def test_what_is_said_at_the_end_leaves_no_traceback(system, tmp_path, node, topic, number):
+    """The replay plays, and actionlib's timer comes, while the topics are being closed."""
+    words = [str(made_session.write_session(tmp_path / 'session'))] if node == 'mhri_replay' else []
+    process = system.start(sys.executable, '-c', LATE, node, topic, *words)
+    wait_for(lambda: 'speaks' in text(process), 60.0, lambda: text(process))
+    process.send_signal(number)
+    assert process.wait(60) == 0 and 'Traceback' not in text(process), text(process)
 
 
 def test_without_a_master_a_signal_ends_it(system):

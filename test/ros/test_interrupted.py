@@ -9,18 +9,18 @@ import sys
 
 import pytest
 
-SCRIPTS = Path(__file__).resolve().parents[2] / 'scripts'
+TOP = Path(__file__).resolve().parents[2]
+PROGRAMS = sorted((TOP / 'scripts').iterdir()) + [TOP / 'utils' / 'remote' / 'mhri_guard']
 # What is loaded early sends the signal, in the middle of the imports.
 TRAP = 'import os, time\nos.kill(os.getpid(), {})\ntime.sleep(30.0)\n'
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize('script', ['mux', 'gates', 'tasks', 'mhri_replay', 'mhri_session',
-                                    'mhri_report', 'mhri_link'])
-def test_it_ends_without_a_traceback(tmp_path, script, number):
+@pytest.mark.parametrize('program', PROGRAMS, ids=lambda path: path.name)
+def test_it_ends_without_a_traceback(tmp_path, program, number):
     for name in ('rospy', 'rospkg', 'rosgraph'):
         (tmp_path / (name + '.py')).write_text(TRAP.format(int(number)))
-    done = subprocess.run([sys.executable, str(SCRIPTS / script)], timeout=60.0,
+    done = subprocess.run([sys.executable, str(program)], timeout=60.0,
                           env=dict(os.environ, PYTHONPATH=os.pathsep.join(
                               [str(tmp_path), os.environ.get('PYTHONPATH', '')])),
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
