@@ -1,15 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """How the doctor looks: what nodes say of their connections, and names that change meanwhile."""
+from contextlib import contextmanager
+from socketserver import ThreadingMixIn
 import threading
 import time
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
-from mhri.core.doctor.facts import Connection, Facts, Node
-from mhri.ros.doctor import examination as doctor
-from mhri.ros.doctor.probe import _connections
+from mhri.core.doctor.facts import ANSWERS, Connection, Facts, Node
+from mhri.ros.doctor import examination as doctor, files
+from mhri.ros.doctor.probe import _connections, Probe
 from mhri.ros.graph.master_api import MasterError
 
 TO = 'TCPROS connection on port 41374 to [{} on socket 6]'
@@ -23,7 +25,7 @@ def test_address_of_the_other_end(words, address):
     assert _connections([entry]) == (Connection(True, '/odom', '/viewer', address),)
 
 
-def watch(monkeypatch, *answers, limit_s=5.0):
+def watch(monkeypatch, *answers, limit_s=5.0, each_s=0.001):
     """Return where a node is registered in the end, and how often the master was asked."""
     answers = list(answers)
     asked = []
@@ -35,9 +37,9 @@ def watch(monkeypatch, *answers, limit_s=5.0):
             raise MasterError('gone')
         return {'/base': answer} if answer else {}
     monkeypatch.setattr(doctor, '_uris', uris)
-    monkeypatch.setattr(doctor, 'WATCH_EACH_S', 0.001)
+    monkeypatch.setattr(doctor, 'WATCH_EACH_S', each_s)
     facts = Facts(nodes={'/base': Node('/base', 'http://a:1/', uri_later='http://a:1/')})
-    seen = doctor._watch_names(facts, None, time.monotonic() + limit_s)
+    seen = doctor._watch_names(facts, time.monotonic() + limit_s)
     return seen.nodes['/base'].uri_later, len(asked)
 
 
@@ -53,21 +55,56 @@ def test_name_is_watched_until_the_end(monkeypatch):
     assert watch(monkeypatch, 'http://a:1/', limit_s=-1.0) == ('http://a:1/', 0)
 
 
+def test_name_is_watched_no_longer(monkeypatch):
+    begun = time.monotonic()
+    watch(monkeypatch, 'http://a:1/', limit_s=0.1, each_s=60.0)
+    assert time.monotonic() - begun < 30.0
+
+
 def test_master_that_ends_meanwhile(monkeypatch):
     assert watch(monkeypatch, 'http://a:1/', None) == ('http://a:1/', 2)
 
 
-class Master:
-    """The answers of a master that a node leaves between two questions to it."""
+class Server(ThreadingMixIn, SimpleXMLRPCServer):
+    """Answers several at once."""
 
-    def __init__(self, gone):
+    daemon_threads = True
+
+
+@contextmanager
+def served(instance):
+    """Yield the URI at which an object is called."""
+    server = Server(('127.0.0.1', 0), logRequests=False)
+    server.register_multicall_functions()
+    server.register_instance(instance)
+    threading.Thread(target=server.serve_forever, kwargs={'poll_interval': 0.01},
+                     daemon=True).start()
+    try:
+        yield 'http://127.0.0.1:{}'.format(server.server_address[1])
+    finally:
+        server.shutdown()
+        server.server_close()
+
+
+class Slow:
+    """Answers each question at once but one, for which it takes longer than anybody waits."""
+
+    def __init__(self):
+        self.ended = threading.Event()
+
+    def getPid(self, _):
+        return 1, '', 1
+
+    def requestTopic(self, *_):
+        self.ended.wait(30.0)
+        return 0, '', 0
+
+
+class Master:
+    """The answers of a master that nodes leave between two questions to it."""
+
+    def __init__(self, gone=()):
         self._gone = gone
-        self.server = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False)
-        self.server.register_multicall_functions()
-        self.server.register_instance(self)
-        threading.Thread(target=self.server.serve_forever, kwargs={'poll_interval': 0.01},
-                         daemon=True).start()
-        self.uri = 'http://127.0.0.1:{}'.format(self.server.server_address[1])
 
     def getSystemState(self, _):
         return 1, '', [[['/bot1/odom', ['/bot1/base']], ['/bot1/cmd_vel', ['/panel']]],
@@ -94,12 +131,37 @@ class Master:
     ('/viewer',), ('/bot1/base',), ('/panel',), ('/viewer', '/bot1/base', '/panel')])
 def test_a_node_that_goes_between_two_questions_to_the_master(gone):
     """It is not there any more, and whatever else is wrong is told."""
-    master = Master(gone)
-    try:
-        found = doctor.examine(environ={'ROS_MASTER_URI': master.uri, 'ROS_IP': '127.0.0.1'})
-    finally:
-        master.server.shutdown()
-        master.server.server_close()
+    found = examined(Master(gone))
     dead = [item.problem for item in found if item.check == 'node_dead']
     for name in ('/viewer', '/bot1/base', '/panel'):
         assert any(name in words for words in dead) == (name not in gone), found
+
+
+def examined(master, **options):
+    with served(master) as uri:
+        return doctor.examine(environ={'ROS_MASTER_URI': uri, 'ROS_IP': '127.0.0.1'}, **options)
+
+
+def test_a_slow_disk_is_not_waited_for(monkeypatch):
+    """The time that robots have to answer is for reading files, too, and no more than that."""
+    ended = threading.Event()
+    monkeypatch.setattr(files, 'read_profiles', lambda: ended.wait(120.0) or ((), []))
+    begun = time.monotonic()
+    try:
+        found = examined(Master(), begun=begun)
+    finally:
+        ended.set()
+    assert time.monotonic() - begun < 60.0
+    assert 'node_dead' in [item.check for item in found]
+
+
+def test_what_there_was_no_time_to_listen_to_is_told():
+    """Nothing that is wrong with it is: that must not look as if all were well."""
+    node = Slow()
+    with served(node) as uri:
+        probe = Probe('/doctor', time.monotonic() + 1.0)
+        probe.ask('/base', uri, [('/odom', 'nav_msgs/Odometry', True),
+                                 ('/other', 'std_msgs/Bool', False)])
+        assert probe.result()[0]['/base'].state == ANSWERS
+        assert probe.unheard == ('/odom',)
+        node.ended.set()

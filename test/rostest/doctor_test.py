@@ -16,12 +16,12 @@ import rostest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
 from support.ros_system import wait_for  # noqa: E402
-from support.surgery import BlackHole, Clinic, wrong  # noqa: E402
+from support.surgery import BlackHole, Clinic, TRIES, wrong  # noqa: E402
 
 TWIST, ODOMETRY, BOOL = 'geometry_msgs/Twist', 'nav_msgs/Odometry', 'std_msgs/Bool'
 ROBOT = ('--odometry', 'odom', '--subscribe', 'cmd_vel', TWIST)
 # An examination that took longer had no time for everything, on a busy computer [s].
-SHORT_S = 2.0
+SHORT_S = 1.8
 
 
 class DoctorTest(unittest.TestCase):
@@ -40,11 +40,12 @@ class DoctorTest(unittest.TestCase):
     def found(self, *checks, about=None, remedy=None, robots=(), **options):
         """Examine; exactly these checks are wrong; the first is about this, with this remedy."""
         for _ in range(8):
-            status, report = self.clinic.examine(*robots, **options)
+            status, report = self.clinic.examine('--quick', *robots, **options)
             findings = wrong(report)
             if set(findings) == set(checks) or report['took_s'] < SHORT_S:
                 break
             print('again: {:.2f} s, {}'.format(report['took_s'], sorted(findings)))
+        self.report = report
         self.assertEqual(set(findings), set(checks), findings)
         self.assertEqual(status, 1)
         for item in findings.values():
@@ -57,11 +58,11 @@ class DoctorTest(unittest.TestCase):
             self.assertIn(remedy, first['remedy'])
         return findings
 
-    def robot(self, name, *arguments, kind='generic'):
+    def robot(self, name, *arguments, kind='generic', wait=True):
         """Start a light robot that lacks nothing."""
         if kind:
             self.clinic.set('/{}/robot_type'.format(name), kind)
-        return self.clinic.patient('/{}/base'.format(name), *ROBOT, *arguments)
+        return self.clinic.patient('/{}/base'.format(name), *ROBOT, *arguments, wait=wait)
 
     def test_healthy_has_nothing_and_nothing_is_left_behind(self):
         before = sorted(map(str, self.clinic.master.getSystemState()))
@@ -78,7 +79,10 @@ class DoctorTest(unittest.TestCase):
         print('MEASURED examination of a healthy system: {:.2f} s'.format(report['took_s']))
 
     def test_healthy_robot_alone_in_words(self):
-        done = self.clinic.run('bot2')
+        for _ in range(TRIES):
+            done = self.clinic.run('bot2')
+            if 'no time to listen' not in done.stdout:
+                break
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertIn('(o) fine  bot2: TurtleBot3 Burger', done.stdout)
         self.assertNotIn('  bot1: ', done.stdout)
@@ -158,24 +162,9 @@ class DoctorTest(unittest.TestCase):
     def test_two_programs_that_take_a_name_from_each_other(self):
         """Two launch files with respawn, of robots that have one name: each ends the other."""
         self.clinic.set('/bot3/robot_type', 'generic')
-        ended = threading.Event()
-
-        def respawn():
-            """Start the robot again whenever it has ended."""
-            while not ended.is_set():
-                process = self.clinic.patient('/bot3/base', *ROBOT, wait=False)
-                while process.poll() is None and not ended.wait(0.05):
-                    pass
-        pair = [threading.Thread(target=respawn) for _ in range(2)]
-
-        def end():
-            """Let none be started any more."""
-            ended.set()
-            for thread in pair:
-                thread.join()
-        self.addCleanup(end)
-        for thread in pair:
-            thread.start()
+        for _ in range(2):
+            pair = self.clinic.patient('/bot3/base', *ROBOT, '--respawn', wait=False)
+            self.addCleanup(os.killpg, pair.pid, signal.SIGKILL)
         addresses = set()
         wait_for(lambda: addresses.add(self.clinic.uri_of('/bot3/base')) or len(addresses) > 4,
                  60.0, 'the two to meet', poll_s=0.02)
@@ -185,7 +174,6 @@ class DoctorTest(unittest.TestCase):
             seen.append('name_fought' in findings and findings['name_fought']['about'])
         print('MEASURED two that fight for a name: found {} times of {}'.format(
             seen.count('/bot3/base'), len(seen)))
-        # Each lives for as long as the other one needs to start: for long on a busy machine.
         self.assertGreaterEqual(seen.count('/bot3/base'), len(seen) // 2)
 
     def test_clock_offset(self):
@@ -252,7 +240,8 @@ class DoctorTest(unittest.TestCase):
     def test_gates_that_refuse_somebody(self):
         self.clinic.patient('/rogue', '--select', 'bot1')
         self.clinic.patient('/other', '--select', 'bot2')
-        wait_for(lambda: 'gates_refused' in wrong(self.clinic.examine()[1]), 180.0, 'the refusal')
+        wait_for(lambda: 'gates_refused' in wrong(self.clinic.examine('--quick')[1]), 180.0,
+                 'the refusal')
         found = self.found('gates_refused', 'panel_several', remedy='rosnode info /')
         self.assertRegex(found['gates_refused']['problem'], '/(rogue|other): robot_select, ')
 
@@ -324,6 +313,31 @@ class DoctorTest(unittest.TestCase):
                             '--subscribe', 'cmd_vel', TWIST)
         self.found('odometry_silent', about='bot3', remedy='rostopic hz /bot3/odom')
 
+    def test_laser_that_is_silent(self):
+        self.robot('bot3', '--publish', 'scan', 'sensor_msgs/LaserScan')
+        self.found('scan_silent', about='bot3', remedy='rostopic hz /bot3/scan')
+
+    def test_lasers_that_measure_nothing(self):
+        """What says "nothing there" is a matter of the type; beyond its reach none measures."""
+        for name, kind, said in (('bot3', 'generic', 'nan'), ('bot4', 'generic', '4.0'),
+                                 ('bot5', 'turtlebot3', '0.0'), ('bot6', 'generic', 'inf'),
+                                 ('bot7', 'turtlebot3', '1.0')):
+            self.robot(name, '--scan', said, kind=kind, wait=False)
+        self.clinic.wait_ready()
+        self.found('scan_blind', remedy='rostopic echo -n1 /bot')
+        blind = {item['about']: item['sure'] for item in self.report['findings']
+                 if item['check'] == 'scan_blind'}
+        self.assertEqual(set(blind), {'bot3', 'bot4', 'bot5'})
+        self.assertEqual({name for name, sure in blind.items() if sure}, {'bot5'})
+
+    def test_two_robots_with_the_same_frames(self):
+        for name in ('bot3', 'bot4'):
+            self.robot(name, '--frames', 'odom', 'base_footprint', wait=False)
+        self.clinic.wait_ready()
+        item = self.found('frames_same', about='bot3', remedy='tf_prefix')['frames_same']
+        for word in ('bot4', 'odom', 'base_footprint'):
+            self.assertIn(word, item['problem'])
+
     def test_two_robots_of_one_name(self):
         self.robot('bot3')
         self.clinic.patient('/bot3/other', '--odometry', 'odom')
@@ -337,7 +351,7 @@ class DoctorTest(unittest.TestCase):
         """Do what a remedy says, as the one who reads it; nothing is wrong then."""
         subprocess.run(command, shell=True, check=True, env=self.clinic.system.env,
                        stdout=subprocess.DEVNULL)
-        _, report = self.clinic.examine()
+        _, report = self.clinic.examine('--quick')
         self.assertEqual(wrong(report), {})
 
     def test_leftover_parameters_of_a_robot_without_a_namespace(self):

@@ -135,6 +135,17 @@ def test_node_of_the_robot_that_tells_its_other_address(ward, seeded):
     assert 'not "rosnode cleanup"' in item['remedy'] and 'ping' in item['sure']
 
 
+def test_camera_of_the_robot_that_is_only_raw(ward, seeded):
+    picture = 'camera/rgb/image_raw'
+    seeded('/bot1/cam', ward.robot.ip, '--publish', picture, 'sensor_msgs/Image')
+    item = ward.found('camera_raw')
+    assert item['about'] == 'bot1' and '/bot1/' + picture in item['problem']
+    assert 'compressed-image-transport' in item['remedy']
+    seeded('/bot1/packed', ward.robot.ip, '--publish', picture + '/compressed',
+           'sensor_msgs/CompressedImage')
+    wait_for(lambda: ward.examine()[0] == {}, START_S, 'nothing wrong')
+
+
 def test_robot_that_is_unplugged_is_gone_and_not_wrong(ward, seeded):
     seeded('/mhri_gates', HOST_IP, *GATES)
     wait_for(lambda: ward.examine()[0] == {}, START_S, 'nothing wrong')

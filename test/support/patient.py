@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A real node with an ailment, for the tests of the doctor: a process of its own."""
 import argparse
+import os
 import sys
 import time
 
@@ -10,6 +11,7 @@ from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 import roslib.message
 import rospy
+from sensor_msgs.msg import LaserScan
 
 from mhri.msg import GatesState, RobotSelect
 
@@ -65,6 +67,9 @@ def parse(arguments):
     parser.add_argument('--subscribe', nargs=2, action='append', default=[], help='topic type')
     parser.add_argument('--odometry', help='topic, sent at 20 Hz')
     parser.add_argument('--offset', type=float, default=0.0, help='of its clock [s]')
+    parser.add_argument('--frames', nargs=2, default=['', ''], help='of its odometry')
+    parser.add_argument('--scan', type=float, help='each beam of its laser says this [m]')
+    parser.add_argument('--respawn', action='store_true', help='start again, as often as it ends')
     parser.add_argument('--changed', action='store_true', help='odometry of another definition')
     parser.add_argument('--obey', help='topic of the velocity that its odometry follows')
     parser.add_argument('--select', help='select this robot again and again, as a panel does')
@@ -73,8 +78,17 @@ def parse(arguments):
     return parser.parse_args(arguments)
 
 
+def respawn():
+    """Return in a new process whenever the one before has ended, which takes no time."""
+    while os.fork():
+        os.wait()
+    rospy.on_shutdown(lambda: os._exit(0))
+
+
 def main():
     options = parse(rospy.myargv()[1:])
+    if options.respawn:
+        respawn()
     rospy.init_node('patient')
     for topic, kind in options.publish:
         rospy.Publisher(topic, roslib.message.get_message_class(kind), queue_size=1)
@@ -91,15 +105,20 @@ def main():
         rospy.Timer(rospy.Duration(0.5), lambda _: panel.publish(wish))
     kind = Changed if options.changed else Odometry
     publisher = options.odometry and rospy.Publisher(options.odometry, kind, queue_size=1)
+    laser = rospy.Publisher('scan', LaserScan, queue_size=1) if options.scan is not None else None
     print('ready', flush=True)
     if not publisher:
         rospy.spin()
         sys.exit()
     while not rospy.is_shutdown():
-        message = kind()
+        message = kind(child_frame_id=options.frames[1])
+        message.header.frame_id = options.frames[0]
         message.header.stamp = rospy.Time.from_sec(time.time() + options.offset)
         message.twist.twist.angular.z = mover.turn() if mover else 0.0
         publisher.publish(message)
+        if laser is not None:
+            laser.publish(range_min=0.12, range_max=3.5, angle_increment=0.1,
+                          ranges=[options.scan] * 60)
         time.sleep(TICK_S)
 
 

@@ -17,6 +17,7 @@ from support.ros_system import System, wait_for
 PATIENT = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'patient.py')
 SCRIPT = os.path.join(os.path.dirname(PATIENT), '..', '..', 'scripts', 'mhri_doctor')
 START_S = 90.0
+TRIES = 8
 
 
 class BlackHole:
@@ -192,13 +193,21 @@ class Clinic:
                               stdin=subprocess.DEVNULL, universal_newlines=True, timeout=60)
 
     def examine(self, *arguments, **options):
-        """Return (exit status, report as a dict, with ``wall_s``: how long the command took)."""
-        begun = time.monotonic()
-        done = self.run('--json', *arguments, **options)
-        wall_s = time.monotonic() - begun
-        if not done.stdout:
-            raise AssertionError(done.stderr)
-        return done.returncode, dict(json.loads(done.stdout), wall_s=wall_s)
+        """Return (exit status, report as a dict, with ``wall_s``: how long the command took).
+
+        Again where it says that it had no time to listen: on a busy computer that is no ailment.
+        """
+        for _ in range(TRIES):
+            begun = time.monotonic()
+            done = self.run('--json', *arguments, **options)
+            wall_s = time.monotonic() - begun
+            if not done.stdout:
+                raise AssertionError(done.stderr)
+            report = dict(json.loads(done.stdout), wall_s=wall_s)
+            if 'time_short' not in wrong(report):
+                break
+            print('again: {:.2f} s, {}'.format(wall_s, sorted(wrong(report))))
+        return done.returncode, report
 
 
 def wrong(report):

@@ -161,8 +161,9 @@ CAMERA = '/bot1/camera/rgb/image_raw'
 
 
 @pytest.mark.parametrize('seen, found', [
-    (dict(messages=0), ['scan_silent']), (dict(beams=(360, 0, 0)), ['scan_blind']),
-    (dict(beams=(360, 0, 360)), []), (dict(beams=(360, 20, 0)), [])])
+    (dict(messages=0), ['scan_silent']), (dict(beams=(360, 0, 0, 0)), ['scan_blind']),
+    (dict(beams=(360, 0, 0, 360)), ['scan_blind']), (dict(beams=(360, 0, 1, 359)), []),
+    (dict(beams=(360, 20, 0, 0)), [])])
 def test_a_laser(seen, found):
     world = World()
     add('/bot1/laser', ['/bot1/scan'], kind=SCAN, host=BOT_IP)(world)
@@ -196,6 +197,12 @@ def test_two_robots_with_the_same_frames(frames, found):
     assert [item.check for item in world.wrong()] == found
     world.wanted = ('bot2',)
     assert [item.check for item in world.wrong()] == found
+
+
+def test_what_nobody_had_time_to_listen_to_is_told():
+    facts = replace(World().facts(), unheard=('/bot1/odom',))
+    found = [item for item in diagnose(facts, TYPES, IGNORE) if item.severity != FINE]
+    assert [item.check for item in found] == ['time_short'] and '/bot1/odom' in found[0].problem
 
 
 def test_why_the_mux_does_not_start():

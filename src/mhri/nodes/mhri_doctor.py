@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The executable ``mhri_doctor``: examines the ROS system, says what is wrong and how to fix it.
 
-``rosrun mhri mhri_doctor [robot ...] [--json] [--watchdog [--yes]]``; exit status 0: nothing
-wrong, 1: findings, 2: wrong use. See :mod:`mhri.ros.doctor.examination`. It is not a node, except
-with ``--watchdog`` (``mhri_doctor_*``, which publishes ``/<robot>/<command>``,
+``rosrun mhri mhri_doctor [robot ...] [--json] [--quick] [--watchdog [--yes]]``; exit status 0:
+nothing wrong, 1: findings, 2: wrong use. See :mod:`mhri.ros.doctor.examination`. It is not a node,
+except with ``--watchdog`` (``mhri_doctor_*``, which publishes ``/<robot>/<command>``,
 ``geometry_msgs/Twist``, for a moment).
 """
 import argparse
@@ -43,6 +43,8 @@ def _parse(arguments):
         'Exit status: 0 nothing wrong, 1 findings, 2 wrong use.')
     parser.add_argument('robot', nargs='*', type=_robot, help='judge these robots only')
     parser.add_argument('--json', action='store_true', help='print the findings for scripts')
+    parser.add_argument('--quick', action='store_true', help='do not watch whether programs take '
+                        'a name from each other: a second less')
     parser.add_argument('--watchdog', action='store_true', help='turn the named robots for a '
                         'moment to see whether they stop by themselves: on blocks, or simulated')
     parser.add_argument('--yes', action='store_true', help='do not ask before --watchdog')
@@ -93,8 +95,8 @@ def main():
         begun = time.monotonic()  # the question may have waited a long time
     # Answer wrong use and --help without the time these imports take.
     from mhri.core.doctor.judgement import as_dict, as_lines, exit_status
-    from mhri.ros.doctor.examination import examine
-    findings = examine(options.robot, begun=begun)
+    from mhri.ros.doctor.examination import examine, WATCH_S
+    findings = examine(options.robot, begun=begun, watch_s=0.0 if options.quick else WATCH_S)
     took_s = time.monotonic() - begun
     if options.watchdog:
         findings = _watchdogs(options) + findings

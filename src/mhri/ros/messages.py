@@ -9,8 +9,6 @@ import os
 import re
 import sys
 
-import genpy
-
 _KIND = re.compile(r'[A-Za-z][A-Za-z0-9_]*/[A-Za-z][A-Za-z0-9_]*\Z')
 
 
@@ -34,6 +32,8 @@ def message_class(kind):
         module = importlib.import_module(package + '.msg')
     except (ImportError, ValueError):
         raise MessageMissing('{} is not installed here'.format(package)) from None
+    # Slow to import, with numpy: the doctor begins without it.
+    import genpy
     found = getattr(module, name, None)
     if not (isinstance(found, type) and issubclass(found, genpy.Message) and found._type == kind):
         raise MessageMissing('{} has no message {}'.format(package, name))

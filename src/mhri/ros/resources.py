@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Finds the shipped data files, in the devel space and in the install space alike."""
 from dataclasses import replace
+import functools
 import glob
 import os
 import stat
 
-from catkin_pkg.package import InvalidPackage, parse_package
 import rospkg
 
 from mhri.core.config import ConfigError, MAX_BYTES, too_large
@@ -17,12 +17,26 @@ EXPORT_TAG = 'mhri'
 TYPE_ATTRIBUTE, WINDOW_ATTRIBUTE, TASK_ATTRIBUTE = 'robot_type', 'window', 'task'
 
 
+def package_path():
+    """Return the folder of mhri's package.xml, as ROS finds it.
+
+    :raises rospkg.ResourceNotFound: the workspace with mhri is not sourced
+    """
+    return _found(tuple(rospkg.get_ros_paths()))
+
+
+# Each search reads every package.xml there is.
+@functools.lru_cache(maxsize=None)
+def _found(ros_paths):
+    return rospkg.RosPack(list(ros_paths)).get_path('mhri')
+
+
 def resource_path(*parts):
     """Return the absolute path of a file below ``resource/``; it need not exist.
 
     :raises rospkg.ResourceNotFound: the workspace with mhri is not sourced
     """
-    return os.path.join(rospkg.RosPack().get_path('mhri'), 'resource', *parts)
+    return os.path.join(package_path(), 'resource', *parts)
 
 
 def read_text(path):
@@ -134,11 +148,16 @@ def _exports_of(package, manifest, errors):
         with open(manifest, 'rb') as stream:
             if b'<' + EXPORT_TAG.encode('ascii') not in stream.read():
                 return []
-        return [export.attributes for export in parse_package(manifest, warnings=[]).exports
-                if export.tagname == EXPORT_TAG]
     except OSError:
         # A rosbuild package without a package.xml, or one that vanished meanwhile.
         return []
+    # Slow to import: most computers have no such package.
+    from catkin_pkg.package import InvalidPackage, parse_package
+    try:
+        return [export.attributes for export in parse_package(manifest, warnings=[]).exports
+                if export.tagname == EXPORT_TAG]
+    except OSError:
+        return []  # it vanished meanwhile
     except InvalidPackage as error:
         errors.append(Export(package, manifest, '').error('', 'cannot be understood: {}'.format(
             ' '.join(str(error).split()))))

@@ -13,46 +13,15 @@ from typing import Optional
 import numpy as np
 
 from mhri.core.camera.images import Data, Size
+from mhri.core.camera.turbojpeg import load
 
-_NAMES = ('libturbojpeg.so.0', 'libturbojpeg.so', 'libturbojpeg.dylib')
 _RGB = 0             # TJPF_RGB
 _FATAL = 1           # TJERR_FATAL; the other is a warning: the picture is usable
 _HALF_BOTH_WAYS = 2  # TJSAMP_420: colour at half the size, as cv2 writes it
 _KEEP_BUFFER = 1024  # TJFLAG_NOREALLOC
 
 
-def _load() -> Optional[ctypes.CDLL]:
-    """Return the library with its functions declared, None if it is not installed."""
-    for name in _NAMES:
-        try:
-            library = ctypes.CDLL(name)
-            library.tjInitDecompress.restype = ctypes.c_void_p
-            library.tjInitDecompress.argtypes = []
-            library.tjDestroy.argtypes = [ctypes.c_void_p]
-            library.tjGetErrorCode.argtypes = [ctypes.c_void_p]
-            library.tjDecompress2.argtypes = [
-                ctypes.c_void_p, ctypes.c_void_p, ctypes.c_ulong, ctypes.c_void_p, ctypes.c_int,
-                ctypes.c_int, ctypes.c_int, ctypes.c_int, ctypes.c_int]
-            library.tjInitCompress.restype = ctypes.c_void_p
-            library.tjInitCompress.argtypes = []
-            library.tjBufSize.restype = ctypes.c_ulong
-            library.tjBufSize.argtypes = [ctypes.c_int, ctypes.c_int, ctypes.c_int]
-            library.tjCompress2.argtypes = [
-                ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int, ctypes.c_int, ctypes.c_int,
-                ctypes.c_int, ctypes.POINTER(ctypes.c_void_p), ctypes.POINTER(ctypes.c_ulong),
-                ctypes.c_int, ctypes.c_int, ctypes.c_int]
-            return library
-        except (OSError, AttributeError):
-            continue
-    return None
-
-
-_LIBRARY = _load()
-
-
-def available() -> bool:
-    """Tell whether the library is installed."""
-    return _LIBRARY is not None
+_LIBRARY = load()
 
 
 def decode_jpeg(data: Data, full: Size, factor: int = 1) -> Optional[np.ndarray]:

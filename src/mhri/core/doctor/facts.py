@@ -16,6 +16,9 @@ ANSWERS, REFUSED, SILENT, UNRESOLVED, STRANGER = (
 # one here. UNWELCOME: they are of two authorities.
 EARLY, RUN_OUT, UNTIMELY, UNWELCOME = 'early', 'run out', 'untimely', 'unwelcome'
 
+# So long a stream has to be listened to before its silence says anything [s].
+LISTENED_S = 0.4
+
 HOST = 'this computer'
 MASTER = 'ROS master'
 SYSTEM = 'system'
@@ -194,7 +197,7 @@ class Stream:
     messages [s], 0 if it did not; ``samples`` are (received, stamp) pairs by the clock here and the
     sender's [s]; ``refused`` what the gates refused, in their own words: '/node: twist, 3 times'.
     ``frames`` are those that odometry names; ``beams`` of a scan are (how many, how many measured
-    something, how many say that nothing is there).
+    something, how many say that nothing is there, how many say what may as well mean a dead laser).
     """
 
     topic: str
@@ -251,7 +254,8 @@ class Facts:
     looked odd: the doctor only reports what is odd both times. ``known`` maps message types to
     their md5 sum on this computer, None if it has none. ``wanted`` are the robots asked for, () for
     all. ``pad_errors`` and ``mux_error`` say what is wrong with the files of pads and of the mux.
-    ``linked`` are the links to robots on masters of their own.
+    ``linked`` are the links to robots on masters of their own; ``unheard`` the topics to which
+    there was no time to listen.
     """
 
     computer: Computer = Computer()
@@ -269,6 +273,7 @@ class Facts:
     caller_id: str = '/mhri_doctor'
     linked: Tuple[LinkNote, ...] = ()
     keys: KeysSeen = KeysSeen()
+    unheard: Tuple[str, ...] = ()
 
     def with_later(self, graph: Graph, nodes: Dict[str, Node]) -> 'Facts':
         """Return these facts plus the second look."""

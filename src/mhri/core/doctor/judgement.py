@@ -9,6 +9,7 @@ from mhri.core.doctor.linked import find_on_linked, unheard
 from mhri.core.doctor.links import find_on_links, missing_links
 from mhri.core.doctor.nodes import find_on_nodes, odd_nodes, robot_of
 from mhri.core.doctor.robots import find_on_robots, hidden_listeners, Robot, robots_of
+from mhri.core.doctor.sensors import find_unheard
 from mhri.core.doctor.system import find_on_system, hung
 from mhri.core.robots.discovery import IgnoreList
 from mhri.core.robots.robot_types import RobotType
@@ -26,8 +27,8 @@ def diagnose(facts: Facts, types: Mapping[str, RobotType], ignore: IgnoreList) -
     found = find_on_host(facts) + find_on_master(facts)
     if facts.master.state == ANSWERS and not facts.master.uri_problem:
         silent = unheard(facts)
-        found += (find_on_system(facts) + find_on_nodes(facts, hung(facts)) + find_on_links(facts)
-                  + find_on_linked(facts) + [
+        found += (find_unheard(facts) + find_on_system(facts) + find_on_nodes(facts, hung(facts))
+                  + find_on_links(facts) + find_on_linked(facts) + [
                       item for item in find_on_robots(
                           facts, types, robots_of(facts.graph, types, ignore))
                       if item.about not in silent])

@@ -9,7 +9,8 @@ from typing import Any, Dict, Iterable, List, Mapping, Set, Tuple
 from mhri.core.config import ConfigError
 from mhri.core.robots.discovery import (
     Candidate, find_candidates, IgnoreList, NAME_PARAMETER, parameters_of, ROOT_PARAMETERS)
-from mhri.core.doctor.facts import ANSWERS, Facts, FAULT, FINE, Finding, Graph, listed, WARNING
+from mhri.core.doctor.facts import (
+    ANSWERS, Facts, FAULT, FINE, Finding, Graph, listed, LISTENED_S, WARNING)
 from mhri.core.doctor.nodes import start_robot
 from mhri.core.doctor.sensors import find_on_cameras, find_on_lasers, find_same_frames
 from mhri.core.doctor.system import gates
@@ -331,7 +332,7 @@ def _odometry(facts: Facts, robot: Robot) -> List[Finding]:
                 'rosnode info {}   # give the second robot a name of its own, or: rosnode kill '
                 '{}'.format(nodes[0], nodes[-1])))
         for stream in facts.streams:
-            if stream.topic == topic and stream.listened_s > 0.4 and not stream.messages:
+            if stream.topic == topic and stream.listened_s > LISTENED_S and not stream.messages:
                 found.append(Finding(
                     WARNING, 'odometry_silent', name, '{} is published by {}, but nothing came '
                     'in {:.1f} s'.format(topic, stream.node, stream.listened_s), mute,

@@ -3,12 +3,11 @@
 """The doctor on sensors: cameras that cost too much, lasers that see nothing, frames."""
 from typing import Dict, Iterable, List, Set, Tuple
 
-from mhri.core.doctor.facts import Facts, Finding, listed, WARNING
+from mhri.core.doctor.facts import (
+    Facts, Finding, HOST, listed, LISTENED_S, Stream, WARNING)
 from mhri.core.link.carried import SHARED_FRAMES
 
 IMAGE = 'sensor_msgs/Image'
-# So long a stream has to be listened to before its silence says anything [s].
-LISTENED_S = 0.4
 
 
 def find_on_cameras(facts: Facts, name: str, topics: Iterable[str]) -> List[Finding]:
@@ -47,14 +46,29 @@ def find_on_lasers(facts: Facts, name: str, topics: Iterable[str]) -> List[Findi
                 's'.format(stream.topic, stream.node, stream.listened_s), shows,
                 'rostopic hz {}   # does it turn? cable? then restart its driver'.format(
                     stream.topic)))
-        elif stream.beams and not any(stream.beams[1:]):
-            found.append(Finding(
-                WARNING, 'scan_blind', name, 'none of the {} beams of {} measures '
-                'anything'.format(stream.beams[0], stream.topic), shows,
-                'rostopic echo -n1 {}/ranges   # stand before it: if nothing changes, restart its '
-                'driver'.format(stream.topic),
-                'unless it says so of open space, as some drivers do'))
+        elif stream.beams and not any(stream.beams[1:3]):
+            found.append(_blind(name, stream, shows))
     return found
+
+
+def _blind(name: str, stream: Stream, shows: str) -> Finding:
+    """Say that a laser measures nothing, by what its type says of its beams."""
+    count, unsure = stream.beams[0], stream.beams[3]
+    return Finding(
+        WARNING, 'scan_blind', name, 'none of the {} beams of {} measures anything{}'.format(
+            count, stream.topic, '' if unsure else ', nor says that nothing is there'), shows,
+        'rostopic echo -n1 {}/ranges   # stand before it: if nothing changes, restart its '
+        'driver'.format(stream.topic),
+        'unless nothing is within its reach: its driver says so by this value' if unsure else '')
+
+
+def find_unheard(facts: Facts) -> List[Finding]:
+    """Say which topics nobody has listened to: nothing that is wrong with them is told."""
+    return [Finding(
+        WARNING, 'time_short', HOST, 'there was no time to listen to {}'.format(
+            listed(facts.unheard)), 'what is wrong there is not told',
+        'rosrun mhri mhri_doctor   # again, once this computer has less to do'
+    )] * bool(facts.unheard)
 
 
 def find_same_frames(facts: Facts, odometry: Dict[str, List[str]]) -> List[Finding]:

@@ -4,7 +4,7 @@
 from typing import Dict, Iterable, List
 
 from mhri.core.doctor.facts import (
-    Facts, FAULT, FINE, Finding, listed, SILENT, Stream, SYSTEM, WARNING)
+    Facts, FAULT, FINE, Finding, listed, LISTENED_S, SILENT, Stream, SYSTEM, WARNING)
 from mhri.core.doctor.host import use_other
 
 TWIST, SELECT, MODE = ('/robot_controller/twist', '/robot_controller/robot_select', '/mux/mode')
@@ -152,7 +152,7 @@ def _heard(facts: Facts, stream: Stream) -> List[Finding]:
         and facts.graph.parameters.get('use_sim_time') is not True
     old = comparable and any(received - stamp > STATE_OLD_S
                              for received, stamp in stream.samples[-1:])
-    if stream.listened_s > 0.4 and (old or not stream.messages):
+    if stream.listened_s > LISTENED_S and (old or not stream.messages):
         found.append(Finding(
             FAULT, 'gates_silent', SYSTEM, '{} answers, but does not publish its state any '
             'more'.format(stream.node), _NOTHING + '; robots stand',

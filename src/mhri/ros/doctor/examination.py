@@ -21,8 +21,7 @@ from mhri.core.doctor.host import find_on_host
 from mhri.core.doctor.linked import links_of
 from mhri.core.doctor.robots import robots_of
 from mhri.core.doctor.system import GATES_STATE, muxes
-from mhri.core.driving.sources import parse_mux_config
-from mhri.ros.devices.pad_profiles import read_profiles
+from mhri.ros.doctor.files import FilesLook
 from mhri.ros.doctor.host import look_at_computer
 from mhri.ros.doctor.linked import LinkLook
 from mhri.ros.doctor.masters import look_elsewhere, parse_uri
@@ -30,23 +29,25 @@ from mhri.ros.doctor.probe import Probe
 from mhri.ros.graph.look import shipped_ignore_list
 from mhri.ros.graph.master_api import MasterApi, MasterError
 from mhri.ros.messages import message_class, MessageMissing
-from mhri.ros.resources import profile_reader, read_text, resource_path, robot_types
+from mhri.ros.resources import robot_types
 
-# Deadlines for asking the nodes and for asking again, counted from the start [s]; an examination
-# that began late has less time, but never less than a living node needs to answer.
-ASKED_S, AGAIN_S = 1.9, 2.6
+# Deadlines for asking the nodes and for all that is asked, counted from the start [s]: the rest of
+# the 3 s is for the judgement, the report, and the end of the program. An examination that began
+# late has less time, but never less than a living node needs to answer.
+ASKED_S, END_S = 1.9, 2.6
 LEAST_S, LEAST_AGAIN_S = 0.8, 0.3
 # Programs that fight over a name take it from each other about once a second.
 WATCH_S, WATCH_EACH_S = 1.5, 0.2
 _MASTER_S = 0.8
 
 
-def examine(robots=(), environ=None, begun=None):
+def examine(robots=(), environ=None, begun=None, watch_s=WATCH_S):
     """Examine the system (blocking, 3 s at most; never on the GUI thread).
 
     :param robots: names of the robots to judge, () for all
     :param environ: the environment to judge, default that of this program
     :param begun: since when somebody has waited for it [s, monotonic], default now
+    :param watch_s: how long to watch whether programs take a name from each other [s]
     :returns: list of :class:`mhri.core.doctor.facts.Finding`: faults, warnings, then fine ones
     """
     begun = time.monotonic() if begun is None else begun
@@ -59,25 +60,9 @@ def examine(robots=(), environ=None, begun=None):
         # Without the workspace there are no templates to judge robots by: check it first.
         master = parse_uri(environ.get('ROS_MASTER_URI') or rosgraph.rosenv.DEFAULT_MASTER_URI)
         return find_on_host(Facts(computer=look_at_computer(environ, master.host), master=master))
-    facts = replace(look(environ, types, ignore, begun, robots, caller_id),
-                    template_errors=tuple(str(error) for error in errors + faults),
-                    pad_errors=tuple(str(error) for error in read_profiles()[1]))
-    facts = replace(facts, mux_error=_mux_error(facts.graph.parameters))
+    facts = replace(look(environ, types, ignore, begun, watch_s, robots, caller_id),
+                    template_errors=tuple(str(error) for error in errors + faults))
     return diagnose(facts, types, ignore)
-
-
-def _mux_error(parameters):
-    """Return why the file that the mux reads cannot be used, '' if it can."""
-    mux = parameters.get('mux')
-    path = mux.get('config') if isinstance(mux, dict) else None
-    path = path if path and isinstance(path, str) else resource_path('mux.yaml')
-    try:
-        parse_mux_config(read_text(path), path, profile_reader(path))
-    except ConfigError as error:
-        return str(error)
-    except OSError as error:
-        return '{}: {}'.format(path, error.strerror)
-    return ''
 
 
 def _ignore_list():
@@ -88,32 +73,33 @@ def _ignore_list():
         return IgnoreList(), [error]
 
 
-def look(environ, types, ignore, begun, robots=(), caller_id='/mhri_doctor'):
+def look(environ, types, ignore, begun, watch_s, robots=(), caller_id='/mhri_doctor'):
     """Return the :class:`Facts` of this moment (blocking, at most until 3 s after ``begun``)."""
     master = parse_uri(environ.get('ROS_MASTER_URI') or rosgraph.rosenv.DEFAULT_MASTER_URI)
     computer = look_at_computer(environ, master.host)
     facts = Facts(computer=computer, wanted=tuple(robots), caller_id=caller_id)
     if master.uri_problem:
-        return _without_master(facts, master)
+        return _without_master(facts, master, begun)
     if not computer.addresses_of(master.host):
-        return _without_master(facts, replace(master, state=UNRESOLVED))
+        return _without_master(facts, replace(master, state=UNRESOLVED), begun)
     api = MasterApi(caller_id, _MASTER_S, master.uri)
     try:
         master, graph, uris = _ask_master(api, master)
     except MasterError as error:
-        return _without_master(facts, _why_not(master, error))
+        return _without_master(facts, _why_not(master, error), begun)
     facts = replace(facts, master=master, graph=graph)
-    watch_until = min(time.monotonic() + WATCH_S, begun + AGAIN_S)
+    watch_until = min(time.monotonic() + watch_s, begun + END_S)
     known = robots_of(graph, types, ignore)
-    links = LinkLook(links_of(graph))
-    facts = _ask_nodes(facts, known, uris, _deadline(begun + ASKED_S, LEAST_S))
-    linked, keys = links.result(_deadline(begun + ASKED_S, LEAST_S))
-    facts = replace(facts, linked=linked, keys=keys)
+    files, links = FilesLook(graph.parameters), LinkLook(links_of(graph))
+    asked = _deadline(begun + ASKED_S, LEAST_S)
+    facts = _ask_nodes(facts, known, uris, asked)
+    linked, keys = links.result(asked)
+    facts = replace(facts, linked=linked, keys=keys, **files.result(asked))
     if not muxes(facts):
         facts = replace(facts, master=replace(master, elsewhere=look_elsewhere(
             master, computer, caller_id, only_with_mux=True)))
-    facts = _look_again(facts, known, api, begun + AGAIN_S)
-    return _watch_names(facts, api, watch_until)
+    facts = _look_again(facts, known, _deadline(begun + END_S, LEAST_AGAIN_S))
+    return _watch_names(facts, watch_until)
 
 
 def _deadline(wanted, least_s):
@@ -121,10 +107,18 @@ def _deadline(wanted, least_s):
     return max(wanted, time.monotonic() + least_s)
 
 
-def _without_master(facts, master):
+def _master_until(facts, deadline):
+    """Return the master, who has until a deadline to answer each question."""
+    return MasterApi(facts.caller_id, min(_MASTER_S, max(0.05, deadline - time.monotonic())),
+                     facts.master.uri)
+
+
+def _without_master(facts, master, begun):
     """Return the facts with a master that does not answer, and others that do."""
-    return replace(facts, master=replace(master, elsewhere=look_elsewhere(
+    files = FilesLook({})
+    facts = replace(facts, master=replace(master, elsewhere=look_elsewhere(
         master, facts.computer, facts.caller_id)))
+    return replace(facts, **files.result(_deadline(begun + ASKED_S, LEAST_AGAIN_S)))
 
 
 def _ask_master(api, master):
@@ -182,20 +176,24 @@ def _why_not(master, error):
 
 def _ask_nodes(facts, robots, uris, deadline):
     """Ask every node at once; listen to the gates, and to odometry, IMU and scans of robots."""
-    probe = Probe(facts.caller_id, deadline)
+    probe = Probe(facts.caller_id, deadline, {
+        topic: robot.template.no_return for robot in robots for topic in robot.topics('scan')})
     listened = {topic for robot in robots
                 if not facts.wanted or robot.candidate.name in facts.wanted
                 for topic in robot.topics('odometry', 'imu', 'scan')} | {GATES_STATE}
     for name, uri in sorted(uris.items()):
         published = facts.graph.topics_of(name)[0]
-        # Listening comes last: it takes time.
-        probe.ask(name, uri, sorted(((topic, facts.graph.types.get(topic, ''), topic in listened)
-                                     for topic in published), key=lambda item: item[2]))
+        probe.ask(name, uri, [(topic, facts.graph.types.get(topic, ''), topic in listened)
+                              for topic in published])
+    # Slow where they are not imported yet, so meanwhile.
+    known = {kind: _own_md5(kind) for kind in {
+        facts.graph.types.get(topic, '*') for topic in facts.graph.publishers} - {'', '*'}}
     nodes, streams, resolved = probe.result()
     computer = replace(facts.computer, resolved=dict(facts.computer.resolved, **resolved))
-    kinds = {stream.type for stream in streams if stream.type not in ('', '*')}
+    known.update((stream.type, _own_md5(stream.type)) for stream in streams
+                 if stream.type not in known and stream.type not in ('', '*'))
     return replace(facts, computer=computer, nodes=nodes, streams=tuple(streams),
-                   known={kind: _own_md5(kind) for kind in kinds})
+                   unheard=probe.unheard, known=known)
 
 
 def _own_md5(kind):
@@ -206,16 +204,17 @@ def _own_md5(kind):
         return None
 
 
-def _look_again(facts, robots, api, wanted):
+def _look_again(facts, robots, deadline):
     """Ask the master once more, and the nodes that looked odd."""
     try:
         odd = odd_ones(facts, robots)
         if odd:
             time.sleep(0.25)  # time to connect, for programs that have only just started
-        graph, uris = _with_uris(api, _graph(api))
+        graph = _graph(_master_until(facts, deadline))
+        graph, uris = _with_uris(_master_until(facts, deadline), graph)
     except MasterError:
         return facts
-    probe = Probe(facts.caller_id, _deadline(wanted, LEAST_AGAIN_S))
+    probe = Probe(facts.caller_id, _deadline(deadline, LEAST_AGAIN_S))
     for name in sorted(odd & set(uris)):
         probe.ask(name, uris[name])
     nodes = {name: replace(node, uri_later=uris.get(name, ''))
@@ -223,14 +222,16 @@ def _look_again(facts, robots, api, wanted):
     return replace(facts, nodes=nodes).with_later(graph, probe.result()[0])
 
 
-def _watch_names(facts, api, until):
+def _watch_names(facts, until):
     """Return the facts with the nodes that register elsewhere meanwhile; keep asking to the end."""
     nodes = facts.nodes
     try:
-        while not any(node.uri_later not in ('', node.uri) for node in nodes.values()) \
-                and time.monotonic() < until:
-            time.sleep(WATCH_EACH_S)
-            uris = _uris(api, facts.graph)
+        while not any(node.uri_later not in ('', node.uri) for node in nodes.values()):
+            left_s = until - time.monotonic()
+            if left_s <= 0.0:
+                break
+            time.sleep(min(WATCH_EACH_S, left_s))
+            uris = _uris(_master_until(facts, until), facts.graph)
             nodes = {name: replace(node, uri_later=uris.get(name, ''))
                      for name, node in nodes.items()}
     except MasterError:

@@ -13,14 +13,15 @@ import netifaces
 import rospkg
 
 import mhri
-from mhri.core.camera import jpeg
+from mhri.core.camera import turbojpeg
 from mhri.core.doctor.facts import Computer, Folder, is_ipv4
 from mhri.core.recording.recording import ros_home
+from mhri.ros.resources import package_path
 
 # Debian packages of package.xml, and the Python module that each brings.
 _MODULES = {'python3-evdev': 'evdev', 'python3-numpy': 'numpy', 'python3-opencv': 'cv2',
             'python3-pygame': 'pygame', 'python3-pyqtgraph': 'pyqtgraph', 'python3-yaml': 'yaml'}
-_LIBRARIES = {'libturbojpeg': jpeg.available}
+_LIBRARIES = {'libturbojpeg': turbojpeg.load}
 _PROGRAMS = ('openssl',)
 # Optional: without rqt the panel has its own window; only a TurtleBot 2 runs nodelets.
 _OPTIONAL = ('nodelet', 'rqt_gui', 'rqt_gui_py')
@@ -128,7 +129,7 @@ def _folder(what, path):
 def _package_path():
     """Return where ROS finds mhri, None if it does not."""
     try:
-        return os.path.realpath(rospkg.RosPack().get_path('mhri'))
+        return os.path.realpath(package_path())
     except rospkg.ResourceNotFound:
         return None
 

@@ -15,10 +15,8 @@ import time
 from urllib.parse import urlsplit
 import xmlrpc.client
 
-import genpy
-
 from mhri.core.doctor.facts import (
-    ANSWERS, Connection, is_ipv4, Node, REFUSED, SILENT, STRANGER, Stream, UNRESOLVED)
+    ANSWERS, Connection, is_ipv4, LISTENED_S, Node, REFUSED, SILENT, STRANGER, Stream, UNRESOLVED)
 from mhri.ros.doctor.host import resolve
 from mhri.ros.graph.master_api import TimedTransport
 from mhri.ros.messages import installed_class, MessageMissing
@@ -32,6 +30,8 @@ GATES_STATE = 'mhri/GatesState'
 # These begin with a std_msgs/Header; the stamp is read from the bytes.
 STAMPED = ('nav_msgs/Odometry', 'sensor_msgs/Imu', GATES_STATE)
 LISTEN_S = 0.6
+# Before the deadline, for what was heard to be noted [s].
+NOTE_S = 0.05
 ENOUGH_SAMPLES = 25
 _QUESTIONS = ('getPid', 'getPublications', 'getSubscriptions', 'getBusInfo')
 _STAMP, _LENGTH = struct.Struct('<II'), struct.Struct('<I')
@@ -46,15 +46,21 @@ class Probe:
 
     :param caller_id: the name under which to ask
     :param deadline: when to be done [s, monotonic]
+    :param no_return: {topic of a scan: see :class:`mhri.core.robots.robot_types.RobotType`}
+    ``unheard`` are, once there is a result, the topics to listen to for which no time was left, of
+    nodes that answer.
     """
 
-    def __init__(self, caller_id, deadline):
+    def __init__(self, caller_id, deadline, no_return=None):
         self._caller_id = caller_id
         self._deadline = deadline
+        self._no_return = no_return or {}
         self._lock = threading.Lock()
         self._threads = []
         self._nodes = {}
         self._streams = []
+        self._ahead = set()
+        self.unheard = ()
         self._resolved = {}
         self._asked = {}
 
@@ -67,19 +73,24 @@ class Probe:
         with self._lock:
             self._nodes[name] = Node(name, uri, host, SILENT, 'no answer in time')
             self._asked.setdefault(host, threading.Event())
-        thread = threading.Thread(target=self._run, args=(name, uri, host, topics), daemon=True)
-        self._threads.append(thread)
-        thread.start()
+        self._start(self._run, name, uri, host, topics)
 
     def result(self):
         """Wait for all answers, up to the deadline.
 
         :returns: ({name: :class:`Node`}, [:class:`Stream`], {host name: addresses or None})
         """
+        # Those that listen are begun by those that ask.
         for thread in self._threads:
             thread.join(max(0.0, self._deadline - time.monotonic()))
         with self._lock:
+            self.unheard = tuple(sorted({topic for topic, _ in self._ahead}))
             return dict(self._nodes), list(self._streams), dict(self._resolved)
+
+    def _start(self, call, *words):
+        thread = threading.Thread(target=call, args=words, daemon=True)
+        self._threads.append(thread)
+        thread.start()
 
     def _left(self, least_s=0.05):
         return max(least_s, self._deadline - time.monotonic())
@@ -89,16 +100,30 @@ class Probe:
             self._note(Node(name, uri, host, UNRESOLVED, 'unknown name'))
             return
         node = self._question(name, uri, host)
-        self._note(node)
-        if node.state == ANSWERS:
-            for topic, kind, listen in topics:
-                stream = self._stream(topic, kind, node, listen)
-                with self._lock:
-                    self._streams.append(stream)
+        if node.state != ANSWERS:
+            self._note(node)
+            return
+        with self._lock:
+            self._nodes[name] = node
+            self._ahead.update((topic, name) for topic, _, listen in topics if listen)
+        # Listening takes time: all at once, while the others are asked for.
+        for topic, kind, listen in sorted(topics, key=lambda item: not item[2]):
+            if listen:
+                self._start(self._take, topic, kind, node, True)
+            else:
+                self._take(topic, kind, node, False)
 
     def _note(self, node):
         with self._lock:
             self._nodes[node.name] = node
+
+    def _take(self, topic, kind, node, listen):
+        stream = self._stream(topic, kind, node, listen)
+        late = time.monotonic() >= self._deadline - NOTE_S
+        with self._lock:
+            self._streams.append(stream)
+            if not late or stream.messages or stream.listened_s > LISTENED_S:
+                self._ahead.discard((topic, node.name))
 
     def _find(self, host):
         """Look a host up once, whoever asks first; tell whether it is known."""
@@ -163,14 +188,15 @@ class Probe:
             messages, samples, newest = self._listen(link, fields['type'] in STAMPED)
             return Stream(*known, listened_s=time.monotonic() - begun, messages=messages,
                           samples=tuple(samples), refused=_refused(fields, newest),
-                          frames=_frames(fields, newest), beams=_beams(fields, newest))
+                          frames=_frames(fields, newest),
+                          beams=_beams(fields, newest, self._no_return.get(topic, {})))
         finally:
             link.close()
 
     def _listen(self, link, stamped):
         """Return (number of messages, [(received, stamp)], newest frame) of the next moment."""
         messages, samples, newest = 0, [], b''
-        end = min(time.monotonic() + LISTEN_S, self._deadline)
+        end = min(time.monotonic() + LISTEN_S, self._deadline - NOTE_S)
         while len(samples) < ENOUGH_SAMPLES and not (messages and not stamped):
             ready = select.select([link], [], [], max(0.0, end - time.monotonic()))[0]
             received = time.time()
@@ -195,6 +221,7 @@ def _refused(fields, frame):
     if fields['type'] != GATES_STATE or not frame:
         return ()
     # Slow to import: only if there are gates.
+    import genpy
     from mhri.msg import GatesState
     if fields['md5sum'] != GatesState._md5sum:
         return ()
@@ -219,17 +246,22 @@ def _frames(fields, frame):
     return tuple(texts)
 
 
-def _beams(fields, frame):
-    """Return (beams, those that measured, those with nothing in reach) of a scan, () for others."""
+def _beams(fields, frame, no_return):
+    """Return (beams, measured, nothing there, perhaps nothing there) of a scan, () for others."""
     if fields['type'] != 'sensor_msgs/LaserScan' or not frame:
         return ()
+    # Slow to import: only if there are lasers.
+    import genpy
+    import numpy
+    from mhri.core.sensors.readings import no_return_of, read_ranges
     try:
         scan = installed_class(fields['type'], fields['md5sum'])().deserialize(frame[_LENGTH.size:])
     except (MessageMissing, genpy.DeserializationError):
         return ()
-    measured = sum(max(scan.range_min, 0.0) <= one < scan.range_max and one > 0.0
-                   for one in scan.ranges)
-    return len(scan.ranges), measured, sum(one >= scan.range_max for one in scan.ranges)
+    readings = read_ranges(scan.ranges, scan.range_min, scan.range_max,
+                           no_return_of(no_return, scan.range_max))
+    return (len(scan.ranges),) + tuple(int(beams.sum()) for beams in (
+        numpy.isfinite(readings.ranges), readings.free, readings.unsure))
 
 
 def _host_of(uri):
