@@ -77,6 +77,8 @@ class MuxSources(unittest.TestCase):
         """It says what changes: the stick held out is silent, and so is the stick at rest."""
         pad = self.start('joy_node', 'joy', '/joy', 'joy_node')
         buttons = [int(number == LB) for number in range(11)]
+        pad.say(REST, [0] * len(buttons))
+        self.waits.wait(lambda _: self.waits.last() == 'dead_man')
         pad.say(REST, buttons)
         self.waits.wait(lambda _: self.waits.last() == '')
         self.twists.wait_silence(LONG_S)
