@@ -25,7 +25,9 @@ def start_xvfb(size='1920x1080x24', host=''):
         number = ':{}'.format(random.randint(_FIRST, _LAST))
         display = host + number
         process = subprocess.Popen(
-            ['Xvfb', number, '-screen', '0', size, '-listen' if host else '-nolisten', 'tcp'],
+            # Without -noreset it refuses whoever comes just as the last one has gone.
+            ['Xvfb', number, '-noreset', '-screen', '0', size,
+             '-listen' if host else '-nolisten', 'tcp'],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
         while process.poll() is None and time.monotonic() < deadline:
             if subprocess.call(['xdpyinfo', '-display', display], stdout=subprocess.DEVNULL,

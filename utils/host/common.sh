@@ -259,7 +259,7 @@ start_xvfb() {
     xauth -q add "$DISPLAY" . "$cookie"
     # In its own session, so that Ctrl-C does not end the display before the panel has sent its last
     # zero; the kernel ends it should this script be killed.
-    setsid setpriv --pdeathsig TERM Xvfb "$DISPLAY" -screen 0 1920x1080x24 -nolisten tcp \
+    setsid setpriv --pdeathsig TERM Xvfb "$DISPLAY" -noreset -screen 0 1920x1080x24 -nolisten tcp \
       -auth "$XAUTHORITY" >"$SCRATCH/xvfb.log" 2>&1 &
     XVFB_PID=$!
     if xvfb_answers; then return; fi
