@@ -20,12 +20,19 @@ from drive_tools import Hall, Hand, PATIENCE_S  # noqa: E402
 from gates_case import GatesCase, start_gates, ZERO  # noqa: E402
 from mhri.core.driving.brake import CRAWL_MPS  # noqa: E402
 from mhri.msg import RobotGate  # noqa: E402
-from rostest_tools import measured  # noqa: E402
+from rostest_tools import measured, Process  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
+from support.screen_end import Screen  # noqa: E402
 from support.two_lasers import TwoLasers  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
 
 SPEED_MPS = 0.6
+HERE = os.path.dirname(os.path.realpath(__file__))
+PLAIN = os.path.join(HERE, '..', 'support', 'plain_robot.py')
+# What a laser says that has gone blind.
+BLIND = (math.nan, 0.0, -math.inf, -1.0, 0.01)
+# How fast the robots go whose laser goes blind [m/s].
+BLIND_MPS = 0.2
 # How often a robot is driven backwards at a wall.
 TIMES = int(os.environ.get('MHRI_TIMES', '1'))
 
@@ -51,21 +58,32 @@ class Brake(GatesCase):
         self.addCleanup(hand.let_go)
         return hand
 
-    def bot1(self):
-        """Check the simulated robot and centre the stick."""
-        end = VelocityEnd('/bot1/teleop/input')
-        self.operator.check('bot1')
-        self.state.wait_robot('bot1', lambda gate: gate.topic and gate.obeys == 'operator',
-                              'the gate of bot1', PATIENCE_S)
-        self.centre('bot1', end)
+    def bot1(self, name='bot1', topic='teleop/input'):
+        """Check the simulated robot, or another one, and centre the stick."""
+        end = VelocityEnd('/{}/{}'.format(name, topic))
+        self.operator.check(name)
+        self.state.wait_robot(name, lambda gate: gate.topic and gate.obeys == 'operator',
+                              'the gate of ' + name, PATIENCE_S)
+        self.centre(name, end)
 
-    def drive_to(self, x):
-        """Drive bot1 back to a place, whatever the brake."""
-        hand = self.hold(-0.4)
-        self.hall.places.wait(lambda now: now < x, time.monotonic(), PATIENCE_S)
+    def drive_to(self, x, hall=None, mps=0.4):
+        """Drive bot1, or that of a hall, back to a place, whatever the brake."""
+        hand = self.hold(-mps)
+        (hall or self.hall).places.wait(lambda now: now < x, time.monotonic(), PATIENCE_S)
         hand.let_go()
         self.mux.say(0.0)
-        self.hall.rests()
+        (hall or self.hall).rests()
+
+    def plain(self, kind, *wall):
+        """Start a plain robot of a type before a wall; return its name."""
+        GatesCase.number += 1
+        name = 'plain{}'.format(GatesCase.number)
+        rospy.set_param('/{}/robot_type'.format(name), kind)
+        topic = {'turtlebot2': 'teleop/input', 'turtlebot3': 'cmd_vel'}[kind]
+        process = Process([sys.executable, PLAIN, topic, 'odom', '--wall', *wall],
+                          env={'ROS_NAMESPACE': name})
+        self.addCleanup(process.end)
+        return name
 
     def test_a_wall_is_met_without_the_brake_and_not_with_it(self):
         self.bot1()
@@ -105,42 +123,95 @@ class Brake(GatesCase):
 
     def test_who_stands_before_a_wall_that_is_too_near_to_be_seen_touches_it_by_no_way(self):
         """Its laser measures nothing nearer than 0.45 m."""
-        self.bot1()
-        self.ask(True)
-        self.state.wait_robot('bot1', lambda gate: gate.brake == RobotGate.BRAKE_ON, 'its laser')
-        hand = self.hold(SPEED_MPS)
-        self.hall.rests()
-        hand.let_go()
-        self.mux.say(0.0)
-        for way in (self.uncheck, self.off_and_on, self.new_gates):
-            way()
-            self.bot1()
-            self.ask(True)
-            begun = time.monotonic()
-            self.state.wait_robot('bot1', lambda gate: gate.brake == RobotGate.BRAKE_ON,
-                                  'its laser')
-            hand = self.hold(SPEED_MPS)
-            self.state.wait_robot('bot1', lambda gate: gate.brake in (
-                RobotGate.BRAKE_SLOWS, RobotGate.BRAKE_UNSEEN), 'the brake to act', PATIENCE_S)
-            self.hall.rests()
-            hand.let_go()
-            self.mux.say(0.0)
-            print('MEASURED gap to the wall after {}: never less than {:.3f} m'.format(
-                way.__name__, self.hall.least_gap(begun)))
-            self.assertGreater(self.hall.least_gap(begun), 0.03, way.__name__)
+        self.touches_by_no_way('bot1', self.hall)
         self.ask(False)
         self.drive_to(11.0)
 
-    def uncheck(self):
-        """Let another be checked for a moment."""
-        self.operator.check()
-        self.state.wait_robot('bot1', lambda gate: not gate.obeys, 'it to obey nobody')
+    def test_nor_does_a_plain_robot_touch_it(self):
+        name = self.plain('turtlebot2', 'scan', '2.0', '0.45', '10.0', 'nan', '-0.087')
+        self.touches_by_no_way(name, Hall(name, 0.18, 2.0))
 
-    def off_and_on(self):
+    def touches_by_no_way(self, name, hall):
+        """Drive a TurtleBot2 at a wall again and again, with what was seen of it lost or not."""
+        def at_the_wall():
+            self.bot1(name)
+            self.ask(True)
+            self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_ON, 'its laser')
+            begun = time.monotonic()
+
+            def acts():
+                """Push the stick; a robot that was not heard for a moment asks to centre it."""
+                gate = self.state.robot(name)
+                self.mux.say(0.0 if gate.stands else SPEED_MPS)
+                return gate.brake in (RobotGate.BRAKE_SLOWS, RobotGate.BRAKE_UNSEEN)
+            wait_for(acts, PATIENCE_S, 'the brake to act', poll_s=0.05)
+            return begun, self.hold(SPEED_MPS)
+        _, hand = at_the_wall()
+        hall.rests()
+        hand.let_go()
+        self.mux.say(0.0)
+        for way in (self.uncheck, self.off_and_on, self.taken, self.new_gates):
+            way(name)
+            begun, hand = at_the_wall()
+            hall.rests()
+            hand.let_go()
+            self.mux.say(0.0)
+            print('MEASURED {}: gap to the wall after {}: never less than {:.3f} m'.format(
+                name, way.__name__, hall.least_gap(begun)), flush=True)
+            self.assertGreater(hall.least_gap(begun), 0.03, way.__name__)
+
+    def uncheck(self, name):
+        """Let nobody be checked for a moment."""
+        self.operator.check()
+        self.state.wait_robot(name, lambda gate: not gate.obeys, 'it to obey nobody')
+
+    def off_and_on(self, _):
         """Switch the brake off; it is switched on after this."""
         self.ask(False)
 
-    def new_gates(self):
+    def taken(self, _):
+        """Let another operator take control, and take it back."""
+        other = Screen('other_screen')
+        self.addCleanup(other.end)
+        other.wait('the connection', lambda view: view['ros'] == 'connected')
+        other.do('take')
+        self.state.wait(lambda state: state.operator == other.name, 'another one in control')
+        other.end()
+        self.operator.take()
+        self.state.wait(lambda state: state.operator == rospy.get_name(), 'control')
+
+    def test_a_simulated_laser_that_goes_blind_leads_into_no_wall(self):
+        self.goes_blind('bot3', Hall('bot3', 0.22), 9.3)
+
+    def test_nor_does_that_of_a_plain_robot(self):
+        name = self.plain('turtlebot3', 'seen', '2.9', '0.12', '3.5', 'inf', '-0.064')
+        self.goes_blind(name, Hall(name, 0.22, 2.9), 0.2)
+
+    def goes_blind(self, name, hall, begin_m):
+        """Let the laser of a TurtleBot3 go blind on its way to a wall, and at rest before it."""
+        glasses = Glasses(name)
+        self.addCleanup(glasses.let_go)
+        for value in BLIND:
+            glasses.value = None
+            self.bot1(name, 'cmd_vel')
+            self.ask(True)
+            self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_ON, 'its laser')
+            hand = self.hold(BLIND_MPS)
+            hall.places.wait(lambda x: x > begin_m + 0.4, time.monotonic(), PATIENCE_S)
+            glasses.value, went_m = value, hall.places.last()
+            self.state.wait_robot(name, lambda gate: gate.brake == RobotGate.BRAKE_NO_SCAN,
+                                  'the word')
+            rests_m = hall.rests()
+            print('MEASURED {}: {} at {} m/s: stands after {:.3f} m, {:.3f} m before the wall'
+                  .format(name, value, BLIND_MPS, hall.places.last() - went_m, rests_m), flush=True)
+            self.assertLess(hall.places.last() - went_m, 0.15)
+            hand.let_go()
+            self.mux.say(0.0)
+            self.ask(False)
+            glasses.value = None
+            self.drive_to(begin_m, hall, BLIND_MPS)
+
+    def new_gates(self, _):
         """Kill the gates, and start others that have seen nothing."""
         GatesCase.gates.send(signal.SIGKILL)
         GatesCase.gates.wait()
@@ -323,6 +394,26 @@ class Scans:
         """Say nothing any more."""
         self._done.set()
         self._thread.join()
+        self._publisher.unregister()
+
+
+class Glasses:
+    """Passes on the scans of a robot, ``seen``, as its ``scan``: every range one value, if any."""
+
+    def __init__(self, name):
+        self.value = None
+        self._publisher = rospy.Publisher('/{}/scan'.format(name), LaserScan, queue_size=1)
+        self._subscriber = rospy.Subscriber('/{}/seen'.format(name), LaserScan, self._on_scan,
+                                            queue_size=1)
+
+    def _on_scan(self, scan):
+        if self.value is not None:
+            scan.ranges = [self.value] * len(scan.ranges)
+        self._publisher.publish(scan)
+
+    def let_go(self):
+        """Pass on nothing any more."""
+        self._subscriber.unregister()
         self._publisher.unregister()
 
 

@@ -3,9 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """One operator at a time, as the screens see it: two programs, two screens in one program."""
 import gc
-import json
 import os
-import subprocess
 import sys
 import threading
 import time
@@ -26,45 +24,7 @@ from mhri.msg import DriveSettings, RobotGate  # noqa: E402
 from mhri.ros.screen.backend import ScreenBackend  # noqa: E402
 from support.fake_gates import FakeGates, moving  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
-
-START_S = 60.0
-SCREEN = os.path.join(HERE, '..', 'support', 'screen_process.py')
-
-
-class Screen:
-    """A screen in a process of its own, and what it shows."""
-
-    def __init__(self, name):
-        self.name = '/' + name
-        self.shown = {}
-        self._process = subprocess.Popen(
-            [sys.executable, SCREEN, '__name:=' + name], stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE, universal_newlines=True, bufsize=1)
-        threading.Thread(target=self._read, daemon=True).start()
-
-    def _read(self):
-        for line in self._process.stdout:
-            if line.startswith('{'):
-                self.shown = json.loads(line)
-
-    def do(self, *words):
-        self._process.stdin.write(' '.join(words) + '\n')
-        self._process.stdin.flush()
-
-    def wait(self, what, condition):
-        try:
-            wait_for(lambda: self.shown and condition(self.shown), START_S)
-        except AssertionError:
-            raise AssertionError('{} does not show {}: {}'.format(self.name, what, self.shown))
-
-    def kill(self):
-        self._process.kill()
-        self._process.wait()
-
-    def end(self):
-        if self._process.poll() is None:
-            self.do('end')
-            self._process.wait(20)
+from support.screen_end import Screen, START_S  # noqa: E402
 
 
 class ControlTest(unittest.TestCase):

@@ -5,6 +5,7 @@ import threading
 import time
 
 from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Odometry
 
 from rostest_tools import Recorder
 from support.ros_system import wait_for
@@ -34,25 +35,35 @@ class Hand:
 
 
 class Hall:
-    """Where a robot that motion capture sees is, along the hall.
+    """Where a robot that motion capture sees is, along the hall; a plain one, by its odometry.
 
     :param radius_m: of its body
+    :param wall_m: where the wall of a plain robot is, None for a robot of the simulator
     """
 
-    def __init__(self, robot, radius_m):
+    def __init__(self, robot, radius_m, wall_m=None):
         self._radius_m = radius_m
-        self.places = Recorder('/vrpn_client_node/{}/pose'.format(robot), PoseStamped,
-                               lambda message: message.pose.position.x)
+        self._wall_m = WALL_M if wall_m is None else wall_m
+        if wall_m is None:
+            self.places = Recorder('/vrpn_client_node/{}/pose'.format(robot), PoseStamped,
+                                   lambda message: message.pose.position.x)
+        else:
+            self.places = Recorder('/{}/odom'.format(robot), Odometry,
+                                   lambda message: message.pose.pose.position.x)
         self.places.wait(lambda where: True, patience_s=PATIENCE_S)
 
     def rests(self):
         """Wait until it has stood still for a while; return its gap to the wall [m]."""
+        begun = time.monotonic()
+
         def still():
+            if time.monotonic() - begun < STANDS_S:
+                return False
             lately = [item.value for item in self.places.since(time.monotonic() - STANDS_S)]
             return len(lately) > 10 and max(lately) - min(lately) < 0.002
         wait_for(still, PATIENCE_S, 'the robot to stand', poll_s=0.1)
-        return WALL_M - self.places.last() - self._radius_m
+        return self._wall_m - self.places.last() - self._radius_m
 
     def least_gap(self, since):
         """Return the least gap to the wall since a time [m]."""
-        return WALL_M - self._radius_m - max(item.value for item in self.places.since(since))
+        return self._wall_m - self._radius_m - max(item.value for item in self.places.since(since))

@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """One wish, one owner: speed, brake, seat and mode are those of the operator in control alone.
 
-Mux and gates are the real ones, each under the process that stands by; robots are plain ones.
+Mux and gates are the real ones, each under the process that stands by, on a master that can be
+restarted. Robots are plain ones, or with MHRI_ROBOT=simulated those of the simulator.
 """
 import json
 import os
@@ -13,24 +14,42 @@ import sys
 import time
 import unittest
 
+import rosgraph
 import roslib.packages
 import rospy
 import rostest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.msg import DriveSettings  # noqa: E402
-from rostest_tools import FORWARD, NEUTRAL, Process, Stick  # noqa: E402
+from mhri.msg import ControlMode, DriveSettings  # noqa: E402
+from mhri.ros.graph.master_watch import MasterWatch  # noqa: E402
+from rostest_tools import FORWARD, NEUTRAL, Process, Recorder, Stick, StickProcess  # noqa: E402
 from support.fake_mux import FakeOperator, StateEar  # noqa: E402
-from support.graph import SELECT, STICK  # noqa: E402
+from support.graph import MODE, MODE_SELECT, PEDAL, SELECT, STICK  # noqa: E402
 from support.random_world import RESTARTER  # noqa: E402
-from support.ros_system import children, wait_for  # noqa: E402
+from support.robots import Witness  # noqa: E402
+from support.ros_system import children, free_port, wait_for  # noqa: E402
+from support.screen_end import Screen  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
 
 SLOW_MPS = 0.12
 # As a message carries it, and what rounding adds.
 MOST_MPS = SLOW_MPS + 1e-6
 FAST = {'linear_mps': 1.2, 'angular_rad_s': 3.0}
+SIMULATED = os.environ.get('MHRI_ROBOT') == 'simulated'
+# The limit of its type.
+TYPE_MPS = 0.26 if SIMULATED else 0.5
+PLAIN = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', 'support',
+                     'plain_robot.py')
+PORT = free_port()
+MASTER = {'ROS_MASTER_URI': 'http://127.0.0.1:{}'.format(PORT), 'ROS_IP': '127.0.0.1'}
+
+
+def start_master():
+    """Start the master of this test."""
+    master = Process(['rosmaster', '--core', '-p', str(PORT)], MASTER)
+    wait_for(rosgraph.Master('/wish_test').is_online, 60.0, 'the master')
+    return master
 
 
 def start(node, *arguments):
@@ -51,8 +70,13 @@ class WishTest(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
+        cls.master = start_master()
+        rospy.init_node('wish_test', disable_signals=True)
+        MasterWatch().start()
         cls.nodes = {'mux': start('mux', '__name:=mux'), 'gates': start('gates')}
         cls.stick, cls.operator, cls.state = Stick(STICK), FakeOperator(), StateEar()
+        cls.modes = rospy.Publisher(MODE_SELECT, ControlMode, queue_size=1)
+        cls.mode = Recorder(MODE, ControlMode, lambda message: message.source)
         cls.stick.wait_listener()
         cls.stick.hold(NEUTRAL)
 
@@ -64,6 +88,24 @@ class WishTest(unittest.TestCase):
             process.send(signal.SIGTERM)
             process.wait()
             process.end()
+        cls.master.end()
+
+    def start_robot(self, name, y):
+        """Start one of the robots; return its witness."""
+        if SIMULATED:
+            rospy.set_param('/{}/robot_type'.format(name), 'turtlebot3')
+            rospy.set_param('/{}/robot_model'.format(name), 'waffle')
+            words = roslib.packages.find_node('mhri', 'sim_robot')[:1] + [
+                # One that has just gone may still be in the way.
+                '_x:={}'.format(1.2 + 2.0 * (self.number % 4)), '_y:={}'.format(y), '_yaw:=0.0']
+        else:
+            words = [sys.executable, PLAIN, 'cmd_vel', 'odom']
+        process = Process(words, {'ROS_NAMESPACE': name})
+        self.addCleanup(process.end)
+        if SIMULATED:  # it leaves the building
+            self.addCleanup(process.wait)
+            self.addCleanup(process.send, signal.SIGTERM)
+        return Witness(name)
 
     def setUp(self):
         """Put this node in control, slow, with two robots in the list of which one is checked."""
@@ -73,36 +115,44 @@ class WishTest(unittest.TestCase):
         rospy.set_param('/mhri/robots', [self.ours, self.other])
         self.ends = {name: VelocityEnd('/{}/cmd_vel'.format(name))
                      for name in (self.ours, self.other)}
+        self.seen = {name: self.start_robot(name, y)
+                     for name, y in ((self.ours, 1.0), (self.other, 3.2))}
         self.operator.set(SLOW_MPS, 1.0)
         self.operator.check(self.ours)
         self.state.wait(lambda state: state.operator == rospy.get_name()
                         and abs(state.settings.linear_mps - SLOW_MPS) < 1e-6, 'the seat')
 
-    def ready(self):
+    def ready(self, stick):
         """Centre the stick until the robot may be driven."""
-        self.stick.hold(NEUTRAL)
+        stick.hold(NEUTRAL)
         self.state.wait_robot(self.ours, lambda gate: gate.topic and gate.obeys == 'operator'
                               and not gate.stands, 'the robot', 60.0)
         rospy.rostime.wallsleep(0.1)
 
-    def drive(self):
+    def drive(self, stick=None):
         """Push the stick until the robot moves, and go on for a moment."""
-        self.ready()
-        when = self.stick.hold(FORWARD)
+        stick = stick or self.stick
+        self.ready(stick)
+        self.stick_at = stick.hold(FORWARD)
 
         def moves():
-            if any(entry[1] > 0.0 for entry in self.ends[self.ours].after(when)):
+            said = [entry[1] for entry in self.ends[self.ours].after(self.stick_at)]
+            if len([mps for mps in said if mps > 0.0]) > 10 and said[-1] > 0.0:
                 return True
-            # A restart on the way asks for neutral once more.
+            # A restart on the way, or the first word of its odometry, asks for neutral once more.
             if time.monotonic() - self.stick_at > 2.0:
-                self.stick.hold(NEUTRAL)
+                stick.hold(NEUTRAL)
                 rospy.rostime.wallsleep(0.3)
-                self.stick_at = self.stick.hold(FORWARD)
+                self.stick_at = stick.hold(FORWARD)
             return False
-        self.stick_at = when
         wait_for(moves, 60.0, 'it to move', poll_s=0.05)
-        count = len(self.ends[self.ours].received)
-        wait_for(lambda: len(self.ends[self.ours].received) > count + 10, 60.0, 'it to go on')
+
+    def tell(self, what):
+        """Say how fast our robot went by its odometry; the other one has gone nowhere."""
+        mps, way_m = self.seen[self.ours].fastest(), self.seen[self.other].path_m
+        print('MEASURED {}: {:.3f} m/s; the other one {:.3f} m'.format(what, mps, way_m),
+              flush=True)
+        self.assertTrue(0.1 < mps < 0.15 and way_m < 0.02)
 
     def fastest(self, name):
         """Return the highest speed that a robot was ever sent [m/s]."""
@@ -155,6 +205,75 @@ class WishTest(unittest.TestCase):
                 self.assertAlmostEqual(self.state.message.settings.linear_mps, SLOW_MPS, 6)
         self.assertLessEqual(self.fastest(self.ours), MOST_MPS)
         self.assertGreater(self.fastest(self.ours), 0.1)
+        self.tell('a script, and nodes killed')
+
+    def test_no_second_panel_makes_the_driver_faster_nor_a_restart(self):
+        """One as operators have it, and one whose controls are moved; neither is in control."""
+        panel = Process(roslib.packages.find_node('mhri', 'panel')[:1] + [
+            '--robots', self.ours + ' ' + self.other, '--settings', '/nowhere/panel.json',
+            '__name:=second_panel'], dict(MASTER, QT_QPA_PLATFORM='offscreen'))
+        self.addCleanup(panel.end)
+        screen = Screen('other_screen')
+        self.addCleanup(screen.end)
+        screen.wait('who drives', lambda view: view['ros'] == 'connected' and not view['ours'])
+        for words in (['add', self.ours], ['select', self.ours], ['limits', '1.2', '3.0'],
+                      ['brake', 'on']):
+            screen.do(*words)
+        wait_for(lambda: '/second_panel' in dict(rosgraph.Master('/wish_test').getSystemState()[1])[
+            '/gates/state'], 60.0, 'the panel')
+        self.drive()
+        for way in ('mux', 'gates', 'master'):
+            with self.subTest(restarted=way):
+                if way == 'master':
+                    self.restart_master()
+                else:
+                    self.kill(way)
+                self.drive()
+                said = self.state.message
+                self.assertEqual((said.operator, said.settings.brake), (rospy.get_name(), False))
+                self.assertAlmostEqual(said.settings.linear_mps, SLOW_MPS, 6)
+        self.assertTrue(panel.running())
+        self.assertLessEqual(self.fastest(self.ours), MOST_MPS)
+        self.assertEqual(self.fastest(self.other), 0.0)
+        self.tell('two panels, and restarts')
+
+    def restart_master(self):
+        """Kill the master, and wait until its successor knows gates and mux."""
+        self.master.send(signal.SIGKILL)
+        self.master.wait()
+        WishTest.master = start_master()
+        master = rosgraph.Master('/wish_test')
+        wait_for(lambda: {'/gates/state', '/mux/mode', SELECT} <= {
+            topic for topic, _ in master.getSystemState()[0]}, 60.0, 'all to register')
+
+    def choose(self, source):
+        """Choose a source, and wait until it is the one that drives."""
+        def chosen():
+            self.modes.publish(source)
+            return self.mode.last() == source
+        wait_for(chosen, 60.0, source, poll_s=0.1)
+
+    def test_a_second_pedal_drives_nothing(self):
+        """While the first one is silent, or lost."""
+        first = Stick(PEDAL)
+        first.wait_listener().hold(NEUTRAL)
+        self.addCleanup(self.choose, 'joy')
+        self.choose('pedal')
+        self.drive(first)
+        second = StickProcess(PEDAL, 'second_pedal')
+        self.addCleanup(second.process.end)
+        second.hold(FORWARD)
+        begun = first.silence()
+        wait_for(lambda: (0.0, 0.0) in [entry[1:] for entry in self.ends[self.ours].after(begun)],
+                 20.0, 'the zero')
+        wait_for(self.seen[self.ours].at_rest, 20.0, 'it to stand')
+        when, before_m = time.monotonic(), self.seen[self.ours].path_m
+        for axes in (NEUTRAL, FORWARD) * 3:
+            second.hold(axes)
+            rospy.rostime.wallsleep(0.5)
+        self.assertFalse([entry for entry in self.ends[self.ours].after(when) if entry[1]])
+        print('MEASURED a second pedal, 3 s: {:.3f} m'.format(
+            self.seen[self.ours].path_m - before_m), flush=True)
 
     def test_a_script_that_waits_never_becomes_the_operator(self):
         self.script('-r', '10', robots=[self.other], settings=[FAST])
@@ -168,6 +287,7 @@ class WishTest(unittest.TestCase):
         self.refused('/lab_script: robot_select')
         self.assertEqual(self.state.message.operator, '')
         self.assertEqual(self.fastest(self.other), 0.0)
+        self.tell('a script that waits')
 
     def test_brake_and_staying_together_outlive_the_gates(self):
         self.operator.set(SLOW_MPS, 1.0, together=True, brake=True)
@@ -211,10 +331,10 @@ class WishTest(unittest.TestCase):
         good = DriveSettings(0.3, 1.0, False, False, False)
         self.state.wait(lambda state: self.state.robot(self.other), 'both robots')
         self.operator.fall_silent()
-        for settings in bad + [[good, good]]:
+        for number, settings in enumerate(bad + [[good, good]], 1):
+            # One after the other: of two that come together the gates read the newer one alone.
             self.operator.select.publish(robots=[self.ours, self.other], settings=settings)
-            rospy.rostime.wallsleep(0.05)
-        self.refused('{}: settings, 7 times'.format(rospy.get_name()))
+            self.refused('{}: settings, {} times'.format(rospy.get_name(), number))
         self.assertAlmostEqual(self.state.message.settings.linear_mps, SLOW_MPS, 6)
         self.assertFalse(self.state.robot(self.other).obeys)
         self.operator.select.publish(robots=[self.ours], settings=[good])
@@ -244,12 +364,11 @@ class WishTest(unittest.TestCase):
 
     def test_a_limit_that_rises_counts_once_the_robot_is_selected_anew(self):
         self.operator.set(1.0, 1.0)
-        self.assertEqual(self.pushed(), 0.5)
+        self.assertEqual(self.pushed(), TYPE_MPS)
         limits = '/{}/mhri'.format(self.ours)
         rospy.set_param(limits, {'limits': {'linear_mps': 0.1}})
-        # One that falls counts as soon as it is seen, which lets the robot wait for neutral.
-        self.state.wait_robot(self.ours, lambda gate: gate.stands == 'joining', 'the lower limit')
-        self.assertEqual(self.pushed(), 0.1)
+        # One that falls counts as soon as it is seen.
+        wait_for(lambda: self.pushed() == 0.1, 60.0, 'the lower limit')
         when = time.monotonic()
         rospy.delete_param(limits)
         self.state.wait_robot(self.ours, lambda gate: gate.limit_raised, 'the sign')
@@ -262,7 +381,7 @@ class WishTest(unittest.TestCase):
         self.operator.check()
         self.state.wait_robot(self.ours, lambda gate: not gate.obeys, 'it to be let go')
         self.operator.check(self.ours)
-        self.assertEqual(self.pushed(), 0.5)
+        self.assertEqual(self.pushed(), TYPE_MPS)
         self.assertFalse(self.state.robot(self.ours).limit_raised)
 
     def test_who_publishes_no_selection_is_not_put_in_control(self):
@@ -272,5 +391,5 @@ class WishTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rospy.init_node('wish_test')
+    os.environ.update(MASTER)
     rostest.rosrun('mhri', 'wish', WishTest, sys.argv)

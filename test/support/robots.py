@@ -43,6 +43,11 @@ class Witness:
         with self._lock:
             return self._log[-1][1]
 
+    def fastest(self):
+        """Return the highest speed that its odometry ever said [m/s]."""
+        with self._lock:
+            return max((abs(entry[1].speed_mps) for entry in self._log), default=0.0)
+
     def moving(self):
         return self.live() and not self.latest().is_standstill()
 
