@@ -54,6 +54,16 @@ def test_without_a_fresh_scan_there_is_no_way_forward(brake, age):
     assert brake.state(1.0)[0] == NO_SCAN
 
 
+def test_without_a_fresh_scan_it_does_not_crawl_into_what_was_met_behind(brake):
+    behind = replace(ahead(RADIUS_M + 0.05), mount=Pose(0.0, 0.0, math.pi))
+    brake.see(behind, 1.0)
+    for now in (1.1, 2.0, 60.0):
+        assert brake.allow(Velocity(-0.5, 0.0), now) == ZERO
+    assert brake.state(60.0)[0] == NO_SCAN
+    brake.move(Pose(0.0, 0.0, 0.0), anew=True)
+    assert brake.allow(Velocity(-0.5, 0.0), 60.0) == Velocity(-CRAWL_MPS, 0.0)
+
+
 def test_it_slows_down_as_the_rule_says_and_tells_the_way(brake):
     brake.see(ahead(0.6), 0.9)
     assert brake.allow(FAST, 1.0) == braked(FAST, np.array([[0.6, 0.0]]), RADIUS_M, 0.1)

@@ -433,7 +433,7 @@ def braked(velocity: Velocity, points: np.ndarray, radius_m: float,
     :param points: what its laser has met, in its frame [m]
     :param radius_m: of the disc around all of the robot [m]
     :param age_s: of the newest scan [s], None before the first: no way forward then, and a crawl
-        backward
+        backward, as far as nothing was met there before
     :param looks: where its laser looks, see :func:`seen_speed`
     :param crawl_mps: likewise
     """
@@ -441,8 +441,10 @@ def braked(velocity: Velocity, points: np.ndarray, radius_m: float,
     if wanted == 0.0:
         return velocity
     if age_s is None or age_s > SCAN_OLD_S:
-        return Velocity(min(0.0, max(wanted, -crawl_mps)), turn)
-    wanted = seen_speed(velocity, radius_m + MARGIN_M, REACTION_S + age_s, looks, crawl_mps)
+        # What was met behind before is still there.
+        wanted, age_s = min(0.0, max(wanted, -crawl_mps)), 0.0
+    else:
+        wanted = seen_speed(velocity, radius_m + MARGIN_M, REACTION_S + age_s, looks, crawl_mps)
     points = within_reach(points, reach_of(wanted, radius_m, age_s))
     # Slower with the same turn is another arc: looked at once more.
     for _ in range(2):
