@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The panel in a window of its own, for machines without rqt."""
+import os
 import signal
 import socket
 import threading
@@ -182,3 +183,19 @@ class Standalone:
             self._write(kept)
         rospy.signal_shutdown('the panel was closed')
         QApplication.instance().quit()
+
+
+def make_replay(argv, path):
+    """Return the program that shows the replay of a session (blocking: it reads its events).
+
+    :raises NotASession: its events cannot be read
+    """
+    # Whoever shows no replay need not load it.
+    from mhri.presenters.replay_host import make_host
+    host = make_host(argv, path)
+    program = Standalone(argv, remember=False, host=host)
+    program.window.takeCentralWidget()
+    program.window.setCentralWidget(host.widget())
+    program.window.setWindowTitle('mhri: replay of {}'.format(
+        os.path.basename(os.path.normpath(path))))
+    return program

@@ -19,8 +19,9 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.link.control import ASK_FOR, STEP_S, TAKE_IT  # noqa: E402
+from mhri.core.link.control import STEP_S  # noqa: E402
 from mhri.core.link.sealed import FORGED, GARBAGE  # noqa: E402
+from mhri.core.robots.owners import ASK_FOR, TAKE_IT  # noqa: E402
 from mhri.core.screen.views import LIVE, RobotView  # noqa: E402
 from mhri.ros.link.datagrams import PASS  # noqa: E402
 from support.authority import Authority  # noqa: E402

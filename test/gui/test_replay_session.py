@@ -27,7 +27,7 @@ class Replay:
         folder = made_session.write_session(os.path.join(self.system.home, 'session'))
         self.system.start_master()
         self.system.node('mhri_replay', str(folder))
-        from mhri.presenters.replay_host import make_replay
+        from mhri.standalone import make_replay
         self.program = make_replay(['panel'], str(folder))
         self.host, self.window = self.program.host, self.program.window
         self.window.resize(1280, 800)

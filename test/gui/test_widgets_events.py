@@ -11,8 +11,7 @@ from mhri.core.recording.recording import FAILED, RecordingStatus
 from mhri.core.screen import views
 from mhri.core.events.events import ALARM, CALM, clock_text, EventLog, Headline, MOST
 from mhri.core.screen.views import PanelView, RobotView
-from mhri.gui.screen import theme
-from mhri.gui.events.event_button import EventButton
+from mhri.gui.events.event_button import EventButton, SEVERITY_SIGNS
 from mhri.gui.events.event_list import EventList, ROBOT, SEVERITY, TIME, WHAT
 from mhri.presenters.event_host import EventHost
 
@@ -87,7 +86,7 @@ def test_each_severity_has_a_shape_of_its_own(shown):
                 for row in range(4)]
     assert pictures[2] == pictures[3] and len({
         bytes(picture.constBits().asstring(picture.byteCount())) for picture in pictures}) == 3
-    assert len({theme.SEVERITY_SIGNS[severity][0] for severity in theme.SEVERITY_SIGNS}) == 3
+    assert len({SEVERITY_SIGNS[severity][0] for severity in SEVERITY_SIGNS}) == 3
 
 
 def test_a_click_on_a_line_asks_for_its_robot(shown, operator, heard):

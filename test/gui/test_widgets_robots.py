@@ -7,14 +7,14 @@ import pytest
 from python_qt_binding.QtCore import QPoint, Qt
 from python_qt_binding.QtTest import QTest
 
-from mhri.core.link.control import ASK_FOR, TAKE_IT
+from mhri.core.robots.owners import ASK_FOR, TAKE_IT
 from mhri.core.screen import views
 from mhri.core.screen.gate_words import also_words, LIMIT_RAISED, NOT_ALONE, STANDS_WORDS
 from mhri.core.screen.views import ProofView, RobotView
-from mhri.gui.screen import theme
-from mhri.gui.screen.labels import BatteryLine
 from mhri.gui.robots.robot_list import RobotList
 from mhri.gui.robots.robot_row import DRIVING, MOVING, RobotRow
+from mhri.gui.screen import theme
+from mhri.gui.screen.labels import BatteryLine
 
 LIVE = RobotView('bot1', 'TurtleBot2', link=views.LIVE, age_s=0.012, linear_mps=0.31,
                  angular_rad_s=-0.2, battery=0.82)

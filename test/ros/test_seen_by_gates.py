@@ -3,11 +3,11 @@
 """A row says what the gates say of its robot, and nothing where they say nothing."""
 import pytest
 
-from mhri.core.driving.stick_brake import WORDS
+from mhri.core.screen.brake_view import WORDS
 from mhri.core.screen.gate_words import STANDS_WORDS
 from mhri.core.screen.views import LIVE, ProofView, RobotView, SILENT, UNANSWERED
 from mhri.msg import RobotGate
-from mhri.ros.driving.gates_client import is_driven, round_trip_s
+from mhri.ros.convert import is_driven, round_trip_s
 from mhri.ros.robots.robot_link import seen_by_gates
 
 TOPIC = '/bot1/cmd_vel'

@@ -245,7 +245,7 @@ class Replayed:
         self.system.start_master()
         self.system.node('mhri_replay', folder)
         self.app = QApplication.instance() or QApplication(['panel'])
-        from mhri.presenters.replay_host import make_replay
+        from mhri.standalone import make_replay
         self.program = make_replay(['panel'], folder)
         self.host = self.program.host
         self.program.window.resize(SIZE[0], SIZE[1] + self.host.bar.sizeHint().height())

@@ -6,10 +6,10 @@ import struct
 import pytest
 
 from mhri.core.link.control import (
-    ASK_FOR, ASK_S, ASKED, Control, FREE, HELD, moves, pack_standing, shown, SILENT_S, Standing,
-    STEP_S, TAKE_IT, unpack_standing)
+    ASK_S, ASKED, Control, FREE, HELD, moves, pack_standing, SILENT_S, Standing, STEP_S,
+    unpack_standing)
 from mhri.core.link.frames import FrameError
-from mhri.core.link.keys import may_drive
+from mhri.core.robots.owners import ASK_FOR, may_drive, shown, TAKE_IT
 
 LAB, DESK, GALLERY = 'host:lab', 'host:desk.2', 'watch:gallery'
 

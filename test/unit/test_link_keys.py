@@ -4,8 +4,9 @@
 import pytest
 
 from mhri.core.link.keys import (
-    access, access_of_router, called, check_open, check_own, endpoint, host_of, is_of, Keys,
-    KeysError, marked, may_drive, partners, read_lists, split)
+    access, access_of_router, check_open, check_own, endpoint, host_of, is_of, Keys, KeysError,
+    marked, partners, read_lists)
+from mhri.core.robots.owners import called, may_drive, split
 
 PEERS = frozenset((
     'host:lab', 'host:desk.2', 'watch:gallery', 'robot:bot1', 'robot:bot2', 'watched:bot3'))

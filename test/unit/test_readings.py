@@ -8,8 +8,8 @@ import sys
 import numpy as np
 import pytest
 
-from mhri.core.driving.stick_brake import NO_SCAN, ON, UNSEEN
 from mhri.core.robots.mocap import Pose
+from mhri.core.screen.brake_view import NO_SCAN, ON, UNSEEN
 from mhri.core.sensors.readings import no_return_of, read_ranges
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))

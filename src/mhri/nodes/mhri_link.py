@@ -29,23 +29,23 @@ import sys
 import rospy
 
 from mhri.core.link.carried import SHARED_FRAMES, split_frames
-from mhri.core.link.keys import (
-    check_open, endpoint, host_of, is_host, KeysError, marked)
+from mhri.core.link.keys import check_open, endpoint, host_of, KeysError, marked
 from mhri.core.link.records import IN_SESSIONS, KEEPS
 from mhri.core.robots.names import name_problem, tidy_name
+from mhri.core.robots.owners import is_host
 from mhri.ros.diagnostics import publish_diagnostics
 from mhri.ros.ending import init_node
 from mhri.ros.graph import log
-from mhri.ros.graph.peers import limit_peers
 from mhri.ros.graph.master_watch import MasterWatch
+from mhri.ros.graph.peers import limit_peers
 from mhri.ros.link.carrier import (
     Carrier, CarrierError, LibraryMissing, load_library, MAX_FROM_ROBOT, MAX_TO_ROBOT)
 from mhri.ros.link.computer import facts
 from mhri.ros.link.host_side import HostSide
 from mhri.ros.link.keeper import keeper_of, MOST_MB
 from mhri.ros.link.key_folder import AUTO, find_folder, KeyFolder, OFF, watch_keys
-from mhri.ros.link.note import Note
 from mhri.ros.link.knocks import tell_knocks
+from mhri.ros.link.note import Note
 from mhri.ros.resources import robot_types
 
 

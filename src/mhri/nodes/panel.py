@@ -67,7 +67,7 @@ def main():
 def replay(app, path):
     """Show a replay until its window is closed; return the exit status, or why not."""
     from mhri.core.session.folder import NotASession
-    from mhri.presenters.replay_host import make_replay
+    from mhri.standalone import make_replay
     try:
         program = make_replay(sys.argv, path)
     except NotASession as error:

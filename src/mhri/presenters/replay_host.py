@@ -15,7 +15,6 @@ from mhri.presenters.event_host import EventHost
 from mhri.presenters.screen_host import ScreenHost
 from mhri.ros.session.replay_backend import ReplayBackend
 from mhri.ros.session.replay_tasks import ReplayTasks
-from mhri.standalone import Standalone
 
 _SEVERITIES = {INFO: CALM, WARNING: ATTENTION, ERROR: ALARM}
 
@@ -145,16 +144,10 @@ class ReplayHost(ScreenHost):
         super().close(forget)
 
 
-def make_replay(argv, path):
-    """Return the program that shows the replay of a session (blocking: it reads its events).
+def make_host(argv, path):
+    """Return the screen of a session's replay (blocking: it reads its events).
 
     :raises NotASession: its events cannot be read
     """
     lines = read_lines(path)
-    host = ReplayHost(ReplayBackend(argv, lines), lines)
-    program = Standalone(argv, remember=False, host=host)
-    program.window.takeCentralWidget()
-    program.window.setCentralWidget(host.widget())
-    program.window.setWindowTitle('mhri: replay of {}'.format(
-        os.path.basename(os.path.normpath(path))))
-    return program
+    return ReplayHost(ReplayBackend(argv, lines), lines)

@@ -119,3 +119,20 @@ def _numbers(data, at, kind):
     count, = _COUNT.unpack_from(data, at)
     at += _COUNT.size
     return struct.unpack_from('<{}{}'.format(count, kind), data, at), at + 4 * count
+
+
+def is_driven(robot):
+    """Tell whether the velocity the gates last sent to a robot is not zero.
+
+    :param robot: ``mhri/RobotGate``
+    """
+    sent = robot.sent
+    return any((sent.linear.x, sent.linear.y, sent.angular.z))
+
+
+def round_trip_s(robot):
+    """Return the round trip to a robot [s] as measured by the gates; None if unknown.
+
+    :param robot: ``mhri/RobotGate``
+    """
+    return robot.round_trip_s if math.isfinite(robot.round_trip_s) else None

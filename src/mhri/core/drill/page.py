@@ -4,8 +4,9 @@
 from html import escape
 from typing import Any, List, Mapping, Sequence
 
-from mhri.core.drill.results import heads_of, rows_of
+from mhri.core.drill.results import heads_of
 from mhri.core.drill.scenario import Target
+from mhri.core.session.drill_results import rows_of
 
 # Okabe and Ito's palette, the dark ones.
 _COLOURS = ('#0072b2', '#d55e00', '#009e73', '#cc79a7')

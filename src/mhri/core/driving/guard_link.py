@@ -16,7 +16,7 @@ import math
 import re
 from typing import Optional, Tuple
 
-from mhri.core.driving.stick_brake import NO_SCAN, ON, SLOWS, UNSEEN
+from mhri.core.screen.brake_view import NO_SCAN, ON, SLOWS, UNSEEN
 
 # An echo comes every 0.1 s; three in a row may be lost.
 ECHO_S = 0.35

@@ -9,14 +9,8 @@ from mhri.core.driving.brake import (
     Surroundings, Unplaced)
 from mhri.core.driving.limits import Velocity, ZERO
 from mhri.core.robots.mocap import Pose
+from mhri.core.screen.brake_view import CANNOT, NO_PLACE, NO_SCAN, OFF, ON, SLOWS, UNSEEN
 
-# What it does. UNSEEN: nothing looks that way, so it crawls back, or does not go; NO_SCAN: nothing
-# fresh from laser or depth camera, so no way forward; NO_PLACE: nobody says where a laser sits, so
-# it goes only where others look; CANNOT: robots of this type have neither, it is driven without a
-# brake.
-OFF, ON, SLOWS, UNSEEN = '', 'on', 'slows', 'unseen'
-NO_SCAN, NO_PLACE, CANNOT = 'no_scan', 'no_place', 'cannot'
-WORDS = (OFF, ON, SLOWS, UNSEEN, NO_SCAN, NO_PLACE, CANNOT)
 _SLOWER_MPS = 0.005
 # A gate asks at least so often while its robot is driven [s].
 _ASKS_S = 0.3

@@ -17,10 +17,10 @@ from dataclasses import astuple, dataclass
 import json
 import math
 import struct
-from typing import Callable, Dict, List, Tuple
+from typing import Callable, Dict, List
 
 from mhri.core.link.frames import FrameError, read_rows
-from mhri.core.link.keys import called, is_host
+from mhri.core.robots.owners import called, is_host
 from mhri.core.screen.text import tidy_text
 
 FREE, HELD, ASKED = 'free', 'held', 'asked'
@@ -30,8 +30,6 @@ SILENT_S = 3.0
 STEP_S, ASK_S = 0.5, 20.0
 # Whoever drives without control is told of once in so long [s].
 REFUSED_S = 5.0
-# What the button of a robot in another host's control says at each of the two steps.
-ASK_FOR, TAKE_IT = 'Ask for control', 'Take control'
 _TWIST = struct.Struct('<6d')
 # So often nobody asks.
 _MAX_ASKED = 1 << 31
@@ -157,21 +155,6 @@ def moves(body: bytes) -> bool:
     if len(body) < _TWIST.size:
         return True
     return any(value != 0.0 for value in _TWIST.unpack(body[-_TWIST.size:]))
-
-
-def shown(own: str, may: bool, holder: str, asking: str) -> Tuple[str, str]:
-    """Return (what a screen says of control, what its button asks for), '' for nothing.
-
-    :param own: the host of that screen
-    :param may: it could have control
-    """
-    if not may:
-        return 'this computer may only watch', ''
-    if holder in ('', own):
-        return ('{} asks for control'.format(called(asking, own)) if asking else ''), ''
-    if asking == own:
-        return '{} is told that you ask'.format(called(holder, own)), TAKE_IT
-    return '{} has control'.format(called(holder, own)), ASK_FOR
 
 
 @dataclass(frozen=True)

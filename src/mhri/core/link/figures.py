@@ -6,6 +6,8 @@ import math
 from typing import List
 
 FIGURES = 'mhri_link/figures'
+# Where the host's side says how far it is, and how that begins.
+FETCHING, FETCHING_WORD = 'mhri_link/fetching', 'fetching'
 # They come once a second; older ones count for nothing [s].
 FIGURES_S = 3.0
 _MOST_LETTERS = 200

@@ -2,10 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Whose key may do what on the link: the names in certificates, and zenoh's rules made of them.
 
-A name is ``host:lab`` (may drive), ``watch:lab`` (may only watch), ``robot:bot1`` or
-``watched:bot1`` (nobody drives it), with a number where others were withdrawn (``robot:bot1.2``).
-``utils/host/mhri_keys.sh`` makes them. The same names say who speaks on a link without keys, with
-a mark of the computer where nothing else tells two of one name apart (``host:lab.x0c5e21a9``).
+The names are those of :mod:`mhri.core.robots.owners`; ``utils/host/mhri_keys.sh`` makes the
+certificates. The same names say who speaks on a link without keys.
 """
 from dataclasses import dataclass
 from datetime import datetime, timezone
@@ -14,11 +12,9 @@ import re
 from typing import Dict, FrozenSet, Iterable, List, Sequence, Tuple
 
 from mhri.core.link.sealed import OFFER
+from mhri.core.robots.owners import (
+    DRIVES, is_host, may_drive, ROBOT, ROUTER, split, WATCHED, WATCHES)
 
-DRIVES, WATCHES, ROBOT, WATCHED = 'host', 'watch', 'robot', 'watched'
-ROUTER = 'router'
-_NAME = re.compile(r'(host|watch|robot|watched|router):([A-Za-z0-9_-]{1,64})'
-                   r'(\.[0-9]{1,6}|\.x[0-9a-f]{8})?\Z')
 _ODD = re.compile(r'[^A-Za-z0-9_-]')
 # An endpoint that nobody outside this computer reaches.
 _HERE = re.compile(r'([a-z]+/)?(127\.[0-9.]+|localhost|\[::1\]):[0-9]+\Z')
@@ -51,36 +47,6 @@ class Keys:
     def ended(self, since: float, now: float) -> FrozenSet[str]:
         """Return the names that have a certificate which ran out in between [s since 1970]."""
         return frozenset(owner for owner, end in self.ends if since < end <= now)
-
-
-def split(owner: str) -> Tuple[str, str]:
-    """Return (role, name) of a name in a certificate, ('', '') if it is none."""
-    found = _NAME.match(owner)
-    return (found.group(1), found.group(2)) if found else ('', '')
-
-
-def called(owner: str, *beside: str) -> str:
-    """Return what people call it: "lab" of ``host:lab.2``.
-
-    :param beside: who else is talked about: where another one is called the same, the mark is told,
-        too, such as "lab (0c5e)"
-    """
-    name = split(owner)[1]
-    if not name:
-        return owner
-    alike = any(other != owner and split(other)[1] == name for other in beside)
-    mark = owner.partition('.x')[2][:4]
-    return '{} ({})'.format(name, mark) if alike and mark else name
-
-
-def is_host(owner: str) -> bool:
-    """Tell whether a name is that of an operator's computer."""
-    return split(owner)[0] in (DRIVES, WATCHES)
-
-
-def may_drive(owner: str) -> bool:
-    """Tell whether a computer of this name may command a robot."""
-    return split(owner)[0] == DRIVES
 
 
 def says_all(robot: str, host: str) -> bool:

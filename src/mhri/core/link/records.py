@@ -13,14 +13,13 @@ import struct
 from typing import Collection, Dict, List, Optional, Tuple
 import zlib
 
+from mhri.core.link.figures import FETCHING_WORD
 from mhri.core.link.frames import FrameError, read_rows
 from mhri.core.link.robot_claims import offer_problem
 
 RECORD = 'record'
 # What a host has kept for it on the robot: in a session alone, always, always and with pictures.
 IN_SESSIONS, STATES, PICTURES = KEEPS = 'session', 'states', 'pictures'
-# Where the host's side says how far it is, and how that begins.
-FETCHING, FETCHING_WORD = 'mhri_link/fetching', 'fetching'
 # Streams of the link: what the host asks; what there is; a part of it.
 ASK, OFFER, PART = '_ask', '_offer', '_part'
 PIECE_S = 10.0

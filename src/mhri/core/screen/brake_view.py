@@ -4,12 +4,18 @@
 import math
 from dataclasses import dataclass
 
-from mhri.core.driving.stick_brake import CANNOT, NO_PLACE, NO_SCAN, SLOWS, UNSEEN
+# What it does. UNSEEN: nothing looks that way, so it crawls back, or does not go; NO_SCAN: nothing
+# fresh from laser or depth camera, so no way forward; NO_PLACE: nobody says where a laser sits, so
+# it goes only where others look; CANNOT: robots of this type have neither, it is driven without a
+# brake.
+OFF, ON, SLOWS, UNSEEN = '', 'on', 'slows', 'unseen'
+NO_SCAN, NO_PLACE, CANNOT = 'no_scan', 'no_place', 'cannot'
+WORDS = (OFF, ON, SLOWS, UNSEEN, NO_SCAN, NO_PLACE, CANNOT)
 
 
 @dataclass(frozen=True)
 class BrakeView:
-    """What the brake does: a word of :mod:`mhri.core.driving.stick_brake`.
+    """What the brake does: one of :data:`WORDS`.
 
     ``free_way_m`` is the way to what slows the robot down [m], NaN while nothing does. ``on_robot``
     is true where the brake is that of its guard. ``back_after_s`` is after how long without a link

@@ -3,8 +3,7 @@
 """What of the graph belongs to a session."""
 from typing import Any, Container, Dict, Iterable, Mapping, Tuple
 
-from mhri.core.link.figures import FIGURES
-from mhri.core.link.records import FETCHING
+from mhri.core.link.figures import FETCHING, FIGURES
 from mhri.core.recording.recording import GUARD_COMMAND
 from mhri.core.robots.names import topic_of
 from mhri.core.robots.robot_types import RobotType

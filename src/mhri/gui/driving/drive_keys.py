@@ -17,6 +17,7 @@ from mhri.gui.driving.hold_limit import HoldLimit
 from mhri.gui.driving.key_state import KeyState
 from mhri.gui.driving.stop_bar import CUT_AFTER_S
 from mhri.gui.driving.stop_clear import keep_clear, press_beneath
+from mhri.gui.screen.arrows import keeps_arrows
 
 _AHEAD, _BACK, _LEFT, _RIGHT = (1, 0), (-1, 0), (0, 1), (0, -1)
 
@@ -59,7 +60,6 @@ _ARROW_USERS = (QAbstractSlider, QComboBox, QAbstractItemView)
 # the keyboard (a shortcut of the desktop) keeps its release, and tells nobody.
 _LOOK_MS = 40
 _AREA = 'mhri_drive_area'
-_KEEPS_ARROWS = 'mhri_keeps_arrows'
 
 
 def mark_drive_area(widget, owner=None):
@@ -69,11 +69,6 @@ def mark_drive_area(widget, owner=None):
     """
     widget.setProperty(_AREA, True)
     widget.drive_owner = owner
-
-
-def keep_arrows(widget):
-    """Leave the arrow keys to a widget while it has the focus; sliders need not ask."""
-    widget.setProperty(_KEEPS_ARROWS, True)
 
 
 def _direction(event):
@@ -425,7 +420,7 @@ class DriveKeys(QObject):
     @staticmethod
     def _keeps_arrows(focus):
         """Tell whether a widget needs the arrow keys itself."""
-        return isinstance(focus, _ARROW_USERS) or bool(focus.property(_KEEPS_ARROWS))
+        return isinstance(focus, _ARROW_USERS) or keeps_arrows(focus)
 
     def _action_with_ctrl(self, event):
         """Return what a press with Ctrl has to do, or None."""

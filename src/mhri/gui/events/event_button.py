@@ -5,11 +5,17 @@ from python_qt_binding.QtCore import QRectF, QSize, Qt
 from python_qt_binding.QtGui import QPainter
 from python_qt_binding.QtWidgets import QPushButton, QSizePolicy, QStyle, QStyleOptionButton
 
-from mhri.core.events.events import CALM
+from mhri.core.events.events import ALARM, ATTENTION, CALM
 from mhri.gui.screen import theme
 from mhri.gui.screen.labels import plain_tip
 
 EVENTS = 'Events'
+
+SEVERITY_SIGNS = {
+    CALM: (theme.RING, theme.MUTED),
+    ATTENTION: (theme.TRIANGLE, theme.ATTENTION),
+    ALARM: (theme.OCTAGON, theme.STOP),
+}
 
 
 class EventButton(QPushButton):
@@ -75,7 +81,7 @@ class EventButton(QPushButton):
         self.style().drawControl(QStyle.CE_PushButton, option, painter, self)
         palette, unit = self.palette(), self.fontMetrics().height()
         if self._severity != CALM:
-            shape, tone = theme.SEVERITY_SIGNS[self._severity]
+            shape, tone = SEVERITY_SIGNS[self._severity]
             theme.paint_sign(painter, QRectF(unit // 2, (self.height() - unit) / 2, unit, unit),
                              shape, theme.colour(tone, palette), palette.color(palette.Button))
         painter.setPen(palette.color(palette.ButtonText))

@@ -9,9 +9,10 @@ from python_qt_binding.QtWidgets import (
     QVBoxLayout, QWidget)
 
 from mhri.core.events.events import ALARM, ATTENTION, CALM, clock_text, MOST, SEVERITIES
-from mhri.gui.driving.drive_keys import keep_arrows
+from mhri.gui.events.event_button import SEVERITY_SIGNS
 from mhri.gui.look.wide_scroll_bar import WideScrollBar
 from mhri.gui.screen import theme
+from mhri.gui.screen.arrows import keep_arrows
 from mhri.gui.screen.labels import plain_tip
 from mhri.gui.screen.switches import SwitchBox
 
@@ -85,7 +86,7 @@ class EventModel(QAbstractTableModel):
         """Return the shape of a severity, painted once for each look of the desktop."""
         palette, side = self._widget.palette(), self._widget.fontMetrics().height()
         scale = self._widget.devicePixelRatioF()
-        shape, tone = theme.SEVERITY_SIGNS[severity]
+        shape, tone = SEVERITY_SIGNS[severity]
         ink, ground = theme.colour(tone, palette), palette.color(QPalette.Base)
         key = (severity, side, scale, ink.rgb(), ground.rgb())
         if key not in self._signs:

@@ -6,9 +6,9 @@ from python_qt_binding.QtWidgets import (
     QButtonGroup, QFrame, QLabel, QScrollArea, QVBoxLayout, QWidget)
 
 from mhri.core.screen.arrangement import ALIKE, AUTO, ONE
-from mhri.gui.driving.drive_keys import keep_arrows
 from mhri.gui.look.wide_scroll_bar import WideScrollBar
 from mhri.gui.screen import theme
+from mhri.gui.screen.arrows import keep_arrows
 from mhri.gui.screen.switches import SwitchBox, SwitchRadio
 
 TITLE = 'Screen'

@@ -6,10 +6,10 @@ from python_qt_binding.QtGui import QPainter, QPalette, QPen
 from python_qt_binding.QtWidgets import QFrame, QLabel, QScrollArea, QWidget
 
 from mhri.gui.look.wide_scroll_bar import WideScrollBar
-from mhri.gui.screen import theme
-from mhri.gui.driving.drive_keys import keep_arrows
-from mhri.gui.screen.pending import Pending
 from mhri.gui.robots.robot_row import RobotRow
+from mhri.gui.screen import theme
+from mhri.gui.screen.arrows import keep_arrows
+from mhri.gui.screen.pending import Pending
 
 _ANSWER_WITHIN_S = 1.0
 _EMPTY = ('No robots yet.\n\nPress "Look for Connected Bots",\n'

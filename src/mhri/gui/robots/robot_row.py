@@ -7,6 +7,7 @@ from python_qt_binding.QtWidgets import (
     QCheckBox, QGridLayout, QHBoxLayout, QPushButton, QSizePolicy, QWidget)
 
 from mhri.core.robots.numbers import LAST_KEY
+from mhri.core.robots.owners import ASK_FOR, TAKE_IT
 from mhri.core.screen import views
 from mhri.core.screen.brake_view import brake_words, guard_words
 from mhri.core.screen.task_words import interrupted_line, task_lines
@@ -21,6 +22,9 @@ RECORDING = 'rec'
 # What a name asks for before it gives way, in average characters; longer ones end in "...".
 _NAME_CHARACTERS = 8
 _EDGE_PX = 6
+
+_CONTROL_TIPS = {ASK_FOR: 'its screen is told that you ask; then you can take control',
+                 TAKE_IT: 'the robot stops, and moves for you once your stick is centred'}
 
 
 class BigCheckBox(QCheckBox):
@@ -251,7 +255,7 @@ class RobotRow(QWidget):
         if text != self.ask_button.text():
             self.ask_button.setText(text)
             self.ask_button.setAccessibleName('{} of {}'.format(text, self.name))
-            self.ask_button.setToolTip(plain_tip(words.CONTROL_TIPS.get(text, '')))
+            self.ask_button.setToolTip(plain_tip(_CONTROL_TIPS.get(text, '')))
 
     def _show_numbers(self, view):
         """Show what changes all the time."""

@@ -11,7 +11,6 @@ from python_qt_binding.QtGui import (
     QColor, QFont, QFontDatabase, QFontMetrics, QPainterPath, QPalette, QPen, QPolygonF)
 from python_qt_binding.QtWidgets import QApplication, QPushButton
 
-from mhri.core.events import events
 from mhri.core.screen import battery, views
 
 LIVE = 'live'
@@ -57,11 +56,6 @@ PROOF_SIGNS = {
     views.PROOF_WAITING: (RING, MUTED),
     views.PROOF_STOPPED: (TICK, LIVE),
     views.PROOF_NOT_CONFIRMED: (OCTAGON, STOP),
-}
-SEVERITY_SIGNS = {
-    events.CALM: (RING, MUTED),
-    events.ATTENTION: (TRIANGLE, ATTENTION),
-    events.ALARM: (OCTAGON, STOP),
 }
 # A robot on a task, and one whose task waits.
 ON_TASK, TASK_WAITS = (DIAMOND, TASK), (TRIANGLE, ATTENTION)

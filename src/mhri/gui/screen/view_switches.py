@@ -5,8 +5,8 @@ from python_qt_binding.QtCore import Qt, Signal
 from python_qt_binding.QtWidgets import QButtonGroup, QLabel, QWidget
 
 from mhri.core.screen.view_rows import KEYS, PICTURES, RGB, VIEW_ROWS
-from mhri.gui.driving.drive_keys import keep_arrows
 from mhri.gui.look.flow import FlowLayout, let_height_follow
+from mhri.gui.screen.arrows import keep_arrows
 from mhri.gui.screen.switches import SwitchBox, SwitchRadio
 
 OFF = 'off'

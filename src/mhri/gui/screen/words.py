@@ -5,12 +5,9 @@ import math
 import re
 
 from mhri.core.driving.remote_display import HELD_S
-from mhri.core.link.control import ASK_FOR, TAKE_IT
 from mhri.core.screen import views
 
 UNKNOWN = '–'
-CONTROL_TIPS = {ASK_FOR: 'its screen is told that you ask; then you can take control',
-                TAKE_IT: 'the robot stops, and moves for you once your stick is centred'}
 BETWEEN_FIGURES = '   '
 # Nothing on the screen is that big: it is a fault of whoever says it, and would not fit.
 _TOO_BIG = 1e8

@@ -9,8 +9,8 @@ from python_qt_binding.QtWidgets import QSizePolicy, QWidget
 
 from mhri.core.sensors.cloud_picture import CEILING_M, GROUND, TABLE
 from mhri.core.sensors.orbit import Orbit
-from mhri.gui.driving.drive_keys import keep_arrows
 from mhri.gui.screen import theme
+from mhri.gui.screen.arrows import keep_arrows
 
 # Larger pictures are drawn smaller and scaled up: a cloud is no sharper for more.
 MOST_PIXELS = 1_300_000

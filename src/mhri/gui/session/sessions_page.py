@@ -6,9 +6,9 @@ from python_qt_binding.QtGui import QPalette
 from python_qt_binding.QtWidgets import (
     QHBoxLayout, QListView, QProgressBar, QStyledItemDelegate, QStyle, QVBoxLayout, QWidget)
 
-from mhri.gui.driving.drive_keys import keep_arrows
 from mhri.gui.look.wide_scroll_bar import WideScrollBar
 from mhri.gui.screen import theme
+from mhri.gui.screen.arrows import keep_arrows
 from mhri.gui.screen.labels import plain_tip, TextLine
 
 TITLE = 'Recorded sessions'

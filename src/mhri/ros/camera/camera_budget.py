@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Applies the camera budget to the feeds of a screen."""
 import time
-from typing import NamedTuple, Union
+from typing import NamedTuple
 
 from mhri.core.camera.budget import BudgetPlanner, DRIVEN, Picture
 from mhri.ros.camera.camera_feed import CameraFeed
-from mhri.ros.sensors.cloud_feed import CloudFeed
 
 PERIOD_S = 1.0
 
@@ -21,7 +20,7 @@ class Wish(NamedTuple):
 
     robot: str
     importance: str
-    feed: Union[CameraFeed, CloudFeed]
+    feed: CameraFeed
     visible: bool = True
 
 

@@ -9,7 +9,7 @@ from urllib.parse import urlsplit
 
 from mhri.core.doctor.facts import Master, SILENT
 from mhri.core.doctor.system import MODE
-from mhri.ros.graph.look import knock
+from mhri.ros.graph.knock import knock
 from mhri.ros.graph.master_api import MasterApi, MasterError
 
 DEFAULT_PORT = 11311

@@ -6,9 +6,10 @@ import os
 from pathlib import Path
 
 from mhri.core.config import ConfigError
-from mhri.core.drill.results import as_yaml, FILE, read_result
+from mhri.core.drill.results import as_yaml
 from mhri.core.drill.scenario import parse_scenario
 from mhri.core.recording.recording import ros_home
+from mhri.core.session.drill_results import FILE, read_result
 from mhri.ros.resources import read_text, resource_path
 
 PAGE = 'drill.html'

@@ -6,7 +6,6 @@ Subscribes ``/gates/state`` (``mhri/GatesState``, 2 Hz and on change; it believe
 force, :mod:`mhri.ros.driving.in_force`). Calls ``/gates/take_control`` (``std_srvs/Trigger``) and
 ``/gates/set_motor_power`` (``std_srvs/SetBool``) on a thread of its own.
 """
-import math
 import threading
 import time
 
@@ -137,20 +136,3 @@ class GatesClient:
         """Unregister every topic (blocking: it asks the master)."""
         for topic in self._topics:
             topic.unregister()
-
-
-def is_driven(robot):
-    """Tell whether the velocity the gates last sent to a robot is not zero.
-
-    :param robot: ``mhri/RobotGate``
-    """
-    sent = robot.sent
-    return any((sent.linear.x, sent.linear.y, sent.angular.z))
-
-
-def round_trip_s(robot):
-    """Return the round trip to a robot [s] as measured by the gates; None if unknown.
-
-    :param robot: ``mhri/RobotGate``
-    """
-    return robot.round_trip_s if math.isfinite(robot.round_trip_s) else None

@@ -1,21 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Looks for robots on the ROS graph: one question to the master, then a knock at each door."""
-import socket
-import threading
-import time
 from dataclasses import dataclass, field
 from typing import Tuple
-from urllib.parse import urlsplit
 
 from mhri.core.robots.discovery import (
     find_candidates, NAME_PARAMETER, named_instances, parameters_of, parse_ignore_list,
     ROOT_PARAMETERS)
 from mhri.core.robots.robot_types import Seen
+from mhri.ros.graph.knock import knock
 from mhri.ros.graph.master_api import MasterApi
 from mhri.ros.resources import read_resource, resource_path, robot_types
 
-KNOCK_S = 0.3
 NODES_EACH = 3
 
 
@@ -44,35 +40,6 @@ class Found:
     leftovers: Tuple = ()
     refused: Tuple = ()
     facts: dict = None
-
-
-def knock(uris, timeout_s=KNOCK_S):
-    """Try to connect to many node URIs at once; return the set of those that accept.
-
-    It waits for nobody beyond the time limit, not even a name server: it leaves a thread that hangs
-    in one behind (daemon).
-    """
-    answered, lock, threads = set(), threading.Lock(), []
-
-    def one(uri):
-        """Try one address."""
-        try:
-            parts = urlsplit(uri)
-            socket.create_connection((parts.hostname, parts.port), timeout_s).close()
-        except (OSError, ValueError):
-            return
-        with lock:
-            answered.add(uri)
-
-    for uri in set(uris):
-        thread = threading.Thread(target=one, args=(uri,), daemon=True)
-        thread.start()
-        threads.append(thread)
-    deadline = time.monotonic() + timeout_s + 0.1
-    for thread in threads:
-        thread.join(max(0.0, deadline - time.monotonic()))
-    with lock:
-        return set(answered)
 
 
 def look_for_robots(caller_id, ignore, known=(), api=None, types=None):

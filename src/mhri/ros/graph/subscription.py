@@ -11,7 +11,7 @@ import io
 
 import rospy
 
-from mhri.ros.graph.look import knock
+from mhri.ros.graph.knock import knock
 from mhri.ros.graph.master_api import MasterApi
 from mhri.ros.graph.rospy_inside import type_of, unsubscribe
 

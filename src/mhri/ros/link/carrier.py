@@ -11,9 +11,10 @@ import threading
 import rospkg
 
 from mhri.core.link.carried import COMMAND, key_of, PICTURE
-from mhri.core.link.keys import ALONE, called, LITTLE, says_all, TLS
+from mhri.core.link.keys import ALONE, LITTLE, says_all, TLS
 from mhri.core.link.records import RECORD
 from mhri.core.link.sealed import OFFER
+from mhri.core.robots.owners import called
 from mhri.ros.link.datagrams import open_port
 
 # utils/host/common.sh installs it.

@@ -14,8 +14,9 @@ from std_msgs.msg import String
 from std_srvs.srv import SetBool, SetBoolResponse
 
 from mhri.core.link.carried import GUARD_COMMAND
+from mhri.core.link.figures import FETCHING
 from mhri.core.link.records import (
-    ASK, crc_of, Fetch, FETCHING, IN_SESSIONS, OFFER, pack_ask, PART, PICTURES, piece_of, RECORD,
+    ASK, crc_of, Fetch, IN_SESSIONS, OFFER, pack_ask, PART, PICTURES, piece_of, RECORD,
     unpack_offer, unpack_part)
 from mhri.core.link.robot_claims import fits, OwnFrames, recorded_name
 from mhri.core.recording.recording import MB, ros_home

@@ -12,16 +12,16 @@ from mhri.core.link.carried import (
 from mhri.core.link.control import unpack_standing
 from mhri.core.link.figures import FIGURES, figures_words, RadioFigures
 from mhri.core.link.frames import About, FrameError, Thinned, unpack_about
-from mhri.core.link.keys import called
 from mhri.core.link.peer import held_s
 from mhri.core.link.records import IN_SESSIONS
 from mhri.core.link.renaming import stamp_of
 from mhri.core.link.robot_claims import (
     believed, fits, is_offer, MAX_TOPICS, OwnFrames, PARAMETERS, PICTURE_TYPES)
+from mhri.core.robots.owners import called
 from mhri.core.screen.text import tidy_text
 from mhri.ros.graph.master_api import MasterError
-from mhri.ros.link.host_record import HostRecord
 from mhri.ros.link.host_control import HostControl
+from mhri.ros.link.host_record import HostRecord
 from mhri.ros.link.side import ABOUT, CONTROL, Side
 from mhri.ros.messages import bytes_of, message_class, MessageMissing
 

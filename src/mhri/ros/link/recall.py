@@ -6,7 +6,7 @@ import xmlrpc.client
 import rospy
 
 from mhri.core.link.forgotten import Known, registrations
-from mhri.ros.graph.look import knock
+from mhri.ros.graph.knock import knock
 from mhri.ros.graph.master_api import ERRORS, MasterApi, TimedTransport
 
 TIMEOUT_S = 1.0

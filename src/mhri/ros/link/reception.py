@@ -9,10 +9,10 @@ from mhri.core.link.budget import Budget
 from mhri.core.link.carried import COMMAND, key_of
 from mhri.core.link.control import Control, pack_standing, Standing
 from mhri.core.link.frames import FrameError, read_rows, unpack, unpack_beat
-from mhri.core.link.keys import called, is_host, may_drive, ROBOT, split
 from mhri.core.link.peer import BEAT_S
-from mhri.ros.link.robot_side import RobotSide
+from mhri.core.robots.owners import called, is_host, may_drive, ROBOT, split
 from mhri.ros.link.clock import boot_clock
+from mhri.ros.link.robot_side import RobotSide
 from mhri.ros.link.side import BEAT, CONTROL
 
 # More hosts than this are not heard at once. Where there are so many, one that was not heard for so

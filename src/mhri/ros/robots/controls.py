@@ -7,7 +7,7 @@ import threading
 import rospy
 from std_srvs.srv import Trigger
 
-from mhri.core.link.control import shown
+from mhri.core.robots.owners import shown
 from mhri.core.screen.views import LIVE
 from mhri.msg import LinkControl
 

@@ -12,11 +12,11 @@ import rospy
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import String
 
-from mhri.core.link.figures import FIGURES, FIGURES_S, read_figures, thinned_words
-from mhri.core.link.records import FETCHING, FETCHING_WORD
+from mhri.core.link.figures import (
+    FETCHING, FETCHING_WORD, FIGURES, FIGURES_S, read_figures, thinned_words)
 from mhri.core.map.tf_tree import OdometryFrames
 from mhri.core.robots.link import link_note, link_state
-from mhri.core.robots.link_quality import LinkQuality, link_warning
+from mhri.core.robots.link_quality import link_warning, LinkQuality
 from mhri.core.robots.names import topic_of
 from mhri.core.robots.stamp_age import delay_of, StampAge
 from mhri.core.robots.stop_proof import StopProof
@@ -26,8 +26,8 @@ from mhri.core.screen.gate_words import (
 from mhri.core.screen.views import LIVE, RobotView, UNANSWERED
 from mhri.core.sensors.plausible import BATTERY, can_be
 from mhri.msg import RobotGate
-from mhri.ros.convert import header_of, motion_from_odometry, motion_from_turtle_pose
-from mhri.ros.driving.gates_client import is_driven, round_trip_s
+from mhri.ros.convert import (
+    header_of, is_driven, motion_from_odometry, motion_from_turtle_pose, round_trip_s)
 from mhri.ros.robots.hardware_stop import HardwareStop
 from mhri.ros.sensors.refusals import Refusals
 

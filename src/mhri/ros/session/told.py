@@ -8,9 +8,9 @@ from typing import NamedTuple
 import genpy
 
 from mhri.core.config import ConfigError, short
-from mhri.core.drill.results import FILE as DRILL_FILE, read_result, rows_of
 from mhri.core.map.grid import GridError
 from mhri.core.robots.mocap import Pose
+from mhri.core.session.drill_results import FILE as DRILL_FILE, read_result, rows_of
 from mhri.core.session.folder import (
     bags_of, EVENTS_JSONL, NotASession, read_events, read_info, robots_of, SESSION_YAML)
 from mhri.core.session.report import report_of, sound_events
