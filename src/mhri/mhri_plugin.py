@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The screen as an rqt plugin: a thin adapter over :mod:`mhri.presenters.screen_host`."""
+"""The screen as an rqt plugin: a thin adapter over :mod:`mhri.screen.presenters.screen_host`."""
 import json
 
 import rospy
 from rqt_gui_py.plugin import Plugin
 
-from mhri.presenters.screen_host import ScreenHost
-from mhri.ros.screen.backend import ScreenBackend
+from mhri.screen.presenters.screen_host import ScreenHost
+from mhri.screen.ros.backend import ScreenBackend
 
 _KEY = 'state'
 

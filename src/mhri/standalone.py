@@ -10,12 +10,12 @@ from python_qt_binding.QtCore import QEvent, QSize, QSocketNotifier, QTimer, Sig
 from python_qt_binding.QtWidgets import QApplication, QMainWindow
 import rospy
 
-from mhri.core.screen.saved_state import read_geometry
-from mhri.gui.screen import theme
-from mhri.gui.screen.geometry import fitting, geometry_of, restore_geometry
-from mhri.presenters.screen_host import ScreenHost
-from mhri.presenters.settings_file import SettingsError, SettingsFile
-from mhri.ros.screen.backend import ScreenBackend
+from mhri.base.gui import theme
+from mhri.base.gui.geometry import fitting, geometry_of, restore_geometry
+from mhri.screen.presenters.screen_host import ScreenHost
+from mhri.screen.presenters.settings_file import SettingsError, SettingsFile
+from mhri.screen.ros.backend import ScreenBackend
+from mhri.screen.saved_state import read_geometry
 
 # How soon the number of a new robot is saved: it must survive even a killed program.
 KEEP_NUMBERS_MS = 1000
@@ -191,7 +191,7 @@ def make_replay(argv, path):
     :raises NotASession: its events cannot be read
     """
     # Whoever shows no replay need not load it.
-    from mhri.presenters.replay_host import make_host
+    from mhri.screen.presenters.replay_host import make_host
     host = make_host(argv, path)
     program = Standalone(argv, remember=False, host=host)
     program.window.takeCentralWidget()

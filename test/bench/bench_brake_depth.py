@@ -11,11 +11,11 @@ import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.camera.depth_codec import decode_depth, encode_depth  # noqa: E402
-from mhri.core.camera.raw_image import metres  # noqa: E402
-from mhri.core.driving.brake import Surroundings  # noqa: E402
-from mhri.core.robots.mocap import Pose  # noqa: E402
-from mhri.core.sensors.depth_beams import DepthBeams  # noqa: E402
+from mhri.base.mocap import Pose  # noqa: E402
+from mhri.camera.depth_codec import decode_depth, encode_depth  # noqa: E402
+from mhri.camera.raw_image import metres  # noqa: E402
+from mhri.sensors.brake import Surroundings  # noqa: E402
+from mhri.sensors.depth_beams import DepthBeams  # noqa: E402
 from support.depth_world import LENS  # noqa: E402
 from support.pictures import depth_picture  # noqa: E402
 

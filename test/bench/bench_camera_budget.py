@@ -58,10 +58,10 @@ class Screen:
     """
 
     def __init__(self, budget_mbit_s, visible):
-        from mhri.core.camera.budget import DRIVEN, LOOKED_AT, REST
-        from mhri.core.screen.settings import PanelSettings
-        from mhri.ros.camera.camera_budget import CameraBudget, Wish
-        from mhri.ros.camera.camera_feed import CameraFeed
+        from mhri.camera.budget import DRIVEN, LOOKED_AT, REST
+        from mhri.camera.ros.camera_budget import CameraBudget, Wish
+        from mhri.camera.ros.camera_feed import CameraFeed
+        from mhri.screen.settings import PanelSettings
         settings = PanelSettings(camera_budget_mbit_s=budget_mbit_s)
         self.budget = CameraBudget(lambda: settings)
         self.wishes = [

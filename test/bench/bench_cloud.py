@@ -16,10 +16,10 @@ import numpy as np
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.sensors.cloud_picture import (  # noqa: E402
+from mhri.sensors.cloud_picture import (  # noqa: E402
     CloudArtist, COLOUR, colourings, DISTANCE, HEIGHT, upright_axes)
-from mhri.core.sensors.orbit import fitted  # noqa: E402
-from mhri.core.sensors.point_cloud import from_depth, Lens, parse_cloud, read_cloud  # noqa: E402
+from mhri.sensors.orbit import fitted  # noqa: E402
+from mhri.sensors.point_cloud import from_depth, Lens, parse_cloud, read_cloud  # noqa: E402
 from support.clouds import cloud_message, laid_out, room, XYZ  # noqa: E402
 from support.xvfb import start_xvfb  # noqa: E402
 
@@ -89,7 +89,7 @@ def on_screen(application, seconds, turned):
     """Print how long the GUI thread was away while clouds came, and perhaps were turned."""
     from python_qt_binding.QtCore import Qt, QTimer
     from python_qt_binding.QtTest import QTest
-    from mhri.gui.sensors.cloud_view import CloudView
+    from mhri.sensors.gui.cloud_view import CloudView
     data = cloud_message(*laid_out(columns(), LAYOUTS[1][1], width=640))
     cloud = parse_cloud(read_cloud(data))
     view, late, drawn = CloudView(), [], []

@@ -19,9 +19,9 @@ import psutil
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.camera.depth_codec import encode_depth  # noqa: E402
-from mhri.core.camera.depth_colour import DepthColour  # noqa: E402
-from mhri.core.camera.image_message import COMPRESSED_TYPE, RAW_TYPE, read_picture  # noqa: E402
+from mhri.camera.depth_codec import encode_depth  # noqa: E402
+from mhri.camera.depth_colour import DepthColour  # noqa: E402
+from mhri.camera.image_message import COMPRESSED_TYPE, RAW_TYPE, read_picture  # noqa: E402
 from support.pictures import colour_picture, compressed_message  # noqa: E402
 from support.pictures import depth_picture, raw_message  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
@@ -132,7 +132,7 @@ def cpu_per_picture(count, cpu, seconds):
 
 def feed(transport, view, seconds):
     """Return the figures of a feed of ours."""
-    from mhri.ros.camera.camera_feed import CameraFeed
+    from mhri.camera.ros.camera_feed import CameraFeed
     camera = CameraFeed('bench', ['camera/rgb/image_raw'], 'rgb', transport)
     camera.set_view(*(view or (None, None)), None if view is None else RATE_HZ)
     camera.open()

@@ -15,7 +15,7 @@ import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.sim.rehearsal import Rehearsal  # noqa: E402
+from mhri.drill.rehearsal import Rehearsal  # noqa: E402
 from support.drills import drill, NAMES  # noqa: E402
 
 DELAYS_S = (0.0, 0.2, 0.4)
@@ -41,7 +41,7 @@ def rehearsed(names):
 
 def live(name, delay_s):
     """Return the result of a run on the graph."""
-    from mhri.ros.drill.files import result_in
+    from mhri.drill.ros.files import result_in
     from support.ros_system import System, wait_for
     scenario = drill(name)[0]
     plan = Path(__file__).resolve().parents[2] / 'resource' / 'drills' / 'plans' / scenario.plan

@@ -72,7 +72,7 @@ class Measurement(LiveScreen):
 
     def __init__(self, system, seconds):
         import psutil
-        from mhri.presenters.demo import Hands
+        from mhri.screen.presenters.demo import Hands
         super().__init__((1000, 600), selected=NAMES)
         self.system = system
         self._seconds = seconds

@@ -63,10 +63,10 @@ def due(number, wanted):
 
 def stand_ins(ports):
     """Return a side of the link for each robot."""
-    from mhri.core.link.carried import COMMAND, STATE
-    from mhri.core.link.frames import About, pack_about
-    from mhri.ros.link.carrier import Carrier
-    from mhri.ros.link.side import Side
+    from mhri.link.carried import COMMAND, STATE
+    from mhri.link.frames import About, pack_about
+    from mhri.link.ros.carrier import Carrier
+    from mhri.link.ros.side import Side
     found = bodies()
 
     class StandIn(Side):

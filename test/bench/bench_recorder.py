@@ -50,7 +50,7 @@ def publish(seconds):
 def record(folder):
     """Record each robot into a folder until told to end."""
     import rospy
-    from mhri.ros.recording.recorder import Recorder
+    from mhri.recording.ros.recorder import Recorder
     rospy.init_node('recorders', disable_signals=True)
     recorders = [Recorder(robot, [topic], os.path.join(folder, robot))
                  for robot, topic in zip(ROBOTS, TOPICS)]

@@ -18,9 +18,9 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 import cv2  # noqa: E402
 import numpy as np  # noqa: E402
 
-from mhri.core.session.folder import (  # noqa: E402
-    bag_name, event_line, EVENTS_JSONL, info_text, SESSION_YAML, SessionEvent, SessionInfo)
 from mhri.nodes import mhri_report  # noqa: E402
+from mhri.recording.folder import (  # noqa: E402
+    bag_name, event_line, EVENTS_JSONL, info_text, SESSION_YAML, SessionEvent, SessionInfo)
 from support import made_session as made  # noqa: E402
 
 ROBOTS = tuple('bot{}'.format(number + 1) for number in range(4))

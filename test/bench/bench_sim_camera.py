@@ -22,9 +22,9 @@ import psutil
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.camera.depth_codec import encode_depth  # noqa: E402
-from mhri.core.robots.robot_types import Limits, RobotType  # noqa: E402
-from mhri.ros.resources import read_text, resource_path  # noqa: E402
+from mhri.base.robot_types import Limits, RobotType  # noqa: E402
+from mhri.camera.depth_codec import encode_depth  # noqa: E402
+from mhri.graph.ros.resources import read_text, resource_path  # noqa: E402
 from mhri.sim.camera import Camera  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
@@ -61,7 +61,7 @@ def place(share):
 
 def steps(frames):
     """Return {step: CPU of each frame [ms]}."""
-    from mhri.sim.camera_node import compress
+    from mhri.sim.ros.camera_node import compress
     camera, bodies = Camera(lab()), others()
     camera.rgb(camera.look(*place(0.0), bodies))
     spent = {}
@@ -93,7 +93,7 @@ def at(values, share):
 def be_robot():
     """Step at 100 Hz beside a camera; for each line read, print the lateness of the steps since."""
     import rospy
-    from mhri.sim.camera_node import SimCamera
+    from mhri.sim.ros.camera_node import SimCamera
     rospy.init_node('bench_robot', disable_signals=True)
     begun = time.monotonic()
     bodies = others()

@@ -31,13 +31,13 @@ sys.path.insert(0, os.path.join(HERE, '..'))
 from support import speech  # noqa: E402
 from support.speech import Voice  # noqa: E402
 
-from mhri.core.voice.sound import BLOCK_BYTES, BLOCK_S  # noqa: E402
-from mhri.core.voice.speech import REST, SURE_OF_STOP, VoiceRules  # noqa: E402
-from mhri.core.voice.grammar import Grammar, STOP  # noqa: E402
-from mhri.core.voice.language import parse_language  # noqa: E402
-from mhri.inputs.listener import Began, Ended, Listener  # noqa: E402
-from mhri.inputs.recogniser import Dictionary, Recogniser, Tuning  # noqa: E402
-from mhri.inputs.teaching import next_sentence, Teacher  # noqa: E402
+from mhri.voice.grammar import Grammar, STOP  # noqa: E402
+from mhri.voice.io.listener import Began, Ended, Listener  # noqa: E402
+from mhri.voice.io.recogniser import Dictionary, Recogniser, Tuning  # noqa: E402
+from mhri.voice.io.teaching import next_sentence, Teacher  # noqa: E402
+from mhri.voice.language import parse_language  # noqa: E402
+from mhri.voice.sound import BLOCK_BYTES, BLOCK_S  # noqa: E402
+from mhri.voice.speech import REST, SURE_OF_STOP, VoiceRules  # noqa: E402
 
 LANGUAGE = os.path.join(HERE, '..', '..', 'resource', 'voice', 'english.yaml')
 TUNE_VOICES = [Voice('en-us', 150, 50), Voice('en-us+f2', 150, 50), Voice('en-us+m3', 150, 50),

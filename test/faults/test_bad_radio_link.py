@@ -58,7 +58,7 @@ def read_row(words):
     """Append what the row of the robot would say, as it comes."""
     import rospy
     from std_msgs.msg import String
-    from mhri.core.link.figures import FIGURES, read_figures, thinned_words
+    from mhri.robots.figures import FIGURES, read_figures, thinned_words
     rospy.Subscriber('/tls1/' + FIGURES, String, lambda message: words.append(
         '; '.join(thinned_words(read_figures(message.data)))))
 

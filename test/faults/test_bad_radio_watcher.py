@@ -21,10 +21,10 @@ def test_a_watcher_that_never_reports_does_not_take_the_radio(in_own_network):
 
 def watch(endpoint):
     """Want everything of the robot, and report nothing."""
-    from mhri.core.link.carried import COMMAND
-    from mhri.core.link.frames import Beat, pack, pack_beat, unpack, unpack_about
-    from mhri.ros.link.carrier import Carrier
-    from mhri.ros.link.clock import boot_clock
+    from mhri.link.carried import COMMAND
+    from mhri.link.frames import Beat, pack, pack_beat, unpack, unpack_about
+    from mhri.link.ros.carrier import Carrier
+    from mhri.link.ros.clock import boot_clock
     carrier = Carrier(connect=[endpoint])
     between, about, came = carrier.between('udp1', 'watch:gallery'), [], [0]
 

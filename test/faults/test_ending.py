@@ -18,7 +18,7 @@ from support.ros_system import System, wait_for  # noqa: E402
 NODE = '''
 import sys, threading, time
 import rospy
-from mhri.ros.ending import init_node
+from mhri.graph.ros.ending import init_node
 
 def last_words():
     with lock:
@@ -40,7 +40,7 @@ if sys.argv[1] == 'spin':
 ASLEEP = '''
 import signal, threading, time
 import rospy
-from mhri.ros.ending import init_node
+from mhri.graph.ros.ending import init_node
 
 def last_words():
     print('said', flush=True)
@@ -63,8 +63,8 @@ time.sleep(60.0)
 WATCHED = '''
 import time
 import rospy
-from mhri.ros.ending import init_node
-from mhri.ros.graph.master_watch import MasterWatch
+from mhri.graph.ros.ending import init_node
+from mhri.graph.ros.master_watch import MasterWatch
 
 init_node('watched')
 MasterWatch(period_s=0.01).start()

@@ -27,8 +27,8 @@ class Bench:
 
     def __init__(self):
         import rospy
+        from mhri.graph.ros.master_watch import MasterWatch
         from mhri.msg import ControlMode
-        from mhri.ros.graph.master_watch import MasterWatch
         from support.robots import Stick, Witness
         self.system = System()
         self.system.screen()

@@ -17,16 +17,16 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 
 from support.hostile import Hostile, is_long, seed_of  # noqa: E402
 
-from mhri.core.config import ConfigError  # noqa: E402
-from mhri.core.driving.profile import parse_profile  # noqa: E402
-from mhri.core.driving.sources import parse_mux_config  # noqa: E402
-from mhri.core.robots.discovery import parse_ignore_list  # noqa: E402
-from mhri.core.robots.robot_types import load_robot_types, resolve_robot_type, Seen  # noqa: E402
-from mhri.core.screen.saved_state import usable_state  # noqa: E402
-from mhri.core.screen.settings import parse_settings  # noqa: E402
-from mhri.core.screen.source_rows import source_rows  # noqa: E402
-from mhri.core.voice.language import parse_language  # noqa: E402
-from mhri.presenters.settings_file import SettingsError, SettingsFile  # noqa: E402
+from mhri.base.config import ConfigError  # noqa: E402
+from mhri.base.robot_types import load_robot_types, resolve_robot_type, Seen  # noqa: E402
+from mhri.devices.profile import parse_profile  # noqa: E402
+from mhri.devices.source_rows import source_rows  # noqa: E402
+from mhri.driving.sources import parse_mux_config  # noqa: E402
+from mhri.robots.discovery import parse_ignore_list  # noqa: E402
+from mhri.screen.presenters.settings_file import SettingsError, SettingsFile  # noqa: E402
+from mhri.screen.saved_state import usable_state  # noqa: E402
+from mhri.screen.settings import parse_settings  # noqa: E402
+from mhri.voice.language import parse_language  # noqa: E402
 
 EDITS = 4000 if is_long() else 60
 LONGEST_S, LONGEST_ERROR = 1.0, 300

@@ -20,7 +20,7 @@ KILLED_S, HUNG_S = 2.5, 4.5
 def process_of(name):
     """Return the process number of a node that answers, or None."""
     import rosgraph
-    from mhri.ros.graph.master_api import TimedTransport
+    from mhri.graph.ros.master_api import TimedTransport
     import xmlrpc.client
     try:
         uri = rosgraph.Master('/hung_test').lookupNode(name)

@@ -46,8 +46,8 @@ while rest:
 @pytest.fixture(scope='module')
 def lab():
     import rospy
-    from mhri.ros.graph.master_watch import MasterWatch
-    from mhri.ros.link.carrier import load_library
+    from mhri.graph.ros.master_watch import MasterWatch
+    from mhri.link.ros.carrier import load_library
     from support.robots import Witness
     # Without it, this says the remedy.
     load_library()
@@ -67,7 +67,7 @@ def lab():
 
 def listeners_of_camera(lab):
     """Return how many nodes listen to the robot's camera on the robot's own master."""
-    from mhri.ros.graph.master_api import MasterApi
+    from mhri.graph.ros.master_api import MasterApi
     state = MasterApi('/link_test', 2.0, lab.robot.env['ROS_MASTER_URI']).call('getSystemState')
     return sum(len(nodes) for topic, nodes in state[1]
                if topic.startswith('/bot1/camera/rgb'))
@@ -75,7 +75,7 @@ def listeners_of_camera(lab):
 
 def test_it_looks_like_any_robot(lab):
     import rospy
-    from mhri.ros.graph.look import look_for_robots, shipped_ignore_list
+    from mhri.robots.ros.look import look_for_robots, shipped_ignore_list
     assert wait_for(lambda: rospy.has_param('/bot1/robot_type'), LONG_S)
     assert rospy.get_param('/bot1/robot_type') == 'turtlebot3'
     found = look_for_robots('/link_test', shipped_ignore_list())
@@ -84,7 +84,7 @@ def test_it_looks_like_any_robot(lab):
 
 
 def test_the_host_side_subscribes_commands_alone(lab):
-    from mhri.ros.graph.master_api import MasterApi
+    from mhri.graph.ros.master_api import MasterApi
     api = MasterApi('/link_test', 2.0)
 
     def heard():
@@ -160,8 +160,8 @@ class Hosts:
     """Beats by several names; notes who is answered."""
 
     def __init__(self, lab, names):
-        from mhri.core.link.carried import COMMAND
-        from mhri.ros.link.carrier import Carrier
+        from mhri.link.carried import COMMAND
+        from mhri.link.ros.carrier import Carrier
         self.answered = set()
         self._carrier = Carrier(connect=[lab.endpoint])
         self._ended = threading.Event()
@@ -174,8 +174,8 @@ class Hosts:
         self._thread.start()
 
     def _run(self):
-        from mhri.core.link.frames import Beat, pack, pack_beat
-        from mhri.ros.link.clock import boot_clock
+        from mhri.link.frames import Beat, pack, pack_beat
+        from mhri.link.ros.clock import boot_clock
         number = 0
         while not self._ended.wait(0.2):
             number += 1
@@ -311,7 +311,7 @@ def test_a_stop_holds_on_the_robot_until_it_is_released(lab):
 def test_the_link_says_how_good_it_is(lab):
     import rospy
     from diagnostic_msgs.msg import DiagnosticArray
-    from mhri.core.link.figures import read_figures
+    from mhri.robots.figures import read_figures
     from std_msgs.msg import String
     found = {}
 
@@ -331,7 +331,7 @@ def test_the_link_says_how_good_it_is(lab):
 
 
 def test_the_robots_master_is_restarted(lab):
-    from mhri.ros.graph.master_api import MasterApi
+    from mhri.graph.ros.master_api import MasterApi
     lab.robot.kill(lab.robot.master)
     lab.robot.start_master()
     api = MasterApi('/link_test', 2.0, lab.robot.env['ROS_MASTER_URI'])

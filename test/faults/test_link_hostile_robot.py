@@ -52,7 +52,7 @@ class Lab:
     def become(self, parameters, topics=(('odom', ODOMETRY),)):
         """Let the robot say other things of itself, and wait until the host knows."""
         import rospy
-        from mhri.core.link.frames import About
+        from mhri.link.frames import About
         mark = 'mark {}'.format(time.monotonic())
         self.robot.about = About(dict(parameters, mhri=dict(
             parameters.get('mhri', {}), label=mark)), tuple(topics))
@@ -67,7 +67,7 @@ class Lab:
 @pytest.fixture(scope='module')
 def lab():
     import rospy
-    from mhri.ros.graph.master_watch import MasterWatch
+    from mhri.graph.ros.master_watch import MasterWatch
     built = Lab()
     try:
         rospy.init_node('hostile_robot_test', disable_signals=True)

@@ -36,7 +36,7 @@ LINES_AN_HOUR = 200
 @pytest.fixture
 def lab(request, tmp_path):
     # Without it, this says the remedy.
-    from mhri.ros.link.carrier import load_library
+    from mhri.link.ros.carrier import load_library
     load_library()
     with machines.Lan(tmp_path) as lan, Masters(lan, keys=True) as built:
         import rospy

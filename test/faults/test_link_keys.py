@@ -19,11 +19,11 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.link.control import STEP_S  # noqa: E402
-from mhri.core.link.sealed import FORGED, GARBAGE  # noqa: E402
-from mhri.core.robots.owners import ASK_FOR, TAKE_IT  # noqa: E402
-from mhri.core.screen.views import LIVE, RobotView  # noqa: E402
-from mhri.ros.link.datagrams import PASS  # noqa: E402
+from mhri.base.views import LIVE, RobotView  # noqa: E402
+from mhri.link.control import STEP_S  # noqa: E402
+from mhri.link.ros.datagrams import PASS  # noqa: E402
+from mhri.link.sealed import FORGED, GARBAGE  # noqa: E402
+from mhri.robots.owners import ASK_FOR, TAKE_IT  # noqa: E402
 from support.authority import Authority  # noqa: E402
 from support.cable import Cable  # noqa: E402
 from support.linked import Linked, LONG_S, Operator  # noqa: E402
@@ -43,9 +43,9 @@ class Attacker:
     """
 
     def __init__(self, lab, key, names):
-        from mhri.core.link.carried import COMMAND, key_of
-        from mhri.core.link.peer import Peer
-        from mhri.ros.link.carrier import Carrier
+        from mhri.link.carried import COMMAND, key_of
+        from mhri.link.peer import Peer
+        from mhri.link.ros.carrier import Carrier
         settings = {'root_ca_certificate': str(lab.at_robot / 'authority.pem'),
                     'verify_name_on_connect': False, 'enable_mtls': key is not None}
         if key:
@@ -66,8 +66,8 @@ class Attacker:
                                   for topic in ('_beat', 'mhri_guard/command')])
 
     def _hear(self, key, data):
-        from mhri.core.link.frames import unpack, unpack_beat
-        from mhri.ros.link.side import boot_clock
+        from mhri.link.frames import unpack, unpack_beat
+        from mhri.link.ros.side import boot_clock
         if '/up/' not in key:
             return
         self.heard.add(key)
@@ -77,8 +77,8 @@ class Attacker:
 
     def attack(self, until, timeout_s):
         """Command zeros, then a turn, until something is true; return whether it was."""
-        from mhri.core.link.frames import Beat, pack, pack_beat
-        from mhri.ros.link.side import boot_clock
+        from mhri.link.frames import Beat, pack, pack_beat
+        from mhri.link.ros.side import boot_clock
         number, end = 0, time.monotonic() + timeout_s
         session = random.getrandbits(32)
         while time.monotonic() < end:
@@ -121,7 +121,7 @@ class Lab(Linked):
         import rospy
         from geometry_msgs.msg import TwistStamped
         from mhri.msg import LinkControl
-        from mhri.ros.robots.controls import Controls
+        from mhri.robots.ros.controls import Controls
         rospy.Subscriber('/bot1/mhri_guard/echo', TwistStamped, self._on_echo, queue_size=1)
         rospy.Subscriber('/bot1/mhri_link/state', LinkControl, self.states.append, queue_size=5)
         self.told = []
@@ -129,7 +129,7 @@ class Lab(Linked):
         self.controls.watch('bot1')
 
     def _on_echo(self, message):
-        from mhri.core.driving.guard_link import parse_id
+        from mhri.driving.guard_link import parse_id
         self._token = parse_id(message.header.frame_id)[2]
 
     def command(self, session, number, turn):
@@ -137,7 +137,7 @@ class Lab(Linked):
         import io
         import rospy
         from geometry_msgs.msg import TwistStamped
-        from mhri.core.driving.guard_link import format_id
+        from mhri.driving.guard_link import format_id
         message = TwistStamped()
         message.header.frame_id = format_id('bad{}'.format(session), number, self._token)
         message.header.stamp = rospy.Time.from_sec(time.time())
@@ -173,8 +173,8 @@ class Lab(Linked):
 @pytest.fixture(scope='module')
 def lab(tmp_path_factory):
     import rospy
-    from mhri.ros.graph.master_watch import MasterWatch
-    from mhri.ros.link.carrier import load_library
+    from mhri.graph.ros.master_watch import MasterWatch
+    from mhri.link.ros.carrier import load_library
     from support.robots import Witness
     load_library()
     built = Lab(tmp_path_factory.mktemp('keys'))

@@ -33,7 +33,7 @@ ORDERS = 10 if is_long() else 2
 @pytest.fixture(scope='module')
 def lab(request, tmp_path_factory):
     # Without it, this says the remedy.
-    from mhri.ros.link.carrier import load_library
+    from mhri.link.ros.carrier import load_library
     load_library()
     with machines.Lan(tmp_path_factory.mktemp('masters')) as lan, Masters(lan) as built:
         import rospy
@@ -58,7 +58,7 @@ def well(lab):
 
 def test_they_are_found_and_look_like_any_robots(lab):
     import rospy
-    from mhri.ros.graph.look import look_for_robots, shipped_ignore_list
+    from mhri.robots.ros.look import look_for_robots, shipped_ignore_list
     well(lab)
     found = wait_for(lambda: [one for one in [look_for_robots('/masters_test',
                                                               shipped_ignore_list())]
@@ -143,7 +143,7 @@ def test_what_was_missed_is_fetched_when_the_link_is_back(lab):
 
 
 def test_a_cut_cable_stops_one_alone_and_nothing_is_made_up_for(lab, tmp_path):
-    from mhri.ros.recording.recorder import Recorder
+    from mhri.recording.ros.recorder import Recorder
     record = Recorder('bot2', ['/bot2/odom'], str(tmp_path / 'cut.bag'))
     record.start()
     lab.drive()

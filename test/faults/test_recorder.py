@@ -22,7 +22,7 @@ from support.ros_system import wait_for  # noqa: E402
 MB = 10 ** 6
 RECORD = '''
 import sys, time, rospy
-from mhri.ros.recording.recorder import Recorder
+from mhri.recording.ros.recorder import Recorder
 rospy.init_node('killed', disable_signals=True)
 recorder = Recorder('bot1', sys.argv[2:], sys.argv[1])
 recorder.start()
@@ -32,7 +32,7 @@ while True:
 '''
 TERMINATED = '''
 import signal, sys, threading, rospy
-from mhri.ros.recording.recorder import Recorder
+from mhri.recording.ros.recorder import Recorder
 rospy.init_node('terminated', disable_signals=True)
 recorder = Recorder('bot1', sys.argv[2:], sys.argv[1])
 recorder.start()
@@ -94,7 +94,7 @@ def test_a_full_disk_at_the_start(system, sender, disk):
 
 
 def test_stopped_before_the_disk_is_full(system, sender, disk):
-    from mhri.core.recording.recording import RecordingLimits
+    from mhri.recording.recording import RecordingLimits
     folder, notes = disk(12), set()
     limits = RecordingLimits(warn_free_bytes=11 * MB, stop_free_bytes=4 * MB)
 
@@ -113,7 +113,7 @@ def test_stopped_before_the_disk_is_full(system, sender, disk):
 @pytest.mark.parametrize('filled_by', ['this recording', 'another program'])
 def test_no_space_left(system, sender, disk, filled_by):
     """ENOSPC itself, in the middle of a chunk; then the file is closed whole all the same."""
-    from mhri.core.recording.recording import RecordingLimits
+    from mhri.recording.recording import RecordingLimits
     folder, limits = disk(3), RecordingLimits(warn_free_bytes=0, stop_free_bytes=0)
 
     def ended(status):
@@ -158,8 +158,8 @@ def test_the_folder_is_removed_while_recording(system, sender, tmp_path):
 
 def test_a_slow_disk_is_told_and_loses_nothing(system, sender, tmp_path, monkeypatch):
     """The disk holds each write up for a while: what waits in memory is said, and written."""
-    from mhri.core.recording.recording import RecordingLimits
-    from mhri.ros.recording.bag_file import BagFile
+    from mhri.recording.recording import RecordingLimits
+    from mhri.recording.ros.bag_file import BagFile
     real = BagFile.write
     notes = set()
 
@@ -179,8 +179,8 @@ def test_a_slow_disk_is_told_and_loses_nothing(system, sender, tmp_path, monkeyp
 
 def test_a_disk_that_stands_still_ends_the_recording(system, sender, tmp_path, monkeypatch):
     """Memory is not endless: the recording ends, and what was received is written."""
-    from mhri.core.recording.recording import RecordingLimits
-    from mhri.ros.recording.bag_file import BagFile
+    from mhri.recording.recording import RecordingLimits
+    from mhri.recording.ros.bag_file import BagFile
     real = BagFile.write
 
     def slow(self, messages):
@@ -200,7 +200,7 @@ def test_the_master_is_restarted(system, tmp_path):
     The last test of all: the publishers of the others are not known to the new master.
     """
     import rospy
-    from mhri.ros.recording.recorder import Recorder
+    from mhri.recording.ros.recorder import Recorder
     from std_msgs.msg import String
     publisher = rospy.Publisher('/bot2/text', String, queue_size=10)
     recorder = Recorder('bot2', ['/bot2/text', '/bot2/imu'], str(tmp_path / 'm'))

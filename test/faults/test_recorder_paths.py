@@ -69,7 +69,7 @@ def make_hostile(folder):
 
 def test_hostile_paths(system, sender, tmp_path):
     """All of them at once, each a recording of its own; the default names get numbers."""
-    from mhri.ros.recording.recorder import Recorder
+    from mhri.recording.ros.recorder import Recorder
     cases = make_hostile(str(tmp_path))
     before = sorted(os.listdir(str(tmp_path)))
     recorders = {what: Recorder('bot1', ['/bot1/text'], text) for what, (text, _) in cases.items()}
@@ -126,7 +126,7 @@ def test_existing_files_are_kept(system, sender, tmp_path):
 
 
 def test_a_file_that_comes_up_meanwhile_is_kept(system, sender, tmp_path):
-    from mhri.ros.recording.recorder import Recorder
+    from mhri.recording.ros.recorder import Recorder
     recorder = Recorder('bot1', ['/bot1/text'], str(tmp_path / 'run'))
     recorder.start()
     wait_for(lambda: recorder.status().messages > 3, 10, 'the recording')

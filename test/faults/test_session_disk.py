@@ -17,7 +17,7 @@ import rosbag
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.session.folder import bags_of, read_events  # noqa: E402
+from mhri.recording.folder import bags_of, read_events  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 TOPIC = '/mux_in/lab'

@@ -25,10 +25,10 @@ class Desk:
 
     def __init__(self, system):
         import rospy
-        from mhri.core.voice.grammar import Command, STOP
-        from mhri.ros.driving.mux_client import MuxClient
-        from mhri.ros.graph.rospy_inside import caller_of
-        from mhri.ros.voice.voice import VoiceLink
+        from mhri.driving.ros.mux_client import MuxClient
+        from mhri.graph.ros.rospy_inside import caller_of
+        from mhri.voice.grammar import Command, STOP
+        from mhri.voice.ros.voice import VoiceLink
         from std_msgs.msg import Bool
         self.system, self.stops, self.answers, self.callers = system, [], [], set()
         system.start_master()

@@ -12,7 +12,7 @@ PANEL = """
 import time
 import rospy
 from std_msgs.msg import Bool
-from mhri.ros.screen.backend import ScreenBackend
+from mhri.screen.ros.backend import ScreenBackend
 operator = ScreenBackend(['panel'])
 operator.start()
 while operator.view().ros != 'no_master':

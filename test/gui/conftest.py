@@ -26,7 +26,7 @@ from python_qt_binding.QtGui import QKeyEvent, QMouseEvent  # noqa: E402
 from python_qt_binding.QtTest import QTest  # noqa: E402
 from python_qt_binding.QtWidgets import QApplication  # noqa: E402
 
-from mhri.core.screen import views  # noqa: E402
+from mhri.base import views  # noqa: E402
 
 SOURCES = (('joy', 'Virtual joystick'), ('ps3joy', 'PS3 Controller'), ('voice', 'Voice'))
 
@@ -177,7 +177,7 @@ def four_robots():
 @pytest.fixture
 def panel(operator, ui_dir, application):
     """Return a panel on the screen with the keyboard, its keys installed as the host does."""
-    from mhri.gui.screen.screen import ScreenWidget
+    from mhri.screen.gui.screen import ScreenWidget
     widget = ScreenWidget(ui_dir)
     widget.resize(1280, 960)
     application.installEventFilter(widget.drive_keys)
@@ -210,7 +210,7 @@ def drag():
 def scene(application, operator, ui_dir):
     """Return a maker of scenes."""
     # Not before it is wanted: it loads the whole screen.
-    from mhri.gui.screen import theme
+    from mhri.base.gui import theme
     from support.scenes import Scene
     before = application.font()
 

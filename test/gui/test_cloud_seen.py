@@ -9,7 +9,7 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.sensors.cloud_picture import COLOUR, TABLE  # noqa: E402
+from mhri.sensors.cloud_picture import COLOUR, TABLE  # noqa: E402
 from support.panel_session import PanelSession  # noqa: E402
 
 # The robot looks at the red column.

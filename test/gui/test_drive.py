@@ -14,7 +14,7 @@ from python_qt_binding.QtWidgets import QApplication, QWidget
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.presenters.demo import Grip  # noqa: E402
+from mhri.screen.presenters.demo import Grip  # noqa: E402
 from support.graph import SELECT  # noqa: E402
 from support.ros_system import processes_with, System, wait_for  # noqa: E402
 
@@ -34,9 +34,9 @@ class Session:
 
     def __init__(self):
         import rospy
-        from mhri.presenters.demo import Hands
-        from mhri.presenters.screen_host import ScreenHost
-        from mhri.ros.screen.backend import ScreenBackend
+        from mhri.screen.presenters.demo import Hands
+        from mhri.screen.presenters.screen_host import ScreenHost
+        from mhri.screen.ros.backend import ScreenBackend
         self.system = System()
         self.app = QApplication.instance() or QApplication(['panel'])
         self.host = ScreenHost(ScreenBackend(['panel']))
@@ -304,7 +304,7 @@ def test_the_doctor_examines_beside_the_driving(session):
 
 
 def test_a_restarted_master_is_said_and_driving_goes_on_without_a_restart(session):
-    from mhri.ros.graph.master_watch import MasterWatch
+    from mhri.graph.ros.master_watch import MasterWatch
     watch = MasterWatch().start()
     session.select('bot1')
     session.system.kill(session.system.master)

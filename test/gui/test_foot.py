@@ -12,9 +12,9 @@ from python_qt_binding.QtWidgets import QPushButton
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.screen import views  # noqa: E402
-from mhri.gui.look.foot import BELOW, COLUMN, IN_DRAWER  # noqa: E402
-from mhri.gui.screen.labels import TextLine  # noqa: E402
+from mhri.base import views  # noqa: E402
+from mhri.base.gui.labels import TextLine  # noqa: E402
+from mhri.screen.gui.foot import BELOW, COLUMN, IN_DRAWER  # noqa: E402
 from support.scenes import frame_of, MAGENTA  # noqa: E402
 
 TINY, SMALL, LARGE = (1024, 600), (1280, 720), (1920, 1080)

@@ -9,15 +9,15 @@ from python_qt_binding.QtCore import QEvent, QPoint, Qt
 from python_qt_binding.QtGui import QHelpEvent, QTextDocument
 from python_qt_binding.QtWidgets import QApplication, QComboBox, QLabel, QTextEdit, QWidget
 
-from mhri.core.camera.images import StreamStatus
-from mhri.core.doctor.facts import FAULT, Finding
-from mhri.core.recording.recording import FAILED, RecordingStatus
-from mhri.core.robots.mocap import Drift, Pose
-from mhri.core.screen import views
-from mhri.core.screen.text import tidy_text
-from mhri.gui.doctor.doctor_page import DoctorPage
-from mhri.gui.screen.labels import plain_tip
-from mhri.gui.screen.windows import TurtleBotWindow
+from mhri.base import views
+from mhri.base.gui.labels import plain_tip
+from mhri.base.mocap import Drift, Pose
+from mhri.base.text import tidy_text
+from mhri.camera.images import StreamStatus
+from mhri.doctor.facts import FAULT, Finding
+from mhri.doctor.gui.doctor_page import DoctorPage
+from mhri.recording.recording import FAILED, RecordingStatus
+from mhri.screen.gui.windows import TurtleBotWindow
 
 # What stands for an image in the text of a document.
 IMAGE = '\ufffc'

@@ -8,10 +8,10 @@ from python_qt_binding.QtCore import QPoint, QRect
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication, QWidget
 
-from mhri.core.screen.views import ROS_CONNECTED, ROS_CUT_OFF
-from mhri.gui.screen import geometry
-from mhri.presenters.screen_host import ScreenHost
-from mhri.ros.screen.backend import ScreenBackend
+from mhri.base.gui import geometry
+from mhri.base.views import ROS_CONNECTED, ROS_CUT_OFF
+from mhri.screen.presenters.screen_host import ScreenHost
+from mhri.screen.ros.backend import ScreenBackend
 from mhri.standalone import Standalone
 from support import rqt_stand_in
 from support.rqt_stand_in import Context, Settings

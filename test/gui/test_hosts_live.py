@@ -44,7 +44,7 @@ def gates():
 @pytest.fixture
 def plugins(gates, operator, monkeypatch):
     """A function that opens a plugin with one robot, and one that closes it as rqt does."""
-    from mhri.presenters import event_host
+    from mhri.screen.presenters import event_host
     # Its player is to be there as well.
     monkeypatch.setattr(event_host, 'START_MS', 1)
     make, opened = plugin_class(monkeypatch), []

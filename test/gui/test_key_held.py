@@ -7,8 +7,8 @@ import time
 import pytest
 from python_qt_binding.QtWidgets import QApplication
 
-from mhri.gui.driving.key_state import KeyState
-from mhri.gui.driving.x_server import XServer
+from mhri.driving.gui.key_state import KeyState
+from mhri.driving.gui.x_server import XServer
 from support.ros_system import wait_for
 
 # An X server repeats a key from 0.66 s on; the power is cut after 2 s.
@@ -88,7 +88,7 @@ def test_the_extensions_of_the_server_are_known_and_this_one_is_no_vnc():
 
 
 def test_without_an_x_server_nothing_is_known(monkeypatch):
-    monkeypatch.setattr('mhri.gui.driving.key_state.QGuiApplication.platformName',
+    monkeypatch.setattr('mhri.driving.gui.key_state.QGuiApplication.platformName',
                         lambda: 'wayland')
     assert KeyState().down() is None
 

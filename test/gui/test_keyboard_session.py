@@ -12,7 +12,7 @@ from python_qt_binding.QtWidgets import QApplication, QWidget
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.gui.robots.remove_steps import SETTLED_S  # noqa: E402
+from mhri.robots.gui.remove_steps import SETTLED_S  # noqa: E402
 from support.graph import STICK  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 

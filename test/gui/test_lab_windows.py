@@ -7,16 +7,16 @@ import sys
 import pytest
 from python_qt_binding.QtWidgets import QApplication, QDialog
 
-from mhri.core.screen import views
-from mhri.core.screen.views import RobotView
-from mhri.gui.screen.window_maker import import_window, WindowMaker
-from mhri.gui.screen.windows import TurtleBotWindow
-from mhri.presenters.screen_host import ScreenHost
-from mhri.ros.screen.backend import ScreenBackend
+from mhri.base import views
+from mhri.base.views import RobotView
+from mhri.screen.gui.window_maker import import_window, WindowMaker
+from mhri.screen.gui.windows import TurtleBotWindow
+from mhri.screen.presenters.screen_host import ScreenHost
+from mhri.screen.ros.backend import ScreenBackend
 
 MODULE = '''
-from mhri.gui.screen.bot_window import BotWindow
-from mhri.gui.screen.windows import TurtleBotWindow
+from mhri.screen.gui.bot_window import BotWindow
+from mhri.screen.gui.windows import TurtleBotWindow
 
 NOT_A_CLASS = 3
 
@@ -106,9 +106,9 @@ def test_a_window_of_a_lab(operator, ui_dir):
     ('lab_robot.no_such_module.X', "(ModuleNotFoundError: No module named 'lab_robot.no_such_mod"),
     ('no_such_package.window.X', "cannot be imported (ModuleNotFoundError: No module named 'no_su"),
     ('lab_robot.slip.Half', '(SyntaxError: '), ('lab_robot.quits.X', '(ZeroDivisionError: '),
-    ('lab_robot.window.NOT_A_CLASS', 'is no subclass of mhri.gui.screen.bot_window.BotWindow'),
+    ('lab_robot.window.NOT_A_CLASS', 'is no subclass of mhri.screen.gui.bot_window.BotWindow'),
     ('python_qt_binding.QtWidgets.QDialog',
-     'is no subclass of mhri.gui.screen.bot_window.BotWindow'),
+     'is no subclass of mhri.screen.gui.bot_window.BotWindow'),
     ('lab_robot.window.FailsToBuild', "cannot be opened (KeyError: 'wheel')"),
     ('lab_robot.exits.X', '(SystemExit: '),
     ('lab_robot.window.ExitsAtOnce', 'cannot be opened (SystemExit: '),

@@ -15,10 +15,10 @@ from python_qt_binding.QtWidgets import QAbstractButton, QPushButton, QWidget
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.gui.driving.stop_button import StopButton  # noqa: E402
-from mhri.gui.screen import theme  # noqa: E402
-from mhri.gui.screen.labels import Pill, TextLine  # noqa: E402
-from mhri.gui.screen.torn_off import TornOff  # noqa: E402
+from mhri.base.gui import theme  # noqa: E402
+from mhri.base.gui.labels import Pill, TextLine  # noqa: E402
+from mhri.driving.gui.stop_button import StopButton  # noqa: E402
+from mhri.screen.gui.torn_off import TornOff  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.scenes import colour_at, KINDS  # noqa: E402
 

@@ -10,16 +10,16 @@ from python_qt_binding.QtGui import QColor, QPalette, QWheelEvent
 from python_qt_binding.QtWidgets import QApplication, QPushButton
 from support.maps import BOT1, BOT2, drag, LOOSE, map_pane, move, pixel, SCENE
 
-from mhri.core.map.canvas import Canvas, place_words
-from mhri.core.map.grid import Grid
-from mhri.core.map.scene import Goal, MapMark, MapRobot, Scene
-from mhri.core.map.trail import GOOD, LOST, Trail
-from mhri.core.robots.mocap import Pose
-from mhri.gui.map.map_canvas import MapCanvas
-from mhri.gui.map.map_paint import hue_of
-from mhri.gui.map.map_pane import MapPane
-from mhri.gui.map.map_strip import NOBODY_SAYS
-from mhri.gui.screen import theme
+from mhri.base.gui import theme
+from mhri.base.mocap import Pose
+from mhri.map.canvas import Canvas, place_words
+from mhri.map.grid import Grid
+from mhri.map.gui.map_canvas import MapCanvas
+from mhri.map.gui.map_paint import hue_of
+from mhri.map.gui.map_pane import MapPane
+from mhri.map.gui.map_strip import NOBODY_SAYS
+from mhri.map.scene import Goal, MapMark, MapRobot, Scene
+from mhri.map.trail import GOOD, LOST, Trail
 
 
 @pytest.fixture

@@ -10,11 +10,11 @@ from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication, QMenu, QPushButton
 from support.maps import BOT1, BOT2, click, drag, map_pane, pixel
 
-from mhri.core.map import gesture
-from mhri.core.map.scene import MapMark, MapRobot, Scene
-from mhri.core.robots.mocap import Pose
-from mhri.gui.map.map_pane import NOBODY, TOOLS
-from mhri.gui.screen import theme
+from mhri.base.gui import theme
+from mhri.base.mocap import Pose
+from mhri.map import gesture
+from mhri.map.gui.map_pane import NOBODY, TOOLS
+from mhri.map.scene import MapMark, MapRobot, Scene
 
 
 @pytest.fixture

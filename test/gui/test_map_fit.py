@@ -14,8 +14,8 @@ from python_qt_binding.QtWidgets import QApplication
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.gui.screen.pending import Pace  # noqa: E402
-from mhri.gui.screen.stage import MAP_LARGE  # noqa: E402
+from mhri.base.gui.pending import Pace  # noqa: E402
+from mhri.screen.gui.stage import MAP_LARGE  # noqa: E402
 from support.maps import drag  # noqa: E402
 from support.panel_session import PanelSession  # noqa: E402
 

@@ -9,16 +9,16 @@ import pytest
 from python_qt_binding.QtCore import Qt
 from support.maps import click, drag, pixel
 
-from mhri.core.map import gesture
-from mhri.core.map.scene import Placing, PlacesView, UnderWay
-from mhri.core.map.tf_tree import OdometryFrames
-from mhri.core.robots.mocap import Pose
-from mhri.core.screen import views
-from mhri.core.screen.saved_state import usable_state
-from mhri.gui.screen import theme
-from mhri.gui.screen.stage import MAP_BESIDE, MAP_CLOSED, MAP_LARGE
-from mhri.gui.screen.windows import TurtleBotWindow
-from mhri.presenters.map_host import MapHost
+from mhri.base import views
+from mhri.base.gui import theme
+from mhri.base.mocap import Pose
+from mhri.base.tf_tree import OdometryFrames
+from mhri.map import gesture
+from mhri.map.scene import PlacesView, Placing, UnderWay
+from mhri.screen.gui.stage import MAP_BESIDE, MAP_CLOSED, MAP_LARGE
+from mhri.screen.gui.windows import TurtleBotWindow
+from mhri.screen.presenters.map_host import MapHost
+from mhri.screen.saved_state import usable_state
 
 KIND = SimpleNamespace(radius_m=0.2, scan=())
 

@@ -12,8 +12,8 @@ from python_qt_binding.QtTest import QTest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.map import gesture  # noqa: E402
-from mhri.gui.screen.stage import MAP_CLOSED, MAP_LARGE  # noqa: E402
+from mhri.map import gesture  # noqa: E402
+from mhri.screen.gui.stage import MAP_CLOSED, MAP_LARGE  # noqa: E402
 from support.maps import click, drag  # noqa: E402
 from support.panel_session import PanelSession  # noqa: E402
 

@@ -11,11 +11,11 @@ from python_qt_binding.QtWidgets import QAbstractButton, QPushButton, QVBoxLayou
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.screen.views import GONE  # noqa: E402
-from mhri.gui.look.hud import Hud  # noqa: E402
-from mhri.gui.screen import theme  # noqa: E402
-from mhri.gui.screen.labels import TextLine  # noqa: E402
-from mhri.gui.screen.status_line import StatusLine  # noqa: E402
+from mhri.base.gui import theme  # noqa: E402
+from mhri.base.gui.labels import TextLine  # noqa: E402
+from mhri.base.views import GONE  # noqa: E402
+from mhri.screen.gui.hud import Hud  # noqa: E402
+from mhri.screen.gui.status_line import StatusLine  # noqa: E402
 from support.scenes import colour_at, pixels_of  # noqa: E402
 
 SMALL, LARGE = (1280, 720), (1920, 1080)

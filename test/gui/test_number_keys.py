@@ -8,7 +8,7 @@ import types
 import pytest
 from python_qt_binding.QtWidgets import QApplication
 
-from mhri.presenters.settings_file import SettingsFile
+from mhri.screen.presenters.settings_file import SettingsFile
 from mhri.standalone import Standalone
 from support.ros_system import wait_for
 

@@ -12,12 +12,12 @@ from python_qt_binding.QtWidgets import QApplication
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.devices.calibration_page import CalibrationView  # noqa: E402
-from mhri.core.driving.profile import parse_profile  # noqa: E402
-from mhri.core.screen.views import DeviceView, PanelView  # noqa: E402
-from mhri.gui.devices.pad_calibration import NO_PAD, PadCalibration  # noqa: E402
-from mhri.gui.screen.screen import ScreenWidget  # noqa: E402
-from mhri.presenters import pad_host  # noqa: E402
+from mhri.base.views import DeviceView, PanelView  # noqa: E402
+from mhri.devices.calibration_page import CalibrationView  # noqa: E402
+from mhri.devices.gui.pad_calibration import NO_PAD, PadCalibration  # noqa: E402
+from mhri.devices.profile import parse_profile  # noqa: E402
+from mhri.screen.gui.screen import ScreenWidget  # noqa: E402
+from mhri.screen.presenters import pad_host  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.virtual_pad import missing, pad_command, PadClient  # noqa: E402
 
@@ -56,7 +56,7 @@ class Desk:
         self.screen.resize(1280, 720)
         path = str(folder / 'socket')
         self.host = pad_host.PadHost(self.robots, self.screen,
-                                     pad_command(path, 'mhri.inputs.pad_stream'))
+                                     pad_command(path, 'mhri.devices.io.pad_stream'))
         self.page = self.host.page
         operator.show(self.screen)
         self.pads = None

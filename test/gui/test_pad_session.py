@@ -8,8 +8,8 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.presenters import pad_host  # noqa: E402
-from mhri.presenters.demo import Grip  # noqa: E402
+from mhri.screen.presenters import pad_host  # noqa: E402
+from mhri.screen.presenters.demo import Grip  # noqa: E402
 from support.kernel_pads import F710, plug  # noqa: E402
 from support.panel_session import PanelSession  # noqa: E402
 from support.virtual_pad import missing, pad_command, PadClient, PadProcess  # noqa: E402

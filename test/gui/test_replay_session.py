@@ -11,7 +11,7 @@ from python_qt_binding.QtWidgets import QApplication
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.gui.session.time_line import NOTHING_DRIVES  # noqa: E402
+from mhri.session.gui.time_line import NOTHING_DRIVES  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
 PATIENCE_S = 120.0
@@ -145,7 +145,7 @@ def test_keys_go_to_the_next_mark_and_change_the_speed(replay):
 
 def test_no_velocity_topic_exists(replay):
     import rosgraph
-    from mhri.core.session.foreign import VELOCITY_TYPES
+    from mhri.session.foreign import VELOCITY_TYPES
     master = rosgraph.Master('/test')
     types = dict(master.getTopicTypes())
     published = [name for name, _ in master.getSystemState()[0]]

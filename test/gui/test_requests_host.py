@@ -95,7 +95,7 @@ def test_record_selected_records_each_and_says_how_it_ended(session, ask):
 
 def test_commands_of_the_robot_itself_are_recorded_where_asked_for(session):
     """Whoever merely listens to the robot's velocity topic changes nothing."""
-    from mhri.presenters.demo import Grip
+    from mhri.screen.presenters.demo import Grip
     from rosbag import Bag
     name = 'bot1'
     session.host._select([name])

@@ -3,8 +3,8 @@
 """How several recordings ended, in the few words that fit beside a button."""
 import pytest
 
-from mhri.core.recording.recording import fallback_note, RecordingStatus
-from mhri.presenters.requests_host import short_ends
+from mhri.recording.recording import fallback_note, RecordingStatus
+from mhri.screen.presenters.requests_host import short_ends
 
 SAVED = RecordingStatus('ended', note='saved 21 messages, 4 kB: /ros/a.bag')
 ELSEWHERE = RecordingStatus('ended', note='{}; saved 21 messages, 4 kB: /ros/a.bag'.format(

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from python_qt_binding.QtWidgets import QWidget
 
-from mhri.core.sensors.point_cloud import Cloud
-from mhri.gui.sensors.cloud_view import CloudView
-from mhri.presenters import rviz_cloud
+from mhri.screen.presenters import rviz_cloud
+from mhri.sensors.gui.cloud_view import CloudView
+from mhri.sensors.point_cloud import Cloud
 
 CLOUD = Cloud(np.ones((5, 3), 'f4'), frame_id='laser', sent=5)
 

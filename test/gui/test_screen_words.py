@@ -8,7 +8,7 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.robots.link import Motion  # noqa: E402
+from mhri.robots.link import Motion  # noqa: E402
 from support.screen_words import (  # noqa: E402
     differences, event_differences, framed, words_of_motion)
 

@@ -207,7 +207,7 @@ def read_at(session, picture, reader, x, y):
 
 
 def test_the_distance_under_the_cursor_is_that_of_the_plan(session, lens, sight):
-    from mhri.gui.screen import theme
+    from mhri.base.gui import theme
     window = session.open('bot1')
     picture = session.picture(window, 'depth')
     # As the key H does: the numbers of the robot lie where a distance has to be read.
@@ -237,7 +237,7 @@ class YawChart:
     """Reads the odometry's curve of the yaw rate off the screen."""
 
     def __init__(self, session, graph):
-        from mhri.gui.screen import theme
+        from mhri.base.gui import theme
         self._session = session
         self._chart = graph.charts[1]
         dark = theme.is_dark(graph.palette())
@@ -296,7 +296,7 @@ def test_a_person_in_the_way_and_a_silent_laser_are_seen_in_the_numbers(session,
 
 
 def test_the_graph_moves_when_the_robot_turns(session):
-    from mhri.presenters.demo import Grip
+    from mhri.screen.presenters.demo import Grip
     from support.robots import Witness
     witness = Witness('bot2')
     window = session.open('bot2')

@@ -7,7 +7,7 @@ import os
 import pytest
 from test_keyboard_session import ROBOTS, Session
 
-from mhri.core.session.folder import marks_of, read_events
+from mhri.recording.folder import marks_of, read_events
 from support.graph import STICK
 
 

@@ -14,12 +14,12 @@ from python_qt_binding.QtWidgets import QApplication
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.gui.screen.screen import ScreenWidget  # noqa: E402
-from mhri.gui.screen import theme  # noqa: E402
-from mhri.gui.screen.tile_header import REPLAY  # noqa: E402
-from mhri.presenters.session_host import ShelfHost  # noqa: E402
-from mhri.ros.resources import resource_path  # noqa: E402
-from mhri.ros.session.session_shelf import SessionShelf  # noqa: E402
+from mhri.base.gui import theme  # noqa: E402
+from mhri.graph.ros.resources import resource_path  # noqa: E402
+from mhri.screen.gui.screen import ScreenWidget  # noqa: E402
+from mhri.screen.gui.tile_header import REPLAY  # noqa: E402
+from mhri.screen.presenters.session_host import ShelfHost  # noqa: E402
+from mhri.session.ros.session_shelf import SessionShelf  # noqa: E402
 from support import made_session  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 from support.windows import close, times_written, windows_called  # noqa: E402

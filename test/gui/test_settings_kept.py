@@ -9,8 +9,8 @@ import pytest
 from python_qt_binding.QtCore import QRect
 from python_qt_binding.QtWidgets import QApplication, QWidget
 
-from mhri.gui.screen.geometry import geometry_of, restore_geometry
-from mhri.presenters.settings_file import SettingsFile, UNUSABLE
+from mhri.base.gui.geometry import geometry_of, restore_geometry
+from mhri.screen.presenters.settings_file import SettingsFile, UNUSABLE
 from mhri.standalone import Standalone
 
 GOOD = {'robots': ['bot1'], 'mode': 'pedal'}

@@ -16,8 +16,8 @@ PROGRAM = '''
 import json, sys, types
 from python_qt_binding.QtCore import QPoint, Qt
 from python_qt_binding.QtWidgets import QApplication
-from mhri.gui.screen import theme
-from mhri.gui.screen.torn_off import TornOff
+from mhri.base.gui import theme
+from mhri.screen.gui.torn_off import TornOff
 from mhri.standalone import MainWindow
 from support.scenes import Scene
 application = QApplication(['mhri-test', '-style', 'Fusion'])

@@ -9,11 +9,11 @@ import pytest
 from python_qt_binding.QtGui import QFontMetricsF
 from python_qt_binding.QtWidgets import QApplication, QPushButton, QVBoxLayout, QWidget
 
-from mhri.gui.screen import theme
-from mhri.gui.screen.stale_cover import OLD_AFTER_S, SLIP_SHOWN_S, StaleCover
-from mhri.presenters.draw_guard import DrawGuard
-from mhri.presenters.screen_host import ScreenHost
-from mhri.ros.screen.backend import ScreenBackend
+from mhri.base.gui import theme
+from mhri.screen.gui.stale_cover import OLD_AFTER_S, SLIP_SHOWN_S, StaleCover
+from mhri.screen.presenters.draw_guard import DrawGuard
+from mhri.screen.presenters.screen_host import ScreenHost
+from mhri.screen.ros.backend import ScreenBackend
 
 
 class Clock:

@@ -8,13 +8,13 @@ import pytest
 from python_qt_binding.QtCore import QEvent
 from python_qt_binding.QtWidgets import QLineEdit, QScrollArea, QVBoxLayout, QWidget
 
-from mhri.gui.driving.stop_button import stop_places, StopButton
-from mhri.gui.driving.x_presses import XError, XPresses
+from mhri.driving.gui.stop_button import stop_places, StopButton
+from mhri.driving.gui.x_presses import XError, XPresses
 from support.ros_system import wait_for
 
 SCALED = '''
 from python_qt_binding.QtWidgets import QApplication
-from mhri.gui.driving.stop_button import stop_places, StopButton
+from mhri.driving.gui.stop_button import stop_places, StopButton
 app = QApplication(['scaled'])
 button = StopButton()
 button.resize(200, 100)

@@ -9,12 +9,12 @@ from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication, QDialog, QMenu, QToolTip
 from support.maps import BOT1, BOT2, pixel
 
-from mhri.core.map.scene import MapMark, Scene
-from mhri.core.robots.mocap import Pose
-from mhri.gui.map.map_pane import MapPane
-from mhri.gui.screen import theme
-from mhri.gui.screen.stage import MAP_LARGE
-from mhri.gui.screen.windows import TurtleBotWindow
+from mhri.base.gui import theme
+from mhri.base.mocap import Pose
+from mhri.map.gui.map_pane import MapPane
+from mhri.map.scene import MapMark, Scene
+from mhri.screen.gui.stage import MAP_LARGE
+from mhri.screen.gui.windows import TurtleBotWindow
 
 SCENE = Scene(robots=(BOT1, BOT2), marks=(MapMark('dock', Pose(0.5, 1.0, 0.0)),),
               fence=((-1.0, -1.0), (3.0, -1.0), (3.0, 2.0)))
@@ -23,7 +23,7 @@ SCENE = Scene(robots=(BOT1, BOT2), marks=(MapMark('dock', Pose(0.5, 1.0, 0.0)),)
 @pytest.fixture
 def on_map(application, operator, ui_dir):
     """Return a maker of screens that show the map large, on a monitor of the screen's size."""
-    from mhri.gui.screen.screen import ScreenWidget
+    from mhri.screen.gui.screen import ScreenWidget
     before, made = application.font(), []
 
     def make(size, font):

@@ -10,16 +10,16 @@ import time
 import psutil
 import pytest
 
-from mhri.gui.driving.stop_button import stop_places, StopButton
-from mhri.presenters import stop_watch
-from mhri.presenters.stop_watch import StopWatch
+from mhri.driving.gui.stop_button import stop_places, StopButton
+from mhri.screen.presenters import stop_watch
+from mhri.screen.presenters.stop_watch import StopWatch
 
 NOBODY = 'http://127.0.0.1:9'
 WITHOUT_X = '''
 from python_qt_binding.QtCore import QTimer
 from python_qt_binding.QtWidgets import QApplication
 import rospy
-from mhri.presenters.stop_watch import StopWatch
+from mhri.screen.presenters.stop_watch import StopWatch
 app = QApplication(['offscreen'])
 rospy.logwarn = lambda *words: print(words[0] % words[1:])
 watch = StopWatch('http://127.0.0.1:9')

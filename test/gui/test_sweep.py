@@ -13,20 +13,20 @@ from python_qt_binding.QtWidgets import (
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.doctor.facts import Finding, WARNING  # noqa: E402
-from mhri.core.events.events import ALARM, Headline  # noqa: E402
-from mhri.core.screen.task_views import FieldView, KindView, TasksView  # noqa: E402
-from mhri.core.screen.views import ControlView, LinkFigures  # noqa: E402
-from mhri.core.session.view import SessionView  # noqa: E402
-from mhri.gui.devices.pad_calibration import PadCalibration  # noqa: E402
-from mhri.gui.doctor.doctor_page import DoctorPage  # noqa: E402
-from mhri.gui.drill.faults_page import FaultsPage  # noqa: E402
-from mhri.gui.events.event_list import EventList  # noqa: E402
-from mhri.gui.screen.labels import TextLine  # noqa: E402
-from mhri.gui.session.note_bar import NoteBar  # noqa: E402
-from mhri.gui.session.record_button import RecordButton  # noqa: E402
-from mhri.gui.session.time_line import TimeLineBar  # noqa: E402
-from mhri.gui.tasks.tasks_page import TasksPage  # noqa: E402
+from mhri.base.gui.labels import TextLine  # noqa: E402
+from mhri.base.task_views import FieldView, KindView, TasksView  # noqa: E402
+from mhri.base.views import ControlView, LinkFigures  # noqa: E402
+from mhri.devices.gui.pad_calibration import PadCalibration  # noqa: E402
+from mhri.doctor.facts import Finding, WARNING  # noqa: E402
+from mhri.doctor.gui.doctor_page import DoctorPage  # noqa: E402
+from mhri.drill.gui.faults_page import FaultsPage  # noqa: E402
+from mhri.events.events import ALARM, Headline  # noqa: E402
+from mhri.events.gui.event_list import EventList  # noqa: E402
+from mhri.session.gui.note_bar import NoteBar  # noqa: E402
+from mhri.session.gui.record_button import RecordButton  # noqa: E402
+from mhri.session.gui.time_line import TimeLineBar  # noqa: E402
+from mhri.session.view import SessionView  # noqa: E402
+from mhri.tasks.gui.tasks_page import TasksPage  # noqa: E402
 from support.scenes import pixels_of  # noqa: E402
 
 TARGETS = (QAbstractButton, QAbstractSlider, QAbstractSpinBox, QComboBox, QLineEdit, QTabBar)

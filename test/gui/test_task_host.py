@@ -7,10 +7,10 @@ import types
 import pytest
 from python_qt_binding.QtCore import Qt
 
-from mhri.core.driving.selection import Selection
-from mhri.core.screen.task_book import Goal, News
-from mhri.core.screen.task_views import KindView, TasksView, TaskView
-from mhri.presenters.task_host import FREE_S, SETTLE_S, STRANGER_S, TaskHost
+from mhri.base.task_views import KindView, TasksView, TaskView
+from mhri.driving.selection import Selection
+from mhri.screen.presenters.task_host import FREE_S, SETTLE_S, STRANGER_S, TaskHost
+from mhri.tasks.task_book import Goal, News
 
 SQUARE = Goal('square', ('bot2',), '{side: 1.0}')
 THERE = TasksView(kinds=(KindView('square', 'Square'),))

@@ -9,7 +9,7 @@ from python_qt_binding.QtWidgets import QPushButton
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.gui.screen.pending import Pace  # noqa: E402
+from mhri.base.gui.pending import Pace  # noqa: E402
 from support.panel_session import PanelSession  # noqa: E402
 
 PATIENCE_S = 120.0

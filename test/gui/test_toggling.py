@@ -159,7 +159,7 @@ class Decodings:
     """Counts the pictures that are really decoded."""
 
     def __init__(self, monkeypatch):
-        from mhri.ros.camera import camera_decoder
+        from mhri.camera.ros import camera_decoder
         self.count = 0
         self._real = camera_decoder.read_picture
         monkeypatch.setattr(camera_decoder, 'read_picture', self._read)

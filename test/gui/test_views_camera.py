@@ -12,12 +12,12 @@ from python_qt_binding.QtGui import QMouseEvent
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication
 
-from mhri.core.camera.depth_colour import DepthColour
-from mhri.core.camera.images import DEPTH, Frame, RGB, StreamStatus
-from mhri.gui.screen import theme
-from mhri.gui.camera.camera_view import (
+from mhri.base.gui import theme
+from mhri.camera.depth_colour import DepthColour
+from mhri.camera.gui.camera_view import (
     bandwidth_text, CameraView, still_name, stream_text, stream_warning)
-from mhri.gui.camera.picture import distance_text, titles
+from mhri.camera.gui.picture import distance_text, titles
+from mhri.camera.images import DEPTH, Frame, RGB, StreamStatus
 
 LIVE = StreamStatus('jpeg', 29.9, 0.041, 6.4e6, 100)
 

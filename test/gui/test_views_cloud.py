@@ -13,14 +13,13 @@ from python_qt_binding.QtWidgets import QApplication
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.camera.images import StreamStatus  # noqa: E402
-from mhri.core.sensors.cloud_picture import (  # noqa: E402
-    COLOUR, DISTANCE, GROUND, HEIGHT)
-from mhri.core.sensors.orbit import Orbit, projected  # noqa: E402
-from mhri.core.sensors.point_cloud import Cloud  # noqa: E402
-from mhri.gui.driving.drive_keys import DriveKeys, mark_drive_area  # noqa: E402
-from mhri.gui.sensors.cloud_canvas import MOST_PIXELS, number_text  # noqa: E402
-from mhri.gui.sensors.cloud_view import CloudView, points_text  # noqa: E402
+from mhri.camera.images import StreamStatus  # noqa: E402
+from mhri.driving.gui.drive_keys import DriveKeys, mark_drive_area  # noqa: E402
+from mhri.sensors.cloud_picture import COLOUR, DISTANCE, GROUND, HEIGHT  # noqa: E402
+from mhri.sensors.gui.cloud_canvas import MOST_PIXELS, number_text  # noqa: E402
+from mhri.sensors.gui.cloud_view import CloudView, points_text  # noqa: E402
+from mhri.sensors.orbit import Orbit, projected  # noqa: E402
+from mhri.sensors.point_cloud import Cloud  # noqa: E402
 from support.clouds import room  # noqa: E402
 
 RED = 0xffff0000

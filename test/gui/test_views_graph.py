@@ -8,9 +8,9 @@ import pytest
 from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtGui import QColor, QPalette
 
-from mhri.core.sensors.series import BinRing, IMU_KEYS, ODOMETRY_KEYS, Series
-from mhri.gui.screen import theme
-from mhri.gui.sensors.imu_graph import CHOICES, ImuGraph, WINDOWS_S
+from mhri.base.gui import theme
+from mhri.base.series import BinRing, IMU_KEYS, ODOMETRY_KEYS, Series
+from mhri.sensors.gui.imu_graph import CHOICES, ImuGraph, WINDOWS_S
 
 NOW = 900.0
 

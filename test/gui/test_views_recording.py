@@ -8,9 +8,9 @@ from python_qt_binding.QtCore import QEvent, Qt
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication, QLineEdit
 
-from mhri.core.recording.recording import RecordingStatus
-from mhri.gui.screen import theme
-from mhri.gui.recording.recording_row import clock_text, recording_text, RecordingRow
+from mhri.base.gui import theme
+from mhri.recording.gui.recording_row import clock_text, recording_text, RecordingRow
+from mhri.recording.recording import RecordingStatus
 
 PATH = '/home/op/.ros/bot1_2026-11-21-14-02-11.bag'
 

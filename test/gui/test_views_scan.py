@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from mhri.gui.screen import theme
-from mhri.gui.sensors.scan_view import reach_for, scan_points, ScanView
+from mhri.base.gui import theme
+from mhri.sensors.gui.scan_view import reach_for, scan_points, ScanView
 
 
 def scan_of(bearings_deg, range_m):

@@ -6,8 +6,8 @@ from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QAbstractButton
 
-from mhri.gui.driving.drive_keys import DriveKeys
-from mhri.gui.screen.windows import TurtleBotWindow
+from mhri.driving.gui.drive_keys import DriveKeys
+from mhri.screen.gui.windows import TurtleBotWindow
 
 ALL = frozenset(('imu', 'rgb', 'depth', 'cloud', 'scan', 'record'))
 

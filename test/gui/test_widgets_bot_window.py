@@ -9,17 +9,17 @@ from python_qt_binding.QtCore import QPoint, Qt
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QWidget
 
-from mhri.core.camera.depth_colour import DepthColour
-from mhri.core.camera.images import DEPTH, Frame
-from mhri.core.recording.recording import RECORDING, RecordingStatus
-from mhri.core.screen import views
-from mhri.core.screen.views import ProofView, RobotView
-from mhri.gui.driving.stop_bar import CUT_OFF
-from mhri.gui.screen import theme
-from mhri.gui.screen.bot_window import BotWindow
-from mhri.gui.look.hud import hud_lines
-from mhri.gui.screen.torn_off import TornOff
-from mhri.gui.screen.windows import TurtleBotWindow, window_class
+from mhri.base import views
+from mhri.base.gui import theme
+from mhri.base.views import ProofView, RobotView
+from mhri.camera.depth_colour import DepthColour
+from mhri.camera.images import DEPTH, Frame
+from mhri.driving.gui.stop_bar import CUT_OFF
+from mhri.recording.recording import RECORDING, RecordingStatus
+from mhri.screen.gui.bot_window import BotWindow
+from mhri.screen.gui.hud import hud_lines
+from mhri.screen.gui.torn_off import TornOff
+from mhri.screen.gui.windows import TurtleBotWindow, window_class
 
 VIEW = RobotView('bot1', 'TurtleBot2', link=views.LIVE, age_s=0.012, linear_mps=0.31,
                  angular_rad_s=0.2, heading_rad=0.82, x_m=1.25, y_m=-0.4, battery=0.82,

@@ -7,9 +7,9 @@ from python_qt_binding.QtGui import QMouseEvent, QWheelEvent
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication
 
-from mhri.core.screen.views import DeviceView
-from mhri.gui.driving.mode_combo import ModeCombo
-from mhri.gui.driving.speed_limits import SpeedLimits
+from mhri.base.views import DeviceView
+from mhri.driving.gui.mode_combo import ModeCombo
+from mhri.driving.gui.speed_limits import SpeedLimits
 
 SOURCES = (('joy', 'Virtual joystick'), ('ps3joy', 'PS3 Controller'), ('voice', 'Voice'))
 

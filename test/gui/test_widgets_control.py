@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from python_qt_binding.QtCore import Qt
 
-from mhri.core.screen.views import ControlView
+from mhri.base.views import ControlView
 
 WHO = 'panel on lab-pc2 since 14:02'
 

@@ -4,8 +4,8 @@
 import pytest
 from python_qt_binding.QtGui import QGuiApplication
 
-from mhri.core.doctor.facts import FAULT, FINE, Finding, WARNING
-from mhri.gui.doctor.doctor_page import DoctorPage
+from mhri.doctor.facts import FAULT, Finding, FINE, WARNING
+from mhri.doctor.gui.doctor_page import DoctorPage
 
 FOUND = [
     Finding(FAULT, 'dead_node', '/bot1/base', 'is registered, but refuses connections',

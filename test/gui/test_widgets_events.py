@@ -7,13 +7,13 @@ import pytest
 from python_qt_binding.QtCore import QPoint, Qt
 from python_qt_binding.QtTest import QTest
 
-from mhri.core.recording.recording import FAILED, RecordingStatus
-from mhri.core.screen import views
-from mhri.core.events.events import ALARM, CALM, clock_text, EventLog, Headline, MOST
-from mhri.core.screen.views import PanelView, RobotView
-from mhri.gui.events.event_button import EventButton, SEVERITY_SIGNS
-from mhri.gui.events.event_list import EventList, ROBOT, SEVERITY, TIME, WHAT
-from mhri.presenters.event_host import EventHost
+from mhri.base import views
+from mhri.base.views import PanelView, RobotView
+from mhri.events.events import ALARM, CALM, clock_text, EventLog, Headline, MOST
+from mhri.events.gui.event_button import EventButton, SEVERITY_SIGNS
+from mhri.events.gui.event_list import EventList, ROBOT, SEVERITY, TIME, WHAT
+from mhri.recording.recording import FAILED, RecordingStatus
+from mhri.screen.presenters.event_host import EventHost
 
 WALL_S = 1.8e9
 NOTES = (('drive.checked', 'checked', 'bot1'), ('link.lost', 'lost while driven: silent', 'bot2'),

@@ -4,11 +4,11 @@
 import pytest
 from python_qt_binding.QtWidgets import QAbstractButton, QWidget
 
-from mhri.core.drill.faults import FAULTS
-from mhri.core.screen.views import LIVE, PanelView, RobotView
-from mhri.gui.doctor.doctor_page import DoctorPage
-from mhri.gui.drill.faults_page import FaultsPage, FOR_S
-from mhri.presenters.fault_host import FaultHost
+from mhri.base.views import LIVE, PanelView, RobotView
+from mhri.doctor.gui.doctor_page import DoctorPage
+from mhri.drill.gui.faults_page import FaultsPage, FOR_S
+from mhri.screen.presenters.fault_host import FaultHost
+from mhri.sim.faults import FAULTS
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from python_qt_binding.QtGui import QFocusEvent, QMouseEvent
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication, QWidget
 
-from mhri.gui.driving.virtual_joystick import VirtualJoystick, deflection_of
+from mhri.driving.gui.virtual_joystick import deflection_of, VirtualJoystick
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ from python_qt_binding.QtCore import QRect, Qt
 from python_qt_binding.QtGui import QKeySequence
 from python_qt_binding.QtWidgets import QApplication
 
-from mhri.gui.driving.drive_keys import COMMANDS
-from mhri.gui.driving.key_help import COMMAND_WORDS, KEY_ROWS, TITLE
+from mhri.driving.gui.drive_keys import COMMANDS
+from mhri.driving.gui.key_help import COMMAND_WORDS, KEY_ROWS, TITLE
 
 W, SPACE = 25, 65
 

@@ -8,10 +8,10 @@ from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import (
     QApplication, QLineEdit, QSpinBox, QSplitter, QTextEdit, QWidget)
 
-from mhri.gui.driving.drive_keys import DriveKeys, mark_drive_area
-from mhri.gui.screen.screen import ScreenWidget
-from mhri.gui.screen.torn_off import TornOff
-from mhri.gui.screen.windows import window_class
+from mhri.driving.gui.drive_keys import DriveKeys, mark_drive_area
+from mhri.screen.gui.screen import ScreenWidget
+from mhri.screen.gui.torn_off import TornOff
+from mhri.screen.gui.windows import window_class
 
 W, A, S, D, UP, LEFT, RIGHT, DOWN, SPACE, ONE, NINE, ZERO, SHIFT = (
     25, 38, 39, 40, 111, 113, 114, 116, 65, 10, 18, 19, 50)
@@ -66,7 +66,7 @@ def test_auto_repeat_is_not_a_press_nor_a_release(panel, operator, heard):
 
 
 class Keyboard:
-    """What a :class:`mhri.gui.driving.key_state.KeyState` knows."""
+    """What a :class:`mhri.driving.gui.key_state.KeyState` knows."""
 
     def __init__(self, *codes):
         self.codes = set(codes)

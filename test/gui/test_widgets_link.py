@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from mhri.core.screen import views
-from mhri.core.screen.views import LinkFigures, RobotView, StateView
-from mhri.gui.screen.state_line import StateLine
-from mhri.gui.screen.windows import window_class
+from mhri.base import views
+from mhri.base.views import LinkFigures, RobotView, StateView
+from mhri.screen.gui.state_line import StateLine
+from mhri.screen.gui.windows import window_class
 
 FIGURES = LinkFigures(0.012, -0.314, 0.07)
 VIEW = RobotView('bot1', 'TurtleBot2', link=views.LIVE, age_s=0.012, figures=FIGURES)

@@ -10,10 +10,10 @@ from python_qt_binding.QtGui import QColor, QPalette
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QAbstractButton, QComboBox, QLabel, QLineEdit
 
-from mhri.core.screen import views
-from mhri.core.screen.brake_view import BrakeView
-from mhri.gui.screen import theme
-from mhri.gui.screen.screen import ScreenWidget
+from mhri.base import views
+from mhri.base.brake_view import BrakeView
+from mhri.base.gui import theme
+from mhri.screen.gui.screen import ScreenWidget
 
 
 def test_buttons_and_fields_ask(panel, operator, heard, four_robots):
@@ -81,7 +81,7 @@ def test_escape_after_a_click_on_a_row_takes_its_highlight_away(panel, operator,
 
 
 def test_a_result_is_news_for_a_while(operator, ui_dir, monkeypatch):
-    monkeypatch.setattr('mhri.gui.screen.screen.RESULT_MS', 40)
+    monkeypatch.setattr('mhri.screen.gui.screen.RESULT_MS', 40)
     panel = operator.show(ScreenWidget(ui_dir))
     panel.show_look_result('looking', busy=True)
     QTest.qWait(80)

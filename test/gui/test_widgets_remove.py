@@ -7,8 +7,8 @@ import pytest
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication
 
-from mhri.gui.robots import remove_steps
-from mhri.gui.robots.remove_steps import KEEP, REMOVE
+from mhri.robots.gui import remove_steps
+from mhri.robots.gui.remove_steps import KEEP, REMOVE
 
 
 @pytest.fixture

@@ -7,14 +7,14 @@ import pytest
 from python_qt_binding.QtCore import QPoint, Qt
 from python_qt_binding.QtTest import QTest
 
-from mhri.core.robots.owners import ASK_FOR, TAKE_IT
-from mhri.core.screen import views
-from mhri.core.screen.gate_words import also_words, LIMIT_RAISED, NOT_ALONE, STANDS_WORDS
-from mhri.core.screen.views import ProofView, RobotView
-from mhri.gui.robots.robot_list import RobotList
-from mhri.gui.robots.robot_row import DRIVING, MOVING, RobotRow
-from mhri.gui.screen import theme
-from mhri.gui.screen.labels import BatteryLine
+from mhri.base import views
+from mhri.base.gui import theme
+from mhri.base.gui.labels import BatteryLine
+from mhri.base.views import ProofView, RobotView
+from mhri.robots.gate_words import also_words, LIMIT_RAISED, NOT_ALONE, STANDS_WORDS
+from mhri.robots.gui.robot_list import RobotList
+from mhri.robots.gui.robot_row import DRIVING, MOVING, RobotRow
+from mhri.robots.owners import ASK_FOR, TAKE_IT
 
 LIVE = RobotView('bot1', 'TurtleBot2', link=views.LIVE, age_s=0.012, linear_mps=0.31,
                  angular_rad_s=-0.2, battery=0.82)

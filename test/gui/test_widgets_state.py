@@ -5,11 +5,11 @@ import math
 
 import pytest
 
-from mhri.core.robots.mocap import Drift, Pose
-from mhri.core.screen.views import LinkFigures, StateView
-from mhri.gui.screen import theme
-from mhri.gui.screen.state_line import age_phrase, capture_phrases, StateLine
-from mhri.gui.screen.windows import TurtleBotWindow
+from mhri.base.gui import theme
+from mhri.base.mocap import Drift, Pose
+from mhri.base.views import LinkFigures, StateView
+from mhri.screen.gui.state_line import age_phrase, capture_phrases, StateLine
+from mhri.screen.gui.windows import TurtleBotWindow
 
 
 FIGURES = LinkFigures(0.0124, -0.4, 0.07)

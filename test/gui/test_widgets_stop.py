@@ -5,9 +5,9 @@ import pytest
 from python_qt_binding.QtCore import QEvent, Qt
 from python_qt_binding.QtTest import QTest
 
-from mhri.core.screen.stop_words import StopWords
-from mhri.gui.driving import stop_bar
-from mhri.gui.driving.stop_bar import StopBar
+from mhri.driving.gui import stop_bar
+from mhri.driving.gui.stop_bar import StopBar
+from mhri.driving.stop_words import StopWords
 
 
 @pytest.fixture

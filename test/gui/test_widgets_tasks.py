@@ -8,12 +8,11 @@ import pytest
 from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtWidgets import QPushButton, QWidget
 
-from mhri.core.screen.task_views import (
-    FieldView, KindView, Progress, RunView, TasksView, TaskView)
-from mhri.core.screen.views import LIVE, RobotView
-from mhri.gui.screen import theme
-from mhri.gui.screen.bot_window import BotWindow
-from mhri.gui.tasks.tasks_page import NONE_UNDER_WAY, TasksPage
+from mhri.base.gui import theme
+from mhri.base.task_views import FieldView, KindView, Progress, RunView, TasksView, TaskView
+from mhri.base.views import LIVE, RobotView
+from mhri.screen.gui.bot_window import BotWindow
+from mhri.tasks.gui.tasks_page import NONE_UNDER_WAY, TasksPage
 
 KINDS = (
     KindView('goto', 'Go to', 'to a place', (

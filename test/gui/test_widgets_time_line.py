@@ -6,10 +6,10 @@ from python_qt_binding.QtCore import QPoint, Qt
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication, QLineEdit, QVBoxLayout, QWidget
 
-from mhri.core.session.folder import SessionEvent
-from mhri.core.session.timeline import read_time_line
-from mhri.gui.session.replay_keys import ReplayKeys
-from mhri.gui.session.time_line import PAUSE, PLAY, TimeLineBar
+from mhri.recording.folder import SessionEvent
+from mhri.session.gui.replay_keys import ReplayKeys
+from mhri.session.gui.time_line import PAUSE, PLAY, TimeLineBar
+from mhri.session.timeline import read_time_line
 
 START = 1.7e9
 

@@ -6,9 +6,9 @@ import math
 import pytest
 from python_qt_binding.QtGui import QFont, QFontDatabase, QFontMetrics
 
-from mhri.core.screen import views
-from mhri.gui.screen import theme, words
-from mhri.gui.screen.pending import Pace, Pending
+from mhri.base import views
+from mhri.base.gui import theme, words
+from mhri.base.gui.pending import Pace, Pending
 
 NAN = float('nan')
 

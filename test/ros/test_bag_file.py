@@ -12,8 +12,8 @@ import pytest
 import rosbag
 from std_msgs.msg import Empty, Int32, String
 
-from mhri.ros.recording import bag_file
-from mhri.ros.recording.bag_file import BagFile, Publisher
+from mhri.recording.ros import bag_file
+from mhri.recording.ros.bag_file import BagFile, Publisher
 
 S = 10 ** 9
 

@@ -13,12 +13,12 @@ import rospy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.session.folder import NotASession  # noqa: E402
+from mhri.graph.ros.messages import message_class, MessageMissing  # noqa: E402
+from mhri.link.ros.host_record import join  # noqa: E402
 from mhri.msg import LinkControl  # noqa: E402
-from mhri.ros.link.host_record import join  # noqa: E402
-from mhri.ros.messages import message_class, MessageMissing  # noqa: E402
-from mhri.ros.session.bag_set import open_session  # noqa: E402
-from mhri.ros.tasks.drives import DriveError, read_drive  # noqa: E402
+from mhri.recording.folder import NotASession  # noqa: E402
+from mhri.recording.ros.bag_set import open_session  # noqa: E402
+from mhri.tasks.ros.drives import DriveError, read_drive  # noqa: E402
 from support import evil_bag, made_session as made  # noqa: E402
 
 

@@ -4,8 +4,8 @@
 import threading
 from types import SimpleNamespace
 
-from mhri.ros.robots import bot_feeds
-from mhri.ros.worker import Worker
+from mhri.graph.ros.worker import Worker
+from mhri.robots.ros import bot_feeds
 
 PATIENCE_S = 20.0
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 import rospy
 
-from mhri.core.driving.brake import Scan
-from mhri.core.driving.limits import Velocity
-from mhri.ros.driving.brake_eye import BrakeEye
-from mhri.ros.resources import robot_types
+from mhri.base.limits import Velocity
+from mhri.driving.ros.brake_eye import BrakeEye
+from mhri.graph.ros.resources import robot_types
+from mhri.sensors.brake import Scan
 
 FAST = Velocity(0.5, 0.0)
 

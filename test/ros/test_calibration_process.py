@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from mhri.core.driving.profile import parse_profile
+from mhri.devices.profile import parse_profile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 

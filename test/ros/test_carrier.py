@@ -9,8 +9,8 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.link.carried import COMMAND, key_of  # noqa: E402
-from mhri.ros.link import carrier  # noqa: E402
+from mhri.link.carried import COMMAND, key_of  # noqa: E402
+from mhri.link.ros import carrier  # noqa: E402
 from support.ros_system import free_port, wait_for  # noqa: E402
 
 

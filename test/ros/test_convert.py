@@ -6,8 +6,8 @@ import math
 from nav_msgs.msg import Odometry
 import pytest
 
-from mhri.core.robots.link import Motion
-from mhri.ros.convert import motion_from_odometry
+from mhri.robots.link import Motion
+from mhri.robots.ros.convert import motion_from_odometry
 
 
 def test_odometry_keeps_all_three_velocities_and_the_pose():

@@ -11,8 +11,8 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.link.sealed import FORGED, GARBAGE, MOST_BYTES, REPLAYED, STRANGER  # noqa: E402
-from mhri.ros.link import datagrams  # noqa: E402
+from mhri.link.ros import datagrams  # noqa: E402
+from mhri.link.sealed import FORGED, GARBAGE, MOST_BYTES, REPLAYED, STRANGER  # noqa: E402
 from support.ros_system import free_port, wait_for  # noqa: E402
 
 pytest.importorskip('cryptography')

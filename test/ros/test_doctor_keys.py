@@ -11,10 +11,10 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.doctor.facts import (  # noqa: E402
+from mhri.doctor.facts import (  # noqa: E402
     ANSWERS, EARLY, KeysSeen, LinkNote, RUN_OUT, UNTIMELY, UNWELCOME)
-from mhri.ros.doctor.linked import LinkLook, taken  # noqa: E402
-from mhri.ros.link.carrier import Carrier  # noqa: E402
+from mhri.doctor.ros.linked import LinkLook, taken  # noqa: E402
+from mhri.link.ros.carrier import Carrier  # noqa: E402
 from support.ros_system import free_port  # noqa: E402
 
 x509 = pytest.importorskip('cryptography.x509')

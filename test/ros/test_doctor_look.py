@@ -9,10 +9,10 @@ from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
-from mhri.core.doctor.facts import ANSWERS, Connection, Facts, Node
-from mhri.ros.doctor import examination as doctor, files
-from mhri.ros.doctor.probe import _connections, Probe
-from mhri.ros.graph.master_api import MasterError
+from mhri.doctor.facts import ANSWERS, Connection, Facts, Node
+from mhri.doctor.ros import examination as doctor, files
+from mhri.doctor.ros.probe import _connections, Probe
+from mhri.graph.ros.master_api import MasterError
 
 TO = 'TCPROS connection on port 41374 to [{} on socket 6]'
 

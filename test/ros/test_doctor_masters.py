@@ -8,9 +8,9 @@ import time
 
 import pytest
 
-from mhri.core.doctor.facts import Computer
-from mhri.ros.doctor.masters import look_elsewhere, MOST, parse_uri, uris_in_use
-from mhri.ros.started import BELIEVED_S, started_s
+from mhri.doctor.facts import Computer
+from mhri.doctor.ros.masters import look_elsewhere, MOST, parse_uri, uris_in_use
+from mhri.graph.ros.started import BELIEVED_S, started_s
 
 COMPUTER = Computer(name='desk', addresses=('127.0.0.1', '192.0.2.1'),
                     resolved={'localhost': ('127.0.0.1',), 'desk': ('192.0.2.1',)})
@@ -45,7 +45,7 @@ def asked(monkeypatch, uri, uris):
     def api(_, __, other):
         calls.append(other)
         raise ValueError('none there')
-    monkeypatch.setattr('mhri.ros.doctor.masters.MasterApi', api)
+    monkeypatch.setattr('mhri.doctor.ros.masters.MasterApi', api)
     assert look_elsewhere(parse_uri(uri), COMPUTER, '/x', uris=uris) == ()
     return sorted(calls)
 
@@ -78,9 +78,9 @@ def master(muxes):
 
 def test_those_with_a_mux_that_runs_come_first(monkeypatch):
     one, two, three = (URI.format(port) for port in (1, 2, 3))
-    monkeypatch.setattr('mhri.ros.doctor.masters.MasterApi',
+    monkeypatch.setattr('mhri.doctor.ros.masters.MasterApi',
                         master({two: ['dead'], three: ['/mux']}))
-    monkeypatch.setattr('mhri.ros.doctor.masters.knock', lambda uris, _: {'/mux'} & set(uris))
+    monkeypatch.setattr('mhri.doctor.ros.masters.knock', lambda uris, _: {'/mux'} & set(uris))
     wrong = parse_uri(URI.format(11311))
     assert look_elsewhere(wrong, COMPUTER, '/x', uris=[one, two, three]) == (three, one, two)
     assert look_elsewhere(wrong, COMPUTER, '/x', True, [one, two, three]) == (three,)
@@ -94,7 +94,8 @@ def test_parse_uri(uri, words):
     assert bool(words) == bool(parse_uri(uri).uri_problem)
 
 
-TELL = 'import time; from mhri.ros.started import started_s; print(time.monotonic() - started_s())'
+TELL = ('import time; from mhri.graph.ros.started import started_s; '
+        'print(time.monotonic() - started_s())')
 
 
 def test_time_counts_from_the_start_of_the_program():

@@ -10,7 +10,7 @@ import rosbag
 import rospy
 from std_msgs.msg import String
 
-from mhri.ros.tasks.drives import DriveError, read_drive
+from mhri.tasks.ros.drives import DriveError, read_drive
 
 
 @pytest.fixture

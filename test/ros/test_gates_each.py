@@ -6,12 +6,12 @@ from types import SimpleNamespace
 import pytest
 import rospy
 
-from mhri.core.driving.gate import GateRule
-from mhri.core.driving.limits import ZERO
-from mhri.core.driving.settings import Settings
-from mhri.core.robots.robot_types import Limits
-from mhri.ros.driving import gates as module
-from mhri.ros.stand_by import Memory
+from mhri.base.limits import ZERO
+from mhri.base.robot_types import Limits
+from mhri.driving.gate import GateRule
+from mhri.driving.ros import gates as module
+from mhri.driving.settings import Settings
+from mhri.graph.ros.stand_by import Memory
 
 
 class Broken:

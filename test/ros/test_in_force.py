@@ -9,9 +9,9 @@ import pytest
 import rospy
 from std_msgs.msg import String
 
-from mhri.ros.driving import in_force
-from mhri.ros.driving.in_force import InForce, MOST_WAITING, Strangers
-from mhri.ros.graph.master_api import MasterError
+from mhri.graph.ros import in_force
+from mhri.graph.ros.in_force import InForce, MOST_WAITING, Strangers
+from mhri.graph.ros.master_api import MasterError
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 

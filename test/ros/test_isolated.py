@@ -11,11 +11,11 @@ import sys
 
 import pytest
 
-from mhri.core.voice.language import parse_language
-from mhri.inputs import child
-from mhri.inputs.audio import Microphone
-from mhri.inputs.reader import DeviceAbsent
-from mhri.inputs.voice import VoiceReader
+from mhri.devices.io import child
+from mhri.devices.io.reader import DeviceAbsent
+from mhri.voice.io.audio import Microphone
+from mhri.voice.io.voice import VoiceReader
+from mhri.voice.language import parse_language
 
 REPO = Path(__file__).resolve().parents[2]
 NAMES = ('argparse', 'fcntl', 'importlib', 'json', 'mhri', 'numpy', 'pocketsphinx', 'pyaudio',
@@ -70,7 +70,8 @@ def test_watch_of_stop(hostile, monkeypatch):
     screen.settimeout(60)
     with screen, end:
         process = subprocess.Popen(
-            child.command('mhri.presenters.stop_watch_process', 'http://127.0.0.1:9'), stdin=end)
+            child.command('mhri.screen.presenters.stop_watch_process', 'http://127.0.0.1:9'),
+            stdin=end)
         assert json.loads(screen.recv(1000).decode()) == {'cannot': 'no X server answers'}
     assert process.wait(60) == 0
     assert hostile() == []

@@ -13,12 +13,12 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.link.carried import COMMAND  # noqa: E402
-from mhri.core.link.keys import KeysError  # noqa: E402
-from mhri.ros.link.carrier import Carrier, CarrierError  # noqa: E402
-from mhri.ros.link.datagrams import PASS  # noqa: E402
-from mhri.ros.link.key_folder import AUTO, find_folder, KeyFolder, OFF  # noqa: E402
-from mhri.ros.link.knocks import EVERY_S, Knocks, meaning  # noqa: E402
+from mhri.link.carried import COMMAND  # noqa: E402
+from mhri.link.keys import KeysError  # noqa: E402
+from mhri.link.ros.carrier import Carrier, CarrierError  # noqa: E402
+from mhri.link.ros.datagrams import PASS  # noqa: E402
+from mhri.link.ros.key_folder import AUTO, find_folder, KeyFolder, OFF  # noqa: E402
+from mhri.link.ros.knocks import EVERY_S, Knocks, meaning  # noqa: E402
 from support.ros_system import free_port, wait_for  # noqa: E402
 
 REPO = pathlib.Path(__file__).resolve().parents[2]

@@ -3,7 +3,7 @@
 """What tells two computers of one name apart on a link without keys."""
 import os
 
-from mhri.ros.link.computer import facts
+from mhri.link.ros.computer import facts
 
 
 def computer(folder, identity, cards):

@@ -5,8 +5,8 @@ import os
 
 import pytest
 
-from mhri.core.recording.recording import ENDED, MB, RECORDING, RecordingStatus
-from mhri.ros.link.keeper import Keeper, LATE_S
+from mhri.link.ros.keeper import Keeper, LATE_S
+from mhri.recording.recording import ENDED, MB, RECORDING, RecordingStatus
 
 
 class FakeRecorder:

@@ -10,10 +10,10 @@ import rospy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.link.carried import PICTURE, Stream  # noqa: E402
-from mhri.core.link.pieces import Gathered, PIECE_BYTES  # noqa: E402
-from mhri.core.link.shares import Share  # noqa: E402
-from mhri.ros.link.pictures import Pictures  # noqa: E402
+from mhri.link.carried import PICTURE, Stream  # noqa: E402
+from mhri.link.pieces import Gathered, PIECE_BYTES  # noqa: E402
+from mhri.link.ros.pictures import Pictures  # noqa: E402
+from mhri.link.shares import Share  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 LONG_S = 30.0

@@ -5,7 +5,7 @@ import threading
 
 import pytest
 
-from mhri.ros.graph import live_parameter
+from mhri.graph.ros import live_parameter
 
 NAN = float('nan')
 

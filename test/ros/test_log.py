@@ -10,7 +10,7 @@ import time
 
 import pytest
 
-from mhri.ros.graph import log
+from mhri.graph.ros import log
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
@@ -97,7 +97,7 @@ def test_a_screen_outlives_its_node(lives_on):
     """Any other program is ended where its node is, and does not end by itself."""
     program = '''
 import threading, rospy
-from mhri.ros.graph import log
+from mhri.graph.ros import log
 log.install(lives_on={})
 rospy.signal_shutdown('its name was taken')
 print(any(isinstance(thread, threading.Timer) for thread in threading.enumerate()))
@@ -111,7 +111,7 @@ def test_what_is_logged_before_there_is_a_node_holds_nobody_up():
     """Nor does it keep rospy from setting up its handlers, which asks for the lock of each."""
     program = '''
 import logging, logging.config, sys, threading, rospy
-from mhri.ros.graph import log
+from mhri.graph.ros import log
 class Terminal:
     stuck = threading.Event()
     def write(self, text):
@@ -134,7 +134,7 @@ def test_a_program_that_hangs_at_its_end_is_ended():
     """A thread whose traceback waits for the terminal must not keep a node, and its name."""
     program = '''
 import logging, threading, time, rospy
-from mhri.ros.graph import log
+from mhri.graph.ros import log
 log.ENDED_WITHIN_S = 0.2
 logging.root.addHandler(logging.StreamHandler())
 log.install()

@@ -13,11 +13,11 @@ import pytest
 import rospy
 from tf2_msgs.msg import TFMessage
 
-from mhri.core.config import ConfigError
-from mhri.core.map.grid import GridError
-from mhri.ros.map.map_source import grid_message, load_map, MapSource
-from mhri.ros.map.tf_feed import TfFeed, transforms
-from mhri.ros.messages import bytes_of
+from mhri.base.config import ConfigError
+from mhri.graph.ros.messages import bytes_of
+from mhri.map.grid import GridError
+from mhri.map.ros.map_source import grid_message, load_map, MapSource
+from mhri.robots.ros.tf_feed import TfFeed, transforms
 
 YAML = 'image: {}\nresolution: 0.05\norigin: [-1, -2, 0.5]\nnegate: 0\n' \
     'occupied_thresh: 0.65\nfree_thresh: 0.196\n'

@@ -11,10 +11,10 @@ import xmlrpc.client
 import pytest
 import rospy
 
-from mhri.ros.driving.in_force import InForce
-from mhri.ros.driving.roster import Roster
-from mhri.ros.graph.master_api import MasterApi, MasterError
-from mhri.ros.stand_by import Memory
+from mhri.driving.ros.roster import Roster
+from mhri.graph.ros.in_force import InForce
+from mhri.graph.ros.master_api import MasterApi, MasterError
+from mhri.graph.ros.stand_by import Memory
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
@@ -94,7 +94,7 @@ def test_roster_and_in_force_go_on_asking(master, monkeypatch, kind):
     done = threading.Event()
     monkeypatch.setattr(rospy, 'is_shutdown', done.is_set)
     rospy.rostime.set_rostime_initialized(True)
-    monkeypatch.setattr('mhri.ros.driving.roster.PERIOD_S', 0.02)
+    monkeypatch.setattr('mhri.driving.ros.roster.PERIOD_S', 0.02)
     roster = Roster({}, lambda *_: None, lambda name: None, lambda: 5, Memory(), dict,
                     lambda *_: None, dict).start()
     force = InForce('/service').start()

@@ -5,9 +5,9 @@ import io
 
 from sensor_msgs.msg import CompressedImage, Image
 
-from mhri.core.camera.image_message import read_compressed, read_raw
-from mhri.core.screen import requests
+from mhri.camera.image_message import read_compressed, read_raw
 from mhri.msg import PanelRequest
+from mhri.screen import requests
 
 
 def on_the_wire(message):

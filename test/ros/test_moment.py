@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from sensor_msgs.msg import CompressedImage, Image
 
-from mhri.core.camera.images import FrameError
-from mhri.core.camera.recompressed import recompressed
-from mhri.core.link.smaller import Smaller
-from mhri.ros.resources import robot_types
-from mhri.ros.session.moment import jpeg_of, Moment
+from mhri.camera.images import FrameError
+from mhri.camera.recompressed import recompressed
+from mhri.graph.ros.resources import robot_types
+from mhri.link.smaller import Smaller
+from mhri.session.ros.moment import jpeg_of, Moment
 
 
 def moment(x_m, speed_mps):

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from sensor_msgs.msg import LaserScan
 
-from mhri.core.map.tf_tree import TfTree
-from mhri.core.robots.mocap import Pose
-from mhri.ros.resources import robot_types
-from mhri.ros.sensors.beams import read_beams
-from mhri.ros.sensors.mounts import Mounts, NoPlace
+from mhri.base.mocap import Pose
+from mhri.base.tf_tree import TfTree
+from mhri.graph.ros.resources import robot_types
+from mhri.sensors.ros.beams import read_beams
+from mhri.sensors.ros.mounts import Mounts, NoPlace
 
 KIND = replace(robot_types()[0]['turtlebot3'], laser_x_m=-0.05, depth_x_m=0.1, depth_z_m=0.2)
 LEVEL, OVER, TILTED = (0.0, 0.0, 0.0, 1.0), (1.0, 0.0, 0.0, 0.0), (0.0, 0.5, 0.0, math.sqrt(0.75))

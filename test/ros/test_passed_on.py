@@ -8,8 +8,8 @@ import pytest
 import rospy
 from sensor_msgs.msg import CompressedImage, Image
 
-from mhri.core.camera.image_message import read_depth, read_picture
-from mhri.ros.session.passed_on import PassedOn
+from mhri.camera.image_message import read_depth, read_picture
+from mhri.camera.ros.passed_on import PassedOn
 
 RED = np.full((48, 64, 3), (200, 40, 30), np.uint8)
 

@@ -16,8 +16,8 @@ from rospy.exceptions import TransportTerminated
 from rospy.impl import tcpros_base, tcpros_pubsub
 from std_msgs.msg import String
 
-from mhri.ros.graph import peers
-from mhri.ros.graph.peers import Doorman, MOST_BYTES
+from mhri.graph.ros import peers
+from mhri.graph.ros.peers import Doorman, MOST_BYTES
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 

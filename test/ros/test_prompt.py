@@ -11,7 +11,7 @@ import pytest
 pytest.importorskip('rospy')
 
 from geometry_msgs.msg import Twist  # noqa: E402
-from mhri.ros.graph.prompt import Flow, PromptConnection, PromptPublisher  # noqa: E402
+from mhri.graph.ros.prompt import Flow, PromptConnection, PromptPublisher  # noqa: E402
 import rospy  # noqa: E402
 from rospy.exceptions import TransportTerminated  # noqa: E402
 

@@ -14,8 +14,8 @@ pytest.importorskip('rospy')
 
 import genpy  # noqa: E402
 from geometry_msgs.msg import Twist  # noqa: E402
-from mhri.ros.convert import packed_twist, PlanarTwist, ShortJoy, to_twist  # noqa: E402
-from mhri.ros.graph.prompt import hear_promptly  # noqa: E402
+from mhri.graph.ros.prompt import hear_promptly  # noqa: E402
+from mhri.robots.ros.convert import packed_twist, PlanarTwist, ShortJoy, to_twist  # noqa: E402
 from rospy.impl.tcpros_base import TCPROSTransport  # noqa: E402
 from rospy.impl.tcpros_pubsub import TCPROSSub  # noqa: E402
 from sensor_msgs.msg import Joy  # noqa: E402

@@ -23,13 +23,12 @@ import yaml
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.session.folder import (  # noqa: E402
-    EVENTS_JSONL, event_line, NotASession, SessionEvent)
 from mhri.msg import Place, Places  # noqa: E402
 from mhri.nodes import mhri_report  # noqa: E402
-from mhri.ros.session import film  # noqa: E402
-from mhri.ros.session.report_files import whole  # noqa: E402
-from mhri.ros.session.told import opened, Teller  # noqa: E402
+from mhri.recording.folder import event_line, EVENTS_JSONL, NotASession, SessionEvent  # noqa: E402
+from mhri.session.ros import film  # noqa: E402
+from mhri.session.ros.report_files import whole  # noqa: E402
+from mhri.session.ros.told import opened, Teller  # noqa: E402
 from support import made_session as made  # noqa: E402
 
 FPS, EXTRA_S = 2.0, 4.0

@@ -14,11 +14,11 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.link.carried import COMMAND  # noqa: E402
-from mhri.core.link.keys import KeysError  # noqa: E402
+from mhri.link.carried import COMMAND  # noqa: E402
+from mhri.link.keys import KeysError  # noqa: E402
+from mhri.link.ros.carrier import Carrier  # noqa: E402
+from mhri.link.ros.key_folder import KeyFolder  # noqa: E402
 from mhri.nodes.mhri_link import parse  # noqa: E402
-from mhri.ros.link.carrier import Carrier  # noqa: E402
-from mhri.ros.link.key_folder import KeyFolder  # noqa: E402
 from support.ros_system import free_port, wait_for  # noqa: E402
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / 'utils/host/mhri_keys.sh'

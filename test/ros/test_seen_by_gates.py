@@ -3,12 +3,12 @@
 """A row says what the gates say of its robot, and nothing where they say nothing."""
 import pytest
 
-from mhri.core.screen.brake_view import WORDS
-from mhri.core.screen.gate_words import STANDS_WORDS
-from mhri.core.screen.views import LIVE, ProofView, RobotView, SILENT, UNANSWERED
+from mhri.base.brake_view import WORDS
+from mhri.base.views import LIVE, ProofView, RobotView, SILENT, UNANSWERED
 from mhri.msg import RobotGate
-from mhri.ros.convert import is_driven, round_trip_s
-from mhri.ros.robots.robot_link import seen_by_gates
+from mhri.robots.gate_words import STANDS_WORDS
+from mhri.robots.ros.convert import is_driven, round_trip_s
+from mhri.robots.ros.robot_link import seen_by_gates
 
 TOPIC = '/bot1/cmd_vel'
 

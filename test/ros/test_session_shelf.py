@@ -13,9 +13,9 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.session.folder import EVENTS_JSONL, SessionEvent  # noqa: E402
-from mhri.ros.session.session_folder import SessionFolder  # noqa: E402
-from mhri.ros.session.session_shelf import SessionShelf  # noqa: E402
+from mhri.recording.folder import EVENTS_JSONL, SessionEvent  # noqa: E402
+from mhri.session.ros.session_folder import SessionFolder  # noqa: E402
+from mhri.session.ros.session_shelf import SessionShelf  # noqa: E402
 from support import made_session as made  # noqa: E402
 
 PATIENCE_S = 120.0

@@ -8,8 +8,8 @@ import time
 import numpy as np
 import pytest
 
-from mhri.inputs import speaker as speaker_module
-from mhri.inputs.speaker import RATE_HZ, Speaker
+from mhri.events.io import speaker as speaker_module
+from mhri.events.io.speaker import RATE_HZ, Speaker
 
 PATIENCE_S = 60.0
 

@@ -16,14 +16,14 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.ros import stand_by  # noqa: E402
+from mhri.graph.ros import stand_by  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 # Says its number; ends with 7 if SIGTERM or SIGHUP asks it to, with 8 if SIGINT does. If it is to
 # beat, it does so once, and hangs from then on.
 PROGRAM = '''
 import os, signal, sys, time
-from mhri.ros import stand_by
+from mhri.graph.ros import stand_by
 stand_by.LEAST_LIFE_S = {least_life_s}
 stand_by.HUNG_S = 0.3
 beat = stand_by.stand_by('the sleepers', beats={beats})
@@ -111,7 +111,7 @@ def test_one_that_was_stopped_for_a_while_stands_by_as_before(start):
 
 SHORT = '''
 import errno, os
-from mhri.ros import stand_by
+from mhri.graph.ros import stand_by
 fork, tries = os.fork, []
 def short_of_processes():
     tries.append(0)

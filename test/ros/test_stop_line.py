@@ -12,8 +12,8 @@ import pytest
 from rosgraph.network import read_ros_handshake_header, write_ros_handshake_header
 from std_srvs.srv import SetBool
 
-from mhri.ros.driving import stop_line
-from mhri.ros.driving.stop_line import StopLine
+from mhri.driving.ros import stop_line
+from mhri.driving.ros.stop_line import StopLine
 
 CALLER = '/somebody'
 STOPPED, REFUSED, FAILED, HANGS_UP, SILENT = 'stopped', 'refused', 'failed', 'hangs up', 'silent'

@@ -10,7 +10,7 @@ import rosbag
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.ros.session.bag_set import BagSet, open_session  # noqa: E402
+from mhri.recording.ros.bag_set import BagSet, open_session  # noqa: E402
 from support import made_session as made  # noqa: E402
 
 NS = 10 ** 9

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mhri.inputs import teaching
 from mhri.nodes import mhri_voice_teach as teach
+from mhri.voice.io import teaching
 
 GOOD = ''
 

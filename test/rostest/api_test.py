@@ -13,7 +13,7 @@ import rostest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.ros.resources import read_text, robot_types  # noqa: E402
+from mhri.graph.ros.resources import read_text, robot_types  # noqa: E402
 from support.ros_system import free_port, System, wait_for  # noqa: E402
 
 INPUTS = ('mhri_joy', 'mhri_pedal', 'mhri_voice')

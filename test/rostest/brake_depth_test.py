@@ -15,11 +15,11 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 
 from drive_tools import Hall, Hand, PATIENCE_S  # noqa: E402
 from gates_case import GatesCase  # noqa: E402
-from mhri.core.driving.brake import CRAWL_MPS, SCAN_OLD_S  # noqa: E402
+from mhri.graph.ros.resources import robot_types  # noqa: E402
 from mhri.msg import RobotGate  # noqa: E402
-from mhri.ros.map.tf_feed import TfFeed  # noqa: E402
-from mhri.ros.resources import robot_types  # noqa: E402
-from mhri.ros.tasks.robot_senses import RobotSenses  # noqa: E402
+from mhri.robots.ros.tf_feed import TfFeed  # noqa: E402
+from mhri.sensors.brake import CRAWL_MPS, SCAN_OLD_S  # noqa: E402
+from mhri.tasks.ros.robot_senses import RobotSenses  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
 

@@ -18,8 +18,8 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 
 from drive_tools import Hall, Hand, PATIENCE_S  # noqa: E402
 from gates_case import GatesCase, start_gates, ZERO  # noqa: E402
-from mhri.core.driving.brake import CRAWL_MPS  # noqa: E402
 from mhri.msg import RobotGate  # noqa: E402
+from mhri.sensors.brake import CRAWL_MPS  # noqa: E402
 from rostest_tools import measured, Process  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.screen_end import Screen  # noqa: E402

@@ -17,11 +17,10 @@ import rostest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
 from camera_feed_test import Camera, CameraProcess, jpeg, raw, RATE_HZ, RGB  # noqa: E402
-from mhri.core.camera.budget import (  # noqa: E402
-    AS_IT_COMES, DRIVEN, Grant, LOOKED_AT, REST, UNSEEN)
-from mhri.core.screen.settings import PanelSettings  # noqa: E402
-from mhri.ros.camera.camera_budget import CameraBudget, Wish  # noqa: E402
-from mhri.ros.camera.camera_feed import CameraFeed  # noqa: E402
+from mhri.camera.budget import AS_IT_COMES, DRIVEN, Grant, LOOKED_AT, REST, UNSEEN  # noqa: E402
+from mhri.camera.ros.camera_budget import CameraBudget, Wish  # noqa: E402
+from mhri.camera.ros.camera_feed import CameraFeed  # noqa: E402
+from mhri.screen.settings import PanelSettings  # noqa: E402
 from rostest_tools import measured  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 

@@ -20,8 +20,8 @@ from std_msgs.msg import String
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.camera.depth_codec import encode_depth  # noqa: E402
-from mhri.ros.camera.camera_feed import CameraFeed  # noqa: E402
+from mhri.camera.depth_codec import encode_depth  # noqa: E402
+from mhri.camera.ros.camera_feed import CameraFeed  # noqa: E402
 from rostest_tools import Process, measured  # noqa: E402
 from support.pictures import colour_picture, depth_picture  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402

@@ -15,13 +15,13 @@ from std_msgs.msg import String
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.camera.depth_codec import encode_depth  # noqa: E402
-from mhri.core.robots.robot_types import Limits, RobotType  # noqa: E402
-from mhri.core.sensors.point_cloud import from_depth, Lens  # noqa: E402
-from mhri.ros.sensors.cloud_feed import CloudFeed  # noqa: E402
+from mhri.base.robot_types import Limits, RobotType  # noqa: E402
+from mhri.camera.depth_codec import encode_depth  # noqa: E402
+from mhri.sensors.point_cloud import from_depth, Lens  # noqa: E402
+from mhri.sensors.ros.cloud_feed import CloudFeed  # noqa: E402
 from mhri.sim.camera import Camera  # noqa: E402
-from mhri.sim.camera_node import camera_info, SimCamera  # noqa: E402
 from mhri.sim.plan import Landmark, Plan  # noqa: E402
+from mhri.sim.ros.camera_node import camera_info, SimCamera  # noqa: E402
 from support.clouds import laid_out, XYZ  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 

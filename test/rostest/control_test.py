@@ -21,7 +21,7 @@ HERE = os.path.dirname(os.path.realpath(__file__))
 sys.path.insert(0, os.path.join(HERE, '..'))
 
 from mhri.msg import DriveSettings, RobotGate  # noqa: E402
-from mhri.ros.screen.backend import ScreenBackend  # noqa: E402
+from mhri.screen.ros.backend import ScreenBackend  # noqa: E402
 from support.fake_gates import FakeGates, moving  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.screen_end import Screen, START_S  # noqa: E402

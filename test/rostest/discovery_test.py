@@ -18,13 +18,13 @@ import rostest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.robots.discovery import IgnoreList, parse_ignore_list  # noqa: E402
-from mhri.core.robots.names import topic_of  # noqa: E402
-from mhri.core.robots.robot_types import resolve_robot_type  # noqa: E402
-from mhri.ros.graph.knock import knock  # noqa: E402
-from mhri.ros.graph.look import look_for_robots, robot_facts  # noqa: E402
-from mhri.ros.graph.master_api import MasterApi, MasterError  # noqa: E402
-from mhri.ros.resources import read_resource, robot_types  # noqa: E402
+from mhri.base.names import topic_of  # noqa: E402
+from mhri.base.robot_types import resolve_robot_type  # noqa: E402
+from mhri.graph.ros.knock import knock  # noqa: E402
+from mhri.graph.ros.master_api import MasterApi, MasterError  # noqa: E402
+from mhri.graph.ros.resources import read_resource, robot_types  # noqa: E402
+from mhri.robots.discovery import IgnoreList, parse_ignore_list  # noqa: E402
+from mhri.robots.ros.look import look_for_robots, robot_facts  # noqa: E402
 from support.ros_system import free_port, wait_for  # noqa: E402
 
 ROBOTS, TOPICS = 100, 20

@@ -16,7 +16,7 @@ from xmlrpc.server import SimpleXMLRPCServer
 import rostest
 
 import mhri.msg
-from mhri.ros.resources import resource_path
+from mhri.graph.ros.resources import resource_path
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 

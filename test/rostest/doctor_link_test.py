@@ -16,12 +16,12 @@ import rostest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.doctor.facts import KeysSeen, LinkNote  # noqa: E402
-from mhri.core.link.carried import COMMAND, STATE  # noqa: E402
-from mhri.core.link.frames import About, Beat, pack, pack_about, pack_beat  # noqa: E402
-from mhri.ros.doctor.linked import LinkLook  # noqa: E402
-from mhri.ros.link.carrier import Carrier  # noqa: E402
-from mhri.ros.link.side import ABOUT, BEAT, boot_clock  # noqa: E402
+from mhri.doctor.facts import KeysSeen, LinkNote  # noqa: E402
+from mhri.doctor.ros.linked import LinkLook  # noqa: E402
+from mhri.link.carried import COMMAND, STATE  # noqa: E402
+from mhri.link.frames import About, Beat, pack, pack_about, pack_beat  # noqa: E402
+from mhri.link.ros.carrier import Carrier  # noqa: E402
+from mhri.link.ros.side import ABOUT, BEAT, boot_clock  # noqa: E402
 from support.ros_system import free_port, wait_for  # noqa: E402
 from support.surgery import Clinic, START_S  # noqa: E402
 

@@ -80,13 +80,13 @@ class TimeTest(unittest.TestCase):
             modules = {line.rpartition('|')[2].strip() for line in done.stderr.splitlines()
                        if line.startswith('import time:')}
             self.assertIn('mhri.nodes.mhri_doctor', modules)
-            self.assertEqual(modules & {'cv2', 'numpy', 'rospy', 'mhri.ros.doctor.examination'},
+            self.assertEqual(modules & {'cv2', 'numpy', 'rospy', 'mhri.doctor.ros.examination'},
                              set())
 
     def test_examination_does_without_large_libraries(self):
         done = self.clinic.run('bot1', env={'PYTHONPROFILEIMPORTTIME': '1'})
         modules = {line.rpartition('|')[2].strip() for line in done.stderr.splitlines()}
-        self.assertIn('mhri.ros.doctor.examination', modules)
+        self.assertIn('mhri.doctor.ros.examination', modules)
         self.assertEqual(modules & {'cv2', 'rospy'}, set())
 
 

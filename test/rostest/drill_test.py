@@ -12,7 +12,7 @@ import rostest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.ros.drill.files import result_in  # noqa: E402
+from mhri.drill.ros.files import result_in  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 
 PATIENCE_S = 300.0

@@ -14,7 +14,7 @@ from std_srvs.srv import SetBool
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.robots.robot_types import SILENT_AFTER_S  # noqa: E402
+from mhri.base.robot_types import SILENT_AFTER_S  # noqa: E402
 from mhri.msg import GatesState  # noqa: E402
 from gates_case import GatesCase  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402

@@ -18,7 +18,7 @@ from std_msgs.msg import String
 HERE = os.path.dirname(os.path.realpath(__file__))
 sys.path.insert(0, os.path.join(HERE, '..'))
 
-from mhri.core.driving.guard_link import GuardLink  # noqa: E402
+from mhri.driving.guard_link import GuardLink  # noqa: E402
 from rostest_tools import measured  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402

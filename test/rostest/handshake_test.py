@@ -22,9 +22,9 @@ from std_srvs.srv import SetBool, SetBoolResponse
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.ros.graph import peers  # noqa: E402
-from mhri.ros.graph.peers import limit_peers  # noqa: E402
-from mhri.ros.recording.raw_link import RawLink  # noqa: E402
+from mhri.graph.ros import peers  # noqa: E402
+from mhri.graph.ros.peers import limit_peers  # noqa: E402
+from mhri.recording.ros.raw_link import RawLink  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 CONNECT_S = 5.0

@@ -20,12 +20,12 @@ from sensor_msgs.msg import Imu, LaserScan  # noqa: E402
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.gui.sensors.imu_graph import CHOICES, ImuGraph  # noqa: E402
-from mhri.gui.sensors.scan_view import ScanView  # noqa: E402
-from mhri.ros.graph.quiet import quiet_repeats  # noqa: E402
-from mhri.ros.sensors.imu_feed import ImuFeed  # noqa: E402
-from mhri.ros.sensors.mocap_feed import MocapFeed  # noqa: E402
-from mhri.ros.sensors.scan_feed import ScanFeed  # noqa: E402
+from mhri.graph.ros.quiet import quiet_repeats  # noqa: E402
+from mhri.robots.ros.mocap_feed import MocapFeed  # noqa: E402
+from mhri.sensors.gui.imu_graph import CHOICES, ImuGraph  # noqa: E402
+from mhri.sensors.gui.scan_view import ScanView  # noqa: E402
+from mhri.sensors.ros.imu_feed import ImuFeed  # noqa: E402
+from mhri.sensors.ros.scan_feed import ScanFeed  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 BIGGEST_FLOAT32 = 3.4e38

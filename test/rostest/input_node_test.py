@@ -14,8 +14,8 @@ from rostest_tools import measured, Recorder, wait_until
 import rospy
 import rostest
 
-from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reader, Reading
-from mhri.ros.devices.input_node import InputNode
+from mhri.devices.io.reader import DeviceAbsent, DeviceLost, Reader, Reading
+from mhri.devices.ros.input_node import InputNode
 from mhri.srv import SetSuspended
 
 NUMBERS = itertools.count()

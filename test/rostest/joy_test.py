@@ -17,10 +17,10 @@ import rostest
 from std_msgs.msg import Empty, String
 from std_srvs.srv import SetBool
 
-from mhri.core.screen.source_rows import suspend_services
-from mhri.core.screen.views import DeviceView
+from mhri.base.views import DeviceView
+from mhri.devices.ros.device_state import DeviceStates
+from mhri.devices.source_rows import suspend_services
 from mhri.msg import ControlMode
-from mhri.ros.devices.device_state import DeviceStates
 from support.kernel_pads import F710, plug
 
 # The dead-man button of resource/pads/ps3.yaml.

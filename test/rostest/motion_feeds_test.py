@@ -20,13 +20,13 @@ from tf2_msgs.msg import TFMessage
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.map.tf_tree import OdometryFrames  # noqa: E402
-from mhri.gui.sensors.scan_view import scan_points  # noqa: E402
-from mhri.ros.map.map_feed import MapScans  # noqa: E402
-from mhri.ros.resources import robot_types  # noqa: E402
-from mhri.ros.sensors.imu_feed import ImuFeed  # noqa: E402
-from mhri.ros.sensors.lasers import Lasers  # noqa: E402
-from mhri.ros.sensors.scan_feed import ScanFeed  # noqa: E402
+from mhri.base.tf_tree import OdometryFrames  # noqa: E402
+from mhri.graph.ros.resources import robot_types  # noqa: E402
+from mhri.map.ros.map_feed import MapScans  # noqa: E402
+from mhri.sensors.gui.scan_view import scan_points  # noqa: E402
+from mhri.sensors.ros.imu_feed import ImuFeed  # noqa: E402
+from mhri.sensors.ros.lasers import Lasers  # noqa: E402
+from mhri.sensors.ros.scan_feed import ScanFeed  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 # The thousand are clicked in test/gui/test_toggling.py.

@@ -23,10 +23,10 @@ except ImportError:
     sys.path.insert(0, os.path.join(HERE, '..', 'support', 'messages'))
     from kobuki_msgs.msg import MotorPower as KobukiPower
 
-from mhri.core.robots.robot_types import resolve_robot_type  # noqa: E402
-from mhri.ros.driving.motor_power import MotorPower, PARAMETER  # noqa: E402
-from mhri.ros.resources import robot_types  # noqa: E402
-from mhri.ros.robots.hardware_stop import HardwareStop  # noqa: E402
+from mhri.base.robot_types import resolve_robot_type  # noqa: E402
+from mhri.driving.ros.motor_power import MotorPower, PARAMETER  # noqa: E402
+from mhri.graph.ros.resources import robot_types  # noqa: E402
+from mhri.robots.ros.hardware_stop import HardwareStop  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 # A call that waits for nothing takes far less; one that waits for a robot, 3 s.

@@ -12,8 +12,8 @@ import rostest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.robots.link_quality import link_share  # noqa: E402
-from mhri.ros.screen.backend import ScreenBackend  # noqa: E402
+from mhri.robots.link_quality import link_share  # noqa: E402
+from mhri.screen.ros.backend import ScreenBackend  # noqa: E402
 from support.relay import Delay, move_away  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402

@@ -22,8 +22,8 @@ from std_msgs.msg import String
 SUPPORT = os.path.join(os.path.dirname(os.path.realpath(__file__)), '..')
 sys.path.insert(0, SUPPORT)
 
-from mhri.core.recording.recording import ENDED, RECORDING  # noqa: E402
-from mhri.ros.recording.recorder import Recorder  # noqa: E402
+from mhri.recording.recording import ENDED, RECORDING  # noqa: E402
+from mhri.recording.ros.recorder import Recorder  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 SECONDS = 60.0 if os.environ.get('MHRI_LONG') == '1' else 4.0

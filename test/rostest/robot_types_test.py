@@ -26,11 +26,11 @@ try:
 except ImportError:
     sys.path.insert(0, os.path.join(HERE, '..', 'support', 'messages'))
 
-from mhri.ros.driving.gates_client import GatesClient  # noqa: E402
-from mhri.ros.robots.fleet import Fleet  # noqa: E402
-from mhri.ros.graph.look import look_for_robots, shipped_ignore_list  # noqa: E402
-from mhri.ros.resources import robot_types  # noqa: E402
-from mhri.ros.worker import Worker  # noqa: E402
+from mhri.driving.ros.gates_client import GatesClient  # noqa: E402
+from mhri.graph.ros.resources import robot_types  # noqa: E402
+from mhri.graph.ros.worker import Worker  # noqa: E402
+from mhri.robots.ros.fleet import Fleet  # noqa: E402
+from mhri.robots.ros.look import look_for_robots, shipped_ignore_list  # noqa: E402
 from support.fake_mux import FakeOperator  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.surgery import forget  # noqa: E402

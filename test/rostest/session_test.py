@@ -20,10 +20,8 @@ from std_srvs.srv import SetBool, Trigger
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.session.folder import (  # noqa: E402
-    bags_of, marks_of, read_events, read_info, robots_of)
-from mhri.msg import (  # noqa: E402
-    Places, RobotSelect, SeenPicture, SessionEvent, SessionState)
+from mhri.msg import Places, RobotSelect, SeenPicture, SessionEvent, SessionState  # noqa: E402
+from mhri.recording.folder import bags_of, marks_of, read_events, read_info, robots_of  # noqa: E402
 from mhri.srv import AddNote, MarkSession, SetFault  # noqa: E402
 from sensor_msgs.msg import CompressedImage  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402

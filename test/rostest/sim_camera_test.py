@@ -16,11 +16,11 @@ from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.camera.depth_codec import decode_depth  # noqa: E402
-from mhri.core.robots.robot_types import Limits, RobotType  # noqa: E402
+from mhri.base.robot_types import Limits, RobotType  # noqa: E402
+from mhri.camera.depth_codec import decode_depth  # noqa: E402
 from mhri.sim.camera import Camera  # noqa: E402
-from mhri.sim.camera_node import SimCamera  # noqa: E402
 from mhri.sim.plan import Landmark, Plan  # noqa: E402
+from mhri.sim.ros.camera_node import SimCamera  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 PLAN = Plan('test', np.array([(0, 0, 4, 0), (4, 0, 4, 2), (4, 2, 0, 2), (0, 2, 0, 0)], float), 2.4,

@@ -15,10 +15,10 @@ from sensor_msgs.msg import Image, LaserScan
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.drill.faults import FAULTS  # noqa: E402
-from mhri.core.events.changes import ScreenChanges  # noqa: E402
-from mhri.core.recording.recording import RecordingStatus  # noqa: E402
-from mhri.ros.screen.backend import ScreenBackend  # noqa: E402
+from mhri.events.changes import ScreenChanges  # noqa: E402
+from mhri.recording.recording import RecordingStatus  # noqa: E402
+from mhri.screen.ros.backend import ScreenBackend  # noqa: E402
+from mhri.sim.faults import FAULTS  # noqa: E402
 from mhri.srv import SetFault  # noqa: E402
 from rostest_tools import Recorder  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402

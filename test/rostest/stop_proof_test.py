@@ -16,13 +16,13 @@ import rostest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.screen.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED  # noqa: E402
+from mhri.base.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED  # noqa: E402
+from mhri.driving.ros.gates_client import GatesClient  # noqa: E402
+from mhri.graph.ros.resources import robot_types  # noqa: E402
+from mhri.graph.ros.worker import Worker  # noqa: E402
 from mhri.msg import RobotGate  # noqa: E402
-from mhri.ros.driving.gates_client import GatesClient  # noqa: E402
-from mhri.ros.resources import robot_types  # noqa: E402
-from mhri.ros.robots.bot_feeds import BotFeeds  # noqa: E402
-from mhri.ros.robots.robot_link import RobotLink  # noqa: E402
-from mhri.ros.worker import Worker  # noqa: E402
+from mhri.robots.ros.bot_feeds import BotFeeds  # noqa: E402
+from mhri.robots.ros.robot_link import RobotLink  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 PERIOD_S = 0.02

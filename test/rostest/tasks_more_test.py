@@ -16,10 +16,10 @@ import rostest
 from rostest_tools import Recorder, wait_until
 from tasks_more_case import PATIENCE_S, TasksMoreCase
 
-from mhri.core.map.grid import grid_of  # noqa: E402
-from mhri.core.robots.mocap import Pose  # noqa: E402
+from mhri.base.mocap import Pose  # noqa: E402
+from mhri.map.grid import grid_of  # noqa: E402
+from mhri.map.ros.map_source import grid_message, publish_map  # noqa: E402
 from mhri.msg import Places, TaskState  # noqa: E402
-from mhri.ros.map.map_source import grid_message, publish_map  # noqa: E402
 
 
 class TasksMore(TasksMoreCase):

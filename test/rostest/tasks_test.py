@@ -27,9 +27,8 @@ from std_srvs.srv import SetBool
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.msg import (  # noqa: E402
-    ControlMode, RunTaskAction, RunTaskGoal, TaskList, TaskState)
-from mhri.ros.resources import read_text  # noqa: E402
+from mhri.graph.ros.resources import read_text  # noqa: E402
+from mhri.msg import ControlMode, RunTaskAction, RunTaskGoal, TaskList, TaskState  # noqa: E402
 from support.fake_mux import FakeOperator, StateEar  # noqa: E402
 from support.ros_system import processes_with  # noqa: E402
 

@@ -21,8 +21,8 @@ import rostest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
+from mhri.graph.ros.master_watch import MasterWatch  # noqa: E402
 from mhri.msg import ControlMode, DriveSettings  # noqa: E402
-from mhri.ros.graph.master_watch import MasterWatch  # noqa: E402
 from rostest_tools import FORWARD, NEUTRAL, Process, Recorder, Stick, StickProcess  # noqa: E402
 from support.fake_mux import FakeOperator, StateEar  # noqa: E402
 from support.graph import MODE, MODE_SELECT, PEDAL, SELECT, STICK  # noqa: E402

@@ -89,8 +89,8 @@ def test_every_file_is_there_and_what_runs_may_run(prefix):
 
 def test_python_finds_the_installed_package_alone(prefix, system):
     said = subprocess.run(
-        ['/usr/bin/python3', '-c', 'import mhri.nodes.mux, mhri.gui.screen.screen, mhri.msg\n'
-         'for name in ("nodes", "gui", "msg"): print(getattr(mhri, name).__file__ or "")'],
+        ['/usr/bin/python3', '-c', 'import mhri.nodes.mux, mhri.screen.gui.screen, mhri.msg\n'
+         'for name in ("nodes", "screen", "msg"): print(getattr(mhri, name).__file__ or "")'],
         env=system.env, check=True, stdout=subprocess.PIPE, universal_newlines=True).stdout
     assert said.count(str(prefix)) == 3 and str(REPO) not in said, said
 

@@ -49,9 +49,9 @@ while True:
 '''
 END = '''
 import sys, time
-from mhri.core.link.carried import COMMAND
-from mhri.ros.link.carrier import Carrier
-from mhri.ros.link.key_folder import KeyFolder
+from mhri.link.carried import COMMAND
+from mhri.link.ros.carrier import Carrier
+from mhri.link.ros.key_folder import KeyFolder
 side, folder, endpoint = sys.argv[1:]
 keys = KeyFolder(folder, side, 'bot1')
 ends = {'listen': [endpoint]} if side == 'robot' else {'connect': [endpoint]}

@@ -169,8 +169,13 @@ def mypy(tmp_path_factory):
                               '--cache-dir', cache] + files, cache)
 
 
-def test_core_types(mypy):
-    status, output = mypy([REPO / 'src' / 'mhri' / 'core'])
+def test_types_of_pure_files(mypy):
+    """What lies in a subject's folder itself; most of the simulator has clocks, and no types."""
+    files = [path for path in sorted((REPO / 'src' / 'mhri').glob('*/*.py'))
+             if path.parent.name not in ('nodes', 'sim') and path.stem != 'rehearsal'
+             or path.stem in ('faults', 'delay_line')]
+    status, output = mypy(files)
+    assert len(files) > 100
     assert 'No module named mypy' not in output, (
         'mypy is not there: mhri_test.sh installs it with pip and could not, see above')
     assert status == 0, output

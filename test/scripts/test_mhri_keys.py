@@ -10,7 +10,7 @@ import subprocess
 from conftest import REPO
 import pytest
 
-from mhri.core.link.keys import read_lists
+from mhri.link.keys import read_lists
 
 SCRIPT = str(REPO / 'utils' / 'host' / 'mhri_keys.sh')
 AUTHORITY, PLACE = '.config/mhri/authority', '.config/mhri/keys'

@@ -110,9 +110,9 @@ def check_the_window(newcomer):
     newcomer.run('''source ~/catkin_ws/devel/setup.bash
 python3 - <<'END'
 from python_qt_binding.QtWidgets import QApplication
-from mhri.core.screen.views import RobotView
-from mhri.gui.screen.window_maker import WindowMaker
-from mhri.ros.resources import resource_path, robot_types
+from mhri.base.views import RobotView
+from mhri.screen.gui.window_maker import WindowMaker
+from mhri.graph.ros.resources import resource_path, robot_types
 app = QApplication(['check'])
 kind = robot_types()[0]['crawler']
 window, problem = WindowMaker().make(kind.window, resource_path(), 'crawler1', kind.label)

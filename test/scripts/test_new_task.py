@@ -50,7 +50,7 @@ TASK = 'src/lab_tasks/look_around.py'
     ({TASK: ("'look_around', 'Look", "'goto', 'Look")},
      "there is a task 'goto' already, choose another key; "),
     ({TASK: (', TIMEOUT_S), make', ',), make')},
-     'it has no field timeout: add mhri.core.tasks.goto.TIMEOUT_S; '),
+     'it has no field timeout: add mhri.tasks.goto.TIMEOUT_S; '),
     ({TASK: ('ROW = TaskKind(', 'ROW = dict(key=(')}, 'cannot be imported (SyntaxError: '),
     ({'package.xml': ('task="lab_tasks.look_around"', 'task=""')},
      'a task is exported by itself; write <mhri task="package.module"/>; '),

@@ -141,7 +141,7 @@ def test_a_robot_that_cannot_take_the_files_is_said(lab):
 
 
 def test_both_robots_are_started_found_and_driven(lab, operator):
-    from mhri.ros.graph.look import look_for_robots, shipped_ignore_list
+    from mhri.robots.ros.look import look_for_robots, shipped_ignore_list
     lab.connect('bot1', '--type', 'turtlebot2')
     lab.connect('bot2', '--type', 'turtlebot3', '--no-guard')
     end = time.monotonic() + START_S

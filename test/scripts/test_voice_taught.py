@@ -16,11 +16,11 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 
 from support import speech  # noqa: E402
 
-from mhri.core.voice.grammar import Grammar  # noqa: E402
-from mhri.core.voice.language import parse_language  # noqa: E402
-from mhri.core.voice.speech import SURE, SURE_WHEN_HELD  # noqa: E402
-from mhri.inputs.recogniser import Dictionary, Recogniser  # noqa: E402
-from mhri.inputs.teaching import check_voice  # noqa: E402
+from mhri.voice.grammar import Grammar  # noqa: E402
+from mhri.voice.io.recogniser import Dictionary, Recogniser  # noqa: E402
+from mhri.voice.io.teaching import check_voice  # noqa: E402
+from mhri.voice.language import parse_language  # noqa: E402
+from mhri.voice.speech import SURE, SURE_WHEN_HELD  # noqa: E402
 
 REPO = Path(__file__).resolve().parents[2]
 # One of which pocketsphinx understands next to nothing.

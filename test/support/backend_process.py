@@ -11,7 +11,7 @@ import sys
 import threading
 import time
 
-from mhri.ros.screen.backend import ScreenBackend
+from mhri.screen.ros.backend import ScreenBackend
 
 
 def main():

@@ -9,10 +9,10 @@ import random
 
 import numpy as np
 
-from mhri.core.driving.laser_scan import laser_scan
-from mhri.core.driving.limits import Velocity
-from mhri.core.driving.stick_brake import StickBrake
-from mhri.core.robots.mocap import Pose
+from mhri.base.limits import Velocity
+from mhri.base.mocap import Pose
+from mhri.driving.stick_brake import StickBrake
+from mhri.sensors.laser_scan import laser_scan
 from mhri.sim.sensors import Laser
 from support.task_world import wall_distance
 

@@ -7,14 +7,14 @@ import random
 
 import numpy as np
 
-from mhri.core.camera.raw_image import metres
-from mhri.core.driving.brake import NARROW_M
-from mhri.core.sensors.depth_beams import DepthBeams
-from mhri.core.sensors.point_cloud import CloudError, Lens
-from mhri.core.tasks.base import ENDS
-from mhri.core.tasks.run import RobotRun
+from mhri.camera.raw_image import metres
+from mhri.sensors.brake import NARROW_M
+from mhri.sensors.depth_beams import DepthBeams
+from mhri.sensors.point_cloud import CloudError, Lens
 from mhri.sim.camera import Camera, CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, WIDTH
 from mhri.sim.plan import Landmark, Plan
+from mhri.tasks.base import ENDS
+from mhri.tasks.run import RobotRun
 from support.task_world import Robot, room, Wander, World
 
 LENS = Lens(FOCAL_PX, FOCAL_PX, CENTRE_X_PX, CENTRE_Y_PX, WIDTH, HEIGHT)

@@ -4,10 +4,10 @@
 from dataclasses import replace
 import os
 
-from mhri.core.robots.discovery import IgnoreList
-from mhri.core.doctor.judgement import diagnose
-from mhri.core.doctor.facts import Computer, Connection, Facts, FINE, Graph, Master, Node, Stream
-from mhri.core.robots.robot_types import load_robot_types
+from mhri.base.robot_types import load_robot_types
+from mhri.doctor.facts import Computer, Connection, Facts, FINE, Graph, Master, Node, Stream
+from mhri.doctor.judgement import diagnose
+from mhri.robots.discovery import IgnoreList
 
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'robots')
 TYPES = load_robot_types([(name, open(os.path.join(FOLDER, name), encoding='utf-8').read())

@@ -3,8 +3,8 @@
 """The shipped drills with their buildings and bodies, read without ROS."""
 from pathlib import Path
 
-from mhri.core.drill.scenario import parse_scenario
-from mhri.core.robots.robot_types import Limits
+from mhri.base.robot_types import Limits
+from mhri.drill.scenario import parse_scenario
 from mhri.sim.body import parse_bodies
 from mhri.sim.plan import parse_plan
 

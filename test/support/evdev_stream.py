@@ -256,7 +256,7 @@ def install(folder, put=setattr):
     """
     import evdev
     from evdev import _input
-    from mhri.inputs import event_nodes
+    from mhri.devices.io import event_nodes
     answers = Ioctls(folder, _input.device_read_many)
     for name in dir(answers):
         if not name.startswith('_'):

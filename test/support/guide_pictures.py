@@ -19,15 +19,15 @@ if __name__ == '__main__' and not os.environ.get('DISPLAY'):
 
 from python_qt_binding.QtWidgets import QApplication  # noqa: E402
 
-from mhri.core.doctor.facts import FINE, UNRESOLVED  # noqa: E402
-from mhri.core.doctor.judgement import diagnose  # noqa: E402
-from mhri.core.drill.page import page_of  # noqa: E402
-from mhri.gui.doctor.doctor_page import DoctorPage  # noqa: E402
-from mhri.gui.drill.faults_page import FaultsPage, TITLE  # noqa: E402
-from mhri.gui.screen import theme  # noqa: E402
-from mhri.gui.session.record_button import RecordButton  # noqa: E402
-from mhri.ros.resources import resource_path  # noqa: E402
-from mhri.sim.rehearsal import Rehearsal  # noqa: E402
+from mhri.base.gui import theme  # noqa: E402
+from mhri.doctor.facts import FINE, UNRESOLVED  # noqa: E402
+from mhri.doctor.gui.doctor_page import DoctorPage  # noqa: E402
+from mhri.doctor.judgement import diagnose  # noqa: E402
+from mhri.drill.gui.faults_page import FaultsPage, TITLE  # noqa: E402
+from mhri.drill.page import page_of  # noqa: E402
+from mhri.drill.rehearsal import Rehearsal  # noqa: E402
+from mhri.graph.ros.resources import resource_path  # noqa: E402
+from mhri.session.gui.record_button import RecordButton  # noqa: E402
 from support import doctor_world, layout_pictures  # noqa: E402
 from support.drills import drill, NAMES  # noqa: E402
 

@@ -17,9 +17,9 @@ os.environ['QT_QPA_PLATFORM'] = 'xcb'
 
 from python_qt_binding.QtWidgets import QApplication  # noqa: E402
 
-from mhri.core.camera.images import Frame  # noqa: E402
-from mhri.gui.screen import theme  # noqa: E402
-from mhri.ros.resources import read_text, resource_path  # noqa: E402
+from mhri.base.gui import theme  # noqa: E402
+from mhri.camera.images import Frame  # noqa: E402
+from mhri.graph.ros.resources import read_text, resource_path  # noqa: E402
 from mhri.sim.camera import Camera  # noqa: E402
 from mhri.sim.plan import parse_plan  # noqa: E402
 from support import scenes  # noqa: E402

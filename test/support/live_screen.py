@@ -16,8 +16,8 @@ class LiveScreen:
 
     def __init__(self, size, restored=(), selected=()):
         from python_qt_binding.QtWidgets import QApplication
-        from mhri.presenters.screen_host import ScreenHost
-        from mhri.ros.screen.backend import ScreenBackend
+        from mhri.screen.presenters.screen_host import ScreenHost
+        from mhri.screen.ros.backend import ScreenBackend
         self._app = QApplication(['panel'])
         self.host = ScreenHost(ScreenBackend(['panel']))
         self.operator = self.host.operator

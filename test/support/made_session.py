@@ -10,9 +10,9 @@ import sys
 
 from geometry_msgs.msg import Twist
 import genpy
-from mhri.core.session.folder import (
-    bag_name, event_line, info_text, SESSION_YAML, EVENTS_JSONL, SessionEvent, SessionInfo)
 from mhri.msg import ControlMode, DrillState, GatesState, RobotGate, RobotSelect
+from mhri.recording.folder import (
+    bag_name, event_line, EVENTS_JSONL, info_text, SESSION_YAML, SessionEvent, SessionInfo)
 from nav_msgs.msg import Odometry
 import rosbag
 from sensor_msgs.msg import CompressedImage, Imu, LaserScan

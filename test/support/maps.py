@@ -6,10 +6,10 @@ from python_qt_binding.QtGui import QMouseEvent
 from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication
 
-from mhri.core.map.scene import MapRobot, Scene
-from mhri.core.robots.mocap import Pose
-from mhri.gui.map.map_pane import MapPane
-from mhri.gui.screen import theme
+from mhri.base.gui import theme
+from mhri.base.mocap import Pose
+from mhri.map.gui.map_pane import MapPane
+from mhri.map.scene import MapRobot, Scene
 
 BOT1 = MapRobot('bot1', 1, Pose(0.0, 0.0, 0.0), looked_at=True, state='standing',
                 text='placed by hand')

@@ -236,8 +236,8 @@ class Masters:
         """Make this process the operator of all robots, and an ear beside the gates."""
         import rospy
         from geometry_msgs.msg import TwistStamped
+        from mhri.graph.ros.master_watch import MasterWatch
         from mhri.msg import ControlMode
-        from mhri.ros.graph.master_watch import MasterWatch
         from std_msgs.msg import String
         from support.robots import Stick, Witness
         # As the node of the pedal: it may choose the mode.

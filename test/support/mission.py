@@ -28,9 +28,9 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 from python_qt_binding.QtCore import Qt  # noqa: E402
 from python_qt_binding.QtWidgets import QApplication  # noqa: E402
 
-from mhri.core.screen.views import LIVE, PROOF_STOPPED  # noqa: E402
-from mhri.gui.driving.hands import Grip  # noqa: E402
-from mhri.ros.convert import motion_from_odometry  # noqa: E402
+from mhri.base.views import LIVE, PROOF_STOPPED  # noqa: E402
+from mhri.driving.gui.hands import Grip  # noqa: E402
+from mhri.robots.ros.convert import motion_from_odometry  # noqa: E402
 from support.panel_session import PanelSession  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 from support.screen_words import (  # noqa: E402

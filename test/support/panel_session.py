@@ -34,9 +34,9 @@ class PanelSession:
             raise
 
     def _start(self, launches, robots):
-        from mhri.presenters.demo import Hands
-        from mhri.presenters.screen_host import ScreenHost
-        from mhri.ros.screen.backend import ScreenBackend
+        from mhri.screen.presenters.demo import Hands
+        from mhri.screen.presenters.screen_host import ScreenHost
+        from mhri.screen.ros.backend import ScreenBackend
         # Before there is an application: it takes the screen that is named then.
         self.system.screen(host=self.display_host)
         self.system.start_master()

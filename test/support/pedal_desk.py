@@ -5,10 +5,10 @@ import glob
 from pathlib import Path
 import time
 
-from mhri.core.devices.pedals import DRIVE, KEYS, load_pedal_profiles
-from mhri.inputs.pedal import PedalReader
-from mhri.inputs.pedal_keys import PedalKeys
-from mhri.inputs.reader import Reading
+from mhri.devices.io.pedal import PedalReader
+from mhri.devices.io.pedal_keys import PedalKeys
+from mhri.devices.io.reader import Reading
+from mhri.devices.pedals import DRIVE, KEYS, load_pedal_profiles
 from support.evdev_stream import install, make_folders, StreamNode
 
 REPO = Path(__file__).resolve().parents[2]

@@ -30,10 +30,10 @@ def write_bag(path, names, seconds, every=1, odometry=False):
     import rospy
     from nav_msgs.msg import Odometry
     from sensor_msgs.msg import CompressedImage
-    from mhri.ros.resources import read_text, resource_path
+    from mhri.graph.ros.resources import read_text, resource_path
     from mhri.sim.camera import Camera
-    from mhri.sim.camera_node import compress
     from mhri.sim.plan import parse_plan
+    from mhri.sim.ros.camera_node import compress
     plan_path = resource_path('sim', 'plan.yaml')
     camera = Camera(parse_plan(read_text(plan_path), plan_path))
     nobody = np.zeros(0, [('x', '<f8'), ('y', '<f8'), ('radius', '<f8'), ('height', '<f8'),

@@ -2,18 +2,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Linked robots that share a bad radio, in simulated time: nothing here depends on the computer.
 
-The radio is that of ``radio.py``; what each robot sends is decided by ``core/link``, as in
-``ros/link``. Sizes and rates are those of ``bench_radio`` with simulated robots.
+The radio is that of ``radio.py``; what each robot sends is decided by ``link/``, as in
+``link/ros``. Sizes and rates are those of ``bench_radio`` with simulated robots.
 """
 import collections
 import math
 import random
 
-from mhri.core.link.bearing import AROUND_BYTES, Bearing, Meter
-from mhri.core.link.carried import COMMAND, GUARD_ECHO, Pace, PICTURE, STATE, Stream
-from mhri.core.link.frames import Frame
-from mhri.core.link.pieces import Gathered, split
-from mhri.core.link.shares import Flow, Share, shares
+from mhri.link.bearing import AROUND_BYTES, Bearing, Meter
+from mhri.link.carried import COMMAND, GUARD_ECHO, Pace, PICTURE, STATE, Stream
+from mhri.link.frames import Frame
+from mhri.link.pieces import Gathered, split
+from mhri.link.shares import Flow, Share, shares
 from support.radio import Channel, read_table, Table
 
 STEP_S, BEAT_S, STICK_S, SHOW_S = 0.002, 0.15, 0.05, 1.0 / 30.0
@@ -89,7 +89,7 @@ class Sender:
             flow.sized(self._send(stream.topic, packed if bound else size, now, b''))
 
     def _go_on(self, now):
-        """Send the pieces of a picture, as ``ros/link/pictures.py``."""
+        """Send the pieces of a picture, as ``link/ros/pictures.py``."""
         due, piece_due = self._next
         share = self._shares.get(CAMERA)
         if not self._pieces and self._waiting is not None and now >= due and share and share.hz:
@@ -107,7 +107,7 @@ class Sender:
         self._next = due, piece_due
 
     def on_heard(self, heard, now):
-        """Take in what the host says that came, as ``ros/link/robot_side.py``."""
+        """Take in what the host says that came, as ``link/ros/robot_side.py``."""
         flows, bearing = list(self._flows.values()), self.bearing
         was_bound = bearing.bound
         bearing.on_heard(heard, sum(flow.demand(now) for flow in flows), now)

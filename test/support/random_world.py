@@ -87,8 +87,8 @@ class World:
     def __enter__(self):
         self.system.start_master()
         import rospy
+        from mhri.graph.ros.master_watch import MasterWatch
         from mhri.msg import ControlMode
-        from mhri.ros.graph.master_watch import MasterWatch
         # As the node of the pad: it may choose the mode.
         rospy.init_node('mhri_joy', disable_signals=True)
         MasterWatch().start()

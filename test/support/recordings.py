@@ -8,8 +8,8 @@ from support.ros_system import wait_for
 
 def record(path, messages=20, limits=None, until=None):
     """Record until there are some messages (or a condition holds); return the last status."""
-    from mhri.core.recording.recording import RecordingLimits
-    from mhri.ros.recording.recorder import Recorder
+    from mhri.recording.recording import RecordingLimits
+    from mhri.recording.ros.recorder import Recorder
     recorder = Recorder('bot1', ['/bot1/text'], path, limits or RecordingLimits())
     recorder.start()
     try:

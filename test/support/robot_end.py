@@ -6,11 +6,11 @@ import os
 import struct
 import threading
 
-from mhri.core.link.carried import COMMAND, key_of, STATE
-from mhri.core.link.frames import About, Beat, pack, pack_about, pack_beat, unpack, unpack_beat
-from mhri.core.link.peer import BEAT_S, Peer
-from mhri.ros.link.carrier import Carrier
-from mhri.ros.link.clock import boot_clock
+from mhri.link.carried import COMMAND, key_of, STATE
+from mhri.link.frames import About, Beat, pack, pack_about, pack_beat, unpack, unpack_beat
+from mhri.link.peer import BEAT_S, Peer
+from mhri.link.ros.carrier import Carrier
+from mhri.link.ros.clock import boot_clock
 
 
 class RobotEnd:

@@ -9,7 +9,7 @@ from nav_msgs.msg import Odometry
 import rospy
 from sensor_msgs.msg import Joy
 
-from mhri.core.robots.link import Motion
+from mhri.robots.link import Motion
 from support.ros_system import wait_for
 
 

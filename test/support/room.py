@@ -10,7 +10,7 @@ import time
 import numpy as np
 import psutil
 
-from mhri.core.voice.sound import BLOCK_BYTES, BLOCK_S
+from mhri.voice.sound import BLOCK_BYTES, BLOCK_S
 from support import speech
 
 

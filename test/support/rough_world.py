@@ -11,16 +11,16 @@ import random
 
 import numpy as np
 
-from mhri.core.driving.laser_scan import laser_scan
-from mhri.core.driving.stick_brake import StickBrake
-from mhri.core.driving.limits import Velocity
-from mhri.core.robots.mocap import Pose
-from mhri.core.robots.pose_track import PoseTrack
-from mhri.core.sensors.readings import NO_RETURN
-from mhri.core.tasks.base import ENDS, RUNNING, Step, Task, way, wrapped
-from mhri.core.tasks.rows import BY_KEY
-from mhri.core.tasks.run import RobotRun
+from mhri.base.limits import Velocity
+from mhri.base.mocap import Pose
+from mhri.driving.stick_brake import StickBrake
+from mhri.robots.pose_track import PoseTrack
+from mhri.sensors.laser_scan import laser_scan
+from mhri.sensors.readings import NO_RETURN
 from mhri.sim.plan import disc_distance
+from mhri.tasks.base import ENDS, RUNNING, Step, Task, way, wrapped
+from mhri.tasks.rows import BY_KEY
+from mhri.tasks.run import RobotRun
 from support.task_world import DT_S, KIND, LIMITS, Robot, room, wall_distance, World
 
 # Moved by less than this the robot stands [m, rad].

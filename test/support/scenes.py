@@ -5,10 +5,10 @@ import numpy as np
 from python_qt_binding.QtCore import QPoint, Qt
 from python_qt_binding.QtGui import QImage
 
-from mhri.core.camera.images import Frame
-from mhri.core.screen import views
-from mhri.gui.screen.screen import ScreenWidget
-from mhri.gui.screen.windows import TurtleBotWindow
+from mhri.base import views
+from mhri.camera.images import Frame
+from mhri.screen.gui.screen import ScreenWidget
+from mhri.screen.gui.windows import TurtleBotWindow
 
 # A colour that nothing else on the screen has, also where the header darkens it.
 MAGENTA = (220, 0, 220)

@@ -9,12 +9,12 @@ import re
 from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtWidgets import QAbstractButton, QComboBox, QLabel
 
-from mhri.core.screen.views import RobotView
-from mhri.core.session.lines import line_of_screen
-from mhri.gui.events.event_list import ROBOT, WHAT
-from mhri.gui.look.hud import hud_lines
-from mhri.gui.screen.labels import Pill, Sign
-from mhri.gui.screen.words import linear_text, turn_text
+from mhri.base.gui.labels import Pill, Sign
+from mhri.base.gui.words import linear_text, turn_text
+from mhri.base.views import RobotView
+from mhri.events.gui.event_list import ROBOT, WHAT
+from mhri.screen.gui.hud import hud_lines
+from mhri.session.lines import line_of_screen
 
 #: {words that are not compared: why}
 BY_NATURE = {
@@ -68,7 +68,7 @@ def _words(kind, part):
 
 
 def words_of(host):
-    """Return {place: what can be read there} of a :class:`mhri.presenters.screen_host.ScreenHost`.
+    """Return {place: what can be read there} of a ``ScreenHost``.
 
     From the widgets themselves, as far as they are on show.
     """

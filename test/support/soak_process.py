@@ -21,8 +21,8 @@ import time
 import rospy
 
 from geometry_msgs.msg import Twist
+from mhri.graph.ros.master_watch import MasterWatch
 from mhri.msg import RobotSelect
-from mhri.ros.graph.master_watch import MasterWatch
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Joy
 from std_srvs.srv import Trigger

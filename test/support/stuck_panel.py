@@ -16,7 +16,7 @@ import time
 from python_qt_binding.QtCore import QTimer
 from python_qt_binding.QtWidgets import QWidget
 
-from mhri.gui.driving.stop_bar import StopBar
+from mhri.driving.gui.stop_bar import StopBar
 import mhri.nodes.panel
 
 STEP_S = 0.02

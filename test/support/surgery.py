@@ -11,7 +11,7 @@ import xmlrpc.client
 
 import rosgraph
 
-from mhri.ros.resources import read_text
+from mhri.graph.ros.resources import read_text
 from support.ros_system import System, wait_for
 
 PATIENT = os.path.join(os.path.dirname(os.path.realpath(__file__)), 'patient.py')

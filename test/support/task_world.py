@@ -6,19 +6,19 @@ import random
 
 import numpy as np
 
-from mhri.core.driving.brake import Surroundings
-from mhri.core.driving.laser_scan import laser_scan
-from mhri.core.driving.limits import Velocity
-from mhri.core.robots.mocap import Pose
-from mhri.core.robots.robot_types import Limits
-from mhri.core.sensors.readings import NO_RETURN
-from mhri.core.tasks.base import (
-    Body as TaskBody, circles, ENDS, NOWHERE, Other, Senses, Start, Step, Task)
-from mhri.core.tasks.rows import BY_KEY
-from mhri.core.tasks.run import Facts, RobotRun
+from mhri.base.limits import Velocity
+from mhri.base.mocap import Pose
+from mhri.base.robot_types import Limits
+from mhri.sensors.brake import Surroundings
+from mhri.sensors.laser_scan import laser_scan
+from mhri.sensors.readings import NO_RETURN
 from mhri.sim.body import Body, BodyType, Bumper
 from mhri.sim.plan import disc_distance
 from mhri.sim.sensors import Laser
+from mhri.tasks.base import (
+    Body as TaskBody, circles, ENDS, NOWHERE, Other, Senses, Start, Step, Task)
+from mhri.tasks.rows import BY_KEY
+from mhri.tasks.run import Facts, RobotRun
 
 DT_S = 0.05
 KIND = BodyType(radius_m=0.177, height_m=0.4, wheel_separation_m=0.23, accel_mps2=1.0,

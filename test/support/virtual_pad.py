@@ -40,7 +40,7 @@ class _Desc(ctypes.Structure):
 
 def _load():
     """Return pygame's SDL with the functions of virtual joysticks declared, or None."""
-    from mhri.inputs import sdl
+    from mhri.devices.io import sdl
     for name, value in sdl.ENVIRONMENT.items():
         os.environ.setdefault(name, value)
     import pygame  # noqa: F401  (loads the library)
@@ -151,7 +151,7 @@ class Pads:
 
     def shown_in(self, folder):
         """Let the kernel's list of input devices be a folder (:mod:`support.kernel_pads`)."""
-        from mhri.inputs import event_nodes
+        from mhri.devices.io import event_nodes
         event_nodes.SYS_INPUT = folder
 
     def hush(self):
@@ -159,7 +159,7 @@ class Pads:
 
         Call it before SDL is used at all.
         """
-        from mhri.inputs import sdl
+        from mhri.devices.io import sdl
         import pygame
         self._sdl = _load()
         sdl.load_library = lambda: None

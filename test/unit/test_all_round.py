@@ -6,9 +6,9 @@ import math
 import numpy as np
 import pytest
 
-from mhri.core.robots.mocap import Pose
-from mhri.core.sensors.all_round import all_round, Sweep, turned
-from mhri.core.sensors.nearest import nearest
+from mhri.base.mocap import Pose
+from mhri.sensors.all_round import all_round, Sweep, turned
+from mhri.sensors.nearest import nearest
 
 DEGREE = math.radians(1.0)
 

@@ -5,11 +5,10 @@ from collections import Counter
 
 import pytest
 
-from mhri.core.driving.arbiter import (
-    Arbiter, DRIVING, READY, STOPPED, WAIT_NEUTRAL)
-from mhri.core.driving.limits import Velocity, ZERO
-from mhri.core.driving.profile import Axis, JoyRefused, Profile
-from mhri.core.driving.sources import MuxConfig, Source
+from mhri.base.limits import Velocity, ZERO
+from mhri.devices.profile import Axis, JoyRefused, Profile
+from mhri.driving.arbiter import Arbiter, DRIVING, READY, STOPPED, WAIT_NEUTRAL
+from mhri.driving.sources import MuxConfig, Source
 
 FORWARD = (0.0, 1.0)
 NEUTRAL = (0.0, 0.0)

@@ -6,7 +6,7 @@ import random
 import pytest
 from test_arbiter import HELD, RELEASED, Rig
 
-from mhri.core.driving.profile import JoyRefused
+from mhri.devices.profile import JoyRefused
 
 
 class Oracle:

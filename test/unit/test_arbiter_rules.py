@@ -6,9 +6,8 @@ from dataclasses import replace
 import pytest
 from test_arbiter import DRIVE, FORWARD, HELD, make_config, NEUTRAL, RELEASED, Rig, rig_in
 
-from mhri.core.driving.arbiter import (
-    Arbiter, DRIVING, ENABLING_TIMEOUT_S, READY, STOPPED, WAIT_NEUTRAL)
-from mhri.core.driving.limits import Velocity, ZERO
+from mhri.base.limits import Velocity, ZERO
+from mhri.driving.arbiter import Arbiter, DRIVING, ENABLING_TIMEOUT_S, READY, STOPPED, WAIT_NEUTRAL
 
 
 def test_stop_all_is_released_only_with_the_active_source_at_neutral():

@@ -6,10 +6,10 @@ from dataclasses import replace
 import pytest
 from test_arbiter import DRIVE, FORWARD, HELD, make_config, NEUTRAL, Rig, rig_in
 
-from mhri.core.driving.arbiter import Arbiter, DRIVING, READY, STOPPED, WAIT_NEUTRAL
-from mhri.core.driving.limits import Velocity, ZERO
-from mhri.core.driving.profile import JoyRefused, read_twist
-from mhri.core.driving.sources import JOY, MuxConfig, Source, TWIST
+from mhri.base.limits import Velocity, ZERO
+from mhri.devices.profile import JoyRefused, read_twist
+from mhri.driving.arbiter import Arbiter, DRIVING, READY, STOPPED, WAIT_NEUTRAL
+from mhri.driving.sources import JOY, MuxConfig, Source, TWIST
 
 REST = (0.0, 0.0)
 

@@ -5,8 +5,7 @@ import itertools
 
 import pytest
 
-from mhri.core.screen.arrangement import (
-    ALIKE, arrange, AUTO, Box, choose_large, ONE)
+from mhri.screen.arrangement import ALIKE, arrange, AUTO, Box, choose_large, ONE
 
 SIZES = ((1024, 490), (794, 500), (900, 720), (1440, 1080), (1920, 1010), (3840, 2060))
 NAMES = tuple('bot{}'.format(number) for number in range(1, 7))

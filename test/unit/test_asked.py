@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from mhri.core.screen.asked import (
+from mhri.base.views import LIVE, RobotView, SILENT
+from mhri.screen.asked import (
     asked_and_done, asked_line, AskedAndDone, differs, MOMENT_S, SAME_MPS, SAME_RAD_S)
-from mhri.core.screen.views import LIVE, RobotView, SILENT
 
 DRIVEN = RobotView('crawler1', link=LIVE, age_s=0.01, selected=True, driven=True, obeys='operator',
                    linear_mps=0.2, angular_rad_s=0.0, sent_mps=0.22, sent_rad_s=0.0)

@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from mhri.core.map.assignment import assigned, shared_out
-from mhri.core.map.spread import spread
-from mhri.core.robots.mocap import Pose
-from mhri.core.tasks.rows import BY_KEY
+from mhri.base.mocap import Pose
+from mhri.map.assignment import assigned, shared_out
+from mhri.map.spread import spread
+from mhri.tasks.rows import BY_KEY
 
 
 @pytest.mark.parametrize('seed', range(60))

@@ -8,10 +8,10 @@ import sys
 import numpy as np
 import pytest
 
-from mhri.core.driving.brake import (
+from mhri.base.limits import Velocity
+from mhri.base.mocap import Pose
+from mhri.sensors.brake import (
     braked, BRAKES_MPS2, CRAWL_MPS, free_way, reach_of, Scan, stopping_speed, Surroundings)
-from mhri.core.driving.limits import Velocity
-from mhri.core.robots.mocap import Pose
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 

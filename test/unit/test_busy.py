@@ -3,8 +3,8 @@
 """What is asked before a robot is removed or the screen is closed, and when nothing is asked."""
 import pytest
 
-from mhri.core.screen.busy import close_question, remove_question
-from mhri.core.screen.views import RobotView
+from mhri.base.views import RobotView
+from mhri.robots.busy import close_question, remove_question
 
 
 def bot(number, **values):

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Buttons act once, and not because they were held when a device came."""
-from mhri.core.driving.buttons import ButtonEdges
+from mhri.driving.buttons import ButtonEdges
 
 STOP, NEXT, ALL = 'stop_all', 'next_robot', 'select_all'
 

@@ -3,9 +3,8 @@
 """The dialogue that writes a profile, scripted."""
 import pytest
 
-from mhri.core.devices.calibration import (
-    Calibration, DONE, FORWARD, LEFT, profile_name, REST)
-from mhri.core.driving.profile import parse_profile
+from mhri.devices.calibration import Calibration, DONE, FORWARD, LEFT, profile_name, REST
+from mhri.devices.profile import parse_profile
 
 GUID = '030000004c0500006802000011810000'
 

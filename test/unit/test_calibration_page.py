@@ -5,9 +5,9 @@ import itertools
 
 import pytest
 
-from mhri.core.devices.calibration_page import (
+from mhri.devices.calibration_page import (
     ABSENT, ASKING, CalibrationPage, DONE, READY, SAVED, SAVING, STATES, STOPPING)
-from mhri.core.driving.profile import parse_profile
+from mhri.devices.profile import parse_profile
 
 PAD = {'kind': 'pad', 'name': 'Lab rat pad', 'guid': '0' * 31 + '1'}
 GONE = {'kind': 'absent', 'reason': 'it was unplugged'}

@@ -6,7 +6,7 @@ import random
 
 import pytest
 
-from mhri.core.camera.budget import (
+from mhri.camera.budget import (
     AS_IT_COMES, BudgetPlanner, DRIVEN, Grant, IMPORTANCES, LOOKED_AT, Picture, REST, UNSEEN)
 
 THUMBNAIL_HZ = 5.0

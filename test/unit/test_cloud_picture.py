@@ -11,11 +11,10 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.sensors.cloud_picture import (  # noqa: E402
+from mhri.sensors.cloud_picture import (  # noqa: E402
     CloudArtist, COLOUR, colourings, DISTANCE, GROUND, HEIGHT, INTENSITY, TABLE)
-from mhri.core.sensors.orbit import (  # noqa: E402
-    fitted, focal_px, Orbit, projected, read_orbit)
-from mhri.core.sensors.point_cloud import Cloud  # noqa: E402
+from mhri.sensors.orbit import fitted, focal_px, Orbit, projected, read_orbit  # noqa: E402
+from mhri.sensors.point_cloud import Cloud  # noqa: E402
 from support.clouds import room  # noqa: E402
 
 SIZE = (200, 100)

@@ -13,9 +13,9 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.camera.image_codec import decode_compressed  # noqa: E402
-from mhri.core.camera.images import FrameError  # noqa: E402
-from mhri.core.camera.raw_image import RawImage, decode_raw  # noqa: E402
+from mhri.camera.image_codec import decode_compressed  # noqa: E402
+from mhri.camera.images import FrameError  # noqa: E402
+from mhri.camera.raw_image import decode_raw, RawImage  # noqa: E402
 from support.pictures import colour_picture  # noqa: E402
 
 PICTURE = colour_picture(320, 240)

@@ -9,10 +9,10 @@ import cv2
 import numpy as np
 import pytest
 
-from mhri.core.camera.depth_codec import decode_depth, encode_depth, parse_format
-from mhri.core.camera.depth_colour import DepthColour, colour_at
-from mhri.core.camera.images import FrameError
-from mhri.core.camera.raw_image import RawImage, decode_raw_depth
+from mhri.camera.depth_codec import decode_depth, encode_depth, parse_format
+from mhri.camera.depth_colour import colour_at, DepthColour
+from mhri.camera.images import FrameError
+from mhri.camera.raw_image import decode_raw_depth, RawImage
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 

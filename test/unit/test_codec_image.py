@@ -10,10 +10,10 @@ import cv2
 import numpy as np
 import pytest
 
-from mhri.core.camera import jpeg
-from mhri.core.camera.images import FrameError, check_size, fit
-from mhri.core.camera.image_codec import decode_compressed, read_size
-from mhri.core.camera.raw_image import RawImage, decode_raw
+from mhri.camera import jpeg
+from mhri.camera.image_codec import decode_compressed, read_size
+from mhri.camera.images import check_size, fit, FrameError
+from mhri.camera.raw_image import decode_raw, RawImage
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 

@@ -8,8 +8,8 @@ import sys
 import numpy as np
 import pytest
 
-from mhri.core.camera.images import FrameError
-from mhri.core.camera.rvl import decode_rvl, encode_rvl
+from mhri.camera.images import FrameError
+from mhri.camera.rvl import decode_rvl, encode_rvl
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 

@@ -8,12 +8,12 @@ import cv2
 import numpy as np
 import pytest
 
-from mhri.core.camera.depth_codec import encode_depth
-from mhri.core.camera.depth_colour import DepthColour
-from mhri.core.camera.images import FrameError
-from mhri.core.camera.image_message import COMPRESSED_TYPE, RAW_TYPE, read_picture
-from mhri.core.camera.stream_meter import StreamMeter
-from mhri.core.camera.transports import choose_offer, find_offers, may_carry
+from mhri.camera.depth_codec import encode_depth
+from mhri.camera.depth_colour import DepthColour
+from mhri.camera.image_message import COMPRESSED_TYPE, RAW_TYPE, read_picture
+from mhri.camera.images import FrameError
+from mhri.camera.stream_meter import StreamMeter
+from mhri.camera.transports import choose_offer, find_offers, may_carry
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 

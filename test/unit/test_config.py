@@ -6,13 +6,13 @@ import time
 import pytest
 import yaml
 
-from mhri.core.config import ConfigError, parse_yaml, Section
-from mhri.core.devices.pedals import parse_pedal_profile
-from mhri.core.driving.profile import parse_profile
-from mhri.core.driving.sources import parse_mux_config
-from mhri.core.robots.discovery import parse_ignore_list
-from mhri.core.robots.robot_types import parse_robot_type
-from mhri.core.voice.language import parse_language
+from mhri.base.config import ConfigError, parse_yaml, Section
+from mhri.base.robot_types import parse_robot_type
+from mhri.devices.pedals import parse_pedal_profile
+from mhri.devices.profile import parse_profile
+from mhri.driving.sources import parse_mux_config
+from mhri.robots.discovery import parse_ignore_list
+from mhri.voice.language import parse_language
 
 READERS = {
     'text': lambda section: section.text('key'),

@@ -3,10 +3,10 @@
 """Who is in control, as one screen sees it."""
 import pytest
 
-from mhri.core.driving.control import Claim, operator_name, VACANT_S, who_drives
-from mhri.core.driving.group_speed import pace_words
-from mhri.core.screen.views import LinkFigures, RobotView
-from mhri.ros.screen.seat import Seat
+from mhri.base.views import LinkFigures, RobotView
+from mhri.driving.control import Claim, operator_name, VACANT_S, who_drives
+from mhri.driving.group_speed import pace_words
+from mhri.screen.ros.seat import Seat
 
 ME, OTHER = '/mhri_panel', '/rqt_gui_py_node_12'
 

@@ -8,9 +8,9 @@ import sys
 import numpy as np
 import pytest
 
-from mhri.core.driving.brake import KEEP_M
-from mhri.core.sensors.depth_beams import DepthBeams, FARTHEST_M, NEAREST_M
-from mhri.core.sensors.point_cloud import CloudError, Lens
+from mhri.sensors.brake import KEEP_M
+from mhri.sensors.depth_beams import DepthBeams, FARTHEST_M, NEAREST_M
+from mhri.sensors.point_cloud import CloudError, Lens
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 

@@ -7,12 +7,12 @@ import sys
 
 import pytest
 
-from mhri.core.devices.pads import load_profiles, PadInfo
-from mhri.core.devices.pedals import load_pedal_profiles
-from mhri.inputs import event_nodes
-from mhri.inputs.pad import PadReader
-from mhri.inputs.pedal import PedalReader
-from mhri.inputs.reader import DeviceAbsent, Reader
+from mhri.devices.io import event_nodes
+from mhri.devices.io.pad import PadReader
+from mhri.devices.io.pedal import PedalReader
+from mhri.devices.io.reader import DeviceAbsent, Reader
+from mhri.devices.pads import load_profiles, PadInfo
+from mhri.devices.pedals import load_pedal_profiles
 
 REPO = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(REPO / 'test'))

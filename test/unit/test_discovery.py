@@ -6,11 +6,11 @@ import os
 
 import pytest
 
-from mhri.core.config import ConfigError
-from mhri.core.robots.discovery import (
+from mhri.base.config import ConfigError
+from mhri.base.robot_types import load_robot_types, resolve_robot_type, Seen
+from mhri.robots.discovery import (
     Candidate, find_candidates, IgnoreList, named_instances, nodes_of, parameters_of,
     parse_ignore_list, TWIST)
-from mhri.core.robots.robot_types import load_robot_types, resolve_robot_type, Seen
 
 IGNORE = IgnoreList(('/rosout', '/*/rosout', '/bot*/helper'), ('mux', 'rqt_*'))
 RESOURCE = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'discovery.yaml')

@@ -8,10 +8,10 @@ import sys
 
 import pytest
 
-from mhri.core.doctor.judgement import as_dict, as_lines, diagnose, exit_status, odd_ones
-from mhri.core.doctor.facts import (
+from mhri.doctor.facts import (
     Connection, FAULT, FINE, REFUSED, SILENT, STRANGER, Stream, UNRESOLVED, WARNING)
-from mhri.core.doctor.robots import clock_offset, robots_of
+from mhri.doctor.judgement import as_dict, as_lines, diagnose, exit_status, odd_ones
+from mhri.doctor.robots import clock_offset, robots_of
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 

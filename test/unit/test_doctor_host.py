@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from mhri.core.doctor.facts import (
-    ANSWERS, Computer, FAULT, Facts, FINE, Folder, is_ipv4, is_loopback, listed, Master, Node,
+from mhri.doctor.facts import (
+    ANSWERS, Computer, Facts, FAULT, FINE, Folder, is_ipv4, is_loopback, listed, Master, Node,
     REFUSED, SILENT, STRANGER, UNRESOLVED, WARNING)
-from mhri.core.doctor.host import find_on_host, find_on_master, package_of
+from mhri.doctor.host import find_on_host, find_on_master, package_of
 
 GIGA = 10 ** 9
 URI = 'http://192.0.2.1:11311'

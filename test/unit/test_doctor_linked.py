@@ -7,11 +7,11 @@ import sys
 
 import pytest
 
-from mhri.core.doctor.facts import (
+from mhri.doctor.facts import (
     ANSWERS, EARLY, FINE, KeysSeen, LinkNote, REFUSED, RUN_OUT, SILENT, Stream, UNRESOLVED,
     UNTIMELY, UNWELCOME)
-from mhri.core.doctor.judgement import diagnose
-from mhri.core.doctor.linked import links_of
+from mhri.doctor.judgement import diagnose
+from mhri.doctor.linked import links_of
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 

@@ -7,9 +7,9 @@ import sys
 
 import pytest
 
-from mhri.core.doctor.judgement import diagnose
-from mhri.core.doctor.facts import Connection, FINE, Master, REFUSED, SILENT, UNRESOLVED
-from mhri.core.doctor.nodes import start_robot
+from mhri.doctor.facts import Connection, FINE, Master, REFUSED, SILENT, UNRESOLVED
+from mhri.doctor.judgement import diagnose
+from mhri.doctor.nodes import start_robot
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 

@@ -3,10 +3,10 @@
 """The trial of a watchdog, step by step, against bodies that behave in every way."""
 import pytest
 
-from mhri.core.doctor.facts import FAULT, FINE, WARNING
-from mhri.core.doctor.watchdog import (
+from mhri.doctor.facts import FAULT, FINE, WARNING
+from mhri.doctor.watchdog import (
     DONE, LOST, MOVED_BEFORE, MUTE, NOT_MOVED, RUNS_ON, STOPS, TURN_RAD_S, verdict, WatchdogTrial)
-from mhri.core.robots.link import Motion
+from mhri.robots.link import Motion
 
 REST, TURNS = Motion(0.0, 0.0), Motion(0.0, TURN_RAD_S)
 PERIOD_S = 0.05

@@ -7,12 +7,12 @@ import math
 import numpy as np
 import pytest
 
-from mhri.core.config import ConfigError
-from mhri.core.drill.page import page_of
-from mhri.core.drill.referee import ALL_FOUND, Doing, Referee, TIME_UP, TruePose
-from mhri.core.drill.results import as_yaml, compared, lines_of, result_of
-from mhri.core.drill.scenario import Scenario, Target
-from mhri.core.session.drill_results import read_result
+from mhri.base.config import ConfigError
+from mhri.drill.page import page_of
+from mhri.drill.referee import ALL_FOUND, Doing, Referee, TIME_UP, TruePose
+from mhri.drill.results import as_yaml, compared, lines_of, result_of
+from mhri.drill.scenario import Scenario, Target
+from mhri.session.drill_results import read_result
 
 WALLS = np.array([[2.0, -1.0, 2.0, 1.0]])
 DRIVES = Doing(('bot1',), True)

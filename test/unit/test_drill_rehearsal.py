@@ -10,10 +10,9 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.drill.operator import (  # noqa: E402
-    Act, ahead_of, MOST_TURN, ScriptedOperator, Seen)
-from mhri.core.drill.referee import ALL_FOUND  # noqa: E402
-from mhri.sim.rehearsal import Rehearsal  # noqa: E402
+from mhri.drill.operator import Act, ahead_of, MOST_TURN, ScriptedOperator, Seen  # noqa: E402
+from mhri.drill.referee import ALL_FOUND  # noqa: E402
+from mhri.drill.rehearsal import Rehearsal  # noqa: E402
 from support.drills import drill, NAMES  # noqa: E402
 
 DELAYS_S = (0.0, 0.4)

@@ -9,8 +9,8 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
-from mhri.core.config import ConfigError  # noqa: E402
-from mhri.core.drill.scenario import on_links, parse_scenario  # noqa: E402
+from mhri.base.config import ConfigError  # noqa: E402
+from mhri.drill.scenario import on_links, parse_scenario  # noqa: E402
 from support.drills import drill, NAMES  # noqa: E402
 
 GOOD = """

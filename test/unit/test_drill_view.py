@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from mhri.core.drill.view import (
+from mhri.drill.view import (
     drill_changes, drill_texts, DrillView, ENDED, RUNNING, SILENT_S, STAYS_S, WAITING)
-from mhri.core.events.events import KINDS
+from mhri.events.events import KINDS
 
 AT = 1000.0
 BEGINS = DrillView(AT, 'Search', 'Find the cans.', WAITING, 0.0, 480.0, (), ('red', 'blue'))

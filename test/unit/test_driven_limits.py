@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """No parameter raises the limit of a robot that is driven."""
-from mhri.core.driving.driven_limits import DrivenLimits
-from mhri.core.robots.robot_types import Limits
+from mhri.base.robot_types import Limits
+from mhri.driving.driven_limits import DrivenLimits
 
 SLOW, FAST = Limits(0.1, 1.0), Limits(0.5, 0.5)
 

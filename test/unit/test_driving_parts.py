@@ -5,13 +5,12 @@ from dataclasses import replace
 
 import pytest
 
-from mhri.core.driving.advice import advice, Heard
-from mhri.core.driving.ownership import Ownership
-from mhri.core.driving.pulse import DEAF_S, NEW_S, Pulse, SLEPT_S
-from mhri.core.driving.sources import JOY, Source, TWIST
-from mhri.core.driving.stop_echo import DOUBT_S, StopEcho
-from mhri.core.driving.task_relay import (
-    MOST_ROBOTS, NOTHING, PASS, PASS_ZEROS, TaskRelay, team_problem)
+from mhri.base.pulse import DEAF_S, NEW_S, Pulse, SLEPT_S
+from mhri.driving.advice import advice, Heard
+from mhri.driving.ownership import Ownership
+from mhri.driving.sources import JOY, Source, TWIST
+from mhri.driving.stop_echo import DOUBT_S, StopEcho
+from mhri.driving.task_relay import MOST_ROBOTS, NOTHING, PASS, PASS_ZEROS, TaskRelay, team_problem
 
 A, B = '/a', '/b'
 

@@ -6,15 +6,15 @@ import json
 
 import pytest
 
-from mhri.core.recording.recording import ENDED, FAILED, RECORDING, RecordingStatus
-from mhri.core.screen.battery import battery_level, FINE, FLAT, LOW
-from mhri.core.events.changes import BACK_S, GOOD_LINK_S
-from mhri.core.events.events import (
-    ALARM, ATTENTION, CALM, clock_text, EventLog, KINDS, LOST_TONE, REPEAT_S, SEVERITIES)
-from mhri.core.screen.views import (
+from mhri.base.battery import battery_level, FINE, FLAT, LOW
+from mhri.base.views import (
     ControlView, GONE, LinkFigures, LIVE, PanelView, PROOF_NOT_CONFIRMED, PROOF_STOPPED,
-    PROOF_WAITING, ProofView, ROS_CONNECTED, ROS_CUT_OFF, ROS_NO_MASTER, ROS_STARTING, RobotView,
+    PROOF_WAITING, ProofView, RobotView, ROS_CONNECTED, ROS_CUT_OFF, ROS_NO_MASTER, ROS_STARTING,
     SILENT, WAITING)
+from mhri.events.changes import BACK_S, GOOD_LINK_S
+from mhri.events.events import (
+    ALARM, ATTENTION, CALM, clock_text, EventLog, KINDS, LOST_TONE, REPEAT_S, SEVERITIES)
+from mhri.recording.recording import ENDED, FAILED, RECORDING, RecordingStatus
 
 WALL_S = 1.8e9
 BOT = RobotView('bot1', link=LIVE, age_s=0.1, battery=0.8)

@@ -5,8 +5,8 @@ import math
 
 import pytest
 
-from mhri.core.drill.delay_line import DelayLine
-from mhri.core.drill.faults import failing_in, FaultBook, FAULTS, FaultRefused
+from mhri.sim.delay_line import DelayLine
+from mhri.sim.faults import failing_in, FaultBook, FaultRefused, FAULTS
 
 NAN = float('nan')
 

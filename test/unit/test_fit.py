@@ -9,9 +9,9 @@ import sys
 import numpy as np
 import pytest
 
-from mhri.core.map.fit import fit, FitError
-from mhri.core.map.grid import Grid
-from mhri.core.robots.mocap import Pose
+from mhri.base.mocap import Pose
+from mhri.map.fit import fit, FitError
+from mhri.map.grid import Grid
 from mhri.sim.floor_map import grid_of_plan
 from mhri.sim.plan import parse_plan
 from mhri.sim.sensors import Laser

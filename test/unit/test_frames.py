@@ -5,7 +5,7 @@ import struct
 
 import pytest
 
-from mhri.core.recording.frames import FrameSplitter
+from mhri.recording.frames import FrameSplitter
 
 FRAMES = [struct.pack('<I', size) + bytes([65 + size % 26]) * size
           for size in (0, 1, 3, 4, 5, 70, 0, 1000)]

@@ -5,10 +5,10 @@ import random
 
 import pytest
 
-from mhri.core.driving.gate import (
+from mhri.base.limits import Velocity, ZERO
+from mhri.base.robot_types import Limits
+from mhri.driving.gate import (
     CLOSED, common_limits, GateRule, HELD, IDLE, JOINING, OPERATOR, STALE_S, STATES, STOPPED, TASK)
-from mhri.core.driving.limits import Velocity, ZERO
-from mhri.core.robots.robot_types import Limits
 
 LIMITS = Limits(0.5, 1.0)
 GO = Velocity(0.4, 0.2)

@@ -6,9 +6,9 @@ import math
 import numpy as np
 import pytest
 
-from mhri.core.config import ConfigError
-from mhri.core.map.grid import Grid, grid_of, GridError, picture_size, read_map
-from mhri.core.robots.mocap import Pose
+from mhri.base.config import ConfigError
+from mhri.base.mocap import Pose
+from mhri.map.grid import Grid, grid_of, GridError, picture_size, read_map
 
 CORNER = Pose(-1.0, 2.0, 0.0)
 YAML = '''image: hall.pgm

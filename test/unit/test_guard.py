@@ -15,10 +15,10 @@ import numpy as np
 from play_guard import load
 import pytest
 
-from mhri.core.driving import brake
-from mhri.core.driving.laser_scan import laser_scan
-from mhri.core.driving.limits import Velocity
-from mhri.core.robots.mocap import Pose
+from mhri.base.limits import Velocity
+from mhri.base.mocap import Pose
+from mhri.sensors import brake
+from mhri.sensors.laser_scan import laser_scan
 
 HERE = Path(__file__).resolve().parent
 PATH = HERE.parents[1] / 'utils' / 'remote' / 'mhri_guard'

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from mhri.core.driving import guard_link
-from mhri.core.driving.guard_link import (
-    format_id, GuardLink, GuardState, parse_id, read_state)
+from mhri.driving import guard_link
+from mhri.driving.guard_link import format_id, GuardLink, GuardState, parse_id, read_state
 from play_guard import load
 
 GUARD = load(str(Path(__file__).resolve().parents[2] / 'utils' / 'remote' / 'mhri_guard'))

@@ -3,7 +3,7 @@
 """A press of STOP is left to the screen while that beats, and to nobody else for long."""
 import pytest
 
-from mhri.core.screen.hang import BEAT_S, LATE_S, PressWatch
+from mhri.screen.hang import BEAT_S, LATE_S, PressWatch
 
 
 def stopped_at(beats, presses, until=3.0, step=0.01):

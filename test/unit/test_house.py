@@ -19,9 +19,13 @@ CLOCKS_AND_IO = {'threading', 'time', 'asyncio', 'concurrent', 'multiprocessing'
                  'socket', 'subprocess', 'os', 'io', 'pathlib', 'shutil', 'tempfile', 'glob',
                  'http', 'urllib', 'xmlrpc', 'select', 'signal', 'random', 'sys', 'logging'}
 MESSAGES = {'mhri.msg', 'mhri.srv', 'cv_bridge', 'genpy', 'rosbag'}
-# The files that join ROS and Qt; every other file keeps to its room.
-JOINING = {'mhri_plugin.py', 'standalone.py'}
-JOINING_ROOMS = {'nodes', 'presenters'}
+# The order of subjects: each imports only from itself and from those before it.
+ORDER = ('base', 'graph', 'recording', 'robots', 'camera', 'sensors', 'devices', 'driving', 'map',
+         'tasks', 'events', 'sim', 'voice', 'link', 'session', 'drill', 'doctor', 'screen')
+# Folders of a subject; what lies beside them is pure.
+KINDS = ('io', 'ros', 'gui', 'presenters')
+# What joins subjects and kinds: executables, the program, the plugin.
+JOINING = {'mhri_plugin.py', 'standalone.py', 'nodes'}
 
 
 # Each rule looks at the same text, one after the other.
@@ -45,36 +49,48 @@ def is_message(module):
     return module in MESSAGES or parts[0] in MESSAGES or parts[0].endswith(('_msgs', '_srvs'))
 
 
-def in_rooms(module, *rooms):
-    """Tell whether a module is one of mhri's rooms, or in it."""
-    return any(module == 'mhri.' + room or module.startswith('mhri.' + room + '.')
-               for room in rooms)
+def place_of(module):
+    """Return (subject, kind) of a module of mhri, e.g. ('camera', 'ros'); kind '' for a pure one.
+
+    Of any other module, and of messages: (None, None).
+    """
+    parts = module.split('.')
+    if parts[0] != 'mhri' or is_message(module):
+        return None, None
+    return ('.'.join(parts[1:2]), parts[2] if len(parts) > 2 and parts[2] in KINDS else '')
 
 
-def core_may(module):
+def of_kind(module, *kinds):
+    """Tell whether a module is one of mhri's of these kinds."""
+    subject, kind = place_of(module)
+    return subject in ORDER and kind in kinds
+
+
+def pure_may(module):
     top = module.split('.')[0]
-    return (in_rooms(module, 'core') or top in {'numpy', 'cv2', 'yaml'}
+    return (of_kind(module, '') or top in {'numpy', 'cv2', 'yaml'}
             or (top in STDLIB and top not in CLOCKS_AND_IO))
 
 
 def opencv_may(module):
     """The loader of OpenCV, which holds an interrupt back meanwhile."""
-    return core_may(module) or module == 'signal'
+    return pure_may(module) or module == 'signal'
 
 
-def inputs_may(module):
+def io_may(module):
     top = module.split('.')[0]
-    own = in_rooms(module, 'core', 'inputs') or not top == 'mhri'
+    own = of_kind(module, '', 'io') or not top == 'mhri'
     return own and top not in ROSPY | QT and not is_message(module)
 
 
 def ros_may(module):
-    return module.split('.')[0] not in QT and not in_rooms(module, 'gui', 'nodes', 'sim')
+    return module.split('.')[0] not in QT and (
+        module.split('.')[0] != 'mhri' or is_message(module) or of_kind(module, '', 'io', 'ros'))
 
 
 def gui_may(module):
     top = module.split('.')[0]
-    return (in_rooms(module, 'core', 'gui') or top in STDLIB
+    return (of_kind(module, '', 'gui') or top in STDLIB
             or top in {'python_qt_binding', 'pyqtgraph', 'numpy'})
 
 
@@ -84,41 +100,45 @@ def forms_may(module):
 
 
 def sim_may(module):
-    """Plain modules of the simulator; its nodes, sim/*node.py, may be on the graph as well."""
-    return (in_rooms(module, 'core', 'sim') or module.split('.')[0] in {'numpy', 'cv2', 'yaml'}
+    """The simulator beside ROS: it has clocks and files."""
+    return (of_kind(module, '') or module.split('.')[0] in {'numpy', 'cv2', 'yaml'}
             or module.split('.')[0] in STDLIB)
 
 
-def sim_node_may(module):
-    return in_rooms(module, 'sim') or ros_may(module)
+# Files and folders with a rule of their own.
+LODGERS = {'screen/presenters/demo.py': gui_may, 'base/gui/forms.py': forms_may,
+           'base/opencv.py': opencv_may, 'drill/rehearsal.py': sim_may}
+KIND_RULES = {'io': io_may, 'ros': ros_may, 'gui': gui_may, 'presenters': None, '': pure_may}
 
 
-# Files whose rule is not that of the folder they are in.
-LODGERS = {'sim/node.py': sim_node_may, 'sim/camera_node.py': sim_node_may,
-           'sim/fault_node.py': sim_node_may,
-           'presenters/demo.py': gui_may, 'gui/screen/forms.py': forms_may,
-           'core/opencv.py': opencv_may}
-ROOMS = {'core': core_may, 'inputs': inputs_may, 'ros': ros_may, 'gui': gui_may, 'sim': sim_may}
+def kind_of(relative):
+    """Return the kind of a file (path below src/mhri): its folder in the subject, '' for none."""
+    parts = relative.parts
+    return parts[1] if len(parts) > 2 else ''
 
 
 def rule_for(relative):
     """Return the rule of imports for a file (path below src/mhri); None for the joining files."""
-    room, path = relative.parts[0], relative.as_posix()
-    if path in LODGERS:
-        return LODGERS[path]
-    return None if path in JOINING or room in JOINING_ROOMS else ROOMS.get(room, core_may)
+    if relative.as_posix() in LODGERS:
+        return LODGERS[relative.as_posix()]
+    if relative.parts[0] in JOINING:
+        return None
+    kind = kind_of(relative)
+    return sim_may if (relative.parts[0], kind) == ('sim', '') else KIND_RULES[kind]
 
 
 def imports(tree):
-    """Yield (line, dotted module) of every import, ``from mhri.core import x`` as mhri.core.x."""
+    """Yield (line, dotted module) of every import, ``from mhri.base import x`` as mhri.base.x."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 yield node.lineno, alias.name
         elif isinstance(node, ast.ImportFrom):
+            parts = (node.module or '').split('.')
             if node.level:
                 yield node.lineno, 'relative import'
-            elif node.module in ('mhri', 'mhri.core', 'mhri.ros', 'mhri.gui', 'mhri.sim', 'rospy'):
+            elif node.module == 'rospy' or parts[0] == 'mhri' and (
+                    len(parts) < 3 and not is_message(node.module) or parts[-1] in KINDS):
                 for alias in node.names:
                     yield node.lineno, '{}.{}'.format(node.module, alias.name)
             else:
@@ -126,19 +146,31 @@ def imports(tree):
 
 
 def import_problems(relative, text):
-    """Imports that a file's room may not have."""
+    """Imports that a file's kind may not have."""
     allowed = rule_for(relative)
     if allowed is None:
         return []
-    return ['line {}: {} may not import {}'.format(line, relative.parts[0], module)
+    return ['line {}: {} may not import {}'.format(line, relative.parent, module)
             for line, module in imports(parsed(text)) if not allowed(module)]
 
 
-def call_problems(relative, text):
-    """Calls that do I/O in core/: time, files and the terminal belong to others."""
-    if relative.parts[0] != 'core':
+def order_problems(relative, text):
+    """Imports of a subject that comes later, and of executables by anything else."""
+    own = relative.parts[0]
+    if own in JOINING or relative.as_posix() == '__init__.py':
         return []
-    return ['line {}: core does no I/O: {}()'.format(node.lineno, node.func.id)
+    if own not in ORDER:
+        return ['is in no subject']
+    later = ORDER[ORDER.index(own) + 1:] + ('nodes', 'standalone', 'mhri_plugin')
+    return ['line {}: {} comes before {}'.format(line, own, place_of(module)[0])
+            for line, module in imports(parsed(text)) if place_of(module)[0] in later]
+
+
+def call_problems(relative, text):
+    """Calls that do I/O in a pure file: time, files and the terminal belong to others."""
+    if rule_for(relative) is not pure_may:
+        return []
+    return ['line {}: a pure file does no I/O: {}()'.format(node.lineno, node.func.id)
             for node in ast.walk(parsed(text)) if isinstance(node, ast.Call)
             and isinstance(node.func, ast.Name) and node.func.id in {'open', 'print', 'input'}]
 
@@ -188,7 +220,7 @@ def constructor_problems(relative, text):
     """A widget's constructor that does not call ``_build``, ... where the class has one."""
     found = []
     for node in ast.walk(parsed(text)):
-        if not isinstance(node, ast.ClassDef) or relative.parts[0] != 'gui':
+        if not isinstance(node, ast.ClassDef) or kind_of(relative) != 'gui':
             continue
         methods = {item.name: item for item in node.body if isinstance(item, ast.FunctionDef)}
         called = {item.func.attr for item in ast.walk(methods.get('__init__', node))
@@ -202,15 +234,15 @@ def constructor_problems(relative, text):
 
 def bag_problems(relative, text):
     """A bag that is opened to be read anywhere but in the one reader: rosbag runs what is in it."""
-    if relative.as_posix() == 'ros/session/bag_set.py':
+    if relative.as_posix() == 'recording/ros/bag_set.py':
         return []
     return ['line {}: opens a bag to read it'.format(node.lineno) for node in ast.walk(parsed(text))
             if isinstance(node, ast.Call) and getattr(node.func, 'attr', '') == 'Bag'
             and not any(getattr(one, 'value', '') in ('w', 'a') for one in node.args)]
 
 
-RULES = (import_problems, call_problems, size_problems, complexity_problems, spdx_problems,
-         swallow_problems, constructor_problems, bag_problems)
+RULES = (import_problems, order_problems, call_problems, size_problems, complexity_problems,
+         spdx_problems, swallow_problems, constructor_problems, bag_problems)
 
 
 def public_docstrings(text):
@@ -265,8 +297,8 @@ def test_file_outside_src_keeps_size_and_licence(path):
 def test_no_folder_has_more_than_30_files():
     assert crowded(path for path in SOURCE.rglob('*')
                    if path.is_file() and path.suffix != '.pyc') == set()
-    many = [Path('core/{}.py'.format(number)) for number in range(31)]
-    assert crowded(many) == {Path('core')} and not crowded(many[1:])
+    many = [Path('map/{}.py'.format(number)) for number in range(31)]
+    assert crowded(many) == {Path('map')} and not crowded(many[1:])
 
 
 def test_public_docstrings():
@@ -300,46 +332,54 @@ GOOD = '{}x\n{}\n"""Text."""\n'.format(*SPDX)
 
 
 @pytest.mark.parametrize('relative, text, said', [
-    ('core/a.py', 'import rospy\n', 'may not import rospy'),
-    ('core/a.py', 'from rospy import Time\n', 'may not import rospy'),
-    ('core/a.py', 'import time\n', 'may not import time'),
-    ('core/a.py', 'import threading\n', 'may not import threading'),
-    ('core/a.py', 'import os.path\n', 'may not import os.path'),
-    ('core/a.py', 'def f():\n    import time\n', 'may not import time'),
-    ('core/a.py', 'from mhri.ros import convert\n', 'may not import mhri.ros.convert'),
-    ('core/a.py', 'from mhri.msg import ControlMode\n', 'may not import mhri.msg'),
-    ('core/a.py', 'import requests\n', 'may not import requests'),
-    ('core/a.py', 'from . import b\n', 'may not import relative import'),
-    ('core/a.py', 'open("x")\n', 'no I/O: open()'),
-    ('core/a.py', 'print("x")\n', 'no I/O: print()'),
-    ('ros/a.py', 'import rosbag\nrosbag.Bag(path)\n', 'opens a bag'),
-    ('inputs/a.py', 'import rospy\n', 'may not import rospy'),
-    ('inputs/a.py', 'from python_qt_binding import QtCore\n', 'may not import python_qt_binding'),
-    ('inputs/a.py', 'from mhri.ros.convert import x\n', 'may not import mhri.ros.convert'),
-    ('ros/a.py', 'from python_qt_binding.QtCore import QTimer\n', 'python_qt_binding.QtCore'),
-    ('ros/a.py', 'import pyqtgraph\n', 'may not import pyqtgraph'),
-    ('ros/a.py',
-     'from mhri.gui.screen.screen import Panel\n', 'may not import mhri.gui.screen.screen'),
-    ('gui/a.py', 'import rospy\n', 'may not import rospy'),
-    ('gui/a.py', 'from geometry_msgs.msg import Twist\n', 'may not import geometry_msgs.msg'),
-    ('gui/a.py',
+    ('map/a.py', 'import rospy\n', 'may not import rospy'),
+    ('map/a.py', 'from rospy import Time\n', 'may not import rospy'),
+    ('map/a.py', 'import time\n', 'may not import time'),
+    ('map/a.py', 'import threading\n', 'may not import threading'),
+    ('map/a.py', 'import os.path\n', 'may not import os.path'),
+    ('map/a.py', 'def f():\n    import time\n', 'may not import time'),
+    ('map/a.py',
+     'from mhri.robots.ros import convert\n', 'may not import mhri.robots.ros.convert'),
+    ('map/a.py', 'from mhri.msg import ControlMode\n', 'may not import mhri.msg'),
+    ('map/a.py', 'import requests\n', 'may not import requests'),
+    ('map/a.py', 'from . import b\n', 'may not import relative import'),
+    ('map/a.py', 'open("x")\n', 'no I/O: open()'),
+    ('map/a.py', 'print("x")\n', 'no I/O: print()'),
+    ('map/ros/a.py', 'import rosbag\nrosbag.Bag(path)\n', 'opens a bag'),
+    ('voice/io/a.py', 'import rospy\n', 'may not import rospy'),
+    ('voice/io/a.py', 'from python_qt_binding import QtCore\n', 'may not import python_qt_binding'),
+    ('voice/io/a.py',
+     'from mhri.robots.ros.convert import x\n', 'may not import mhri.robots.ros.convert'),
+    ('map/ros/a.py', 'from python_qt_binding.QtCore import QTimer\n', 'python_qt_binding.QtCore'),
+    ('map/ros/a.py', 'import pyqtgraph\n', 'may not import pyqtgraph'),
+    ('map/ros/a.py',
+     'from mhri.screen.gui.screen import Panel\n', 'may not import mhri.screen.gui.screen'),
+    ('map/gui/a.py', 'import rospy\n', 'may not import rospy'),
+    ('map/gui/a.py', 'from geometry_msgs.msg import Twist\n', 'may not import geometry_msgs.msg'),
+    ('map/gui/a.py',
      'from mhri.msg import ControlMode\n', 'may not import mhri.msg'),
-    ('gui/a.py', 'from mhri.ros.robots.fleet import Fleet\n',
-     'may not import mhri.ros.robots.fleet'),
+    ('map/gui/a.py', 'from mhri.robots.ros.fleet import Fleet\n',
+     'may not import mhri.robots.ros.fleet'),
     ('sim/body.py', 'import rospy\n', 'may not import rospy'),
     ('sim/body.py', 'from std_msgs.msg import Bool\n', 'may not import std_msgs.msg'),
-    ('sim/node.py', 'from python_qt_binding import QtCore\n', 'may not import python_qt_binding'),
-    ('sim/body.py', 'from mhri.gui import theme\n', 'may not import mhri.gui.theme'),
-    ('presenters/demo.py', 'import rospy\n', 'may not import rospy'),
+    ('sim/ros/node.py',
+     'from python_qt_binding import QtCore\n', 'may not import python_qt_binding'),
+    ('sim/body.py', 'from mhri.base.gui import theme\n', 'may not import mhri.base.gui.theme'),
+    ('screen/presenters/demo.py', 'import rospy\n', 'may not import rospy'),
     ('other.py', 'import rospy\n', 'may not import rospy'),
-    ('core/a.py', '#\n' * 598, '601 lines, more than 600'),
-    ('core/a.py', 'def f():\n' + '    f()\n' * 60, 'f() has 61 lines'),
-    ('core/a.py', 'def f(x):\n' + '    if x:\n        x()\n' * 10, 'complexity 11'),
-    ('core/a.py', '"""Text."""\n', 'two SPDX lines'),
-    ('core/a.py', SPDX[0] + 'x\n"""Text."""\n', 'two SPDX lines'),
-    ('ros/a.py', 'try:\n    f()\nexcept Exception:\n    pass\n', 'says nothing'),
-    ('ros/a.py', 'try:\n    f()\nexcept:\n    pass\n', 'says nothing'),
-    ('gui/a.py', 'class A:\n    def __init__(self):\n        self._build()\n'
+    ('other/a.py', '', 'is in no subject'),
+    ('robots/a.py', 'from mhri.map.places import Place\n', 'robots comes before map'),
+    ('robots/a.py', 'from mhri.map import places\n', 'robots comes before map'),
+    ('robots/ros/a.py', 'import mhri.map.ros.map_feed\n', 'robots comes before map'),
+    ('screen/presenters/a.py', 'from mhri.standalone import x\n', 'screen comes before standalone'),
+    ('map/a.py', '#\n' * 598, '601 lines, more than 600'),
+    ('map/a.py', 'def f():\n' + '    f()\n' * 60, 'f() has 61 lines'),
+    ('map/a.py', 'def f(x):\n' + '    if x:\n        x()\n' * 10, 'complexity 11'),
+    ('map/a.py', '"""Text."""\n', 'two SPDX lines'),
+    ('map/a.py', SPDX[0] + 'x\n"""Text."""\n', 'two SPDX lines'),
+    ('map/ros/a.py', 'try:\n    f()\nexcept Exception:\n    pass\n', 'says nothing'),
+    ('map/ros/a.py', 'try:\n    f()\nexcept:\n    pass\n', 'says nothing'),
+    ('map/gui/a.py', 'class A:\n    def __init__(self):\n        self._build()\n'
      '    def _build(self):\n        pass\n    def _connect(self):\n        pass\n',
      'call _connect'),
 ], ids=lambda value: value.splitlines()[0][:40])
@@ -351,22 +391,22 @@ def test_wrong_sample_is_refused(relative, text, said):
 
 
 @pytest.mark.parametrize('relative, text', [
-    ('core/a.py', 'import math\nimport numpy as np\nimport cv2, yaml\nfrom mhri.core import b\n'),
-    ('inputs/a.py', 'import pygame\nimport threading\n'
-     'from mhri.core.driving.profile import Profile\n'),
-    ('ros/a.py', 'import rospy, threading\nfrom nav_msgs.msg import Odometry\n'
-     'from mhri.msg import RobotSelect\nfrom mhri.core import link\n'),
-    ('gui/a.py', 'import time\nimport pyqtgraph\nfrom python_qt_binding.QtCore import Qt\n'
-     'from mhri.core.screen.views import LIVE\nfrom mhri.gui import theme\n'),
-    ('sim/body.py', 'import random\nimport numpy\nfrom mhri.core import limits\n'),
-    ('sim/node.py', 'import rospy\nfrom sensor_msgs.msg import Imu\nfrom mhri.sim.body import B\n'
-     'from mhri.ros import convert\n'),
-    ('nodes/panel.py', 'import rospy\nfrom mhri.gui.screen.screen import Panel\n'),
+    ('map/a.py', 'import math\nimport numpy as np\nimport cv2, yaml\nfrom mhri.base import text\n'),
+    ('voice/io/a.py', 'import pygame\nimport threading\n'
+     'from mhri.devices.profile import Profile\n'),
+    ('map/ros/a.py', 'import rospy, threading\nfrom nav_msgs.msg import Odometry\n'
+     'from mhri.msg import RobotSelect\nfrom mhri.robots import link\n'),
+    ('map/gui/a.py', 'import time\nimport pyqtgraph\nfrom python_qt_binding.QtCore import Qt\n'
+     'from mhri.base.views import LIVE\nfrom mhri.base.gui import theme\n'),
+    ('sim/body.py', 'import random\nimport numpy\nfrom mhri.base import limits\n'),
+    ('sim/ros/node.py', 'import rospy\nfrom sensor_msgs.msg import Imu\n'
+     'from mhri.sim.body import B\nfrom mhri.robots.ros import convert\n'),
+    ('nodes/panel.py', 'import rospy\nfrom mhri.screen.gui.screen import Panel\n'),
     ('mhri_plugin.py', 'import rospy\nfrom rqt_gui_py.plugin import Plugin\n'),
-    ('core/a.py', 'def f(x):\n' + '    if x:\n        x()\n' * 9),
-    ('core/a.py', 'def f():\n' + '    f()\n' * 59),
-    ('ros/a.py', 'try:\n    f()\nexcept OSError:\n    pass\n'),
-    ('ros/a.py', 'try:\n    f()\nexcept (OSError, ValueError):\n    pass\n'),
+    ('map/a.py', 'def f(x):\n' + '    if x:\n        x()\n' * 9),
+    ('map/a.py', 'def f():\n' + '    f()\n' * 59),
+    ('map/ros/a.py', 'try:\n    f()\nexcept OSError:\n    pass\n'),
+    ('map/ros/a.py', 'try:\n    f()\nexcept (OSError, ValueError):\n    pass\n'),
 ], ids=lambda value: value.splitlines()[0][:40])
 def test_right_sample_is_accepted(relative, text):
     assert [p for rule in RULES for p in rule(Path(relative), GOOD + text)] == []

@@ -10,7 +10,7 @@ import pytest
 
 from test_house import imports, SOURCE, source_files
 
-INSIDE = ('ros/graph/rospy_inside.py', 'ros/graph/prompt.py', 'ros/graph/peers.py')
+INSIDE = ('graph/ros/rospy_inside.py', 'graph/ros/prompt.py', 'graph/ros/peers.py')
 BENEATH = {'client', 'core', 'impl', 'msg', 'msproxy', 'names', 'service', 'timer', 'topics'}
 # They begin with an underscore and are offered all the same: by messages (AnyMsg has its bytes
 # nowhere else), by Python.

@@ -6,8 +6,8 @@ import random
 
 import pytest
 
-from mhri.core.driving.limits import clamp_keeping_curvature, speed_limit_problem, Velocity, ZERO
-from mhri.core.robots.robot_types import Limits
+from mhri.base.limits import clamp_keeping_curvature, speed_limit_problem, Velocity, ZERO
+from mhri.base.robot_types import Limits
 
 BURGER = Limits(0.22, 2.84)
 

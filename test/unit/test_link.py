@@ -5,8 +5,8 @@ import math
 
 import pytest
 
-from mhri.core.robots.link import link_note, link_state, Motion
-from mhri.core.screen.views import GONE, LIVE, SILENT, WAITING
+from mhri.base.views import GONE, LIVE, SILENT, WAITING
+from mhri.robots.link import link_note, link_state, Motion
 
 
 @pytest.mark.parametrize('linear, angular, still', [

@@ -10,17 +10,16 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.link.bearing import (  # noqa: E402
+from mhri.base.views import LinkFigures  # noqa: E402
+from mhri.link.bearing import (  # noqa: E402
     AROUND_BYTES, Bearing, CUT, DRAIN_S, FIRST_CUT, LEAST_BYTES_PER_S, Meter, QUIET_S)
-from mhri.core.link.budget import Budget  # noqa: E402
-from mhri.core.link.carried import (  # noqa: E402
-    COMMAND, GUARD_ECHO, Pace, PICTURE, STATE, Stream)
-from mhri.core.link.figures import (  # noqa: E402
+from mhri.link.budget import Budget  # noqa: E402
+from mhri.link.carried import COMMAND, GUARD_ECHO, Pace, PICTURE, STATE, Stream  # noqa: E402
+from mhri.link.frames import Frame, Heard  # noqa: E402
+from mhri.link.shares import Flow, shares, SMALL_BYTES  # noqa: E402
+from mhri.robots.figures import (  # noqa: E402
     figures_words, picture_words, RadioFigures, read_figures, thinned_words)
-from mhri.core.link.frames import Frame, Heard  # noqa: E402
-from mhri.core.link.shares import Flow, shares, SMALL_BYTES  # noqa: E402
-from mhri.core.robots.link_quality import link_warning  # noqa: E402
-from mhri.core.screen.views import LinkFigures  # noqa: E402
+from mhri.robots.link_quality import link_warning  # noqa: E402
 from support.radio import Channel, read_table, Table  # noqa: E402
 
 CALM, FULL, LOSSY = Heard(5e4, 0.0, 0.0), Heard(5e4, 0.15, 0.0), Heard(5e4, 0.0, 0.2)

@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which host is in control of a linked robot: core/link/control."""
+"""Which host is in control of a linked robot: link/control."""
 import struct
 
 import pytest
 
-from mhri.core.link.control import (
+from mhri.link.control import (
     ASK_S, ASKED, Control, FREE, HELD, moves, pack_standing, SILENT_S, Standing, STEP_S,
     unpack_standing)
-from mhri.core.link.frames import FrameError
-from mhri.core.robots.owners import ASK_FOR, may_drive, shown, TAKE_IT
+from mhri.link.frames import FrameError
+from mhri.robots.owners import ASK_FOR, may_drive, shown, TAKE_IT
 
 LAB, DESK, GALLERY = 'host:lab', 'host:desk.2', 'watch:gallery'
 

@@ -3,7 +3,7 @@
 """What a restarted master is told of the nodes that it has forgotten."""
 import pytest
 
-from mhri.core.link.forgotten import Known, registrations
+from mhri.link.forgotten import Known, registrations
 
 GUARD, BASE, LINK = '/bot1/mhri_guard', '/bot1/base', '/bot1/mhri_link'
 URIS = {GUARD: 'http://r:1/', BASE: 'http://r:2/', LINK: 'http://r:3/', '/reset': 'rosrpc://r:4'}

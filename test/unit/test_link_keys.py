@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whose key may do what on the link: core/link/keys."""
+"""Whose key may do what on the link: link/keys."""
 import pytest
 
-from mhri.core.link.keys import (
+from mhri.link.keys import (
     access, access_of_router, check_open, check_own, endpoint, host_of, is_of, Keys, KeysError,
     marked, partners, read_lists)
-from mhri.core.robots.owners import called, may_drive, split
+from mhri.robots.owners import called, may_drive, split
 
 PEERS = frozenset((
     'host:lab', 'host:desk.2', 'watch:gallery', 'robot:bot1', 'robot:bot2', 'watched:bot3'))

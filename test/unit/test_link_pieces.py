@@ -9,9 +9,9 @@ import cv2
 import numpy as np
 import pytest
 
-from mhri.core.link.frames import FrameError
-from mhri.core.link.pieces import Gathered, MOST_PIECES, PIECE_BYTES, split
-from mhri.core.link.smaller import Smaller
+from mhri.link.frames import FrameError
+from mhri.link.pieces import Gathered, MOST_PIECES, PIECE_BYTES, split
+from mhri.link.smaller import Smaller
 
 
 # --- pieces

@@ -5,10 +5,9 @@ import random
 
 import pytest
 
-from mhri.core.robots.link_quality import (
-    LEAST_SHARE, link_share, link_warning, LinkQuality, MOST_LOST)
-from mhri.core.driving.group_speed import pace_words
-from mhri.core.screen.views import LinkFigures, RobotView
+from mhri.base.views import LinkFigures, RobotView
+from mhri.driving.group_speed import pace_words
+from mhri.robots.link_quality import LEAST_SHARE, link_share, link_warning, LinkQuality, MOST_LOST
 
 
 def fed(offset_s=0.0, one_way_s=0.01, jitter_s=0.0, seconds=8.0, skip=lambda number: False):

@@ -7,8 +7,8 @@ import random
 
 import pytest
 
-from mhri.core.link.frames import FrameError
-from mhri.core.link.records import (
+from mhri.link.frames import FrameError
+from mhri.link.records import (
     AGAIN_S, ALL_THERE_S, Ask, crc_of, Fetch, MOST_PARTS, pack_ask, pack_offer, pack_part,
     PART_BYTES, Piece, piece_of, too_many, unpack_ask, unpack_offer, unpack_part)
 

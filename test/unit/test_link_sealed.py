@@ -7,8 +7,8 @@ import random
 
 import pytest
 
-from mhri.core.link.frames import FrameError
-from mhri.core.link.sealed import (
+from mhri.link.frames import FrameError
+from mhri.link.sealed import (
     FORGED, GARBAGE, Lane, LATE, LIFE_S, REPLAYED, run_of, SealError, STRANGER, USE_S, Window)
 
 aead = pytest.importorskip('cryptography.hazmat.primitives.ciphers.aead')

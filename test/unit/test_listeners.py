@@ -3,7 +3,7 @@
 """Which topic a robot's commands go to, whoever else listens."""
 import pytest
 
-from mhri.core.robots.listeners import first_obeying
+from mhri.robots.listeners import first_obeying
 
 
 @pytest.mark.parametrize('listeners, chosen', [

@@ -6,19 +6,19 @@ import math
 import numpy as np
 import pytest
 
-from mhri.core.map import gesture
-from mhri.core.map.canvas import (
+from mhri.base.mocap import Pose
+from mhri.base.task_views import TaskView
+from mhri.base.views import GONE, LinkFigures, LIVE, RobotView
+from mhri.map import gesture
+from mhri.map.canvas import (
     Canvas, known_corners, LEAST_PX_PER_M, length_words, MOST_PX_PER_M, place_words, scale_bar)
-from mhri.core.map.grid import Grid
-from mhri.core.map.met import Met, OLD_SCAN_S
-from mhri.core.map.scene import (
+from mhri.map.grid import Grid
+from mhri.map.met import Met, OLD_SCAN_S
+from mhri.map.scene import (
     goals_of, in_frame, map_robot, MapMark, MapRobot, own_pose, Placing, Scene, UnderWay)
-from mhri.core.map.spread import has_room, spread, SPACING_RADII
-from mhri.core.map.track import Track
-from mhri.core.map.trail import GOOD, link_grade, LOST, SLOW, Trail
-from mhri.core.robots.mocap import Pose
-from mhri.core.screen.task_views import TaskView
-from mhri.core.screen.views import GONE, LinkFigures, LIVE, RobotView
+from mhri.map.spread import has_room, SPACING_RADII, spread
+from mhri.map.track import Track
+from mhri.map.trail import GOOD, link_grade, LOST, SLOW, Trail
 
 
 def test_the_scans_of_all_lasers_are_drawn_until_they_are_old():

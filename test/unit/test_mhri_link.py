@@ -1,20 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The rules of the link to a robot on a master of its own: core/link."""
+"""The rules of the link to a robot on a master of its own: link/."""
 import math
 import struct
 
 import pytest
 
-from mhri.core.link.carried import (
+from mhri.base.robot_types import parse_robot_type
+from mhri.link.carried import (
     full_topic, key_of, Pace, PICTURE, split_frames, STATE, up_streams, worth_carrying)
-from mhri.core.link.frames import (
+from mhri.link.frames import (
     About, Beat, DEFLATED, Frame, FrameError, Heard, Newest, pack, pack_about, pack_beat, PIECE,
     Thinned, unpack, unpack_about, unpack_beat)
-from mhri.core.link.peer import BEAT_S, GONE_S, held_s, may_pass, Peer, SURE_S
-from mhri.core.link.renaming import (
-    first_text, renamer, rewritten, stamp_of, transforms, Transforms)
-from mhri.core.robots.robot_types import parse_robot_type
+from mhri.link.peer import BEAT_S, GONE_S, held_s, may_pass, Peer, SURE_S
+from mhri.link.renaming import first_text, renamer, rewritten, stamp_of, transforms, Transforms
 
 KIND = parse_robot_type('''
 name: r

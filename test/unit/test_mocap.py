@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from mhri.core.robots.mocap import Drift, DriftMeter, Pose
+from mhri.base.mocap import Drift, DriftMeter, Pose
 
 
 def in_room(pose, x_m=3.0, y_m=-2.0, turn=1.1):

@@ -3,7 +3,7 @@
 """The power of the motors: what a robot is told, when, and what is said of it."""
 import pytest
 
-from mhri.core.driving.motor_power import (
+from mhri.driving.motor_power import (
     CUT, CUT_ASKED, CUT_SENT, MotorPowerRule, RESTORE_ASKED, RESTORE_FOR_S, RETRY_S, UNTOUCHED)
 
 CUT_OFF, GIVE = True, False

@@ -3,7 +3,7 @@
 """Names of robots."""
 import pytest
 
-from mhri.core.robots.names import name_problem, tidy_name, topic_of
+from mhri.base.names import name_problem, tidy_name, topic_of
 
 
 @pytest.mark.parametrize('name', ['bot1', 'a', 'B_2', 'robot_', 'x' * 64])

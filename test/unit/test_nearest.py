@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from mhri.core.sensors.nearest import DIRECTIONS, nearest, Nearest
+from mhri.sensors.nearest import DIRECTIONS, nearest, Nearest
 
 NAN, INF = math.nan, math.inf
 DEGREE = math.radians(1.0)

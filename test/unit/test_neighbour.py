@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Mux and gates know of each other whether they are heard."""
-from mhri.core.driving.pulse import Neighbour
+from mhri.base.pulse import Neighbour
 
 
 def looks(watched, since, until):

@@ -5,9 +5,9 @@ import random
 
 import pytest
 
-from mhri.core.driving.selection import Selection
-from mhri.core.robots.numbers import MOST_NUMBERS, natural_key, RobotNumbers
-from mhri.core.screen.saved_state import usable_state
+from mhri.base.numbers import MOST_NUMBERS, natural_key, RobotNumbers
+from mhri.driving.selection import Selection
+from mhri.screen.saved_state import usable_state
 
 
 def met(*batches):

@@ -37,7 +37,7 @@ def loading(folder, code):
 
 @pytest.mark.parametrize('code, ends', [
     ('import cv2; print(cv2.COLOR)', False),
-    ('from mhri.core.opencv import cv2; print(cv2.COLOR)', True)])
+    ('from mhri.base.opencv import cv2; print(cv2.COLOR)', True)])
 def test_an_interrupt_is_not_lost(tmp_path, code, ends):
     status, output = loading(tmp_path, code)
     assert ('KeyboardInterrupt' in output) == ends, output
@@ -48,10 +48,10 @@ def test_another_thread_may_load_it(tmp_path):
     # A handler that raises could do so within join, which Python 3.8 may then wait in for ever
     # (bpo-45274).
     status, output = loading(
-        tmp_path, 'import signal, threading, mhri.core\n'
+        tmp_path, 'import signal, threading, mhri.base\n'
         'signal.signal(signal.SIGINT, lambda *_: print("interrupted"))\n'
         'thread = threading.Thread(target=lambda: print(\n'
-        '    __import__("mhri.core.opencv", fromlist=["cv2"]).cv2.COLOR))\n'
+        '    __import__("mhri.base.opencv", fromlist=["cv2"]).cv2.COLOR))\n'
         'thread.start()\nthread.join()\n')
     assert status == 0 and '1' in output and 'interrupted' in output, output
 

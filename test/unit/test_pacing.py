@@ -3,7 +3,7 @@
 """On change, at most 100 Hz, at 20 Hz while held, and never without the newest."""
 import pytest
 
-from mhri.core.devices.publish_throttle import MIN_PERIOD_S, Pacer, REPEAT_S
+from mhri.devices.publish_throttle import MIN_PERIOD_S, Pacer, REPEAT_S
 
 
 def test_nothing_known_nothing_published():

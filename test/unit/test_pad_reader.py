@@ -9,11 +9,11 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.devices.pads import PadInfo  # noqa: E402
-from mhri.core.driving.profile import parse_profile  # noqa: E402
-from mhri.inputs import event_nodes, sdl  # noqa: E402
-from mhri.inputs.pad import PadReader  # noqa: E402
-from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reading  # noqa: E402
+from mhri.devices.io import event_nodes, sdl  # noqa: E402
+from mhri.devices.io.pad import PadReader  # noqa: E402
+from mhri.devices.io.reader import DeviceAbsent, DeviceLost, Reading  # noqa: E402
+from mhri.devices.pads import PadInfo  # noqa: E402
+from mhri.devices.profile import parse_profile  # noqa: E402
 from support.kernel_pads import plug, PS3  # noqa: E402
 
 STICK = parse_profile('name: generic\nforward: {axis: 1, scale: -1.0}\nturn: {axis: 0}\n', 'g')
@@ -351,7 +351,7 @@ def test_a_pad_keeps_its_place_and_changes_its_name_with_its_twin():
 
 
 def listed_by(names, paths=None):
-    """Return what :class:`mhri.inputs.sdl.Joysticks` lists of an SDL that is played."""
+    """Return what :class:`mhri.devices.io.sdl.Joysticks` lists of an SDL that is played."""
     library = types.SimpleNamespace(
         SDL_JoystickNameForIndex=lambda index: names[index].encode(),
         SDL_JoystickGetDeviceGUID=lambda _: types.SimpleNamespace(data=bytes(16)),

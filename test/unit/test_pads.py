@@ -6,10 +6,9 @@ import re
 
 import pytest
 
-from mhri.core.devices.pads import (
-    choose_pad, choose_profile, describe, is_guid, load_profiles, PadInfo, same_guid,
-    tell_apart)
-from mhri.core.driving.profile import ANY, JoyRefused
+from mhri.devices.pads import (
+    choose_pad, choose_profile, describe, is_guid, load_profiles, PadInfo, same_guid, tell_apart)
+from mhri.devices.profile import ANY, JoyRefused
 
 PADS = Path(__file__).resolve().parents[2] / 'resource' / 'pads'
 FILES = [(path.stem, str(path), path.read_text(encoding='utf-8'))

@@ -9,11 +9,11 @@ import sys
 
 import pytest
 
-from mhri.core.devices.pads import PadInfo
-from mhri.core.devices.pedals import AXES, DRIVE, ENABLE
-from mhri.inputs.pedal import PedalReader
-from mhri.inputs.pedal_axes import PedalAxes
-from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reading
+from mhri.devices.io.pedal import PedalReader
+from mhri.devices.io.pedal_axes import PedalAxes
+from mhri.devices.io.reader import DeviceAbsent, DeviceLost, Reading
+from mhri.devices.pads import PadInfo
+from mhri.devices.pedals import AXES, DRIVE, ENABLE
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 

@@ -9,9 +9,9 @@ import time
 from evdev import ecodes
 import pytest
 
-from mhri.core.devices.pedals import load_pedal_profiles
-from mhri.inputs.event_nodes import find_switches
-from mhri.inputs.reader import DeviceAbsent, DeviceLost
+from mhri.devices.io.event_nodes import find_switches
+from mhri.devices.io.reader import DeviceAbsent, DeviceLost
+from mhri.devices.pedals import load_pedal_profiles
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 

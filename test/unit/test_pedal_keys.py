@@ -8,8 +8,8 @@ import time
 from evdev import ecodes
 import pytest
 
-from mhri.core.devices.pedals import ENABLE
-from mhri.inputs.reader import Reading
+from mhri.devices.io.reader import Reading
+from mhri.devices.pedals import ENABLE
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 

@@ -8,9 +8,9 @@ import re
 
 import pytest
 
-from mhri.core.config import ConfigError
-from mhri.core.devices.pedal_choice import Candidate, choose, NoPedal, usb_of_guid, Wish
-from mhri.core.devices.pedals import (
+from mhri.base.config import ConfigError
+from mhri.devices.pedal_choice import Candidate, choose, NoPedal, usb_of_guid, Wish
+from mhri.devices.pedals import (
     AXES, DRIVE, ENABLE, KEYS, load_pedal_profiles, parse_pedal_profile, PedalState)
 
 FOLDER = Path(__file__).resolve().parents[2] / 'resource' / 'pedals'

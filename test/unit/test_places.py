@@ -5,12 +5,12 @@ import math
 
 import pytest
 
-from mhri.core.map.drawn import Drawn, kept_of, MOST_CORNERS, MOST_MARKS, read_kept
-from mhri.core.map.places import (
+from mhri.base.mocap import Pose
+from mhri.base.tf_tree import frame_name, TfTree
+from mhri.map.drawn import Drawn, kept_of, MOST_CORNERS, MOST_MARKS, read_kept
+from mhri.map.places import (
     composed, Corrections, GONE_S, HAND, inverse, MOTION_CAPTURE, NOT_PLACED, Odometry, OLD_S,
     Place, RESTART_S, RobotPlace, SETTLES_S, TF, tf_problem)
-from mhri.core.map.tf_tree import frame_name, TfTree
-from mhri.core.robots.mocap import Pose
 
 HERE, THERE = Pose(1.0, 2.0, 0.5), Pose(-3.0, 0.5, 3.0)
 

@@ -6,9 +6,9 @@ import math
 import numpy as np
 import pytest
 
-from mhri.core.sensors.plausible import (
-    ACCELERATION, ANGLE, ANGULAR_VELOCITY, BATTERY, beams_problem, BOUNDS, can_be,
-    MOST_BEAMS, PLACE, QUATERNION, RANGE, sifted, SPEED, thinned)
+from mhri.base.plausible import (
+    ACCELERATION, ANGLE, ANGULAR_VELOCITY, BATTERY, beams_problem, BOUNDS, can_be, MOST_BEAMS,
+    PLACE, QUATERNION, RANGE, sifted, SPEED, thinned)
 
 # What real sensors say, the extremes of their data sheets among them.
 REAL = {QUATERNION: (-1.0, 0.0, 1.0), ANGLE: (-math.pi, 1000.0), ANGULAR_VELOCITY: (-350.0, 70.0),

@@ -11,7 +11,7 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.core.sensors.point_cloud import (  # noqa: E402
+from mhri.sensors.point_cloud import (  # noqa: E402
     CloudError, Field, from_depth, Lens, MOST_POINTS, parse_cloud, RawCloud, read_cloud)
 from support.clouds import cloud_message, laid_out, XYZ  # noqa: E402
 

@@ -5,9 +5,9 @@ import math
 
 import pytest
 
-from mhri.core.driving.brake import SCAN_OLD_S
-from mhri.core.robots.mocap import Pose
-from mhri.core.robots.pose_track import KEPT_S, Moment, PoseTrack, SAME_CLOCK_S
+from mhri.base.mocap import Pose
+from mhri.robots.pose_track import KEPT_S, Moment, PoseTrack, SAME_CLOCK_S
+from mhri.sensors.brake import SCAN_OLD_S
 
 # The robot's clock, when ours says 0.
 NOW = 1.8e9

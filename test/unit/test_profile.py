@@ -5,9 +5,8 @@ import math
 
 import pytest
 
-from mhri.core.config import ConfigError
-from mhri.core.driving.profile import (
-    ACTIONS, Axis, JoyRefused, Match, parse_profile, Profile, Stick)
+from mhri.base.config import ConfigError
+from mhri.devices.profile import ACTIONS, Axis, JoyRefused, Match, parse_profile, Profile, Stick
 
 PAD = Profile('pad', Axis(1, -1.0), Axis(0, -1.0), dead_zone=0.1, neutral=0.15, dead_man=2)
 HELD = (0, 0, 1)

@@ -5,7 +5,7 @@ import logging
 
 import pytest
 
-from mhri.ros.graph.quiet import OncePerSecond
+from mhri.graph.ros.quiet import OncePerSecond
 
 READ = 'cannot deserialize message: EXCEPTION Traceback\n  File x\nstruct.error: {}'
 READ_ONCE = 'Traceback\n' + '  File x\n' * 99 + 'genpy.DeserializationError: cannot deserialize: {}'

@@ -8,9 +8,9 @@ import sys
 import numpy as np
 import pytest
 
-from mhri.core.robots.mocap import Pose
-from mhri.core.screen.brake_view import NO_SCAN, ON, UNSEEN
-from mhri.core.sensors.readings import no_return_of, read_ranges
+from mhri.base.brake_view import NO_SCAN, ON, UNSEEN
+from mhri.base.mocap import Pose
+from mhri.sensors.readings import no_return_of, read_ranges
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 

@@ -5,12 +5,11 @@ from datetime import datetime
 
 import pytest
 
-from mhri.core.recording.recording import (
+from mhri.base.robot_types import parse_robot_type
+from mhri.recording.recording import (
     CHOICES, default_name, expand, fallback_note, MB, numbered, PathRefused, RateMeter,
     read_fallback, RecordingLimits, RecordingStatus, ros_home, size_text, split_path, system_folder,
-    topics_of,
-    warning_of)
-from mhri.core.robots.robot_types import parse_robot_type
+    topics_of, warning_of)
 
 ENV = {'HOME': '/home/op', 'ROS_HOME': '/ros', 'LAB': '/data/lab 1', 'EMPTY': ''}
 FOLDERS = {'/data', '/data/old.bag', '/ros', '/home/op', '/home/op/bags', '/'}

@@ -3,7 +3,7 @@
 """Which displays are shown on another computer, so that nobody trusts a key that is held there."""
 import pytest
 
-from mhri.core.driving.remote_display import FORWARDED, remote_kind, VNC
+from mhri.base.remote_display import FORWARDED, remote_kind, VNC
 
 USUAL = frozenset(('BIG-REQUESTS', 'XInputExtension', 'XKEYBOARD', 'XTEST'))
 

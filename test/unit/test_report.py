@@ -6,19 +6,18 @@ import math
 import numpy as np
 import pytest
 
-from mhri.core.map.grid import Grid
-from mhri.core.robots.link import Motion
-from mhri.core.robots.mocap import Pose
-from mhri.core.session.film import (
-    Camera, cameras_of, frame_count, frame_of, frame_size, Headings, Tile)
-from mhri.core.session.folder import NotASession, SessionEvent, SessionInfo
-from mhri.core.session.report import (
+from mhri.base.mocap import Pose
+from mhri.map.grid import Grid
+from mhri.recording.folder import NotASession, SessionEvent, SessionInfo
+from mhri.robots.link import Motion
+from mhri.session.film import Camera, cameras_of, frame_count, frame_of, frame_size, Headings, Tile
+from mhri.session.report import (
     date_text, events_shown, is_still, MOST_EVENTS, place_of, report_of, seconds_text)
-from mhri.core.session.report_page import page_of
-from mhri.core.session.report_svg import map_svg
-from mhri.core.session.sheet import drawn, ground, sheet_of, Spot, Way
-from mhri.core.session.survey import link_words, RobotSurvey
-from mhri.core.session.timeline import read_time_line, Span
+from mhri.session.report_page import page_of
+from mhri.session.report_svg import map_svg
+from mhri.session.sheet import drawn, ground, sheet_of, Spot, Way
+from mhri.session.survey import link_words, RobotSurvey
+from mhri.session.timeline import read_time_line, Span
 
 START = 1700000000.0
 

@@ -3,7 +3,7 @@
 """Requests to the panel: every action from every kind of selection."""
 import pytest
 
-from mhri.core.screen.requests import check_request, RequestRefused, selection_after
+from mhri.screen.requests import check_request, RequestRefused, selection_after
 
 ROBOTS = ('bot1', 'bot2', 'bot3')
 AFTER = [

@@ -1,16 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a robot may say to the host over its link: core/link/robot_claims.py."""
+"""What a robot may say to the host over its link: link/robot_claims.py."""
 import pathlib
 import struct
 
 import pytest
 
-from mhri.core.link.renaming import first_text, transforms
-from mhri.core.link.robot_claims import (
+from mhri.base.robot_types import parse_robot_type, resolve_robot_type
+from mhri.link.renaming import first_text, transforms
+from mhri.link.robot_claims import (
     believed, fits, is_offer, MAX_OFFERED_BYTES, MAX_PIECE_BYTES, MAX_TOPICS_EACH, offer_problem,
     OwnFrames, recorded_name)
-from mhri.core.robots.robot_types import parse_robot_type, resolve_robot_type
 
 TYPES = {kind.name: kind for kind in (
     parse_robot_type(path.read_text(), path.name)

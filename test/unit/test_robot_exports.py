@@ -6,8 +6,8 @@ import os
 import pytest
 import rospkg
 
-from mhri.core.robots.robot_types import load_robot_types
-from mhri.ros.resources import exported_types
+from mhri.base.robot_types import load_robot_types
+from mhri.graph.ros.resources import exported_types
 
 TEMPLATE = 'name: {}\nlimits: {{linear_mps: 0.3, angular_rad_s: 1.0}}\ncommand: cmd_vel\n'
 MANIFEST = '''<?xml version="1.0"?>

@@ -8,9 +8,9 @@ import os
 import pytest
 import yaml
 
-from mhri.core.config import ConfigError
-from mhri.core.robots.robot_hardware import HardwareStopSpec, MotorPowerSpec
-from mhri.core.robots.robot_types import (
+from mhri.base.config import ConfigError
+from mhri.base.robot_hardware import HardwareStopSpec, MotorPowerSpec
+from mhri.base.robot_types import (
     Export, Limits, load_robot_types, parse_robot_type, resolve_robot_type, Seen)
 
 RESOURCE = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'robots')

@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from mhri.core.screen.saved_state import usable_state
+from mhri.screen.saved_state import usable_state
 
 GOOD = {
     'robots': ['bot2', 'rover_7'], 'numbers': {'bot2': 2, 'rover_7': 1, 'bot10': 12},

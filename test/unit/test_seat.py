@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from mhri.core.driving.seat import (
+from mhri.driving.seat import (
     Caller, ControlSeat, EMPTY, LAPSED, LEASE_S, LEASED, MAX_REFUSED, MOST_ROBOTS, RETURN_S)
 
 A, B = (

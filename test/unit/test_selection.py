@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The list of robots and its check marks."""
-from mhri.core.driving.selection import Selection
+from mhri.driving.selection import Selection
 
 
 def three():

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from mhri.core.sensors.series import (
+from mhri.base.series import (
     AxisRange, BIN_S, BinRing, GAP_S, IMU_KEYS, LONGEST_S, ODOMETRY_KEYS, POINTS, roll_pitch_yaw,
     round_step, Series)
 

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from mhri.core.session.folder import (
+from mhri.recording.folder import (
     bag_name, bag_number, bags_of, event_line, folder_name, info_text, is_folder_name, marks_of,
     next_bag, NotASession, read_events, read_info, robots_of, SessionEvent, SessionInfo,
     sessions_home, still_name)

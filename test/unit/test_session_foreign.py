@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from mhri.core.robots.robot_types import load_robot_types
-from mhri.core.session.folder import NotASession
-from mhri.core.session.foreign import may_be_replayed, name_of_file, robots_of_topics
+from mhri.base.robot_types import load_robot_types
+from mhri.recording.folder import NotASession
+from mhri.session.foreign import may_be_replayed, name_of_file, robots_of_topics
 
 FOLDER = Path(__file__).resolve().parents[2] / 'resource' / 'robots'
 TYPES, _ = load_robot_types((path.name, path.read_text()) for path in sorted(FOLDER.glob('*.yaml')))

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import pytest
 
-from mhri.core.events.events import KINDS
-from mhri.core.robots.robot_types import Limits, RobotType
-from mhri.core.session.folder import KINDS as LINES
-from mhri.core.session.lines import GraphWatch, line_of_screen
-from mhri.core.session.ring import Chunk, Latched, Ring
-from mhri.core.session.topics import camera_topics, inputs_of, robot_entry, robot_topics
-from mhri.core.session.view import button_texts, duration_text, SessionView, tip_text
+from mhri.base.robot_types import Limits, RobotType
+from mhri.events.events import KINDS
+from mhri.recording.folder import KINDS as LINES
+from mhri.session.lines import GraphWatch, line_of_screen
+from mhri.session.ring import Chunk, Latched, Ring
+from mhri.session.topics import camera_topics, inputs_of, robot_entry, robot_topics
+from mhri.session.view import button_texts, duration_text, SessionView, tip_text
 
 S = 10 ** 9
 KIND = RobotType('x', 'X', 'generic', Limits(1.0, 1.0), command=('cmd_vel',), imu=('imu',),

@@ -3,11 +3,9 @@
 """Playing a session: the state machine, the clock of a screen, and the time line."""
 import pytest
 
-from mhri.core.session.folder import SessionEvent
-from mhri.core.session.playing import (
-    age_groups, other_speed, Playing, ReplayClock, SPEEDS)
-from mhri.core.session.timeline import (
-    duration_text, EVENT, MARK, read_time_line, Span, STOP, TimeLine)
+from mhri.recording.folder import SessionEvent
+from mhri.session.playing import age_groups, other_speed, Playing, ReplayClock, SPEEDS
+from mhri.session.timeline import duration_text, EVENT, MARK, read_time_line, Span, STOP, TimeLine
 
 START = 1.7e9
 

@@ -3,10 +3,10 @@
 """What the lines of a session recall of a moment: proofs of stops, tasks to continue, bad links."""
 import pytest
 
-from mhri.core.screen.task_words import ended_as, ended_line
-from mhri.core.screen.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED, ProofView
-from mhri.core.session.folder import SessionEvent
-from mhri.core.session.recalled import newest, Recalled
+from mhri.base.task_words import ended_as, ended_line
+from mhri.base.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED, ProofView
+from mhri.recording.folder import SessionEvent
+from mhri.session.recalled import newest, Recalled
 
 
 def line(ros, kind, text, severity='info', robot='bot1'):

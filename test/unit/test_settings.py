@@ -3,7 +3,7 @@
 """The parameters of the panel: defaults, values, and every way of being wrong."""
 import pytest
 
-from mhri.core.screen.settings import PanelSettings, parse_settings
+from mhri.screen.settings import PanelSettings, parse_settings
 
 BEFORE = PanelSettings(thumbnail_hz=7.0, record_warn_free_mb=900.0)
 

@@ -8,8 +8,8 @@ import random
 import numpy as np
 import pytest
 
-from mhri.core.config import ConfigError
-from mhri.core.robots.robot_types import Limits
+from mhri.base.config import ConfigError
+from mhri.base.robot_types import Limits
 from mhri.sim.body import Body, Bumper, parse_bodies
 
 BODIES_FILE = Path(__file__).resolve().parents[2] / 'resource' / 'sim' / 'bodies.yaml'

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from mhri.core.config import ConfigError
+from mhri.base.config import ConfigError
 from mhri.sim.body import parse_bodies
 from mhri.sim.floor_map import grid_of_plan
 from mhri.sim.plan import disc_distance, parse_plan

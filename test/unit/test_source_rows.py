@@ -3,9 +3,8 @@
 """The parameter with the mux's sources, of the right and of any wrong shape."""
 import pytest
 
-from mhri.core.screen.source_rows import (
-    called_by_device, MOST_SOURCES, source_rows, suspend_services)
-from mhri.core.screen.views import DeviceView
+from mhri.base.views import DeviceView
+from mhri.devices.source_rows import called_by_device, MOST_SOURCES, source_rows, suspend_services
 
 JOY = {'name': 'joy', 'label': 'Virtual joystick', 'topic': '/mux_in/joy'}
 

@@ -5,8 +5,8 @@ import os
 
 import pytest
 
-from mhri.core.config import ConfigError
-from mhri.core.driving.sources import parse_mux_config
+from mhri.base.config import ConfigError
+from mhri.driving.sources import parse_mux_config
 
 PROFILE = 'name: p\nforward: {axis: 1}\nturn: {axis: 0}\n'
 ROW = '  - {name: joy, topic: /mux_in/joy, profile: p}\n'

@@ -7,10 +7,10 @@ import struct
 import numpy as np
 import pytest
 
-from mhri.core.voice import adaptation
-from mhri.core.voice.adaptation import ModelError, Sounds
-from mhri.core.voice.sound import SOUNDS
-from mhri.inputs.teaching import check_voice, read_sounds
+from mhri.voice import adaptation
+from mhri.voice.adaptation import ModelError, Sounds
+from mhri.voice.io.teaching import check_voice, read_sounds
+from mhri.voice.sound import SOUNDS
 
 PHONES = ('A', 'B', 'C', 'SIL')
 A, B, C, SIL = range(4)

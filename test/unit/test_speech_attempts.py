@@ -3,8 +3,8 @@
 """A voice that is not understood is told so, and what to do; talk is told nothing."""
 import pytest
 
-from mhri.core.voice.attempts import Attempts, ATTEMPTS, LONGEST_S, RECENT_S
-from mhri.core.voice.speech import Heard, NO_COMMAND, NOT_SURE
+from mhri.voice.attempts import ATTEMPTS, Attempts, LONGEST_S, RECENT_S
+from mhri.voice.speech import Heard, NO_COMMAND, NOT_SURE
 
 TOLD = 'not understood 3 times: speak slower and close to the microphone, '
 UNSURE = Heard('robot drive forward', 'forward', False, NOT_SURE, 0.2)

@@ -9,9 +9,9 @@ import wave
 import pyaudio  # noqa: F401 (what the microphone needs; without it these tests are worth nothing)
 import pytest
 
-from mhri.core.voice.sound import BLOCK_BYTES, BLOCK_S, RATE_HZ
-from mhri.inputs.audio import Microphone, open_source, RawStream, WavFile
-from mhri.inputs.reader import DeviceAbsent, DeviceLost
+from mhri.devices.io.reader import DeviceAbsent, DeviceLost
+from mhri.voice.io.audio import Microphone, open_source, RawStream, WavFile
+from mhri.voice.sound import BLOCK_BYTES, BLOCK_S, RATE_HZ
 
 BLOCK = bytes(range(256)) * (BLOCK_BYTES // 256) + bytes(BLOCK_BYTES % 256)
 

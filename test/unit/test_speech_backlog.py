@@ -3,8 +3,8 @@
 """How old sound is: read in time, after a hang, from a clock that is not exact."""
 import pytest
 
-from mhri.core.voice.backlog import Backlog
-from mhri.core.voice.sound import BLOCK_S
+from mhri.voice.backlog import Backlog
+from mhri.voice.sound import BLOCK_S
 
 
 def read_in_time(backlog, now, seconds, drift=1.0):

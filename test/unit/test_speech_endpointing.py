@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from mhri.core.voice.endpointing import (
+from mhri.voice.endpointing import (
     BEGIN, END, Endpointer, GO_ON, LEAD_S, LONGEST_S, loudness_db, PAUSE_S, QUIET)
-from mhri.core.voice.sound import BLOCK_BYTES, BLOCK_S
-from mhri.inputs.listener import Began, Ended, Listener, Spotted
-from mhri.inputs.recogniser import compare, Fit, Hypothesis, Tuning
+from mhri.voice.io.listener import Began, Ended, Listener, Spotted
+from mhri.voice.io.recogniser import compare, Fit, Hypothesis, Tuning
+from mhri.voice.sound import BLOCK_BYTES, BLOCK_S
 
 ROOM, NOISE, SPEECH = 8.0, 300.0, 1500.0
 

@@ -8,8 +8,8 @@ import sys
 
 import pytest
 
-from mhri.core.voice.grammar import Command, DRIVE, Grammar, MODE, PANEL, STOP, WAKE
-from mhri.core.voice.language import parse_language
+from mhri.voice.grammar import Command, DRIVE, Grammar, MODE, PANEL, STOP, WAKE
+from mhri.voice.language import parse_language
 
 TEST = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TEST))

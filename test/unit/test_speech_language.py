@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from mhri.core.config import ConfigError
-from mhri.core.voice.language import DIRECTIONS, parse_language
+from mhri.base.config import ConfigError
+from mhri.voice.language import DIRECTIONS, parse_language
 
 RESOURCE = Path(__file__).resolve().parents[2] / 'resource'
 PATH = RESOURCE / 'voice' / 'english.yaml'

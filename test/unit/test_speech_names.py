@@ -3,7 +3,7 @@
 """How robots are called: names into phrases, numbers into words, and names that cannot be used."""
 import pytest
 
-from mhri.core.voice.names import (
+from mhri.voice.names import (
     call_robots, in_places, MOST_ROBOTS, number_words, numbered, spoken_names)
 
 WORDS = set('bot rover turtle turtlebot robot big blue t b r x one tb left stop'.split())

@@ -11,14 +11,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mhri.core.voice.speech import STOP_RECORDING_S
-from mhri.core.voice.grammar import STOP
-from mhri.core.voice.language import parse_language
-from mhri.core.voice.sound import BLOCK_BYTES
-from mhri.inputs import listening, session
-from mhri.inputs.reader import DeviceAbsent, DeviceLost, Reading
-from mhri.inputs.recogniser import Hypothesis
-from mhri.inputs.voice import VoiceReader
+from mhri.devices.io.reader import DeviceAbsent, DeviceLost, Reading
+from mhri.voice.grammar import STOP
+from mhri.voice.io import listening, session
+from mhri.voice.io.recogniser import Hypothesis
+from mhri.voice.io.voice import VoiceReader
+from mhri.voice.language import parse_language
+from mhri.voice.sound import BLOCK_BYTES
+from mhri.voice.speech import STOP_RECORDING_S
 
 PATH = Path(__file__).resolve().parents[2] / 'resource' / 'voice' / 'english.yaml'
 REST = Reading((0.0, 0.0))

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from mhri.core.voice.speech import (
+from mhri.voice.grammar import Grammar, STOP
+from mhri.voice.language import parse_language
+from mhri.voice.speech import (
     MAX_AGE_S, MAX_COMPUTED_S, REST, STOP_RECORDING_S, SURE, SURE_OF_STOP, SURE_WHEN_HELD,
     VoiceRules)
-from mhri.core.voice.grammar import Grammar, STOP
-from mhri.core.voice.language import parse_language
 
 PATH = Path(__file__).resolve().parents[2] / 'resource' / 'voice' / 'english.yaml'
 LANGUAGE = parse_language(PATH.read_text(), str(PATH))

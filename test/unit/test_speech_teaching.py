@@ -4,10 +4,10 @@
 import numpy as np
 import pytest
 
-from mhri.core.voice.sound import BLOCK_BYTES, BLOCK_S, RATE_HZ
-from mhri.core.voice.teaching import sentence_problem, voice_path, voice_problem
-from mhri.inputs.reader import DeviceLost
-from mhri.inputs.teaching import next_sentence
+from mhri.devices.io.reader import DeviceLost
+from mhri.voice.io.teaching import next_sentence
+from mhri.voice.sound import BLOCK_BYTES, BLOCK_S, RATE_HZ
+from mhri.voice.teaching import sentence_problem, voice_path, voice_problem
 
 SOUNDS_OF_SENTENCE = 20
 READ_S = 2.0

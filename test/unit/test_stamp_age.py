@@ -3,8 +3,8 @@
 """How late a message is, whatever the clock of its sender says."""
 import pytest
 
-from mhri.core.robots.link_quality import link_warning, LinkQuality
-from mhri.core.robots.stamp_age import delay_of, SETTLE_S, SET_SINCE_S, StampAge
+from mhri.robots.link_quality import link_warning, LinkQuality
+from mhri.robots.stamp_age import delay_of, SET_SINCE_S, SETTLE_S, StampAge
 
 NOW = 1.8e9  # the robot's clock, when ours (which counts from anywhere) says 0
 

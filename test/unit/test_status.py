@@ -6,10 +6,10 @@ from itertools import product
 
 import pytest
 
-from mhri.core.screen.status import ATTENTION, CALM, status_line, STOPPED
-from mhri.core.screen.views import (
+from mhri.base.views import (
     ControlView, DeviceView, GONE, LINK_STATES, LIVE, PanelView, PROOF_NOT_CONFIRMED, PROOF_STOPPED,
-    ProofView, ROS_CONNECTED, ROS_CUT_OFF, ROS_NO_MASTER, ROS_STARTING, RobotView, SILENT)
+    ProofView, RobotView, ROS_CONNECTED, ROS_CUT_OFF, ROS_NO_MASTER, ROS_STARTING, SILENT)
+from mhri.screen.status import ATTENTION, CALM, status_line, STOPPED
 
 SOURCES = (('joy', 'Virtual joystick'), ('ps3joy', 'PS3 Controller'))
 

@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from mhri.core.driving.brake import braked, CRAWL_MPS, Scan
-from mhri.core.driving.gate import GateRule, JOINING, OPERATOR, TASK
-from mhri.core.driving.limits import Velocity, ZERO
-from mhri.core.driving.stick_brake import StickBrake
-from mhri.core.robots.mocap import Pose
-from mhri.core.robots.robot_types import Limits
-from mhri.core.screen.brake_view import CANNOT, NO_PLACE, NO_SCAN, OFF, ON, SLOWS, UNSEEN
+from mhri.base.brake_view import CANNOT, NO_PLACE, NO_SCAN, OFF, ON, SLOWS, UNSEEN
+from mhri.base.limits import Velocity, ZERO
+from mhri.base.mocap import Pose
+from mhri.base.robot_types import Limits
+from mhri.driving.gate import GateRule, JOINING, OPERATOR, TASK
+from mhri.driving.stick_brake import StickBrake
+from mhri.sensors.brake import braked, CRAWL_MPS, Scan
 
 RADIUS_M = 0.2
 FAST = Velocity(0.5, 0.2)

@@ -3,11 +3,11 @@
 """The proof of a stop: every transition, and no proof that is none."""
 import pytest
 
-from mhri.core.robots.link import Motion
-from mhri.core.robots.robot_types import SILENT_AFTER_S
-from mhri.core.robots.stop_proof import (
+from mhri.base.robot_types import SILENT_AFTER_S
+from mhri.base.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED, PROOF_WAITING
+from mhri.robots.link import Motion
+from mhri.robots.stop_proof import (
     OdometryWitness, PATIENCE_S, ROW_S, StopProof, UNKNOWN_ROUND_TRIP_S)
-from mhri.core.screen.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED, PROOF_WAITING
 
 GRID_M = 5_900_000.0  # as in a national grid
 REST, MOVES, NAN = Motion(0.0, 0.0), Motion(0.3, 0.0), Motion(float('nan'), 0.0)

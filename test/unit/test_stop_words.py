@@ -3,9 +3,8 @@
 """What is said of a stop: never more than the proofs of the robots bear out."""
 import pytest
 
-from mhri.core.screen.stop_words import stop_words
-from mhri.core.screen.views import (
-    PROOF_NOT_CONFIRMED, PROOF_STOPPED, PROOF_WAITING, ProofView, RobotView)
+from mhri.base.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED, PROOF_WAITING, ProofView, RobotView
+from mhri.driving.stop_words import stop_words
 
 
 def robot(name, state=None, age_s=0.01):

@@ -6,15 +6,15 @@ from dataclasses import replace
 import pytest
 import yaml
 
-from mhri.core.events.events import KINDS
-from mhri.core.screen.task_book import ANSWER_S, Goal, RESULT_S, TaskBook, with_team
-from mhri.core.screen.task_views import KindView, Progress, RunView, TasksView, TaskView
-from mhri.core.screen.task_words import (
+from mhri.base.task_views import KindView, Progress, RunView, TasksView, TaskView
+from mhri.base.task_words import (
     carry_on_line, ended_line, for_whom, interrupted_line, NOT_RUNNING, start_problem, task_line,
     task_lines)
-from mhri.core.screen.views import ControlView, PanelView, RobotView
-from mhri.core.tasks.base import ENDS
-from mhri.core.tasks.rows import TASKS
+from mhri.base.views import ControlView, PanelView, RobotView
+from mhri.events.events import KINDS
+from mhri.tasks.base import ENDS
+from mhri.tasks.rows import TASKS
+from mhri.tasks.task_book import ANSWER_S, Goal, RESULT_S, TaskBook, with_team
 
 SQUARE = (KindView('square', 'Square'),)
 GOAL = Goal('square', ('bot1',), '{side: 1.0}')

@@ -6,13 +6,13 @@ import math
 import numpy as np
 import pytest
 
-from mhri.core.robots.mocap import Pose
-from mhri.core.robots.robot_types import Limits
-from mhri.core.tasks.base import (
+from mhri.base.mocap import Pose
+from mhri.base.robot_types import Limits
+from mhri.tasks.base import (
     BLOCKED, Body, DONE, FAILED, LOST, RUNNING, Senses, STOPPED, TAKEN_OVER, Target, TIMEOUT,
     WAITING)
-from mhri.core.tasks.delegated import DelegatedRun, Errand
-from mhri.core.tasks.run import ENDED, Facts, READY_S, UNDER_WAY
+from mhri.tasks.delegated import DelegatedRun, Errand
+from mhri.tasks.run import ENDED, Facts, READY_S, UNDER_WAY
 
 BODY = Body(0.2, Limits(0.5, 1.0))
 SQUARE = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])

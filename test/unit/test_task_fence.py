@@ -9,13 +9,13 @@ import sys
 import numpy as np
 import pytest
 
-from mhri.core.driving.limits import Velocity
-from mhri.core.robots.mocap import Pose
-from mhri.core.robots.robot_types import Limits
-from mhri.core.tasks.base import BLOCKED, Body, DONE, ENDS, FAILED, Step, Task
-from mhri.core.tasks.fence import depths, is_inside, kept_inside
-from mhri.core.tasks.rows import BY_KEY
-from mhri.core.tasks.run import BLOCKED_AFTER_S, RobotRun
+from mhri.base.limits import Velocity
+from mhri.base.mocap import Pose
+from mhri.base.robot_types import Limits
+from mhri.tasks.base import BLOCKED, Body, DONE, ENDS, FAILED, Step, Task
+from mhri.tasks.fence import depths, is_inside, kept_inside
+from mhri.tasks.rows import BY_KEY
+from mhri.tasks.run import BLOCKED_AFTER_S, RobotRun
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 

@@ -7,13 +7,13 @@ import sys
 
 import pytest
 
-from mhri.core.config import ConfigError
-from mhri.core.driving.limits import Velocity
-from mhri.core.robots.mocap import Pose
-from mhri.core.tasks.base import LOST, RUNNING, Step, Task
-from mhri.core.tasks.formation import COLUMN, LeaderPath, LINE, Slot, slot_of, WEDGE
-from mhri.core.tasks.rows import BY_KEY
-from mhri.core.tasks.run import RobotRun
+from mhri.base.config import ConfigError
+from mhri.base.limits import Velocity
+from mhri.base.mocap import Pose
+from mhri.tasks.base import LOST, RUNNING, Step, Task
+from mhri.tasks.formation import COLUMN, LeaderPath, LINE, Slot, slot_of, WEDGE
+from mhri.tasks.rows import BY_KEY
+from mhri.tasks.run import RobotRun
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 

@@ -8,13 +8,13 @@ import sys
 
 import pytest
 
-from mhri.core.driving.limits import Velocity
-from mhri.core.robots.mocap import Pose
-from mhri.core.tasks.base import BLOCKED, DONE, ENDS, Step, Task
-from mhri.core.tasks.replay import laid, thinned
-from mhri.core.tasks.retrace import Trail
-from mhri.core.tasks.rows import BY_KEY
-from mhri.core.tasks.run import RobotRun
+from mhri.base.limits import Velocity
+from mhri.base.mocap import Pose
+from mhri.tasks.base import BLOCKED, DONE, ENDS, Step, Task
+from mhri.tasks.replay import laid, thinned
+from mhri.tasks.retrace import Trail
+from mhri.tasks.rows import BY_KEY
+from mhri.tasks.run import RobotRun
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 

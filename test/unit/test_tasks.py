@@ -7,13 +7,12 @@ import sys
 
 import pytest
 
-from mhri.core.config import ConfigError
-from mhri.core.robots.mocap import Pose
-from mhri.core.tasks.base import (
-    BLOCKED, DONE, FAILED, LOST, STOPPED, TAKEN_OVER, TIMEOUT, WAITING)
-from mhri.core.tasks.retrace import Trail, without_loops
-from mhri.core.tasks.rows import BY_KEY, TASKS
-from mhri.core.tasks.run import BLOCKED_AFTER_S
+from mhri.base.config import ConfigError
+from mhri.base.mocap import Pose
+from mhri.tasks.base import BLOCKED, DONE, FAILED, LOST, STOPPED, TAKEN_OVER, TIMEOUT, WAITING
+from mhri.tasks.retrace import Trail, without_loops
+from mhri.tasks.rows import BY_KEY, TASKS
+from mhri.tasks.run import BLOCKED_AFTER_S
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 

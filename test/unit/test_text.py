@@ -3,7 +3,7 @@
 """Texts of others: short, printable, and quick to deal with whatever they are."""
 import pytest
 
-from mhri.core.screen.text import MOST_CHARACTERS, MOST_NAMES, tidy_names, tidy_text
+from mhri.base.text import MOST_CHARACTERS, MOST_NAMES, tidy_names, tidy_text
 
 
 @pytest.mark.parametrize('text, tidy', [

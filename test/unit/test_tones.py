@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from mhri.core.events.tones import samples, TONES, urgency
+from mhri.events.tones import samples, TONES, urgency
 
 
 @pytest.mark.parametrize('tone', TONES)

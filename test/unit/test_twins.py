@@ -3,7 +3,7 @@
 """Two computers that are one robot: seen, and taken for it in no other case."""
 import pytest
 
-from mhri.core.robots.twins import GuardTurns, twins
+from mhri.robots.twins import GuardTurns, twins
 
 A, B, HOST = '10.0.0.1', '10.0.0.2', '10.0.0.9'
 

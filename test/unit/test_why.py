@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import pytest
 
-from mhri.core.screen.brake_view import BrakeView, brake_words, guard_words, standing_words
-from mhri.core.screen.task_views import TaskView
-from mhri.core.screen.views import (
-    ControlView, DeviceView, GONE, LIVE, PanelView, ROS_CONNECTED, ROS_CUT_OFF, ROS_NO_MASTER,
-    RobotView, SILENT, WAITING)
-from mhri.core.screen.why import CENTRE, MOMENT_S, MOTORS_S, NO_ANSWER, why_still, WhyStill
+from mhri.base.brake_view import brake_words, BrakeView, guard_words, standing_words
+from mhri.base.task_views import TaskView
+from mhri.base.views import (
+    ControlView, DeviceView, GONE, LIVE, PanelView, RobotView, ROS_CONNECTED, ROS_CUT_OFF,
+    ROS_NO_MASTER, SILENT, WAITING)
+from mhri.screen.why import CENTRE, MOMENT_S, MOTORS_S, NO_ANSWER, why_still, WhyStill
 
 SOURCES = (('joy', 'Virtual joystick'), ('ps3joy', 'PS3 Controller'))
 BOT = RobotView('bot3', link=LIVE, age_s=0.01, selected=True, obeys='operator', number=3,

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``gates``: runs :class:`mhri.ros.driving.gates.Gates` as ``/mhri_gates``.
+"""The executable ``gates``: runs :class:`mhri.driving.ros.gates.Gates` as ``/mhri_gates``.
 
 ``gates --stand-by`` does so in a process that another one, already loaded, replaces if it is
-killed (:mod:`mhri.ros.stand_by`).
+killed (:mod:`mhri.graph.ros.stand_by`).
 """
 import gc
 import struct
@@ -11,18 +11,18 @@ import sys
 
 import rospy
 
-from mhri.core.config import ConfigError
-from mhri.core.driving.settings import Settings
-from mhri.core.driving.sources import parse_mux_config
-from mhri.ros.driving.gates import Gates, KEPT
-from mhri.ros.driving.gates_state import GatesSpeaker
-from mhri.ros.ending import init_node
-from mhri.ros.graph import log
-from mhri.ros.graph.peers import limit_peers
-from mhri.ros.graph.master_watch import MasterWatch
-from mhri.ros.graph.rospy_inside import ended_by_hand
-from mhri.ros.resources import profile_reader, read_text, resource_path, robot_types
-from mhri.ros.stand_by import Memory, stand_by
+from mhri.base.config import ConfigError
+from mhri.driving.ros.gates import Gates, KEPT
+from mhri.driving.ros.gates_state import GatesSpeaker
+from mhri.driving.settings import Settings
+from mhri.driving.sources import parse_mux_config
+from mhri.graph.ros import log
+from mhri.graph.ros.ending import init_node
+from mhri.graph.ros.master_watch import MasterWatch
+from mhri.graph.ros.peers import limit_peers
+from mhri.graph.ros.resources import profile_reader, read_text, resource_path, robot_types
+from mhri.graph.ros.rospy_inside import ended_by_hand
+from mhri.graph.ros.stand_by import Memory, stand_by
 
 
 def first_settings():

@@ -3,7 +3,7 @@
 """The executable ``mhri_doctor``: examines the ROS system, says what is wrong and how to fix it.
 
 ``rosrun mhri mhri_doctor [robot ...] [--json] [--quick] [--watchdog [--yes]]``; exit status 0:
-nothing wrong, 1: findings, 2: wrong use. See :mod:`mhri.ros.doctor.examination`. It is not a node,
+nothing wrong, 1: findings, 2: wrong use. See :mod:`mhri.doctor.ros.examination`. It is not a node,
 except with ``--watchdog`` (``mhri_doctor_*``, which publishes ``/<robot>/<command>``,
 ``geometry_msgs/Twist``, for a moment).
 """
@@ -15,8 +15,8 @@ import time
 
 import rosgraph
 
-from mhri.core.robots.names import name_problem, tidy_name
-from mhri.ros.started import started_s
+from mhri.base.names import name_problem, tidy_name
+from mhri.graph.ros.started import started_s
 
 _WARNING = """
 WARNING: {} WILL TURN, and perhaps not stop for 3 s.
@@ -73,7 +73,7 @@ def _watchdogs(options):
     """Return the findings of the trials."""
     # Importing rospy and its messages takes time: only the trial needs them.
     import rospy
-    from mhri.ros.doctor.watchdog import measure_watchdog
+    from mhri.doctor.ros.watchdog import measure_watchdog
     # A signal must end the trial through its zeros, and rospy's own handlers would end the node.
     rospy.init_node('mhri_doctor', anonymous=True, disable_signals=True)
     for number in (signal.SIGTERM, signal.SIGHUP):
@@ -94,8 +94,8 @@ def main():
     if options.watchdog:
         begun = time.monotonic()  # the question may have waited a long time
     # Answer wrong use and --help without the time these imports take.
-    from mhri.core.doctor.judgement import as_dict, as_lines, exit_status
-    from mhri.ros.doctor.examination import examine, WATCH_S
+    from mhri.doctor.judgement import as_dict, as_lines, exit_status
+    from mhri.doctor.ros.examination import examine, WATCH_S
     findings = examine(options.robot, begun=begun, watch_s=0.0 if options.quick else WATCH_S)
     took_s = time.monotonic() - begun
     if options.watchdog:

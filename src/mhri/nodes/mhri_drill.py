@@ -13,23 +13,22 @@ import time
 
 import rospy
 
-from mhri.core.config import ConfigError, short
-from mhri.core.drill.page import page_of
-from mhri.core.drill.referee import ALL_FOUND, Referee, TruePose
-from mhri.core.drill.results import compared, lines_of, result_of
-from mhri.core.drill.scenario import on_links
-from mhri.core.robots.robot_types import resolve_robot_type
+from mhri.base.config import ConfigError, short
+from mhri.base.robot_types import resolve_robot_type
+from mhri.drill.page import page_of
+from mhri.drill.referee import ALL_FOUND, Referee, TruePose
+from mhri.drill.rehearsal import LIMITS, Rehearsal
+from mhri.drill.results import compared, lines_of, result_of
+from mhri.drill.ros.files import earlier, folder_of, names, result_in, scenario_named, write
+from mhri.drill.ros.scripted_hands import ScriptedHands
+from mhri.drill.ros.state import DrillTeller
+from mhri.drill.ros.watch import FaultCaller, OperatorWatch
+from mhri.drill.scenario import on_links
+from mhri.graph.ros.ending import init_node
+from mhri.graph.ros.resources import read_text, robot_types
 from mhri.msg import DrillState
 from mhri.nodes.sim_robot import body_type, building_key
-from mhri.ros.drill.files import (
-    earlier, folder_of, names, result_in, scenario_named, write)
-from mhri.ros.drill.scripted_hands import ScriptedHands
-from mhri.ros.drill.state import DrillTeller
-from mhri.ros.drill.watch import FaultCaller, OperatorWatch
-from mhri.ros.ending import init_node
-from mhri.ros.resources import read_text, robot_types
 from mhri.sim.plan import parse_plan
-from mhri.sim.rehearsal import LIMITS, Rehearsal
 from mhri.sim.world import look_in, world_path
 
 LOOK_HZ = 20.0

@@ -28,25 +28,25 @@ import sys
 
 import rospy
 
-from mhri.core.link.carried import SHARED_FRAMES, split_frames
-from mhri.core.link.keys import check_open, endpoint, host_of, KeysError, marked
-from mhri.core.link.records import IN_SESSIONS, KEEPS
-from mhri.core.robots.names import name_problem, tidy_name
-from mhri.core.robots.owners import is_host
-from mhri.ros.diagnostics import publish_diagnostics
-from mhri.ros.ending import init_node
-from mhri.ros.graph import log
-from mhri.ros.graph.master_watch import MasterWatch
-from mhri.ros.graph.peers import limit_peers
-from mhri.ros.link.carrier import (
+from mhri.base.names import name_problem, tidy_name
+from mhri.graph.ros import log
+from mhri.graph.ros.diagnostics import publish_diagnostics
+from mhri.graph.ros.ending import init_node
+from mhri.graph.ros.master_watch import MasterWatch
+from mhri.graph.ros.peers import limit_peers
+from mhri.graph.ros.resources import robot_types
+from mhri.link.carried import SHARED_FRAMES, split_frames
+from mhri.link.keys import check_open, endpoint, host_of, KeysError, marked
+from mhri.link.records import IN_SESSIONS, KEEPS
+from mhri.link.ros.carrier import (
     Carrier, CarrierError, LibraryMissing, load_library, MAX_FROM_ROBOT, MAX_TO_ROBOT)
-from mhri.ros.link.computer import facts
-from mhri.ros.link.host_side import HostSide
-from mhri.ros.link.keeper import keeper_of, MOST_MB
-from mhri.ros.link.key_folder import AUTO, find_folder, KeyFolder, OFF, watch_keys
-from mhri.ros.link.knocks import tell_knocks
-from mhri.ros.link.note import Note
-from mhri.ros.resources import robot_types
+from mhri.link.ros.computer import facts
+from mhri.link.ros.host_side import HostSide
+from mhri.link.ros.keeper import keeper_of, MOST_MB
+from mhri.link.ros.key_folder import AUTO, find_folder, KeyFolder, OFF, watch_keys
+from mhri.link.ros.knocks import tell_knocks
+from mhri.link.ros.note import Note
+from mhri.robots.owners import is_host
 
 
 def robot_name(text):
@@ -180,7 +180,7 @@ def robot_side(options, carrier, own):
     :param own: the name in the robot's key, None without keys
     """
     # Packs pictures with OpenCV, 28 MB that the host's side, one for each robot, does without.
-    from mhri.ros.link.reception import Reception
+    from mhri.link.ros.reception import Reception
     keeper_of(options.name).most_mb = options.keep_mb
     namespace = tidy_name(options.namespace if options.namespace is not None else options.name)
     return Reception(options.name, carrier, own, '/' + namespace if namespace else '',

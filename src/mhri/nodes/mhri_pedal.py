@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The executable ``mhri_pedal``: the foot pedal, through :class:`InputNode`.
 
-Publishes ``/mux_in/pedal`` (``sensor_msgs/Joy``; see :mod:`mhri.core.devices.pedals`), serves
+Publishes ``/mux_in/pedal`` (``sensor_msgs/Joy``; see :mod:`mhri.devices.pedals`), serves
 ``/mhri_pedal/set_suspended`` (``mhri/SetSuspended``). Parameters:
 
 - ``~device``: ``vendor:product``, path or part of the name of the pedal; '' (default) is the one
@@ -10,7 +10,7 @@ Publishes ``/mux_in/pedal`` (``sensor_msgs/Joy``; see :mod:`mhri.core.devices.pe
 - ``~profile``: name of a file in ``$ROS_HOME/mhri/pedals`` or ``resource/pedals``, without its
   ending; '' (default) is the one for the device
 - ``~role``: ``drive`` (default), or ``enable``: the pedal only allows the active source to drive,
-  see :mod:`mhri.ros.devices.enabling_node`
+  see :mod:`mhri.devices.ros.enabling_node`
 
 The first two take effect within two seconds while the node is resumed.
 """
@@ -18,16 +18,16 @@ import sys
 
 import rospy
 
-from mhri.core.config import shown
-from mhri.core.devices.pedals import DRIVE, ENABLE, ROLES
-from mhri.inputs.pedal import PedalReader
-from mhri.ros.devices.enabling_node import EnablingNode
-from mhri.ros.devices.input_node import InputNode
-from mhri.ros.graph import log
-from mhri.ros.graph.peers import limit_peers
-from mhri.ros.graph.live_parameter import LiveParameter
-from mhri.ros.devices.pedal_profiles import PedalProfiles
-from mhri.ros.ending import init_node
+from mhri.base.config import shown
+from mhri.devices.io.pedal import PedalReader
+from mhri.devices.pedals import DRIVE, ENABLE, ROLES
+from mhri.devices.ros.enabling_node import EnablingNode
+from mhri.devices.ros.input_node import InputNode
+from mhri.devices.ros.pedal_profiles import PedalProfiles
+from mhri.graph.ros import log
+from mhri.graph.ros.ending import init_node
+from mhri.graph.ros.live_parameter import LiveParameter
+from mhri.graph.ros.peers import limit_peers
 
 
 def main():

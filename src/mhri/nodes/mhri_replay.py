@@ -12,16 +12,16 @@ import sys
 import rosgraph
 import rospy
 
-from mhri.core.config import ConfigError
-from mhri.core.driving.sources import parse_mux_config
-from mhri.core.session.folder import NotASession
-from mhri.core.session.foreign import robots_of_topics
-from mhri.ros.driving.in_force import STOP_SERVICE, TAKE_SERVICE
-from mhri.ros.ending import init_node
-from mhri.ros.graph.master_api import MasterApi
-from mhri.ros.resources import profile_reader, read_text, resource_path, robot_types
-from mhri.ros.session.bag_set import open_session
-from mhri.ros.session.player import Player
+from mhri.base.config import ConfigError
+from mhri.driving.sources import parse_mux_config
+from mhri.graph.ros.ending import init_node
+from mhri.graph.ros.in_force import STOP_SERVICE, TAKE_SERVICE
+from mhri.graph.ros.master_api import MasterApi
+from mhri.graph.ros.resources import profile_reader, read_text, resource_path, robot_types
+from mhri.recording.folder import NotASession
+from mhri.recording.ros.bag_set import open_session
+from mhri.session.foreign import robots_of_topics
+from mhri.session.ros.player import Player
 
 ROBOTS_PARAMETER, DRIVEN_PARAMETER = '/mhri/replay/robots', '/mhri/replay/driven'
 GATES = '/gates/state'

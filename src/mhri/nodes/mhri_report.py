@@ -11,12 +11,12 @@ import signal
 import sys
 import time
 
-from mhri.core.config import short
-from mhri.core.recording.recording import size_text
-from mhri.core.session.folder import NotASession
-from mhri.ros.session.film import Film
-from mhri.ros.session.report_files import folder_for, write_report
-from mhri.ros.session.told import opened, Teller
+from mhri.base.config import short
+from mhri.recording.folder import NotASession
+from mhri.recording.recording import size_text
+from mhri.session.ros.film import Film
+from mhri.session.ros.report_files import folder_for, write_report
+from mhri.session.ros.told import opened, Teller
 
 
 def parse(argv):

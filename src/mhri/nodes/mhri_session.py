@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``mhri_session``: runs :class:`mhri.ros.session.session.Session`.
+"""The executable ``mhri_session``: runs :class:`mhri.session.ros.session.Session`.
 
 ``mhri_session --stand-by`` does so in a process that another one, already loaded, replaces if it is
-killed (:mod:`mhri.ros.stand_by`); it goes on with the recording. Parameters: ``~record`` (begin to
-record at once; default false), ``~cameras`` ("all", "stills", or pictures a second; default all),
-``~cameras_out_of_sight`` (default false), ``~folder`` (default ``$ROS_HOME/mhri/sessions``),
+killed (:mod:`mhri.graph.ros.stand_by`); it goes on with the recording. Parameters: ``~record``
+(begin to record at once; default false), ``~cameras`` ("all", "stills", or pictures a second;
+default all), ``~cameras_out_of_sight`` (default false), ``~folder`` (default
+``$ROS_HOME/mhri/sessions``),
 ``~ring_s`` (30) and ``~ring_mb`` (64), ``~warn_free_mb`` (1000), ``~stop_free_mb`` (256),
 ``~bag_s`` (60, at most).
 """
@@ -13,19 +14,18 @@ import sys
 
 import rospy
 
-from mhri.core.config import ConfigError, shown
-from mhri.core.recording.recording import MB, RecordingLimits
-from mhri.core.session.folder import BAG_S, CAMERA_ALL, CAMERA_STILLS
-from mhri.ros import parameters
-from mhri.ros.ending import init_node
-from mhri.ros.graph import log
-from mhri.ros.graph.peers import limit_peers
-from mhri.ros.graph.master_watch import MasterWatch
-from mhri.ros.graph.rospy_inside import ended_by_hand
-from mhri.ros.resources import robot_types
-from mhri.ros.session.session import Session, SessionOptions
-from mhri.ros.session.session_node import SessionNode
-from mhri.ros.stand_by import stand_by
+from mhri.base.config import ConfigError, shown
+from mhri.graph.ros import log, parameters
+from mhri.graph.ros.ending import init_node
+from mhri.graph.ros.master_watch import MasterWatch
+from mhri.graph.ros.peers import limit_peers
+from mhri.graph.ros.resources import robot_types
+from mhri.graph.ros.rospy_inside import ended_by_hand
+from mhri.graph.ros.stand_by import stand_by
+from mhri.recording.folder import BAG_S, CAMERA_ALL, CAMERA_STILLS
+from mhri.recording.recording import MB, RecordingLimits
+from mhri.session.ros.session import Session, SessionOptions
+from mhri.session.ros.session_node import SessionNode
 
 
 def number(name, default, least):

@@ -12,10 +12,10 @@ import actionlib
 import rospy
 import yaml
 
-from mhri.core.tasks.words import parameters_of, TaskWordsError, usage
+from mhri.graph.ros.master_api import MasterApi, MasterError
 from mhri.msg import RunTaskAction, RunTaskGoal, TaskState
-from mhri.ros.graph.master_api import MasterApi, MasterError
-from mhri.ros.tasks.exported import task_kinds
+from mhri.tasks.ros.exported import task_kinds
+from mhri.tasks.words import parameters_of, TaskWordsError, usage
 
 NODE_S = 5.0
 CANCEL_S = 3.0

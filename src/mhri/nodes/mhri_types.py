@@ -6,7 +6,7 @@ It needs no master. The exit status is 1 if a type was left out.
 """
 import sys
 
-from mhri.ros.resources import robot_types
+from mhri.graph.ros.resources import robot_types
 
 
 def lines_of(types):

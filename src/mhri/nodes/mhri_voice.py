@@ -4,7 +4,7 @@
 
 Publishes ``/mux_in/voice`` (``sensor_msgs/Joy``: axes[0] left, axes[1] forward, fractions of the
 speed limit), serves ``/mhri_voice/set_suspended`` (``mhri/SetSuspended``); the other interfaces are
-those of :mod:`mhri.ros.voice.voice`. Parameters:
+those of :mod:`mhri.voice.ros.voice`. Parameters:
 
 - ``~source``: what to listen to: '' (default) the default microphone, ``microphone:<part of its
   name>``, ``<path>.wav``, the path of a FIFO with raw sound (16 kHz, mono, 16 bit little endian),
@@ -17,17 +17,16 @@ import sys
 
 import rospy
 
-from mhri.core.config import ConfigError, short
-from mhri.core.voice.language import parse_language
-from mhri.inputs.voice import VoiceReader
-from mhri.ros import parameters
-from mhri.ros.devices.input_node import InputNode
-from mhri.ros.ending import init_node
-from mhri.ros.graph import log
-from mhri.ros.graph.peers import limit_peers
-from mhri.ros.graph.live_parameter import LiveParameter
-from mhri.ros.resources import read_text, resource_path
-from mhri.ros.voice.voice import VoiceLink
+from mhri.base.config import ConfigError, short
+from mhri.devices.ros.input_node import InputNode
+from mhri.graph.ros import log, parameters
+from mhri.graph.ros.ending import init_node
+from mhri.graph.ros.live_parameter import LiveParameter
+from mhri.graph.ros.peers import limit_peers
+from mhri.graph.ros.resources import read_text, resource_path
+from mhri.voice.io.voice import VoiceReader
+from mhri.voice.language import parse_language
+from mhri.voice.ros.voice import VoiceLink
 
 
 def main():

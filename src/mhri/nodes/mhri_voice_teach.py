@@ -8,14 +8,14 @@ import argparse
 import os
 import sys
 
-from mhri.core.config import ConfigError, short
-from mhri.core.voice.adaptation import ModelError
-from mhri.core.voice.language import parse_language
-from mhri.core.voice.teaching import voice_path, voice_problem
-from mhri.inputs.audio import open_source, WavFile
-from mhri.inputs.listening import missing
-from mhri.inputs.reader import DeviceAbsent, DeviceLost
-from mhri.ros.resources import read_text, resource_path
+from mhri.base.config import ConfigError, short
+from mhri.devices.io.reader import DeviceAbsent, DeviceLost
+from mhri.graph.ros.resources import read_text, resource_path
+from mhri.voice.adaptation import ModelError
+from mhri.voice.io.audio import open_source, WavFile
+from mhri.voice.io.listening import missing
+from mhri.voice.language import parse_language
+from mhri.voice.teaching import voice_path, voice_problem
 
 # Read so often, a sentence that stays bad is left out.
 _TRIES = 3
@@ -59,8 +59,8 @@ def teach(options, say=print):
     if missing():
         raise Refused(missing())
     # Only now: loading takes a second.
-    from mhri.inputs.recogniser import Dictionary, RecogniserError
-    from mhri.inputs.teaching import Teacher
+    from mhri.voice.io.recogniser import Dictionary, RecogniserError
+    from mhri.voice.io.teaching import Teacher
     try:
         teacher = Teacher(language, Dictionary())
         if not language.teach or not language.teach_check:
@@ -76,7 +76,7 @@ def teach(options, say=print):
 
 def _recordings(folder):
     """Return a function from a sentence to the sound of its file, b'' without one."""
-    from mhri.inputs.teaching import next_sentence
+    from mhri.voice.io.teaching import next_sentence
 
     def hear(text):
         path = os.path.join(folder, text.replace(' ', '_') + '.wav')
@@ -93,7 +93,7 @@ def _recordings(folder):
 
 def _live(text, say):
     """Return a function from a sentence to the sound of somebody who reads it."""
-    from mhri.inputs.teaching import next_sentence
+    from mhri.voice.io.teaching import next_sentence
     source = open_source(text)
     say('Listening to {}.\n{}\n'.format(source.open(), _HELP))
 

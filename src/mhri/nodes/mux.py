@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``mux``: reads its parameters and runs :class:`mhri.ros.driving.mux.Mux`.
+"""The executable ``mux``: reads its parameters and runs :class:`mhri.driving.ros.mux.Mux`.
 
 ``mux --stand-by`` does so in a process that another one, already loaded, replaces if it is
-killed (:mod:`mhri.ros.stand_by`).
+killed (:mod:`mhri.graph.ros.stand_by`).
 """
 from dataclasses import replace
 import gc
@@ -12,17 +12,16 @@ import sys
 import rosgraph
 import rospy
 
-from mhri.core.config import ConfigError
-from mhri.core.driving.sources import enabling_problem, parse_mux_config
-from mhri.ros import parameters
-from mhri.ros.graph import log
-from mhri.ros.graph.peers import limit_peers
-from mhri.ros.graph.master_api import MasterApi, MasterError
-from mhri.ros.driving.mux import Mux, STOP_PARAMETER
-from mhri.ros.driving.mux_takeover import end_other_muxes
-from mhri.ros.ending import init_node
-from mhri.ros.resources import profile_reader, read_text, resource_path
-from mhri.ros.stand_by import stand_by
+from mhri.base.config import ConfigError
+from mhri.driving.ros.mux import Mux, STOP_PARAMETER
+from mhri.driving.ros.mux_takeover import end_other_muxes
+from mhri.driving.sources import enabling_problem, parse_mux_config
+from mhri.graph.ros import log, parameters
+from mhri.graph.ros.ending import init_node
+from mhri.graph.ros.master_api import MasterApi, MasterError
+from mhri.graph.ros.peers import limit_peers
+from mhri.graph.ros.resources import profile_reader, read_text, resource_path
+from mhri.graph.ros.stand_by import stand_by
 
 
 def config_path(argv):

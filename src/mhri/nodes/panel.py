@@ -9,7 +9,7 @@ import sys
 from python_qt_binding.QtWidgets import QApplication
 import rospy
 
-from mhri.ros.graph import log
+from mhri.graph.ros import log
 from mhri.standalone import Standalone
 
 PLUGIN = 'mhri.mhri_plugin.MhriPlugin'
@@ -66,7 +66,7 @@ def main():
 
 def replay(app, path):
     """Show a replay until its window is closed; return the exit status, or why not."""
-    from mhri.core.session.folder import NotASession
+    from mhri.recording.folder import NotASession
     from mhri.standalone import make_replay
     try:
         program = make_replay(sys.argv, path)
@@ -80,7 +80,7 @@ def replay(app, path):
 
 def start_demo(program, options):
     """Start the scripted drive in a running program."""
-    from mhri.presenters.demo import Demo
+    from mhri.screen.presenters.demo import Demo
     demo = Demo(program, options.screenshot, options.demo_result)
     demo.start()
     return demo

@@ -20,24 +20,23 @@ import rosgraph
 import rosgraph.network
 import rospy
 
-from mhri.core.config import ConfigError, short, shown
-from mhri.core.robots.robot_types import resolve_robot_type
-from mhri.core.sensors.readings import no_return_of
-from mhri.ros import parameters
-from mhri.ros.ending import init_node
-from mhri.ros.graph import log
-from mhri.ros.graph.peers import limit_peers
-from mhri.ros.graph.master_watch import MasterWatch
-from mhri.ros.map.map_source import publish_map
-from mhri.ros.resources import read_resource, read_text, resource_path, robot_types
+from mhri.base.config import ConfigError, short, shown
+from mhri.base.robot_types import resolve_robot_type
+from mhri.graph.ros import log, parameters
+from mhri.graph.ros.ending import init_node
+from mhri.graph.ros.master_watch import MasterWatch
+from mhri.graph.ros.peers import limit_peers
+from mhri.graph.ros.resources import read_resource, read_text, resource_path, robot_types
+from mhri.map.ros.map_source import publish_map
+from mhri.sensors.readings import no_return_of
 from mhri.sim.body import Body, Bumper, parse_bodies
-from mhri.sim.camera_node import DEPTH_FORMATS, SimCamera
-from mhri.sim.fault_node import Failing
 from mhri.sim.floor_map import grid_of_plan
-from mhri.sim.node import SimRobot
 from mhri.sim.plan import parse_plan
+from mhri.sim.ros.camera_node import DEPTH_FORMATS, SimCamera
+from mhri.sim.ros.fault_node import Failing
+from mhri.sim.ros.node import SimRobot
 from mhri.sim.sensors import ImuSensor, Laser
-from mhri.sim.world import World, WorldFull, world_path
+from mhri.sim.world import World, world_path, WorldFull
 
 
 # No building is this far away [m], and no heading has this many turns [rad]; NaN is refused, too.

@@ -1,30 +1,29 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``tasks``: runs :class:`mhri.ros.tasks.tasks.Tasks` as ``/mhri_tasks``.
+"""The executable ``tasks``: runs :class:`mhri.tasks.ros.tasks.Tasks` as ``/mhri_tasks``.
 
 ``tasks --stand-by`` does so in a process that another one, already loaded, replaces if it is
-killed or hangs (:mod:`mhri.ros.stand_by`). Parameter: ``~map`` (path of a YAML file of map_server;
-it is published as ``/map``; default: none), ``~keep_to_map`` (true: no robot on a task leaves the
-free floor of the map, where it is placed on it and stands there; default: true).
+killed or hangs (:mod:`mhri.graph.ros.stand_by`). Parameter: ``~map`` (path of a YAML file of
+map_server; it is published as ``/map``; default: none), ``~keep_to_map`` (true: no robot on a
+task leaves the free floor of the map, where it is placed on it and stands there; default: true).
 """
 import sys
 
 from diagnostic_msgs.msg import DiagnosticStatus
 import rospy
 
-from mhri.core.config import ConfigError, short
-from mhri.ros import parameters
-from mhri.ros.diagnostics import publish_diagnostics
-from mhri.ros.ending import init_node
-from mhri.ros.graph import log
-from mhri.ros.graph.peers import limit_peers
-from mhri.ros.graph.master_watch import MasterWatch
-from mhri.ros.graph.rospy_inside import ended_by_hand
-from mhri.ros.map.map_source import load_map
-from mhri.ros.resources import robot_types
-from mhri.ros.stand_by import stand_by
-from mhri.ros.tasks.exported import task_kinds
-from mhri.ros.tasks.tasks import Tasks
+from mhri.base.config import ConfigError, short
+from mhri.graph.ros import log, parameters
+from mhri.graph.ros.diagnostics import publish_diagnostics
+from mhri.graph.ros.ending import init_node
+from mhri.graph.ros.master_watch import MasterWatch
+from mhri.graph.ros.peers import limit_peers
+from mhri.graph.ros.resources import robot_types
+from mhri.graph.ros.rospy_inside import ended_by_hand
+from mhri.graph.ros.stand_by import stand_by
+from mhri.map.ros.map_source import load_map
+from mhri.tasks.ros.exported import task_kinds
+from mhri.tasks.ros.tasks import Tasks
 
 
 def map_of_parameter():

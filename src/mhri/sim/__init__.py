@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The stand-in robot: plan, body, sensors (plain) and its node."""
+"""The stand-in robot: plan, body, sensors, faults."""

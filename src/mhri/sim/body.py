@@ -4,7 +4,7 @@
 from dataclasses import dataclass
 import math
 
-from mhri.core.config import parse_yaml
+from mhri.base.config import parse_yaml
 from mhri.sim.plan import Colour, disc_distance, read_colour
 
 _KEYS = ('radius_m', 'height_m', 'wheel_separation_m', 'accel_mps2', 'accel_rad_s2', 'brake_mps2',
@@ -91,7 +91,7 @@ class Body:
     the turn to the left that the floor adds [rad/m], which the wheels do not measure.
 
     :param body_type: :class:`BodyType`
-    :param limits: :class:`mhri.core.robots.robot_types.Limits`, the most that the motors do
+    :param limits: :class:`mhri.base.robot_types.Limits`, the most that the motors do
     :param bumper: :class:`Bumper`
     :param random: :class:`random.Random`
     """

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from mhri.core.opencv import cv2
+from mhri.base.opencv import cv2
 from mhri.sim import textures
 from mhri.sim.lens import CAMERA_HEIGHT_M, CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, WIDTH
 

@@ -3,8 +3,8 @@
 """The floor plan as a map of cells, as if a robot had made it."""
 import numpy as np
 
-from mhri.core.map.grid import FREE, Grid, OCCUPIED
-from mhri.core.robots.mocap import Pose
+from mhri.base.mocap import Pose
+from mhri.map.grid import FREE, Grid, OCCUPIED
 
 RESOLUTION_M = 0.05
 # Walls on the decimetres lie in the middle of a cell.

@@ -7,7 +7,7 @@ from typing import Tuple
 
 import numpy as np
 
-from mhri.core.config import parse_yaml
+from mhri.base.config import parse_yaml
 
 Colour = Tuple[int, int, int]
 

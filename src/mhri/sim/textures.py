@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from mhri.core.opencv import cv2
+from mhri.base.opencv import cv2
 
 WALL_PERIOD_M = 1.2
 WALL_SHADES = 3

@@ -22,7 +22,7 @@ import zlib
 
 import numpy as np
 
-from mhri.core.robots.names import MAX_LENGTH
+from mhri.base.names import MAX_LENGTH
 
 SLOTS = 64
 GHOST_S = 20.0

@@ -5,7 +5,7 @@ import math
 
 from python_qt_binding.QtWidgets import QLabel
 
-from mhri.gui.screen.windows import TurtleBotWindow
+from mhri.screen.gui.windows import TurtleBotWindow
 
 
 class CrawlerWindow(TurtleBotWindow):

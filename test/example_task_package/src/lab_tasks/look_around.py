@@ -3,9 +3,9 @@
 """The task look_around: turn once on the spot, and say how far away the nearest thing was."""
 import math
 
-from mhri.core.driving.limits import Velocity
-from mhri.core.tasks.base import DONE, Field, Step, Task, TaskKind, wrapped
-from mhri.core.tasks.goto import TIMEOUT_S
+from mhri.base.limits import Velocity
+from mhri.tasks.base import DONE, Field, Step, Task, TaskKind, wrapped
+from mhri.tasks.goto import TIMEOUT_S
 import numpy as np
 
 

@@ -1,0 +1,76 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Where a window is, as plain numbers: [x, y, width, height, maximised], in pixels."""
+from python_qt_binding.QtCore import QRect, Qt
+from python_qt_binding.QtGui import QGuiApplication
+
+
+# Of the smallest monitor a window may demand so much: its frame has to fit as well.
+_DEMANDED = 0.9
+
+
+def fitting(size):
+    """Return a :class:`QSize`, made small enough for every monitor, with the window's frame."""
+    for screen in QGuiApplication.screens():
+        size = size.boundedTo(screen.availableGeometry().size() * _DEMANDED)
+    return size
+
+
+def geometry_of(window):
+    """Return the geometry of a window, while it is maximised that from before."""
+    maximised = window.isMaximized()
+    usual = window.normalGeometry()
+    rect = usual if maximised and usual.isValid() else window.geometry()
+    return [rect.x(), rect.y(), rect.width(), rect.height(), maximised]
+
+
+def restore_geometry(window, geometry):
+    """Put a window where it was; return False where no screen is there any more.
+
+    It is made small enough for the screen, and moved into it.
+
+    :param geometry: of :func:`geometry_of`, checked by
+        :func:`mhri.screen.saved_state.read_geometry`
+    """
+    *numbers, maximised = geometry
+    rect = QRect(*numbers)
+    areas = [screen.availableGeometry() for screen in QGuiApplication.screens()]
+    area = max(areas, key=lambda area: _shared(area, rect), default=None)
+    if area is None or not _shared(area, rect):
+        return False
+    rect.setSize(rect.size().boundedTo(area.size()))
+    rect.moveLeft(max(area.left(), min(rect.left(), area.right() - rect.width() + 1)))
+    rect.moveTop(max(area.top(), min(rect.top(), area.bottom() - rect.height() + 1)))
+    window.setGeometry(rect)
+    if maximised:
+        window.setWindowState(window.windowState() | Qt.WindowMaximized)
+    return True
+
+
+def in_sight(geometry):
+    """Tell whether the middle of a window is on a screen that is there.
+
+    :param geometry: of :func:`geometry_of`
+    """
+    middle = QRect(*geometry[:4]).center()
+    return any(screen.geometry().contains(middle) for screen in QGuiApplication.screens())
+
+
+def place_on_another_screen(window, main):
+    """Put a new window on a screen where another one is not; leave it where there is none.
+
+    :param main: the other window
+    """
+    middle = main.geometry().center()
+    others = [screen.availableGeometry() for screen in QGuiApplication.screens()
+              if not screen.geometry().contains(middle)]
+    if others:
+        rect = QRect(others[0].topLeft(), window.size().boundedTo(others[0].size()))
+        rect.moveCenter(others[0].center())
+        window.setGeometry(rect)
+
+
+def _shared(area, rect):
+    """Return how many pixels two rectangles have in common."""
+    common = area.intersected(rect)
+    return common.width() * common.height() if common.isValid() else 0

@@ -1,0 +1,291 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""One camera of one robot: finds, subscribes and decodes it at the size shown, newest picture only.
+
+An open feed has two threads: one finds the topic and holds the subscription, the other decodes;
+thinned on the network, it has a third. Closed, or granted nothing, it receives nothing; closed, it
+has no threads.
+"""
+import threading
+import time
+
+import rospy
+
+from mhri.base.names import topic_of
+from mhri.camera.budget import AS_IT_COMES, Figures
+from mhri.camera.images import StreamStatus
+from mhri.camera.ros.camera_decoder import Decoder
+from mhri.camera.ros.passed_on import PASSED_ON
+from mhri.camera.ros.samples import no_answer, Samples
+from mhri.camera.stream_meter import WINDOW_S
+from mhri.camera.transports import AUTO, choose_offer, find_offers, may_carry, RAW
+from mhri.graph.ros.master_api import MasterApi, MasterError
+from mhri.graph.ros.subscription import reachable, Subscription
+
+LOOK_S = 1.0           # between looks at the master while nothing comes
+LOOK_AGAIN_S = 5.0     # ... and while pictures come: a better transport may turn up
+# How long a subscription must last before it tells how often the camera sends [s].
+SETTLED_S = WINDOW_S + 0.5
+# What an operator calls it.
+_WORDS = {'rgb': 'picture', 'depth': 'depth picture'}
+
+
+class CameraFeed:
+    """A camera's pictures, for a widget that asks for them on a timer.
+
+    Subscribes ``/<robot>/<topic>/compressed`` (depth: ``.../compressedDepth``), type
+    ``sensor_msgs/CompressedImage``, or ``/<robot>/<topic>``, type ``sensor_msgs/Image``: the first
+    one published. No method blocks, except :meth:`close` with a wait; call them on any thread.
+
+    :param robot: namespace of the robot
+    :param topics: camera topics relative to it, in order of preference, without transport
+    :param kind: 'rgb' or 'depth'
+    :param transport: 'auto', or a name of :meth:`transports`
+    :param depth_range_m: (near, far) of the colours [m]; None: follow the scene
+    """
+
+    @classmethod
+    def of(cls, robot, kind, key):
+        """Return the feed of a camera (``key``: 'rgb' or 'depth'), None for a type without it."""
+        topics = getattr(kind, key)
+        return cls(robot, topics, key) if topics else None
+
+    def __init__(self, robot, topics, kind, transport=AUTO, clock=time.monotonic,
+                 depth_range_m=None):
+        self.robot = robot
+        self.kind = kind
+        self.word = _WORDS[kind]
+        self._topics = [topic_of(robot, topic) for topic in topics]
+        self._transport = transport
+        self._clock = clock
+        self._depth_range = depth_range_m
+        self._changed = threading.Condition()
+        self._finder = None
+        self._session = None
+        self._wanted = (None, None)
+        self._grant = AS_IT_COMES
+        self._offers = []
+        # The subscription, or its stand-in; since when, and the topic of the last one.
+        self._line = None
+        self._changed_at = clock()
+        self._topic = ''
+        self._known = {}
+
+    def open(self):
+        """Begin to look for the camera and to decode; return at once."""
+        with self._changed:
+            if self._session is not None:
+                return
+            self._session = self.new_session(self._wishes)
+            self._session.expect(self._grant)
+            self._changed_at = self._clock()
+            if self._finder is None:
+                # A thread that is still giving a topic back to the master goes on with this
+                # instead.
+                self._finder = threading.Thread(target=self._find, daemon=True,
+                                                name='camera finder ' + self.robot)
+                self._finder.start()
+            self._changed.notify_all()
+
+    def new_session(self, wanted):
+        """Return the :class:`Decoder` of one opening; ``wanted`` is its argument."""
+        return Decoder(self.robot, self.kind, wanted, self._clock, self._depth_range)
+
+    def find_offers(self, published):
+        """Return the offers, best first, among the published {topic: type}."""
+        return find_offers(self.kind, self._topics, published)
+
+    def line_of(self, session, offer):
+        """Return the class of a subscription to an offer, and its arguments."""
+        return Subscription, offer.topic, PASSED_ON.hearing(offer.topic, session.hear)
+
+    def samples_of(self, session, offer, grant, native_hz):
+        """Return the same of single pictures of an offer, one at a time."""
+        return (Samples, offer.topic, PASSED_ON.hearing(offer.topic, session.hear),
+                session.explain, grant.rate_hz, native_hz, self._clock)
+
+    def close(self, wait_s=0.0):
+        """Decode nothing more and unregister the topic, the latter on the feed's own thread.
+
+        :param wait_s: wait for it at most so long [s]
+        """
+        with self._changed:
+            session, self._session = self._session, None
+            self._offers = []
+            finder = self._finder
+            self._changed.notify_all()
+        if session is not None:
+            session.end()
+        if finder is not None and wait_s > 0.0:
+            finder.join(wait_s)
+
+    def set_view(self, width=None, height=None, max_hz=None):
+        """Choose how large [pixels] and how often [Hz] pictures come; None: as they are sent."""
+        wanted = ((width, height) if width and height else None, max_hz)
+        changed, self._wanted = wanted != self._wanted, wanted
+        session = self._session
+        if session is not None and changed:
+            session.wake()
+
+    def grant(self, grant):
+        """Obey a :class:`mhri.camera.budget.Grant` from now on.
+
+        Granted nothing, the feed keeps what it has shown and gives the topic back.
+        """
+        with self._changed:
+            changed, self._grant = grant != self._grant, grant
+            session = self._session
+            self._changed.notify_all()
+        if session is not None and changed:
+            session.expect(grant)
+
+    def _wishes(self):
+        """Return the decoder's task: (size or None, greatest rate [Hz] or None)."""
+        (view, max_hz), grant = self._wanted, self._grant
+        rates = [rate for rate in (max_hz, None if grant.sampled else grant.rate_hz) if rate]
+        return view, min(rates, default=None)
+
+    def figures(self):
+        """Return the :class:`mhri.camera.budget.Figures` of its load on the network."""
+        now = self._clock()
+        with self._changed:
+            session, line, topic, grant = self._session, self._line, self._topic, self._grant
+            lasts_s = now - self._changed_at
+            bits, native_hz = self._known.get(topic, (None, None))
+            heavy = (self._transport == RAW and not grant.lighter
+                     and any(offer.transport != RAW for offer in self._offers))
+        if session is None or grant.rate_hz == 0.0:
+            return Figures(bits, native_hz, heavy)
+        status = session.status(now)
+        if line is None or isinstance(line, Subscription) and not status.rate_hz:
+            # Nothing comes: for long, or not yet?
+            return Figures(bits, native_hz, heavy) if lasts_s < SETTLED_S else Figures(0.0, 0.0)
+        if status.rate_hz:
+            bits = status.bits_per_s / status.rate_hz
+        if isinstance(line, Samples):
+            native_hz = line.native_hz or native_hz
+        elif lasts_s >= SETTLED_S:
+            native_hz = status.rate_hz
+        self._known[topic] = (bits, native_hz)
+        return Figures(bits, native_hz, heavy)
+
+    def take(self):
+        """Return the newest :class:`Frame`, None if there is no new one since the last call."""
+        session = self._session
+        return session.take() if session is not None else None
+
+    def status(self):
+        """Return the :class:`StreamStatus` of this moment."""
+        session = self._session
+        return session.status(self._clock()) if session is not None else StreamStatus()
+
+    def age_s(self):
+        """Return the age of the newest good picture [s], None before the first."""
+        return self.status().age_s
+
+    def transports(self):
+        """Return the names of the transports on offer now, best first; [] while not open."""
+        with self._changed:
+            return list(dict.fromkeys(offer.transport for offer in self._offers))
+
+    def choose(self, transport):
+        """Listen to another transport from now on: 'auto' or a name of :meth:`transports`."""
+        with self._changed:
+            self._transport = transport
+            self._changed.notify_all()
+
+    def _find(self):
+        """Hold the wanted subscription; the thread ends when none is wanted."""
+        served = None
+        while True:
+            with self._changed:
+                wish = session, transport, grant = self._wish()
+                if session is None and self._line is None:
+                    self._finder = None
+                    return
+            if self._line is not None and (session is not served or grant.rate_hz == 0.0):
+                self._hold(None)
+                continue
+            served = session
+            if grant.rate_hz != 0.0:
+                self._look_guarded(session, AUTO if grant.lighter else transport, grant)
+            self._rest(wish)
+
+    def _wish(self):
+        """Return what the subscription depends on."""
+        return self._session, self._transport, self._grant
+
+    def _look_guarded(self, session, transport, grant):
+        try:
+            self._look(session, transport, grant)
+        except MasterError as error:
+            session.explain(str(error))
+        except Exception as error:  # the guard of this thread
+            rospy.logerr_throttle(5.0, '{}: looking for its camera: {!r}'.format(
+                self.robot, error))
+            session.explain('cannot look for the camera: {}'.format(error))
+
+    def _rest(self, wish):
+        """Wait until it is time for another look, or there is something to do."""
+        look_s = LOOK_AGAIN_S if wish[0].hears(self._clock()) else LOOK_S
+        with self._changed:
+            if self._wish() == wish:
+                self._changed.wait(look_s)
+
+    def _hold(self, make, *args):
+        """Give the present subscription back, and make another; None: none."""
+        with self._changed:
+            line, self._line = self._line, None
+            self._changed_at = self._clock()
+        if line is not None:
+            _give_back(line)
+        line = make(*args) if make else None
+        with self._changed:
+            self._line, self._changed_at = line, self._clock()
+            self._topic = line.topic if line else self._topic
+
+    def _look(self, session, transport, grant):
+        """Look at the master; hold the subscription that fits now, or none.
+
+        :raises MasterError: the master cannot be reached
+        """
+        published = dict(MasterApi(rospy.get_name()).call('getPublishedTopics', '/' + self.robot))
+        offers = self.find_offers(published)
+        with self._changed:
+            self._offers = offers if self._session is session else []
+        offer, line = choose_offer(offers, transport), self._line
+        if offer is None:
+            session.explain(*self._nothing(transport, offers))
+            if line and not may_carry(self.kind, transport, line.topic):
+                self._hold(None)
+        elif grant.sampled:
+            if not (line and line.topic == offer.topic
+                    and getattr(line, 'rate_hz', None) == grant.rate_hz):
+                native_hz = self._known.get(offer.topic, (None, None))[1]
+                self._hold(*self.samples_of(session, offer, grant, native_hz))
+        elif not (isinstance(line, Subscription) and line.topic == offer.topic):
+            self._subscribe(session, offer)
+
+    def _subscribe(self, session, offer):
+        """Change over to an offer if its sender answers."""
+        if not reachable(rospy.get_name(), offer.topic):
+            session.explain(*no_answer(offer.topic))
+            return
+        session.explain('no {} has come yet'.format(self.word), 'waiting for ' + offer.topic)
+        self._hold(*self.line_of(session, offer))
+
+    def _nothing(self, transport, offers):
+        """Say why there is nothing to subscribe, and in the words of ROS."""
+        if offers:
+            return '{} offers {}, not {}'.format(
+                self.robot, ', '.join(offer.transport for offer in offers), transport), ''
+        return 'it sends no {}: start its driver'.format(self.word), \
+            'nobody publishes ' + (' or '.join(self._topics) or 'a picture')
+
+
+def _give_back(subscription):
+    """Unsubscribe."""
+    try:
+        subscription.close()
+    except Exception as error:  # rospy raises all sorts while it shuts down
+        rospy.logwarn('%s: unsubscribing: %r', subscription.topic, error)

@@ -1,3 +1,0 @@
-# SPDX-FileCopyrightText: 2026 The mhri authors
-# SPDX-License-Identifier: BSD-3-Clause
-"""Input devices."""

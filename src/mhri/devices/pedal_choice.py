@@ -1,0 +1,131 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which connected device is the pedal, and which profile to read it with."""
+from dataclasses import dataclass
+import re
+from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
+
+from mhri.devices.pedals import AXES, KEYS, PedalProfile
+
+_USB_ID = re.compile(r'[0-9a-fA-F]{4}:[0-9a-fA-F]{4}$')
+
+# The profiles for a device that was named by the operator, but is known to no file.
+GENERIC = {KEYS: 'three_keys', AXES: 'rudder_pedals'}
+
+
+class NoPedal(LookupError):
+    """No device, or more than one, could be the pedal; says which, why and the remedy."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A connected device.
+
+    ``usb`` is ``vendor:product`` in lower case hexadecimal, '' if it has none; ``places`` are
+    paths or other names for it; ``kind`` is that of its profile.
+    """
+
+    kind: str
+    usb: str
+    name: str
+    places: Tuple[str, ...]
+
+    def __str__(self) -> str:
+        return '{} ({}{})'.format(self.name or 'a device without a name',
+                                  self.usb + ', ' if self.usb else '', ', '.join(self.places[:1]))
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What the operator asked for: ``device`` and ``profile``, '' to leave it to the profiles.
+
+    ``device`` is ``vendor:product``, a place (a path or a GUID) or a part of a name in any case.
+    """
+
+    device: str = ''
+    profile: str = ''
+
+    def fits(self, candidate: Candidate) -> bool:
+        """Tell whether ``device`` asks for this device."""
+        if _USB_ID.match(self.device):
+            return candidate.usb == self.device.lower()
+        if self.device in candidate.places or self.device.startswith('/'):
+            return self.device in candidate.places
+        return self.device.lower() in candidate.name.lower()
+
+
+def usb_of_guid(guid: str) -> str:
+    """Return ``vendor:product`` of a GUID of SDL, '' if it holds none.
+
+    Its 16 bytes are bus, check sum, vendor, 0, product, 0, ...: two bytes each, the lower first.
+    """
+    if len(guid) != 32 or guid[12:16] != '0000' or guid[20:24] != '0000':
+        return ''
+    vendor, product = (guid[at + 2:at + 4] + guid[at:at + 2] for at in (8, 16))
+    return '' if vendor == '0000' else '{}:{}'.format(vendor, product).lower()
+
+
+def choose(candidates: Iterable[Candidate], wish: Wish,
+           profiles: Mapping[str, PedalProfile]) -> Tuple[Candidate, PedalProfile]:
+    """Return (candidate, profile).
+
+    If several devices fit, take none: a guess must never grab an operator's keyboard, and nobody
+    should press one pedal while the robots listen to another.
+
+    :param profiles: {name: PedalProfile}
+    :raises NoPedal: nothing fits, or more than one, or the profile is not for such a device
+    """
+    profile = _wished_profile(wish, profiles)
+    if wish.device:
+        found = [item for item in candidates if wish.fits(item)]
+        wanted = '{!r}'.format(wish.device)
+    else:
+        known = [profile] if profile else _automatic(profiles)
+        found = [item for item in candidates if _known_to(item, known)]
+        wanted = 'a pedal that profile {!r} is for'.format(
+            profile.name) if profile else 'a pedal that a profile is for'
+    if profile:
+        found = [item for item in found if item.kind == profile.kind]
+    if not found:
+        raise NoPedal('no foot pedal: looked for {}. Connect it, or set ~device to its '
+                      'vendor:product (lsusb shows it), path or name'.format(wanted))
+    if len(found) > 1:
+        raise NoPedal('{} devices fit {}: {}. Set ~device to the vendor:product or the path of '
+                      'one'.format(len(found), wanted, ', '.join(str(item) for item in found)))
+    return found[0], profile or _profile_for(found[0], profiles)
+
+
+def _wished_profile(wish: Wish, profiles: Mapping[str, PedalProfile]) -> Optional[PedalProfile]:
+    """Return the profile asked for by name, None if none was."""
+    if not wish.profile:
+        return None
+    if wish.profile not in profiles:
+        raise NoPedal('no pedal profile {!r}; there are {}'.format(
+            wish.profile, ', '.join(sorted(profiles)) or 'none'))
+    profile = profiles[wish.profile]
+    if not wish.device and not profile.usb and not profile.names:
+        raise NoPedal('profile {!r} is for no device in particular: set ~device to the '
+                      'vendor:product (lsusb shows it), path or name of yours'.format(profile.name))
+    return profile
+
+
+def _automatic(profiles: Mapping[str, PedalProfile]) -> List[PedalProfile]:
+    """Return the profiles that are used automatically."""
+    return [profile for profile in profiles.values() if profile.automatic]
+
+
+def _known_to(candidate: Candidate, profiles: Sequence[PedalProfile]) -> bool:
+    """Tell whether one of some profiles is for a device."""
+    return any(profile.kind == candidate.kind and profile.fits(candidate.usb, candidate.name)
+               for profile in profiles)
+
+
+def _profile_for(candidate: Candidate, profiles: Mapping[str, PedalProfile]) -> PedalProfile:
+    """Return the profile of a device, the generic one if no file knows it."""
+    for profile in _automatic(profiles):
+        if _known_to(candidate, [profile]):
+            return profile
+    name = GENERIC[candidate.kind]
+    if name not in profiles:
+        raise NoPedal('no profile is for {}: set ~profile'.format(candidate))
+    return profiles[name]

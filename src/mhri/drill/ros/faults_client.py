@@ -1,0 +1,79 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The screen's side of the faults: which robots are simulated, and what they say of their faults.
+
+Asks the master for ``/<robot>/base/set_fault`` (``mhri/SetFault``), which simulated robots alone
+have, and calls it. Everything that waits is on a worker.
+"""
+import queue
+
+import rospy
+
+from mhri.graph.ros.master_api import MasterApi, MasterError
+from mhri.graph.ros.rospy_inside import is_initialised
+from mhri.graph.ros.worker import Worker
+from mhri.srv import SetFault
+
+LOOK_S = 2.0
+_SERVICE = '/{}/base/set_fault'
+
+
+class FaultsClient:
+    """Every method returns at once."""
+
+    def __init__(self):
+        self._names = self._simulated = ()
+        self._watched = False
+        self._news = queue.Queue()
+        self._worker = Worker('faults', self._look, LOOK_S).start()
+
+    def follow(self, names):
+        """Look for these robots from now on."""
+        self._names = tuple(names)
+
+    def watch(self, watched):
+        """Ask the robots again and again what fails, or no more."""
+        self._watched = watched
+        self._worker.do(self._look)
+
+    def simulated(self):
+        """Return the names of those that are simulated."""
+        return self._simulated
+
+    def ask(self, robot, key, value, duration_s):
+        """Ask for a fault; see ``SetFault.srv``."""
+        self._worker.do(self._call, robot, key, value, duration_s)
+
+    def take_news(self):
+        """Return [(robot, whether it did as asked, sentence)] since the last time."""
+        news = []
+        while not self._news.empty():
+            news.append(self._news.get())
+        return news
+
+    def close(self):
+        """Ask nobody any more."""
+        self._worker.stop()
+
+    def _look(self):
+        """See which robots are simulated; while somebody watches, ask what fails."""
+        names = self._names
+        if not names or not is_initialised():
+            return
+        try:
+            found = MasterApi(rospy.get_name(), timeout_s=1.0).call_many(
+                [('lookupService', _SERVICE.format(name)) for name in names])
+        except MasterError as error:
+            rospy.logdebug('simulated robots cannot be looked for now: %s', error)
+            return
+        self._simulated = tuple(name for name, uri in zip(names, found) if uri)
+        for name in self._simulated if self._watched else ():
+            self._call(name, '', 0.0, 0.0)
+
+    def _call(self, robot, key, value, duration_s):
+        try:
+            answer = rospy.ServiceProxy(_SERVICE.format(robot), SetFault)(key, value, duration_s)
+            self._news.put((robot, answer.success, answer.message))
+        except (rospy.ServiceException, rospy.ROSException, OSError):
+            self._news.put((robot, False, '{} does not answer: its driver is dead, or does not '
+                                          'run'.format(robot)))

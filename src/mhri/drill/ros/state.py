@@ -1,0 +1,82 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""How a drill is going: the referee says it, a screen hears it.
+
+``/mhri_drill/state`` (``mhri/DrillState``, latched, on change and at 1 Hz until it is over).
+"""
+import math
+import threading
+
+import rospy
+
+from mhri.base.text import tidy_names, tidy_text
+from mhri.drill.view import DrillView
+from mhri.msg import DrillState
+from mhri.session.topics import DRILL
+
+AGAIN_S = 1.0
+# More than any drill has.
+MOST_TARGETS = 1000
+
+
+class DrillTeller:
+    """Publishes the state of one run; used by one thread.
+
+    :param scenario: :class:`mhri.drill.scenario.Scenario`
+    :param referee: :class:`mhri.drill.referee.Referee`
+    """
+
+    def __init__(self, scenario, referee):
+        self._scenario, self._referee = scenario, referee
+        self._said, self._said_at = None, rospy.Time()
+        self._publisher = rospy.Publisher(DRILL, DrillState, queue_size=10, latch=True)
+
+    def tell(self, phase, ended='', page=''):
+        """Say it, if it is news or a second old.
+
+        :param phase: one of the constants of the message
+        :param page: path of the file with the result
+        """
+        news, now = (phase, len(self._referee.found), ended, page), rospy.Time.now()
+        if news == self._said and now - self._said_at < rospy.Duration(AGAIN_S):
+            return
+        self._said, self._said_at = news, now
+        state = DrillState(
+            title=self._scenario.title, about=self._scenario.about, phase=phase,
+            limit_s=self._scenario.limit_s, in_order=self._scenario.in_order, ended=ended,
+            page=page, found=[each.target for each in self._referee.found],
+            left=[target.name for target in self._referee.left])
+        state.header.stamp = now
+        if phase != DrillState.WAITING:
+            state.elapsed_s = self._referee.elapsed_s
+        self._publisher.publish(state)
+
+
+class DrillClient:
+    """Hears it; :meth:`view` returns the newest word."""
+
+    def __init__(self):
+        self._view = self._subscriber = None
+
+    def start(self):
+        """Begin; call it after ``rospy.init_node`` and where asking the master may take a while."""
+        self._subscriber = rospy.Subscriber(DRILL, DrillState, self._hear, queue_size=10)
+
+    def _hear(self, state):
+        if not math.isfinite(state.elapsed_s + state.limit_s):
+            return
+        self._view = DrillView(
+            state.header.stamp.to_sec(), tidy_text(state.title), tidy_text(state.about),
+            state.phase, state.elapsed_s, state.limit_s, tidy_names(state.found, MOST_TARGETS),
+            tidy_names(state.left, MOST_TARGETS), state.in_order, tidy_text(state.ended),
+            tidy_text(state.page))
+
+    def view(self):
+        """Return a :class:`DrillView`, None before the first word."""
+        return self._view
+
+    def close(self):
+        """Hear nothing more; returns at once."""
+        if self._subscriber is not None and not rospy.is_shutdown():
+            # It asks the master, which may hang.
+            threading.Thread(target=self._subscriber.unregister, daemon=True).start()

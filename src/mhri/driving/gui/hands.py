@@ -1,0 +1,142 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Hands that nobody has: mouse, keyboard and stick of a scripted drive, and their patience."""
+import math
+import time
+
+from python_qt_binding.QtCore import QEvent, QPoint, QPointF, Qt
+from python_qt_binding.QtGui import QKeyEvent, QMouseEvent
+from python_qt_binding.QtWidgets import QApplication, QWidget
+
+# Endings of the bottom line.
+CENTRE, READY = 'centre the stick to drive', 'ready'
+
+
+class DemoFailed(Exception):
+    """A step did not succeed in time; the text says which."""
+
+
+class Hands:
+    """A simulated mouse and keyboard: events as the window system sends them.
+
+    :param panel: :class:`mhri.screen.gui.screen.ScreenWidget`
+    """
+
+    def __init__(self, panel):
+        self._panel = panel
+
+    def widget(self, name, window=None):
+        """Return a widget of the panel, or of another window, by its object name.
+
+        :raises DemoFailed: there is none
+        """
+        found = (window or self._panel).findChild(QWidget, name)
+        if found is None:
+            raise DemoFailed('there is no visible {}'.format(name))
+        return found
+
+    def click(self, name, window=None):
+        """Press and release the left button in the middle of a widget."""
+        widget = self.widget(name, window)
+        point = widget.rect().center()
+        self._mouse(widget, QEvent.MouseButtonPress, point, Qt.LeftButton)
+        self._mouse(widget, QEvent.MouseButtonRelease, point, Qt.NoButton)
+
+    def hold_stick(self, forward, turn):
+        """Take the virtual joystick and hold it at fractions in [-1, 1]."""
+        stick = self.widget('joystick')
+        centre = stick.rect().center()
+        travel = stick.travel()
+        target = centre + QPoint(round(-turn * travel), round(-forward * travel))
+        self._mouse(stick, QEvent.MouseButtonPress, centre, Qt.LeftButton)
+        self._mouse(stick, QEvent.MouseMove, target, Qt.LeftButton)
+
+    def let_go(self):
+        """Release the virtual joystick."""
+        stick = self.widget('joystick')
+        self._mouse(stick, QEvent.MouseButtonRelease, stick.rect().center(), Qt.NoButton)
+
+    def press_stop_keys(self):
+        """Press Shift and the space bar."""
+        self.press(Qt.Key_Space, ' ', Qt.ShiftModifier)
+
+    def press(self, key, text, modifiers=Qt.NoModifier):
+        """Press and release a key."""
+        for kind in (QEvent.KeyPress, QEvent.KeyRelease):
+            QApplication.sendEvent(self._panel, QKeyEvent(kind, key, modifiers, text))
+
+    def tap(self, view, x_m, y_m):
+        """Click at a place of the map.
+
+        :param view: :class:`mhri.map.gui.map_canvas.MapCanvas`
+        """
+        point = QPoint(*map(round, view.canvas.pixel(x_m, y_m)))
+        self._mouse(view, QEvent.MouseButtonPress, point, Qt.LeftButton)
+        self._mouse(view, QEvent.MouseButtonRelease, point, Qt.NoButton)
+
+    @staticmethod
+    def _mouse(widget, kind, point, buttons):
+        button = Qt.NoButton if kind == QEvent.MouseMove else Qt.LeftButton
+        where = QPointF(point)
+        QApplication.sendEvent(widget, QMouseEvent(
+            kind, where, QPointF(widget.mapToGlobal(point)), button, buttons, Qt.NoModifier))
+
+
+class Grip:
+    """Holds something (stick or key) until a condition is true.
+
+    If the mux asks for a centred stick meanwhile (a computer that stalled for half a second looks
+    like a silent source), it does what an operator does: it lets go and takes hold again.
+
+    :param take: function that takes it
+    :param let_go: function that lets it go
+    :param status: function that returns the panel's bottom line
+    :param condition: what to wait for
+    """
+
+    def __init__(self, take, let_go, status, condition):
+        self._take = take
+        self._let_go = let_go
+        self._status = status
+        self._condition = condition
+        self._held = None
+
+    def __call__(self):
+        """Look, and return whether the condition is true."""
+        if self._held is None:
+            self._held = True
+            self._take()
+        if self._condition():
+            return True
+        status = self._status()
+        if self._held and status.endswith(CENTRE):
+            self._held = False
+            self._let_go()
+        elif not self._held and status.endswith(READY):
+            self._held = True
+            self._take()
+        return False
+
+
+class Errand:
+    """Does something, and again after a while, until a condition is true.
+
+    :param act: function that does it
+    :param condition: what to wait for
+    :param again_s: an operator would try again after so long
+    """
+
+    def __init__(self, act, condition, again_s=5.0):
+        self._act = act
+        self._condition = condition
+        self._again_s = again_s
+        self._done_s = -math.inf
+
+    def __call__(self):
+        """Look, and return whether the condition is true."""
+        if self._condition():
+            return True
+        if time.monotonic() - self._done_s > self._again_s:
+            self._done_s = time.monotonic()
+            self._act()
+        return False

@@ -1,0 +1,134 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Watches the master, and registers this node again when the master has forgotten it.
+
+rospy registers once and never looks back: after a restart of the master its nodes live on, but
+nobody can find them (robot_upstart#35). Existing connections outlive the master; new ones need it.
+"""
+import threading
+import time
+
+import rospy
+
+from mhri.graph.ros.master_api import MasterApi, MasterError
+from mhri.graph.ros.rospy_inside import is_ending, meet_publishers, never_ask_for, registrations
+
+
+def log_without_master():
+    """Keep rospy from asking the master for every line it logs; call it after ``rospy.init_node``.
+
+    rospy adds the names of the topics to each line for /rosout, unless a parameter forbids it;
+    while that parameter is not set, rospy subscribes to it anew every time. A master out of reach
+    would hold up whoever logs; and a node whose name was taken over would take it back, whereupon
+    the master ends both (ros_comm#2018).
+    """
+    name = '/rosout_disable_topics_generation'
+    never_ask_for(name, bool(rospy.get_param(name, False)))
+
+
+class MasterWatch:
+    """Asks the master again and again whether it lives and knows this node.
+
+    It calls ``on_lost(reason)``, on its own thread, once when the master refused two calls in a
+    row, or did not answer one for ``patience_s``: at most ``period_s`` plus ``patience_s`` after it
+    hung. A master restarted between two calls counts as lost, too. Another master process, which
+    did not know this node, gets its registrations and ``parameters``. ``lost`` tells whether the
+    master is lost now.
+
+    :param parameters: {absolute name: value} that this node owns and restores
+    :param period_s: the time between two calls [s]
+    :param patience_s: the longest that a call may take [s]; a slower one counts as a lost master,
+        so allow about one second at least for a busy computer
+    """
+
+    def __init__(self, on_lost=lambda reason: None, parameters=None, period_s=0.5,
+                 patience_s=1.0):
+        self._on_lost = on_lost
+        self.parameters = dict(parameters or {})
+        self._period_s = period_s
+        self._patience_s = patience_s
+        self._api = MasterApi(rospy.get_name(), timeout_s=patience_s)
+        self._misses = 0
+        self.lost = False
+        self._done = threading.Event()
+        self._thread = threading.Thread(target=self._run, name='master_watch', daemon=True)
+
+    def start(self):
+        """Begin watching; call it after ``rospy.init_node``."""
+        log_without_master()
+        for name, value in self.parameters.items():
+            rospy.set_param(name, value)
+        self._thread.start()
+        return self
+
+    def stop(self):
+        """End the thread; returns at once."""
+        self._done.set()
+
+    def set_parameter(self, name, value):
+        """Set a parameter now (blocking, so never on the GUI thread) and after every restart."""
+        self.parameters[name] = value
+        # Not the watch's own proxy, which is its thread's.
+        MasterApi(rospy.get_name(), timeout_s=1.0).call('setParam', name, value)
+
+    def _run(self):
+        while not self._done.wait(self._period_s) and not rospy.is_shutdown():
+            begun = time.monotonic()
+            try:
+                self._look()
+            except MasterError as error:
+                self._miss(str(error), time.monotonic() - begun >= self._patience_s)
+
+    def _look(self):
+        """Ask once; register again where needed."""
+        own = rospy.get_node_uri()
+        # In this order: the second call sees a node that takes the name over between the two. The
+        # other way round it would look like a master that has forgotten this node.
+        service, uri = self._api.call_many([
+            ('lookupService', rospy.get_name() + '/get_loggers'),
+            ('lookupNode', rospy.get_name())])
+        self._misses = 0
+        if service is None:
+            # The name alone proves nothing: a new master knows it after any call that mentions this
+            # node. But the service that every rospy node has is registered with the rest.
+            uri = None if uri == own else uri
+        if uri is not None and uri != own:
+            rospy.signal_shutdown('name taken over')
+            rospy.logwarn('another node has taken over the name %s: this one ends',
+                          rospy.get_name())
+            return
+        if is_ending():
+            # This node itself has taken back what the master no longer knows.
+            return
+        if uri is None:
+            if not self.lost:
+                self._lose('the ROS master was restarted')
+            self._register()
+            rospy.loginfo('the ROS master had forgotten %s: registered again', rospy.get_name())
+        self.lost = False
+
+    def _miss(self, reason, hangs):
+        """Count a call without an answer; two in a row, or one that hangs, mean a lost master."""
+        self._misses += 2 if hangs else 1
+        if self._misses >= 2 and not self.lost:
+            self._lose(reason)
+
+    def _lose(self, reason):
+        self.lost = True
+        self._on_lost(reason)
+        rospy.logwarn('ROS master lost: %s', reason)
+
+    def _register(self):
+        """Give the master everything that rospy has ever registered.
+
+        :raises MasterError: it went away again meanwhile
+        """
+        own = rospy.get_node_uri()
+        publications, services, subscriptions = registrations()
+        calls = [('registerPublisher', name, kind, own) for name, kind in publications]
+        calls += [('registerService', name, uri, own) for name, uri in services]
+        calls += [('setParam', name, value) for name, value in self.parameters.items()]
+        calls += [('registerSubscriber', name, kind, own) for name, kind in subscriptions]
+        answers = self._api.call_many(calls)
+        for (name, _), uris in zip(subscriptions, answers[len(calls) - len(subscriptions):]):
+            meet_publishers(name, uris or [])

@@ -1,0 +1,462 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The one reader of bags: what was newest at a moment, and what came next.
+
+Read by ``rosbag.Bag``. Beneath its public interface are used, here alone: its connections, its
+table of types, its indexes (for the newest message before a time it offers nothing but reading
+all) and the reading of one message. A bag that was never closed is indexed in memory; nothing is
+ever written.
+
+``rosbag`` compiles the definitions in a bag, to read it raw as well, and a definition can be any
+Python. So nothing but types that are installed here, in the very version, is left in a bag that
+was opened, with their own definitions; see :func:`keep_installed`.
+"""
+from bisect import bisect_right
+from collections import OrderedDict
+import heapq
+import io
+import itertools
+import os
+import struct
+from types import SimpleNamespace
+from typing import NamedTuple
+
+import genpy
+import numpy as np
+import rosbag
+import rosbag.bag
+from rosbag.bag import ROSBagException, ROSBagUnindexedException
+
+from mhri.graph.ros.messages import installed_class, MessageMissing
+from mhri.recording.folder import (
+    bags_of, EVENTS_JSONL, NotASession, read_events, read_info, robots_of, SESSION_YAML)
+
+# Open at once: the one that plays, its neighbours, and those that a seek looks into.
+MOST_OPEN = 6
+# A seek looks for what was last heard of a topic in so many earlier bags at most.
+MOST_LOOKED_INTO = 3
+# So many topics that are left out are named.
+MOST_NAMED = 5
+#: what the bytes of a damaged file lead ``rosbag`` to
+DAMAGED = (ROSBagException, OSError, EOFError, ValueError, KeyError, IndexError, TypeError,
+           struct.error, MemoryError, OverflowError, RuntimeError, genpy.DeserializationError)
+_NS = 10 ** 9
+_VERSION = 200
+# Of an index record: lengths, the field with the number of its connection, and what it consists of.
+_LENGTH, _CONN = struct.Struct('<I'), b'conn='
+_ENTRY = np.dtype([('s', '<u4'), ('n', '<u4'), ('offset', '<u4')])
+
+
+class Connection(NamedTuple):
+    """Who published a topic: its type as the bag has it, and whether it was latched."""
+
+    topic: str
+    kind: str
+    md5sum: str
+    definition: str
+    latched: bool
+
+
+class Recorded(NamedTuple):
+    """One message: when it was received [ns], by which :class:`Connection`, and its bytes."""
+
+    time_ns: int
+    connection: Connection
+    data: bytes
+
+    def message(self):
+        """Return the message.
+
+        :raises MessageMissing, genpy.DeserializationError, ValueError: it cannot be read
+        """
+        return installed_class(self.connection.kind, self.connection.md5sum)().deserialize(
+            self.data)
+
+
+class _Place(NamedTuple):
+    """Where a message is: the bag, its connection there, its chunk, and where in that."""
+
+    time_ns: int
+    bag: int
+    number: int
+    chunk: int
+    offset: int
+
+
+class BagSet:
+    """Bags in the order of time; not thread-safe.
+
+    :param paths: files; they may overlap a little, as the next one begins with what is latched
+    :raises NotASession: none of them can be read
+    """
+
+    def __init__(self, paths):
+        self._paths, self._starts, self._ends = [], [], []
+        self._kinds, self._there = [], []
+        self._open = OrderedDict()
+        #: sentences about what is left out
+        self.problems = []
+        left_out = {}
+        for path in paths:
+            self._meet(path, left_out)
+        if left_out:
+            self.problems.append(_left_out(left_out))
+        if not self._paths:
+            raise NotASession('; '.join(self.problems) or 'there is no bag in it')
+        order = sorted(range(len(self._paths)), key=lambda index: self._starts[index])
+        for name in ('_paths', '_starts', '_ends', '_kinds', '_there'):
+            setattr(self, name, [getattr(self, name)[index] for index in order])
+
+    def _meet(self, path, left_out):
+        """Take in what a bag holds, without its index."""
+        try:
+            opened = _opened(path)
+            with opened.bag as bag:
+                if not opened.whole:
+                    self.problems.append('{} was never closed, or cut off: its end may be missing'
+                                         .format(os.path.basename(path)))
+                left_out.update(opened.left_out)
+                if not bag._chunks:
+                    return
+                self._starts.append(min(chunk.start_time.to_nsec() for chunk in bag._chunks))
+                self._ends.append(max(chunk.end_time.to_nsec() for chunk in bag._chunks))
+                self._kinds.append({number: _connection(found)
+                                    for number, found in bag._connections.items()})
+        except DAMAGED as error:
+            self.problems.append('{} cannot be read: {}'.format(
+                os.path.basename(path), _reason(error)))
+            return
+        self._paths.append(path)
+        self._there.append({kind.topic for kind in self._kinds[-1].values()})
+
+    @property
+    def start_ns(self):
+        """When the first message was received."""
+        return self._starts[0]
+
+    @property
+    def end_ns(self):
+        """When the last message was received."""
+        return max(self._ends)
+
+    def connections(self):
+        """Return all connections, each once, in order of time."""
+        return list(dict.fromkeys(kind for kinds in self._kinds for kind in kinds.values()))
+
+    def _bag(self, index):
+        """Return (a bag, {connection: its :class:`Entries`}), opened if it is not."""
+        if index in self._open:
+            self._open.move_to_end(index)
+            return self._open[index]
+        bag = _opened(self._paths[index]).bag
+        self._open[index] = bag, index_of(bag)
+        while len(self._open) > MOST_OPEN:
+            self._open.popitem(last=False)[1][0].close()
+        return self._open[index]
+
+    def _read(self, place):
+        bag, _ = self._bag(place.bag)
+        kind = self._kinds[place.bag][place.number]
+        try:
+            found = bag._read_message((place.chunk, place.offset), raw=True).message
+        except DAMAGED as error:
+            raise ROSBagException(_reason(error))
+        # The record says of whom it is, too, and both may lie.
+        if (found[0], found[2]) != (kind.kind, kind.md5sum):
+            raise ROSBagException('its index is damaged: a {} for a {}'.format(
+                found[0], kind.kind))
+        return Recorded(place.time_ns, kind, found[1])
+
+    def newest(self, time_ns, wanted=lambda connection: True):
+        """Return the newest message of each topic at a time, the oldest first.
+
+        :param wanted: tells which connections count
+        """
+        last = max(0, bisect_right(self._starts, time_ns) - 1)
+        found = self._newest_in(last, time_ns, wanted)
+        looked = 0
+        for index in range(last - 1, -1, -1):
+            missing = {kind.topic for kind in self._kinds[index].values()
+                       if wanted(kind) and kind.topic not in found}
+            if missing:
+                looked += 1
+                found = {**self._newest_in(index, time_ns, lambda kind: wanted(kind)
+                                           and kind.topic in missing), **found}
+            if looked == MOST_LOOKED_INTO:
+                break
+        return list(self._readable(sorted(
+            found.values(), key=lambda place: (place.time_ns, place.bag))))
+
+    def _readable(self, places):
+        for place in places:
+            try:
+                yield self._read(place)
+            except ROSBagException as error:
+                problem = '{} is damaged: {}'.format(
+                    os.path.basename(self._paths[place.bag]), error)
+                if problem not in self.problems:
+                    self.problems.append(problem)
+
+    def _newest_in(self, index, time_ns, wanted):
+        """Return {topic: where its newest message in a bag is}."""
+        (_, entries), found = self._bag(index), {}
+        for number, kind in self._kinds[index].items():
+            row = entries.get(number) if wanted(kind) else None
+            last = row.until(time_ns) if row else 0
+            if last:
+                at, = self._places(index, number, row, last - 1, last)
+                if kind.topic not in found or found[kind.topic].time_ns <= at.time_ns:
+                    found[kind.topic] = at
+        return found
+
+    def after(self, time_ns, wanted=lambda connection: True):
+        """Yield every message after a time, in order.
+
+        :raises: one of :data:`DAMAGED`: what follows cannot be read
+        """
+        first = max(0, bisect_right(self._starts, time_ns) - 1)
+        # The bag before may end a moment after this one begins.
+        for index in range(max(0, first - 1), len(self._paths)):
+            if self._ends[index] <= time_ns:
+                continue
+            _, entries = self._bag(index)
+            rows = [self._row(index, number, entries[number], time_ns)
+                    for number, kind in self._kinds[index].items()
+                    if number in entries and wanted(kind)]
+            for place in heapq.merge(*rows, key=lambda place: place.time_ns):
+                yield self._read(place)
+
+    def _row(self, index, number, entries, time_ns):
+        return self._places(index, number, entries, entries.until(time_ns), len(entries.times))
+
+    @staticmethod
+    def _places(index, number, entries, begin, end):
+        """Yield the places of some entries of a connection."""
+        for time_ns, chunk, offset in zip(*(part[begin:end].tolist() for part in entries)):
+            yield _Place(time_ns, index, number, chunk, offset)
+
+    def close(self):
+        """Close every file."""
+        while self._open:
+            self._open.popitem()[1][0].close()
+
+
+class Entries(NamedTuple):
+    """Where the messages of a connection are, in order of time: arrays of the same length."""
+
+    times: np.ndarray
+    chunks: np.ndarray
+    offsets: np.ndarray
+
+    def until(self, time_ns):
+        """Return how many are not after a time."""
+        return int(np.searchsorted(self.times, time_ns, 'right'))
+
+
+def index_of(bag):
+    """Return {connection: :class:`Entries`} of an open bag, of those with any message.
+
+    Its own reader makes an object of each message, which takes ten times as long.
+
+    :raises ROSBagException: the index is damaged
+    """
+    found = {}
+    try:
+        for number, chunk, rows in _told(bag) if any(bag._connection_indexes.values()) \
+                else _recorded(bag):
+            parts = found.setdefault(number, ([], [], []))
+            for part, values in zip(parts, (rows['s'].astype(np.int64) * _NS + rows['n'],
+                                            np.full(len(rows), chunk), rows['offset'])):
+                part.append(values)
+    except (struct.error, ValueError) as error:
+        raise ROSBagException('its index is damaged: {}'.format(error))
+    return {number: _in_order(*map(np.concatenate, parts)) for number, parts in found.items()}
+
+
+def _in_order(times, chunks, offsets):
+    order = np.argsort(times, kind='stable')
+    return Entries(times[order], chunks[order], offsets[order])
+
+
+def _recorded(bag):
+    """Yield (connection, chunk, its entries there) as the index records behind each chunk say."""
+    stream = bag._file
+    for chunk in bag._chunks:
+        header = bag._chunk_headers[chunk.pos]
+        stream.seek(header.data_pos + header.compressed_size)
+        for _ in chunk.connection_counts:
+            fields = stream.read(_LENGTH.unpack(stream.read(_LENGTH.size))[0])
+            rows = np.frombuffer(stream.read(_LENGTH.unpack(stream.read(_LENGTH.size))[0]), _ENTRY)
+            yield _LENGTH.unpack_from(fields, fields.index(_CONN) + len(_CONN))[0], chunk.pos, rows
+
+
+def _told(bag):
+    """Yield the same of a bag that was indexed in memory."""
+    for number, entries in bag._connection_indexes.items():
+        for chunk, of_chunk in itertools.groupby(entries, lambda entry: entry.chunk_pos):
+            yield number, chunk, np.array([(entry.time.secs, entry.time.nsecs, entry.offset)
+                                           for entry in of_chunk], _ENTRY)
+
+
+class _Opened(NamedTuple):
+    """A bag to read: whether it was closed by its writer, and {topic: why it is left out}."""
+
+    bag: rosbag.Bag
+    whole: bool
+    left_out: dict
+
+
+def _opened(path):
+    """Open a bag to read, without its index unless it was never closed.
+
+    :raises: one of :data:`DAMAGED`
+    """
+    try:
+        bag, whole = rosbag.Bag(path, 'r', skip_index=True), True
+    except ROSBagUnindexedException:
+        bag, whole = rosbag.Bag(path, 'r', allow_unindexed=True, skip_index=True), False
+    try:
+        if bag.version != _VERSION:
+            raise ROSBagException('it is of version {}: "rosbag fix" makes a new one of it'.format(
+                bag.version))
+        if not whole:
+            _index(bag)
+        return _Opened(bag, whole, keep_installed(bag))
+    except BaseException:
+        bag.close()
+        raise
+
+
+def _index(bag):
+    """Index a bag in memory."""
+    try:
+        for _ in bag.reindex():
+            pass
+    except io.UnsupportedOperation:
+        pass  # it would cut off what is not whole, and the file is open to read
+    whole = bag._chunk_headers
+    for number, entries in bag._connection_indexes.items():
+        bag._connection_indexes[number] = [
+            entry for entry in entries if entry.chunk_pos in whole]
+
+
+def keep_installed(bag):
+    """Leave in an opened bag only types that are installed here; nothing in it gets compiled.
+
+    A message is read by the connection that its own record names, whatever an index says: what is
+    not among the connections any more cannot be read.
+
+    :returns: {topic: why it is left out}
+    """
+    left_out = {}
+    for number, found in list(bag._connections.items()):
+        try:
+            kind = installed_class(found.datatype, found.md5sum)
+        except MessageMissing as error:
+            left_out[found.topic] = str(error)
+            del bag._connections[number]
+            continue
+        found.msg_def = found.header['message_definition'] = kind._full_text
+        rosbag.bag._message_types[found.md5sum] = kind
+    return left_out
+
+
+def _check_rosbag():
+    """Make sure that ``rosbag`` looks into its table of types before it compiles.
+
+    :raises ImportError: this version does it otherwise
+    """
+    table, probe = rosbag.bag._message_types, SimpleNamespace(
+        md5sum='mhri', datatype='mhri/Probe', msg_def='not a definition')
+    table[probe.md5sum] = probe
+    try:
+        if rosbag.bag._get_message_type(probe) is not probe:
+            raise ImportError('this version of rosbag compiles what is in a bag')
+    finally:
+        del table[probe.md5sum]
+
+
+_check_rosbag()
+
+
+def _left_out(reasons):
+    """Return a sentence about topics that are left out."""
+    named = ['{} ({})'.format(topic, reason)
+             for topic, reason in sorted(reasons.items())[:MOST_NAMED]]
+    more = len(reasons) - len(named)
+    return 'types that are not installed here: {}{}'.format(
+        ', '.join(named), ' and {} more'.format(more) if more else '')
+
+
+def _reason(error):
+    return str(getattr(error, 'strerror', None) or error) or type(error).__name__
+
+
+def _connection(found):
+    """Return the :class:`Connection` of one of ``rosbag``'s."""
+    latched = found.header.get('latching', b'0')
+    return Connection(found.topic, found.datatype, found.md5sum, found.msg_def,
+                      latched in (b'1', '1'))
+
+
+class Kept(NamedTuple):
+    """What there is to replay: bags, lines of events, robots, and what goes before each topic."""
+
+    name: str
+    bags: BagSet
+    events: tuple
+    robots: dict
+    prefix: str
+
+
+def open_session(path, foreign):
+    """Open a session's folder, a folder of bags, or a bag of any program (blocking).
+
+    :param foreign: function of ({topic: type}, the file's name) that returns
+        (robots, prefix) where there is no ``session.yaml``
+    :returns: :class:`Kept`
+    :raises NotASession: it cannot be replayed; the text names path and reason
+    """
+    path = os.path.abspath(os.path.expanduser(path))
+    try:
+        return _open_folder(path, foreign) if os.path.isdir(path) else _open_file(path, foreign)
+    except (NotASession, OSError, UnicodeDecodeError) as error:
+        raise NotASession('{}: {}'.format(
+            path, error.strerror if isinstance(error, OSError) else error))
+
+
+def _open_folder(path, foreign):
+    names = sorted(os.listdir(path))
+    bags = bags_of(names) or [name for name in names if name.endswith('.bag')]
+    opened = BagSet([os.path.join(path, name) for name in bags])
+    name = os.path.basename(path)
+    info = os.path.join(path, SESSION_YAML)
+    if not os.path.exists(info):
+        return _open_foreign(name, opened, foreign)
+    events = tuple(read_events(_text(os.path.join(path, EVENTS_JSONL))))
+    return Kept(name, opened, events, robots_of(read_info(_text(info)), events), '')
+
+
+def _open_file(path, foreign):
+    if not os.path.exists(path):
+        raise NotASession('there is no such file or folder')
+    name = os.path.splitext(os.path.basename(path))[0]
+    return _open_foreign(name, BagSet([path]), foreign)
+
+
+def _open_foreign(name, bags, foreign):
+    try:
+        robots, prefix = foreign({connection.topic: connection.kind
+                                  for connection in bags.connections()}, name)
+    except NotASession as error:
+        raise NotASession('; '.join([str(error)] + bags.problems))
+    return Kept(name, bags, (), robots, prefix)
+
+
+def _text(path):
+    """Return the text of a file, '' of one that is not there."""
+    try:
+        with open(path, encoding='utf-8', errors='replace') as stream:
+            return stream.read()
+    except FileNotFoundError:
+        return ''

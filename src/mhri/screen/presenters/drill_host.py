@@ -1,0 +1,39 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Joins what the referee of a drill says with the screen; everything here is on the GUI thread."""
+from mhri.base.views import ROS_CONNECTED
+from mhri.drill.view import drill_changes, drill_texts
+
+
+class DrillHost:
+    """The drill of one screen, or of the recording on it: its line and its events.
+
+    :param screen: :class:`mhri.screen.gui.screen.ScreenWidget`
+    :param note: takes (kind of event, sentence)
+    :param client: :class:`mhri.drill.ros.state.DrillClient`
+    :param do: has something done where it may take a while
+    :param wall: function that returns the time of day [s], in a replay that of the recording
+    """
+
+    def __init__(self, screen, note, client, do, wall):
+        self._line, self._note = screen.drill_line, note
+        self._client, self._do, self._wall = client, do, wall
+        self._started = False
+        self._seen = None
+
+    def show_view(self, view):
+        """Take in the :class:`mhri.base.views.PanelView` of this moment."""
+        if not self._started and view.ros == ROS_CONNECTED:
+            self._started = True
+            self._do(self._client.start)
+        drill, now = self._client.view(), self._wall()
+        if drill is None:
+            return
+        self._line.show_drill(drill_texts(drill, now), drill.about, drill.silent(now))
+        for kind, text in drill_changes(self._seen, drill):
+            self._note(kind, text)
+        self._seen = drill
+
+    def close(self):
+        """Hear nothing more."""
+        self._client.close()

@@ -1,0 +1,255 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The fields of a task, made from its description: number, text, choice, or a name."""
+import math
+
+from python_qt_binding.QtCore import Qt
+from python_qt_binding.QtWidgets import (
+    QAbstractSpinBox, QComboBox, QDoubleSpinBox, QGridLayout, QLabel, QLineEdit, QPushButton,
+    QWidget)
+
+from mhri.base.gui import theme
+from mhri.base.task_views import typed_value
+
+LEFT_OUT, MISSING = 'left out', 'to be given'
+# The fields that take the name of a robot, or of a mark, and what is said of it.
+LEADER, MARK = 'leader', 'mark'
+_WHICH = {LEADER: 'which robot', MARK: 'which mark'}
+# How numbers of a unit are shown: unit on the screen, factor, decimals, step.
+_SHOWN = {'rad': ('\u00b0', 180.0 / math.pi, 0, 15.0), 's': (' s', 1.0, 0, 10.0),
+          'm/s': (' m/s', 1.0, 2, 0.05), '': ('', 1.0, 0, 1.0)}
+# Nobody types more.
+_MOST_TEXT = 10000
+
+
+class NumberField(QDoubleSpinBox):
+    """A number with its unit, within its limits; the lowest step stands for "not given".
+
+    :param field: :class:`mhri.base.task_views.FieldView`
+    """
+
+    def __init__(self, field, parent=None):
+        super().__init__(parent)
+        unit, self._factor, decimals, step = _SHOWN.get(
+            field.unit, (' ' + field.unit, 1.0, 2, 0.1))
+        default = field.default_value
+        least, greatest = field.least * self._factor, field.greatest * self._factor
+        if isinstance(default, float) and not default.is_integer() and not decimals:
+            decimals = 2
+        self.may_be_left_out = field.default == 'null'
+        self._has_none = self.may_be_left_out or not field.default
+        self.setDecimals(decimals)
+        self.setSingleStep(step)
+        self.setSuffix(unit)
+        self.setRange(least - step if self._has_none else least, greatest)
+        if self._has_none:
+            self.setSpecialValueText(LEFT_OUT if self.may_be_left_out else MISSING)
+        self.setValue(default * self._factor if isinstance(default, (int, float))
+                      else self.minimum())
+        self.setFocusPolicy(Qt.StrongFocus)
+        # Its own are too small for a finger.
+        self.setButtonSymbols(QAbstractSpinBox.NoButtons)
+
+    def stepBy(self, steps):  # noqa: N802
+        """Begin at nothing, or where the limits allow it, not at the lowest there is."""
+        if self._has_none and self.value() == self.minimum() and steps > 0:
+            self.setValue(min(self.maximum(), max(self.minimum() + self.singleStep(), 0.0)))
+        else:
+            super().stepBy(steps)
+
+    def wheelEvent(self, event):  # noqa: N802
+        """Leave the wheel to whatever scrolls."""
+        event.ignore()
+
+    def given(self):
+        """Return the number in the unit of the task, None where it is not given."""
+        self.interpretText()
+        if self._has_none and self.value() == self.minimum():
+            return None
+        return round(self.value() / self._factor, 6)
+
+
+class TextField(QLineEdit):
+    """A text; one that begins with a bracket is a list, e.g. of places.
+
+    :param field: :class:`mhri.base.task_views.FieldView`
+    """
+
+    def __init__(self, field, parent=None):
+        super().__init__(parent)
+        self.may_be_left_out = bool(field.default)
+        default = field.default_value
+        self.setMaxLength(_MOST_TEXT)
+        self.setText('' if default is None else str(default))
+        self.setPlaceholderText(field.text)
+        margin = theme.touch_size(self) // 6
+        self.setTextMargins(margin, 0, margin, 0)
+
+    def given(self):
+        """Return the text or list, None where there is none; raises ValueError of a broken list."""
+        return typed_value(self.text())
+
+
+class ChoiceField(QComboBox):
+    """One of a few words.
+
+    :param field: :class:`mhri.base.task_views.FieldView`
+    """
+
+    def __init__(self, field, parent=None):
+        super().__init__(parent)
+        self.may_be_left_out = True
+        for choice in field.choices:
+            self.addItem(choice or LEFT_OUT, choice)
+        self.setCurrentIndex(max(0, self.findData(field.default_value)))
+
+    def wheelEvent(self, event):  # noqa: N802
+        """Leave the wheel to whatever scrolls."""
+        event.ignore()
+
+    def given(self):
+        """Return the word, None where it is left out."""
+        return self.currentData() or None
+
+
+class NameField(QComboBox):
+    """The name of a robot or a mark: one of those there are, or typed.
+
+    :param field: :class:`mhri.base.task_views.FieldView`
+    """
+
+    def __init__(self, field, parent=None):
+        super().__init__(parent)
+        self.may_be_left_out = bool(field.default)
+        self.setEditable(True)
+        self.setInsertPolicy(QComboBox.NoInsert)
+        self.lineEdit().setMaxLength(_MOST_TEXT)
+        self.lineEdit().setPlaceholderText(_WHICH[field.name])
+
+    def show_names(self, names):
+        """Offer names; what was chosen or typed stays."""
+        if [self.itemText(place) for place in range(self.count())] != list(names):
+            text = self.currentText()
+            self.clear()
+            self.addItems(names)
+            self.setEditText(text)
+
+    def wheelEvent(self, event):  # noqa: N802
+        """Leave the wheel to whatever scrolls."""
+        event.ignore()
+
+    def given(self):
+        """Return the name, None where there is none."""
+        return self.currentText().strip() or None
+
+
+def _class_of(field):
+    """Return the widget's class for a :class:`mhri.base.task_views.FieldView`."""
+    if field.is_number:
+        return NumberField
+    if field.choices:
+        return ChoiceField
+    return NameField if field.name in _WHICH else TextField
+
+
+class TaskFields(QWidget):
+    """One line for each field of a task: its name, the field, and what it is."""
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self._kind = None
+        self._names = {}
+        self._kept = {}
+        self._fields = {}
+        self._inside = None
+        self._build()
+
+    def _build(self):
+        """Make the place of the fields."""
+        self._grid = QGridLayout(self)
+        self._grid.setContentsMargins(0, 0, 0, 0)
+
+    def show_kind(self, kind):
+        """Show the fields of a :class:`mhri.base.task_views.KindView`, None for none.
+
+        What was entered for a task is there again when it is shown again.
+        """
+        if kind == self._kind:
+            return
+        if self._inside is not None:
+            self._inside.hide()
+        self._kind = kind
+        if kind is None:
+            self._inside, self._fields = None, {}
+        else:
+            if kind not in self._kept:
+                self._kept[kind] = self._make(kind)
+            self._inside, self._fields = self._kept[kind]
+            self._inside.show()
+        self._offer()
+
+    def _make(self, kind):
+        """Make the fields of a task; return (their widget, {name: field})."""
+        inside, fields = QWidget(self), {}
+        grid = QGridLayout(inside)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setColumnStretch(1, 1)
+        for row, field in enumerate(kind.fields):
+            widget = fields[field.name] = _class_of(field)(field, inside)
+            widget.setObjectName('task_field_' + field.name)
+            widget.setAccessibleName('{} [{}]'.format(field.text, field.unit))
+            widget.setToolTip(field.text)
+            widget.setMinimumHeight(theme.touch_size(self))
+            name = QLabel(field.name.replace('_', ' '), inside)
+            name.setTextFormat(Qt.PlainText)
+            name.setToolTip(field.text)
+            name.setBuddy(widget)
+            grid.addWidget(name, row, 0)
+            grid.addWidget(widget, row, 1, 1, 1 if field.is_number else 3)
+            if field.is_number:
+                for place, (sign, step) in enumerate((('\u2212', widget.stepDown),
+                                                      ('+', widget.stepUp)), 2):
+                    grid.addWidget(self._step_button(field, sign, step), row, place)
+        self._grid.addWidget(inside, 0, 0)
+        return inside, fields
+
+    def _step_button(self, field, sign, step):
+        """Make a button that makes a number larger or smaller."""
+        button, side = QPushButton(sign, self), theme.touch_size(self)
+        button.setFixedSize(side, side)
+        button.setFocusPolicy(Qt.NoFocus)
+        button.setAutoRepeat(True)
+        button.setAccessibleName('{} {}'.format(field.name, sign))
+        button.clicked.connect(step)
+        return button
+
+    def show_names(self, robots, marks=()):
+        """Offer robots and marks where a field takes one."""
+        self._names = {LEADER: tuple(robots), MARK: tuple(marks)}
+        self._offer()
+
+    def _offer(self):
+        for name, field in self._fields.items():
+            if isinstance(field, NameField):
+                field.show_names(self._names.get(name, ()))
+
+    def given(self):
+        """Return ({name: value}, problem): what was entered, and in words what is wrong with it."""
+        values = {}
+        for row in self._kind.fields if self._kind else ():
+            field = self._fields[row.name]
+            try:
+                value = field.given()
+            except ValueError as error:
+                return {}, '{}: {}'.format(row.name, error)
+            if value is None and not field.may_be_left_out:
+                return {}, '{} is missing: {}'.format(row.name.replace('_', ' '), row.text)
+            if value is not None:
+                values[row.name] = value
+        return values, ''
+
+    def let_go(self):
+        """Give the keyboard back, so that the keys drive."""
+        focus = self.focusWidget()
+        if focus is not None and focus.hasFocus():
+            focus.clearFocus()

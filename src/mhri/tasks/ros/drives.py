@@ -1,0 +1,89 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Drives in bags: where a robot was, by its odometry or by motion capture."""
+import os
+
+import rospkg
+
+from mhri.base.mocap import Pose
+from mhri.recording.folder import NotASession
+from mhri.recording.ros.bag_set import BagSet
+from mhri.robots.ros.convert import yaw_of
+from mhri.robots.ros.robot_link import ODOMETRY_READERS
+from mhri.tasks.replay import MOST_PLACES, thinned
+
+POSE = 'geometry_msgs/PoseStamped'
+READABLE = tuple(ODOMETRY_READERS) + (POSE,)
+# So many messages are read at most: an hour at 50 Hz.
+MOST_MESSAGES = 200000
+
+
+class DriveError(Exception):
+    """A drive that cannot be read; says why, and what would help."""
+
+
+def read_drive(path, topics):
+    """Return the poses of a drive, the first one first (blocking: it reads the file).
+
+    :param path: a bag; a relative one counts from ``$ROS_HOME``
+    :param topics: the first of them that is in the bag is read
+    :raises DriveError: there is none
+    """
+    path = os.path.join(rospkg.get_ros_home(), os.path.expanduser(path))
+    try:
+        bags = BagSet([path])
+    except NotASession as error:
+        raise DriveError('{}: {}'.format(path, error))
+    try:
+        return _read(bags, path, topics)
+    except DriveError:
+        raise
+    except Exception as error:  # whatever the bytes of a damaged file may lead rosbag to
+        raise DriveError('{}: cannot be read: {}'.format(
+            path, getattr(error, 'strerror', None) or error))
+    finally:
+        bags.close()
+
+
+def _read(bags, path, topics):
+    found = {connection.topic: connection.kind for connection in bags.connections()
+             if connection.kind in READABLE}
+    topic = next((topic for topic in topics if topic in found), None)
+    if topic is None:
+        raise DriveError('; '.join(['{}: it has no {}; topic could be: {}'.format(
+            path, ' or '.join(topics) or 'odometry', ', '.join(sorted(found)) or 'none of it')]
+            + bags.problems))
+    read = _pose_of(found[topic])
+    poses = []
+    wanted = bags.after(bags.start_ns - 1, lambda one: (one.topic, one.kind) == (
+        topic, found[topic]))
+    for number, recorded in enumerate(wanted):
+        pose = read(recorded.message())
+        if pose is not None:
+            poses.append(pose)
+        if number >= MOST_MESSAGES:
+            raise DriveError('{}: longer than {} messages: cut it with rosbag filter'.format(
+                path, MOST_MESSAGES))
+    poses = thinned(poses)
+    if len(poses) > MOST_PLACES:
+        raise DriveError('{}: the drive is too long, cut it with rosbag filter'.format(path))
+    return poses
+
+
+def _pose_of(kind):
+    """Return a function from a message of a type to its :class:`Pose`, None for none."""
+    if kind == POSE:
+        def read(message):
+            """Return the pose of a geometry_msgs/PoseStamped."""
+            place = message.pose.position
+            pose = Pose(place.x, place.y, yaw_of(message.pose.orientation))
+            return pose if pose.is_finite() else None
+        return read
+
+    def read_odometry(message):
+        """Return the pose of an odometry message."""
+        motion = ODOMETRY_READERS[kind][2](message)
+        if motion is None or not motion.is_possible():
+            return None
+        return Pose(motion.x_m, motion.y_m, motion.heading_rad)
+    return read_odometry

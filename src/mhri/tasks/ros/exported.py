@@ -1,0 +1,33 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The tasks that there are: mhri's own, and those that a lab's packages export.
+
+Such a task is somebody else's program. Where it cannot be imported or is no task, it is left out,
+and a sentence says why.
+"""
+import importlib
+
+from mhri.base.config import ConfigError
+from mhri.graph.ros.resources import exported_tasks
+from mhri.tasks.rows import with_exports
+
+
+def task_kinds(rospack=None):
+    """Load every task (blocking: it reads packages and imports their modules).
+
+    :param rospack: where to look for packages, default ``rospkg.RosPack()``
+    :returns: ({key: :class:`mhri.tasks.base.TaskKind`}, [ConfigError])
+    """
+    modules, broken = exported_tasks(rospack)
+    rows, unread = [], []
+    for package, name in modules:
+        origin = 'package {}: {}'.format(package, name)
+        try:
+            rows.append((origin, importlib.import_module(name).ROW))
+        except (Exception, SystemExit) as error:  # whatever a lab's module may raise
+            unread.append(ConfigError(origin, 'ROW', (
+                'cannot be imported ({}: {}); has its package a setup.py and '
+                'catkin_python_setup(), and is its workspace built and sourced?').format(
+                    type(error).__name__, error)))
+    kinds, errors = with_exports(rows)
+    return kinds, broken + unread + errors

@@ -1,0 +1,205 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""The screen's side of the tasks: goals to ``mhri_tasks``, and what it says of every task.
+
+Speaks the protocol of the action ``/mhri_tasks/run`` (``mhri/RunTask``) itself: actionlib's client
+tells of its own goals alone, and the screen shows everybody's, those of a screen before it, too.
+Publishes ``/mhri_tasks/run/goal`` and ``/mhri_tasks/run/cancel``; calls ``/mhri_tasks/end``.
+Subscribes ``/mhri_tasks/list``, ``/mhri_tasks/run/feedback`` and ``/mhri_tasks/run/result``, and
+believes only the ``mhri_tasks`` in force (:mod:`mhri.graph.ros.in_force`), by a service that
+every node of rospy has.
+"""
+from dataclasses import replace
+import itertools
+import math
+import threading
+import time
+
+from actionlib_msgs.msg import GoalID, GoalStatus
+import rospy
+
+from mhri.base.task_views import FieldView, KindView, Progress, RunView
+from mhri.base.task_words import NOT_ANSWERING, NOT_RUNNING
+from mhri.base.text import tidy_text
+from mhri.graph.ros.in_force import InForce, Strangers
+from mhri.graph.ros.rospy_inside import publishers
+from mhri.graph.ros.worker import Worker
+from mhri.msg import (
+    RunTaskActionFeedback, RunTaskActionGoal, RunTaskActionResult, RunTaskGoal, TaskList)
+from mhri.srv import EndTask
+from mhri.tasks.task_book import TaskBook
+
+SERVICE = '/mhri_tasks/get_loggers'
+# Feedback comes at 5 Hz while anything is under way; the first one takes a moment [s].
+SILENT_S = 3.0
+# A call waits so long for its service [s].
+CALL_S = 1.0
+_END = '/mhri_tasks/end'
+
+
+class TasksClient:
+    """What the screen knows of the tasks; every method returns at once.
+
+    :param clock: function that returns seconds, monotonic
+    ``strangers`` are nodes that pose as ``mhri_tasks``.
+    """
+
+    def __init__(self, clock=time.monotonic):
+        self._clock = clock
+        self._lock = threading.RLock()
+        self._book = TaskBook()
+        self._heard_at = clock()
+        self._there = False
+        self._numbers = itertools.count(1)
+        self._topics = ()
+        self._worker = Worker('tasks_client')
+        self.strangers = Strangers(clock)
+        self._force = InForce(SERVICE, self.strangers.refuse, self._on_new)
+
+    def start(self):
+        """Begin to listen, on a worker; call it after ``rospy.init_node``."""
+        self._worker.start()
+        self._worker.do(self._connect)
+        return self
+
+    def _connect(self):
+        """Open every topic (on the worker: it asks the master)."""
+        self._goal = rospy.Publisher('/mhri_tasks/run/goal', RunTaskActionGoal, queue_size=20)
+        self._cancel = rospy.Publisher('/mhri_tasks/run/cancel', GoalID, queue_size=20)
+        heard = [self._force.subscribe(topic, kind, hear, queue_size=50, tcp_nodelay=True)
+                 for topic, kind, hear in (
+                     ('/mhri_tasks/list', TaskList, self._hear_list),
+                     ('/mhri_tasks/run/feedback', RunTaskActionFeedback, self._hear_feedback),
+                     ('/mhri_tasks/run/result', RunTaskActionResult, self._hear_result))]
+        self._force.start()
+        self._topics = (*heard, self._goal, self._cancel)
+
+    def _on_new(self, _):
+        """Take in that another process runs the tasks now: what the last one ran is over."""
+        with self._lock:
+            self._book.lose('the task service was restarted')
+
+    def _hear_list(self, message):
+        with self._lock:
+            self._heard_at = self._clock()
+            self._book.hear_list(tuple(map(_kind, message.tasks)), tuple(
+                RunView(run.id, run.task, run.parameters, _progress(run.robots))
+                for run in message.runs), self._heard_at, tuple(map(tidy_text, message.marks)))
+
+    def _hear_feedback(self, message):
+        with self._lock:
+            self._heard_at = self._clock()
+            self._book.hear_feedback(message.status.goal_id.id,
+                                     _progress(message.feedback.robots))
+
+    def _hear_result(self, message):
+        with self._lock:
+            self._heard_at = self._clock()
+            self._book.hear_result(
+                message.status.goal_id.id, tidy_text(message.status.text),
+                _progress(message.result.robots),
+                message.status.status in (GoalStatus.PREEMPTED, GoalStatus.RECALLED))
+
+    def forget(self):
+        """Begin anew: what was heard before counts no more."""
+        with self._lock:
+            self._book = TaskBook()
+
+    def view(self):
+        """Return the :class:`mhri.base.task_views.TasksView` of this moment."""
+        now = self._clock()
+        there = bool(self._topics) and self._force.caller in publishers(self._topics[0])
+        with self._lock:
+            if self._there and not there:
+                self._book.lose('the task service has ended, and the robot stands')
+            self._there = there
+            self._book.tick(now)
+            view = self._book.view()
+            silent = bool(view.runs) and now - self._heard_at > SILENT_S
+        return replace(view, problem=NOT_RUNNING if not there else
+                       NOT_ANSWERING if silent else '')
+
+    def take_news(self):
+        """Return the :class:`mhri.tasks.task_book.News` since the last call."""
+        with self._lock:
+            return self._book.take_news()
+
+    def of(self, robot):
+        """Return the :class:`mhri.base.task_views.TaskView` of a robot, None for none."""
+        with self._lock:
+            return self._book.of(robot)
+
+    def left(self, robot):
+        """Return the :class:`mhri.tasks.task_book.Goal` that a robot could continue."""
+        with self._lock:
+            return self._book.left(robot)
+
+    def send(self, goal):
+        """Ask for a task; what becomes of it is news.
+
+        :param goal: :class:`mhri.tasks.task_book.Goal`
+        """
+        if not self._topics:
+            return
+        message = RunTaskActionGoal(goal=RunTaskGoal(goal.key, list(goal.robots),
+                                                     goal.parameters))
+        message.header.stamp = message.goal_id.stamp = rospy.Time.now()
+        message.goal_id.id = '{}-{}-{:.6f}'.format(rospy.get_name(), next(self._numbers),
+                                                   message.header.stamp.to_sec())
+        with self._lock:
+            self._book.ask(message.goal_id.id, goal, self._clock())
+        self._goal.publish(message)
+
+    def cancel(self, robots):
+        """End the tasks of robots; the others on the same goals go on.
+
+        :returns: whether there was any
+        """
+        with self._lock:
+            parts = self._book.parts_of(tuple(robots))
+            for goal_id, some in parts:
+                self._book.cancel(goal_id, some)
+        for goal_id, some in parts:
+            if some:
+                self._worker.do(self._end, some)
+            else:
+                self._cancel.publish(GoalID(id=goal_id))
+        return bool(parts)
+
+    def _end(self, robots):
+        """Take robots out of their goals (on the worker: it waits for the answer)."""
+        try:
+            rospy.wait_for_service(_END, timeout=CALL_S)
+            rospy.ServiceProxy(_END, EndTask)(robots)
+        except (rospy.ServiceException, rospy.ROSException, OSError) as error:
+            rospy.logwarn('%s: %s', _END, error)
+            with self._lock:
+                self._book.keep_on(robots, 'the task service does not answer')
+
+    def close(self, forget=False):
+        """End; returns at once.
+
+        :param forget: unregister every topic as well, in the background
+        """
+        self._worker.stop()
+        self._force.stop()
+        if forget:
+            threading.Thread(target=self._unregister, name='forget_tasks', daemon=True).start()
+
+    def _unregister(self):
+        for topic in self._topics:
+            topic.unregister()
+
+
+def _kind(message):
+    """Return the :class:`KindView` of a ``mhri/TaskKind``."""
+    return KindView(message.key, tidy_text(message.label), tidy_text(message.text), tuple(
+        FieldView(field.name, tidy_text(field.unit), tidy_text(field.text), field.default_value,
+                  field.least, field.greatest, tuple(field.choices)) for field in message.fields))
+
+
+def _progress(states):
+    """Return the :class:`Progress` of each ``mhri/TaskState``."""
+    return tuple(Progress(state.robot, state.state, tidy_text(state.text),
+                          state.left_m if math.isfinite(state.left_m) else None,
+                          tuple(state.said)) for state in states)

@@ -1,0 +1,29 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tasks in messages: what can be started, and how each robot is getting on."""
+import math
+
+import yaml
+
+from mhri.msg import TaskField, TaskKind, TaskState
+from mhri.tasks.base import REQUIRED
+
+
+def kind_message(kind):
+    """Return the ``mhri/TaskKind`` of a row."""
+    return TaskKind(key=kind.key, label=kind.label, text=kind.text,
+                    fields=[_field_message(field) for field in kind.fields])
+
+
+def _field_message(field):
+    default = '' if field.default == REQUIRED else yaml.safe_dump(
+        field.default, default_flow_style=True).split('\n')[0]
+    return TaskField(name=field.name, unit=field.unit, text=field.text, default_value=default,
+                     least=field.least, greatest=field.greatest,
+                     choices=list(field.choices))
+
+
+def state_message(run):
+    """Return the ``mhri/TaskState`` of a :class:`mhri.tasks.run.RobotRun`."""
+    return TaskState(robot=run.robot, state=run.state, text=run.text,
+                     left_m=math.nan if run.left_m is None else run.left_m, said=list(run.said))

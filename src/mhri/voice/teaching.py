@@ -1,0 +1,60 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""Whether a sentence that an operator has read aloud is good enough to learn from."""
+import re
+from typing import Mapping
+
+import numpy as np
+
+from mhri.recording.recording import ros_home
+from mhri.voice.endpointing import loudness_db
+from mhri.voice.sound import BLOCK_BYTES, BLOCK_S
+
+# Samples this large are cut off by the microphone, where more than so many of all are [fraction].
+_CLIPPED = 32600
+_CLIPPED_SHARE = 1e-3
+# The loudest tenth of a sentence [dB of one step of 16 bit], and that over its quietest [dB].
+_LOUD_DB = 45.0
+_OVER_DB = 15.0
+# How long one sound of a language lasts in the mean, at least and at most [s].
+_SHORTEST_S, _LONGEST_S = 0.035, 0.30
+# What an utterance has of the room before and behind it [s].
+_ROOM_S = 0.7
+_NAME = re.compile(r'[A-Za-z0-9_-]{1,40}\Z')
+
+
+def sentence_problem(sound: bytes, sounds: int) -> str:
+    """Return why a recorded sentence has to be read again, and how; '' if it is good.
+
+    :param sound: as in :mod:`mhri.voice.sound`
+    :param sounds: how many sounds of the language the sentence has
+    """
+    samples = np.abs(np.frombuffer(sound, dtype='<i2').astype(np.int32))
+    levels = [loudness_db(sound[at:at + BLOCK_BYTES]) for at in range(0, len(sound), BLOCK_BYTES)]
+    if not levels:
+        return 'nothing was heard: speak after the sentence is shown'
+    if float(np.mean(samples >= _CLIPPED)) > _CLIPPED_SHARE:
+        return 'too loud: turn the microphone down, or go further from it'
+    loud_db, room_db = np.percentile(levels, [90.0, 5.0])
+    if loud_db < _LOUD_DB:
+        return 'too quiet: come closer to the microphone, or turn it up'
+    if loud_db - room_db < _OVER_DB:
+        return 'too much noise around: come closer to the microphone, or go where it is quiet'
+    length_s = len(levels) * BLOCK_S - _ROOM_S
+    if length_s < sounds * _SHORTEST_S:
+        return 'too short: read the whole sentence, at an even pace'
+    if length_s > sounds * _LONGEST_S:
+        return 'too long: read the sentence alone, without long pauses'
+    return ''
+
+
+def voice_path(name: str, env: Mapping[str, str]) -> str:
+    """Return where the voice of that name is kept: ``$ROS_HOME/mhri/voices/<name>.means``."""
+    return '{}/mhri/voices/{}.means'.format(ros_home(env), name)
+
+
+def voice_problem(name: str) -> str:
+    """Return why a voice cannot have a name, '' if it can."""
+    if _NAME.match(name):
+        return ''
+    return 'expected a name of letters, digits, "_" and "-", 40 at most, got {!r}'.format(name[:60])
