@@ -191,7 +191,7 @@ def make_replay(argv, path):
     :raises NotASession: its events cannot be read
     """
     # Whoever shows no replay need not load it.
-    from mhri.screen.presenters.replay_host import make_host
+    from mhri.replay.presenters.replay_host import make_host
     host = make_host(argv, path)
     program = Standalone(argv, remember=False, host=host)
     program.window.takeCentralWidget()

@@ -295,7 +295,7 @@ def test_a_name_with_special_characters_is_refused_in_place(session):
 
 def test_the_doctor_examines_beside_the_driving(session):
     session.click('doctor_button')
-    window = session.host.doctor.page
+    window = session.host.parts['doctor'].page
     assert window.isVisible() and session.host.screen.isAncestorOf(window)
     until(lambda: window.again_button.isEnabled(), 30, 'the examination')
     text = window.text.toPlainText()

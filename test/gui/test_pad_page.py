@@ -15,9 +15,9 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 from mhri.base.views import DeviceView, PanelView  # noqa: E402
 from mhri.devices.calibration_page import CalibrationView  # noqa: E402
 from mhri.devices.gui.pad_calibration import NO_PAD, PadCalibration  # noqa: E402
+from mhri.devices.presenters import pad_host  # noqa: E402
 from mhri.devices.profile import parse_profile  # noqa: E402
 from mhri.screen.gui.screen import ScreenWidget  # noqa: E402
-from mhri.screen.presenters import pad_host  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 from support.virtual_pad import missing, pad_command, PadClient  # noqa: E402
 

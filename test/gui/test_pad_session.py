@@ -8,7 +8,7 @@ import pytest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
-from mhri.screen.presenters import pad_host  # noqa: E402
+from mhri.devices.presenters import pad_host  # noqa: E402
 from mhri.screen.presenters.demo import Grip  # noqa: E402
 from support.kernel_pads import F710, plug  # noqa: E402
 from support.panel_session import PanelSession  # noqa: E402
@@ -128,7 +128,7 @@ def test_a_pad_by_its_name_from_the_list_to_the_robot_and_the_page(session, joy,
     calibrate(session, socket)
     session.until(lambda: not operator.robot_view('bot1').moving, what='bot1 to stand')
     assert operator.view().stop_all and operator.view().mode == 'joy'
-    page = session.host.pad.page
+    page = session.host.parts['pad'].page
     operator.release()
     session.until(lambda: 'released' in page.problem.text() or not operator.view().stop_all,
                   what='the release')
@@ -138,7 +138,7 @@ def test_a_pad_by_its_name_from_the_list_to_the_robot_and_the_page(session, joy,
 
 def calibrate(session, socket):
     """Open the page, plug a pad into its process, and begin."""
-    page = session.host.pad.page
+    page = session.host.parts['pad'].page
     session.host.screen.arrangement.show_page(page)
     session.until(lambda: os.path.exists(socket), what='the process of the page')
     client = PadClient(socket)

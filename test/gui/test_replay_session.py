@@ -106,7 +106,7 @@ def test_the_list_has_the_events_so_far(replay):
 
 
 def test_a_drill_is_told_as_it_went(replay):
-    line = replay.host.screen.drill_line
+    line = replay.host.parts['drill'].line
     for position_s, words in ((8.0, 'Drill Short: Find the can.'),
                               (20.0, 'Drill Short: 0 of 1 found, 0:5'),
                               (30.0, 'Drill Short: found after 0:14')):

@@ -23,16 +23,20 @@ class Recorded(Session):
         self.until(lambda: self.view.there, 'the recorder')
 
     @property
+    def part(self):
+        return self.host.parts['session']
+
+    @property
     def view(self):
-        return self.host.session._client.view()
+        return self.part._client.view()
 
     @property
     def button(self):
-        return self.host.session.button
+        return self.part.button
 
     @property
     def note(self):
-        return self.host.session.note_bar
+        return self.part.note_bar
 
     def events(self):
         path, = glob.glob(os.path.join(self.system.home, 'mhri', 'sessions', '*', 'events.jsonl'))
@@ -139,7 +143,7 @@ def test_4_p_keeps_what_the_cameras_show(session):
 
     def still():
         session.key('p')
-        session.until(lambda: session.host.session._client.answers.empty(), 'the answer')
+        session.until(lambda: session.part._client.answers.empty(), 'the answer')
         return any(event.kind == 'still' for event in session.events())
     session.until(still, 'a still')
     names = [name for event in session.events() for name in event.data.get('stills', ())]
@@ -175,7 +179,7 @@ def test_6_a_drill_is_on_the_screen_while_it_runs(session):
     from mhri.msg import DrillState
     import rospy
     referee = rospy.Publisher('/mhri_drill/state', DrillState, queue_size=1, latch=True)
-    line = session.screen.drill_line
+    line = session.host.parts['drill'].line
     assert not line.isVisible(), 'without a drill nothing speaks of one'
 
     def say(words, **fields):

@@ -18,7 +18,7 @@ from mhri.base.gui import theme  # noqa: E402
 from mhri.graph.ros.resources import resource_path  # noqa: E402
 from mhri.screen.gui.screen import ScreenWidget  # noqa: E402
 from mhri.screen.gui.tile_header import REPLAY  # noqa: E402
-from mhri.screen.presenters.session_host import ShelfHost  # noqa: E402
+from mhri.session.presenters.session_host import ShelfHost  # noqa: E402
 from mhri.session.ros.session_shelf import SessionShelf  # noqa: E402
 from support import made_session  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
@@ -58,7 +58,7 @@ class Desk:
         """Let Qt work until a condition comes true."""
         def turn():
             self.app.processEvents()
-            self.host.show()
+            self.host.show_view(None)
             return condition()
         wait_for(turn, PATIENCE_S, what)
 

@@ -7,7 +7,7 @@ from python_qt_binding.QtWidgets import QAbstractButton, QWidget
 from mhri.base.views import LIVE, PanelView, RobotView
 from mhri.doctor.gui.doctor_page import DoctorPage
 from mhri.drill.gui.faults_page import FaultsPage, FOR_S
-from mhri.screen.presenters.fault_host import FaultHost
+from mhri.drill.presenters.fault_host import FaultHost
 from mhri.sim.faults import FAULTS
 
 
@@ -103,7 +103,7 @@ class Client:
 def test_the_page_is_there_for_simulated_robots_alone(operator):
     client, doctor = Client(), DoctorPage()
     operator.show(doctor)
-    host = FaultHost(doctor, client)
+    host = FaultHost(doctor.add_part, client)
     view = PanelView(robots=(RobotView('bot1', link=LIVE), RobotView('bot2', link=LIVE)))
     host.show_view(view)
     assert client.names == ['bot1', 'bot2'] and host.page is None

@@ -23,7 +23,7 @@ from std_srvs.srv import SetBool
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..'))
 
 from mhri.base.views import LIVE, SILENT  # noqa: E402
-from mhri.screen.ros.replay_backend import ReplayBackend  # noqa: E402
+from mhri.replay.ros.replay_backend import ReplayBackend  # noqa: E402
 from mhri.session.foreign import VELOCITY_TYPES  # noqa: E402
 from support import made_session as made  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402

@@ -126,10 +126,10 @@ class Mission(PanelSession):
 
     def record(self):
         """Press R, and await the word that it records."""
-        self.until(lambda: self.host.session.button.isVisible(), what='the button')
-        wanted = not self.host.session.recorded
+        self.until(lambda: self.host.parts['session'].button.isVisible(), what='the button')
+        wanted = self.host.recorded_s is None
         self.hands.press(Qt.Key_R, 'r')
-        self.until(lambda: self.host.session.recorded == wanted, what='the recording')
+        self.until(lambda: (self.host.recorded_s is not None) == wanted, what='the recording')
 
     def lap(self):
         """Drive alone and together, mark, lose a robot, stop all, release."""
@@ -138,7 +138,7 @@ class Mission(PanelSession):
         self.hold()
         self.check('bot1', 'bot2', 'bot4')
         self.hands.press(Qt.Key_N, 'n')
-        self.until(lambda: self.host.session.note_bar.isVisible(), what='the mark')
+        self.until(lambda: self.host.parts['session'].note_bar.isVisible(), what='the mark')
         self.hands.press(Qt.Key_Escape, '')
         self.host.tasks.start('square', ['bot3'], {'side': 1.0})
         self.until(lambda: self.robot('bot3').obeys == 'task', what='the task')

@@ -21,7 +21,11 @@ CLOCKS_AND_IO = {'threading', 'time', 'asyncio', 'concurrent', 'multiprocessing'
 MESSAGES = {'mhri.msg', 'mhri.srv', 'cv_bridge', 'genpy', 'rosbag'}
 # The order of subjects: each imports only from itself and from those before it.
 ORDER = ('base', 'graph', 'recording', 'robots', 'camera', 'sensors', 'devices', 'driving', 'map',
-         'tasks', 'events', 'sim', 'voice', 'link', 'session', 'drill', 'doctor', 'screen')
+         'tasks', 'events', 'sim', 'voice', 'link', 'session', 'drill', 'doctor', 'screen',
+         'replay')
+# Subjects that can be taken out, and those that go with each.
+REMOVABLE = {'voice': (), 'link': ('doctor',), 'session': ('drill', 'replay'), 'drill': (),
+             'doctor': (), 'replay': ()}
 # Folders of a subject; what lies beside them is pure.
 KINDS = ('io', 'ros', 'gui', 'presenters')
 # What joins subjects and kinds: executables, the program, the plugin.
@@ -162,9 +166,13 @@ def order_problems(relative, text):
         return []
     if own not in ORDER:
         return ['is in no subject']
+    missed = [subject for subject, more in REMOVABLE.items() if own not in (subject, *more)]
     later = ORDER[ORDER.index(own) + 1:] + ('nodes', 'standalone', 'mhri_plugin')
-    return ['line {}: {} comes before {}'.format(line, own, place_of(module)[0])
-            for line, module in imports(parsed(text)) if place_of(module)[0] in later]
+    found = [(line, place_of(module)[0]) for line, module in imports(parsed(text))]
+    return ['line {}: {} comes before {}'.format(line, own, other)
+            for line, other in found if other in later] + [
+        'line {}: {} must do without {}'.format(line, own, other)
+        for line, other in found if other in missed and other not in later]
 
 
 def call_problems(relative, text):
@@ -372,6 +380,7 @@ GOOD = '{}x\n{}\n"""Text."""\n'.format(*SPDX)
     ('robots/a.py', 'from mhri.map.places import Place\n', 'robots comes before map'),
     ('robots/a.py', 'from mhri.map import places\n', 'robots comes before map'),
     ('robots/ros/a.py', 'import mhri.map.ros.map_feed\n', 'robots comes before map'),
+    ('screen/gui/a.py', 'from mhri.drill.gui import drill_line\n', 'must do without drill'),
     ('screen/presenters/a.py', 'from mhri.standalone import x\n', 'screen comes before standalone'),
     ('map/a.py', '#\n' * 598, '601 lines, more than 600'),
     ('map/a.py', 'def f():\n' + '    f()\n' * 60, 'f() has 61 lines'),

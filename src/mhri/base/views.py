@@ -27,6 +27,9 @@ PROOF_NOT_CONFIRMED = 'not_confirmed'  # it moves on, moved again, or cannot be 
 # What every row says while the gates are not heard.
 UNANSWERED = 'the drive service does not answer'
 
+# The stick of the screen itself, one of the sources of the mux.
+VIRTUAL_JOYSTICK = 'joy'
+
 # States of the ROS connection.
 ROS_STARTING = 'starting'
 ROS_NO_MASTER = 'no_master'

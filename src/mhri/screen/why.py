@@ -7,11 +7,10 @@ from typing import Callable, Dict, Tuple
 from mhri.base.brake_view import standing_words
 from mhri.base.numbers import LAST_KEY
 from mhri.base.views import (
-    GONE, LIVE, PanelView, RobotView, ROS_CONNECTED, SILENT, UNANSWERED, WAITING)
+    GONE, LIVE, PanelView, RobotView, ROS_CONNECTED, SILENT, UNANSWERED, VIRTUAL_JOYSTICK,
+    WAITING)
 from mhri.robots.gate_words import stands_words
 
-# The stick of the screen itself, one of the sources of the mux.
-VIRTUAL_JOYSTICK = 'joy'
 # How long it has to be so before it is said [s]; motors take a moment to answer.
 MOMENT_S = 0.4
 MOTORS_S = 1.5

@@ -10,6 +10,9 @@ from mhri.base.gui.labels import plain_tip, Sign, TextLine
 class DrillLine(QWidget):
     """Its tool tip is what is to be done; its words stand over those of the bottom line."""
 
+    #: height that it needs beside the pictures, in heights of a line of text
+    UNITS = 3.5
+
     def __init__(self, parent=None):
         super().__init__(parent)
         self._build()

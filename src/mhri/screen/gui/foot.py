@@ -16,9 +16,8 @@ _IN_DRAWER_UNITS = 13.0
 # Width of the column, the one that takes nothing from the pictures; the first is a drawer's.
 _COLUMN_UNITS = (22.0, 18.0, 15.0, 13.0)
 _TAKES_NOTHING = 0.985
-# Height that the column needs, and what a question over it, the virtual joystick and the line of a
-# drill add to it.
-_COLUMN_HIGH_UNITS, _BAR_UNITS, _STICK_UNITS, _DRILL_UNITS = 24.0, 8.0, 9.0, 3.5
+# Height that the column needs, and what a question over it and the virtual joystick add to it.
+_COLUMN_HIGH_UNITS, _BAR_UNITS, _STICK_UNITS = 24.0, 8.0, 9.0
 
 
 class Foot:
@@ -32,6 +31,7 @@ class Foot:
         self._below_px = 0
         #: what comes and goes in it, and must not move STOP ALL by that; each with show_narrow()
         self.passing = []
+        self._lines = []
         #: BELOW, IN_DRAWER or COLUMN
         self.place = None
         self.move(BELOW)
@@ -49,7 +49,7 @@ class Foot:
         if drawer_px:
             other, taken = IN_DRAWER, drawer_px
             needed = screen.drawer.minimumSizeHint().height() + self._px(
-                _IN_DRAWER_UNITS + self._drill_units())
+                _IN_DRAWER_UNITS + self._line_units())
         else:
             other, taken = COLUMN, self._px(_COLUMN_UNITS[-1])
             needed = self._column_high()
@@ -62,6 +62,16 @@ class Foot:
         """Take in a part that comes and goes."""
         self.passing.append(part)
         part.show_narrow(self.place == COLUMN)
+
+    def add_line(self, line):
+        """Put a line over the bottom line.
+
+        :param line: has ``show_wrapped()``, and ``UNITS``: the height that it needs beside the
+            pictures, in heights of a line of text
+        """
+        self._lines.append(line)
+        self._screen.words_column.insertWidget(0, line)
+        line.show_wrapped(self.place != BELOW)
 
     def move(self, place):
         """Put the foot there."""
@@ -76,8 +86,8 @@ class Foot:
         screen.stop_bar.show_narrow(narrow, place == COLUMN)
         for bar in (screen.control_bar, screen.leave_bar, *self.passing):
             bar.show_narrow(place == COLUMN)
-        screen.status_line.show_wrapped(narrow)
-        screen.drill_line.show_wrapped(narrow)
+        for line in (screen.status_line, *self._lines):
+            line.show_wrapped(narrow)
         screen.screen_layout.setDirection(
             QBoxLayout.RightToLeft if place == COLUMN else QBoxLayout.TopToBottom)
         (screen.side_column if place == IN_DRAWER else screen.screen_layout).addWidget(screen.foot)
@@ -105,12 +115,12 @@ class Foot:
         """Return heights of a line in pixels."""
         return round(units * self._screen.fontMetrics().height())
 
-    def _drill_units(self):
-        """Return what the line of a drill needs beside the pictures."""
-        return 0.0 if self._screen.drill_line.isHidden() else _DRILL_UNITS
+    def _line_units(self):
+        """Return what the lines over the bottom line need beside the pictures."""
+        return sum(line.UNITS for line in self._lines if not line.isHidden())
 
     def _column_high(self):
         """Return the height [px] that the column needs."""
         asking = sum(not bar.isHidden() for bar in (
             self._screen.control_bar, self._screen.leave_bar))
-        return self._px(_COLUMN_HIGH_UNITS + _BAR_UNITS * asking + self._drill_units())
+        return self._px(_COLUMN_HIGH_UNITS + _BAR_UNITS * asking + self._line_units())

@@ -9,7 +9,7 @@ from mhri.base.gui.forms import load_form
 from mhri.base.gui.geometry import fitting, geometry_of, restore_geometry
 from mhri.base.gui.labels import Sign, TextLine
 from mhri.base.gui.pending import Pace
-from mhri.base.views import PanelView, ROS_CUT_OFF
+from mhri.base.views import PanelView, ROS_CUT_OFF, VIRTUAL_JOYSTICK
 from mhri.driving.gui.control_bar import ControlBar
 from mhri.driving.gui.drive_keys import DriveKeys, mark_drive_area
 from mhri.driving.gui.key_help import KeyHelp
@@ -27,7 +27,7 @@ from mhri.screen.gui.screen_layout import ScreenLayout
 from mhri.screen.gui.stage import Stage
 from mhri.screen.gui.status_line import StatusLine
 
-VIRTUAL_JOYSTICK, VOICE = 'joy', 'voice'
+VOICE = 'voice'
 NUMBERS_PERIOD_S = 0.25
 RECORD = 'Record selected'
 STOP_RECORDING = 'Stop recording ({})'

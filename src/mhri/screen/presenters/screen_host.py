@@ -13,23 +13,19 @@ from python_qt_binding.QtWidgets import QApplication
 
 from mhri.base.gui.words import remote_stick_texts
 from mhri.base.names import tidy_name
+from mhri.base.part import Desk
 from mhri.base.remote_display import HELD_S
+from mhri.base.view_rows import load
 from mhri.base.views import GONE, SILENT
 from mhri.devices.ros.device_client import choose_device
-from mhri.drill.ros.faults_client import FaultsClient
-from mhri.drill.ros.state import DrillClient
 from mhri.graph.ros.resources import resource_path
 from mhri.robots.busy import close_question
 from mhri.screen.gui.screen import ScreenWidget
-from mhri.screen.presenters.doctor_host import DoctorHost
+from mhri.screen.parts import PARTS
 from mhri.screen.presenters.draw_guard import DrawGuard
-from mhri.screen.presenters.drill_host import DrillHost
 from mhri.screen.presenters.event_host import EventHost
-from mhri.screen.presenters.fault_host import FaultHost
 from mhri.screen.presenters.map_host import MapHost
-from mhri.screen.presenters.pad_host import PadHost
 from mhri.screen.presenters.requests_host import RequestsHost
-from mhri.screen.presenters.session_host import SessionHost, ShelfHost
 from mhri.screen.presenters.stop_watch import StopWatch
 from mhri.screen.presenters.task_host import TaskHost
 from mhri.screen.presenters.tiles_host import TilesHost
@@ -68,17 +64,17 @@ class ScreenHost(QObject):
         self._closed = self._made = False
         self._build()
         self.requests = RequestsHost(operator, self.screen.show_look_result, self._select,
-                                     self.tiles.recording_wish, lambda: self.session.mark())
+                                     self.tiles.recording_wish, self._mark)
         self.events = events(operator.recordings.status, self.screen)
-        self.session = SessionHost(self.screen, self.events, self.tiles.save_stills)
-        self.doctor = DoctorHost(operator, self.screen)
-        self.pad = PadHost(operator, self.screen, parent=self)
         self.tasks = TaskHost(operator, self.screen, self._select, self._note_task, tasks)
         self.map = MapHost(operator, self.screen, self.tasks)
-        self.faults = FaultHost(self.doctor.page, FaultsClient())
-        self.drill = DrillHost(self.screen, self.events.note, DrillClient(), operator.do,
-                               operator.wall)
-        self.shelf = ShelfHost(self.screen)
+        #: {key: :class:`mhri.base.part.Part`} of :data:`mhri.screen.parts.PARTS`
+        self.parts = {}
+        desk = Desk(self.screen, operator, self.events, self.tiles.save_stills, self.parts)
+        for key, made_by in PARTS:
+            self.parts[key] = load(made_by).of(desk)
+        self.screen.doctor_button.setVisible(
+            self.screen.receivers(self.screen.doctor_requested) > 0)
         self._connect()
 
     @property
@@ -189,19 +185,14 @@ class ScreenHost(QObject):
         self._feel_losses(view)
         self.tiles.show_view(view, [name for name, _ in self._to_add])
         self.events.show(view)
-        self.session.show_view(view)
-        self.tiles.show_session(self.session.recorded_s)
-        self._tell_budget()
-        self.pad.show_view(view)
         self.map.show_view(view)
-        self.faults.show_view(view)
-        self.drill.show_view(view)
-        self.shelf.show()
+        for part in self.parts.values():
+            part.show_view(view)
+        self.tiles.show_session(self.recorded_s)
+        self._tell_budget()
         for kind, value in self.operator.take_events():
             if kind == 'found':
                 self._show_found(value)
-            elif kind == 'examined':
-                self.doctor.show(*value)
             elif kind != 'request':
                 self.screen.show_look_result(value)
             elif view.control.ours:
@@ -283,7 +274,18 @@ class ScreenHost(QObject):
         """Return what to ask before the screen is closed, '' while nothing drives or records."""
         # One that is closed must not look: it would have the seat of the one that drives now.
         return '' if self._closed else close_question(
-            self.operator.view().robots, self.session.recorded)
+            self.operator.view().robots, self.recorded_s is not None)
+
+    @property
+    def recorded_s(self):
+        """For how long the session has been recorded [s], None while it is not."""
+        return next((part.recorded_s for part in self.parts.values()
+                     if part.recorded_s is not None), None)
+
+    def _mark(self):
+        """Mark this moment."""
+        for part in self.parts.values():
+            part.mark()
 
     def _select(self, names):
         self.operator.select(names)
@@ -353,13 +355,10 @@ class ScreenHost(QObject):
         self.operator.close(forget)
         QApplication.instance().removeEventFilter(self.screen.drive_keys)
         self.screen.drive_keys.close()
-        self.session.close()
         self.events.close()
         self.tiles.close()
         self._stop_watch.close()
-        self.pad.close()
         self.tasks.close(forget)
         self.map.close(forget)
-        self.faults.close()
-        self.drill.close()
-        self.shelf.close()
+        for part in self.parts.values():
+            part.close()

@@ -291,10 +291,6 @@ class ScreenBackend:
             return
         self._worker.do(self._jobs.look, self.selection.robots)
 
-    def examine(self):
-        """Examine network, master and robots; the result is ``('examined', (list, s))``."""
-        self._jobs.examine()
-
     def talk(self, pressed):
         """Start or stop push-to-talk at the voice node."""
         if self._devices:

@@ -1,12 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the panel asks the master, and other slow jobs: parameters, discovery, the doctor."""
-import threading
-import time
-
+"""What the panel asks the master: parameters, discovery."""
 import rospy
 
-from mhri.doctor.ros.examination import examine
 from mhri.graph.ros.master_api import MasterApi, MasterError
 from mhri.robots.ros.look import look_for_robots, shipped_ignore_list
 from mhri.screen.settings import NAMESPACE, PanelSettings, parse_settings
@@ -18,11 +14,11 @@ NUMBERS_PARAMETER = '/mhri/robot_numbers'
 
 
 class PanelJobs:
-    """Each method except :meth:`examine` blocks, so call it on a worker. Results are events.
+    """Each method blocks, so call it on a worker. Results are events.
 
     :param types: {name: RobotType}
-    :param events: a :class:`queue.Queue`; gets ``('found', Found)``, ``('look_failed', sentence)``
-        and ``('examined', (list or sentence, how long it took [s]))``
+    :param events: a :class:`queue.Queue`; gets ``('found', Found)``,
+        ``('look_failed', sentence)``
     """
 
     def __init__(self, types, events):
@@ -64,16 +60,3 @@ class PanelJobs:
                 rospy.get_name(), shipped_ignore_list(), known, types=self._types)))
         except (MasterError, ValueError, OSError) as error:
             self._events.put(('look_failed', str(error)))
-
-    def examine(self):
-        """Examine network, master and robots, on a thread of its own."""
-        threading.Thread(target=self._examine, name='doctor', daemon=True).start()
-
-    def _examine(self):
-        begun = time.monotonic()
-        try:
-            found = examine()
-        except Exception as error:  # the guard of this thread: the operator is told what failed
-            rospy.logerr('the examination failed: %r', error)
-            found = 'the examination failed: {}'.format(error)
-        self._events.put(('examined', (found, time.monotonic() - begun)))

@@ -1,18 +1,27 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Joins the list of faults with the simulated robots; everything here runs on the GUI thread."""
+from mhri.base.part import Part
 from mhri.drill.gui.faults_page import FaultsPage, TITLE
+from mhri.drill.ros.faults_client import FaultsClient
 
 
-class FaultHost:
+class FaultHost(Part):
     """Adds the list once there is a simulated robot: with real ones alone nobody sees it.
 
-    :param doctor: :class:`mhri.doctor.gui.doctor_page.DoctorPage`, which has room for it
+    :param add: takes (title, page) where there is room for it
     :param client: :class:`mhri.drill.ros.faults_client.FaultsClient`
     """
 
-    def __init__(self, doctor, client):
-        self._doctor = doctor
+    @classmethod
+    def of(cls, desk):
+        """Return the one of a :class:`mhri.base.part.Desk`: below the doctor, if there is one."""
+        doctor = desk.parts.get('doctor')
+        return cls(doctor.page.add_part if doctor else desk.screen.arrangement.add_page,
+                   FaultsClient())
+
+    def __init__(self, add, client):
+        self._add = add
         self._client = client
         self.page = None
 
@@ -32,7 +41,7 @@ class FaultHost:
         self.page = FaultsPage()
         self.page.asked.connect(self._client.ask)
         self.page.shown.connect(self._client.watch)
-        self._doctor.add_part(TITLE, self.page)
+        self._add(TITLE, self.page)
 
     def close(self):
         """Ask nobody any more."""

@@ -7,10 +7,10 @@ from python_qt_binding.QtWidgets import QApplication, QVBoxLayout, QWidget
 
 from mhri.events.events import ALARM, ATTENTION, CALM, Event
 from mhri.recording.folder import ERROR, EVENTS_JSONL, INFO, NotASession, read_events, WARNING
+from mhri.replay.ros.replay_backend import ReplayBackend
+from mhri.replay.ros.replay_tasks import ReplayTasks
 from mhri.screen.presenters.event_host import EventHost
 from mhri.screen.presenters.screen_host import ScreenHost
-from mhri.screen.ros.replay_backend import ReplayBackend
-from mhri.screen.ros.replay_tasks import ReplayTasks
 from mhri.session.gui.replay_keys import REPLAY_ROWS, ReplayKeys
 from mhri.session.gui.time_line import NOTHING_DRIVES, TimeLineBar
 from mhri.session.timeline import read_time_line
@@ -66,7 +66,7 @@ class ReplayEvents(EventHost):
 class ReplayHost(ScreenHost):
     """A :class:`ScreenHost` that shows a replay.
 
-    :param operator: :class:`mhri.screen.ros.replay_backend.ReplayBackend`
+    :param operator: :class:`mhri.replay.ros.replay_backend.ReplayBackend`
     :param lines: the :class:`mhri.recording.folder.SessionEvent` values of the session
     """
 
@@ -89,7 +89,6 @@ class ReplayHost(ScreenHost):
         screen = self.screen
         screen.stop_bar.show_idle(NOTHING_DRIVES)
         screen.key_help.show_rows(REPLAY_ROWS)
-        self.session.button.hide()
         for part in (screen.drive_side, self.tasks.page, screen.add_button, screen.name_edit,
                      screen.remove_button, screen.all_button, screen.none_button):
             part.setEnabled(False)
@@ -109,10 +108,11 @@ class ReplayHost(ScreenHost):
         super().draw()
         screen = self.screen
         screen.joystick.show_active(False)
-        self.session.button.hide()
+        for part in self.parts.values():
+            part.disable()
         screen.drive_note.show_text(NOTHING_DRIVES)
         for part in (screen.record_button, screen.all_button, screen.none_button,
-                     screen.look_button, screen.doctor_button):
+                     screen.look_button):
             part.setEnabled(False)
         for tile in self.windows.values():
             tile.header.show_replay()

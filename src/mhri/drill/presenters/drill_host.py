@@ -1,11 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Joins what the referee of a drill says with the screen; everything here is on the GUI thread."""
+from mhri.base.part import Part
 from mhri.base.views import ROS_CONNECTED
+from mhri.drill.gui.drill_line import DrillLine
+from mhri.drill.ros.state import DrillClient
 from mhri.drill.view import drill_changes, drill_texts
 
 
-class DrillHost:
+class DrillHost(Part):
     """The drill of one screen, or of the recording on it: its line and its events.
 
     :param screen: :class:`mhri.screen.gui.screen.ScreenWidget`
@@ -15,8 +18,15 @@ class DrillHost:
     :param wall: function that returns the time of day [s], in a replay that of the recording
     """
 
+    @classmethod
+    def of(cls, desk):
+        """Return the one of a :class:`mhri.base.part.Desk`."""
+        return cls(desk.screen, desk.events.note, DrillClient(), desk.backend.do,
+                   desk.backend.wall)
+
     def __init__(self, screen, note, client, do, wall):
-        self._line, self._note = screen.drill_line, note
+        self.line, self._note = DrillLine(screen.foot), note
+        screen.arrangement.foot.add_line(self.line)
         self._client, self._do, self._wall = client, do, wall
         self._started = False
         self._seen = None
@@ -29,7 +39,7 @@ class DrillHost:
         drill, now = self._client.view(), self._wall()
         if drill is None:
             return
-        self._line.show_drill(drill_texts(drill, now), drill.about, drill.silent(now))
+        self.line.show_drill(drill_texts(drill, now), drill.about, drill.silent(now))
         for kind, text in drill_changes(self._seen, drill):
             self._note(kind, text)
         self._seen = drill

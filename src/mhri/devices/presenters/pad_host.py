@@ -11,13 +11,14 @@ import os
 from python_qt_binding.QtCore import QObject, QProcess, QTimer, Signal
 
 from mhri.base.config import ConfigError
+from mhri.base.part import Part
+from mhri.base.views import VIRTUAL_JOYSTICK
 from mhri.devices.calibration_page import CalibrationPage, READY, SAVING
 from mhri.devices.gui.pad_calibration import PadCalibration
 from mhri.devices.io.child import command
 from mhri.devices.io.pad_calibration import write_profile
 from mhri.devices.pads import choose_profile
 from mhri.devices.ros.pad_profiles import own_folder, pad_profiles, shipped_names
-from mhri.screen.gui.screen import VIRTUAL_JOYSTICK
 
 TITLE = 'Pad'
 PAD = 'pad'
@@ -28,7 +29,7 @@ RESTART_MS = 2000
 MOST_BYTES = 100_000
 
 
-class PadHost(QObject):
+class PadHost(QObject, Part):
     """Shows the page, feeds it and writes the result.
 
     :param operator: :class:`mhri.screen.ros.backend.ScreenBackend`
@@ -37,6 +38,11 @@ class PadHost(QObject):
     """
 
     _written = Signal(bool, str, bool)
+
+    @classmethod
+    def of(cls, desk):
+        """Return the one of a :class:`mhri.base.part.Desk`."""
+        return cls(desk.backend, desk.screen, parent=desk.screen)
 
     def __init__(self, operator, screen, program=None, parent=None):
         super().__init__(parent)

@@ -8,8 +8,8 @@ Everything here runs on the GUI thread; nothing waits.
 """
 import collections
 
-from mhri.base.views import ROS_CONNECTED
-from mhri.screen.why import VIRTUAL_JOYSTICK
+from mhri.base.part import Part
+from mhri.base.views import ROS_CONNECTED, VIRTUAL_JOYSTICK
 from mhri.session.gui.note_bar import NoteBar
 from mhri.session.gui.record_button import RecordButton
 from mhri.session.gui.sessions_page import SessionsPage, TITLE
@@ -17,7 +17,7 @@ from mhri.session.ros.session_client import SessionClient
 from mhri.session.ros.session_shelf import SessionShelf
 
 
-class SessionHost:
+class SessionHost(Part):
     """The session of one screen.
 
     :param screen: :class:`mhri.screen.gui.screen.ScreenWidget`
@@ -25,6 +25,11 @@ class SessionHost:
     :param save_stills: saves every picture on show where no session is recorded
     :param client: :class:`mhri.session.ros.session_client.SessionClient`
     """
+
+    @classmethod
+    def of(cls, desk):
+        """Return the one of a :class:`mhri.base.part.Desk`."""
+        return cls(desk.screen, desk.events, desk.save_stills)
 
     def __init__(self, screen, events, save_stills, client=None):
         self._screen = screen
@@ -65,11 +70,6 @@ class SessionHost:
             self._mark_by_key()
         elif command == 'stills':
             self._still()
-
-    @property
-    def recorded(self):
-        """Whether the session is recorded now."""
-        return self._client.view().on
 
     @property
     def recorded_s(self):
@@ -145,17 +145,26 @@ class SessionHost:
             self.note_bar.ask(name, not self._keys_drive)
         self._screen.show_look_result(text)
 
+    def disable(self):
+        """Record nothing."""
+        self.button.hide()
+
     def close(self):
         """End it."""
         self._client.close()
 
 
-class ShelfHost:
+class ShelfHost(Part):
     """The page of recorded sessions of one screen.
 
     :param screen: :class:`mhri.screen.gui.screen.ScreenWidget`
     :param shelf: :class:`mhri.session.ros.session_shelf.SessionShelf`
     """
+
+    @classmethod
+    def of(cls, desk):
+        """Return the one of a :class:`mhri.base.part.Desk`."""
+        return cls(desk.screen)
 
     def __init__(self, screen, shelf=None):
         self._shelf = shelf or SessionShelf()
@@ -170,8 +179,8 @@ class ShelfHost:
         self.page.report_requested.connect(self._shelf.report)
         self.page.cancel_requested.connect(self._shelf.cancel)
 
-    def show(self):
-        """Show what has come meanwhile; call it with each drawing."""
+    def show_view(self, view):
+        """Show what has come meanwhile."""
         while not self._shelf.news.empty():
             kind, value = self._shelf.news.get()
             if kind == 'rows':
