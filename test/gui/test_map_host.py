@@ -68,7 +68,7 @@ class Places:
             words[-1](*self.answer)
         return ask
 
-    def close(self):
+    def close(self, forget=False):
         """End."""
 
 

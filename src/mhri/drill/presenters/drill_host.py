@@ -14,20 +14,18 @@ class DrillHost(Part):
     :param screen: :class:`mhri.screen.gui.screen.ScreenWidget`
     :param note: takes (kind of event, sentence)
     :param client: :class:`mhri.drill.ros.state.DrillClient`
-    :param do: has something done where it may take a while
     :param wall: function that returns the time of day [s], in a replay that of the recording
     """
 
     @classmethod
     def of(cls, desk):
         """Return the one of a :class:`mhri.base.part.Desk`."""
-        return cls(desk.screen, desk.events.note, DrillClient(), desk.backend.do,
-                   desk.backend.wall)
+        return cls(desk.screen, desk.events.note, DrillClient(), desk.backend.wall)
 
-    def __init__(self, screen, note, client, do, wall):
+    def __init__(self, screen, note, client, wall):
         self.line, self._note = DrillLine(screen.foot), note
         screen.arrangement.foot.add_line(self.line)
-        self._client, self._do, self._wall = client, do, wall
+        self._client, self._wall = client, wall
         self._started = False
         self._seen = None
 
@@ -35,7 +33,7 @@ class DrillHost(Part):
         """Take in the :class:`mhri.base.views.PanelView` of this moment."""
         if not self._started and view.ros == ROS_CONNECTED:
             self._started = True
-            self._do(self._client.start)
+            self._client.start()
         drill, now = self._client.view(), self._wall()
         if drill is None:
             return

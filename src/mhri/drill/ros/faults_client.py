@@ -10,6 +10,7 @@ import queue
 import rospy
 
 from mhri.graph.ros.master_api import MasterApi, MasterError
+from mhri.graph.ros.node_client import call
 from mhri.graph.ros.rospy_inside import is_initialised
 from mhri.graph.ros.worker import Worker
 from mhri.srv import SetFault
@@ -71,9 +72,6 @@ class FaultsClient:
             self._call(name, '', 0.0, 0.0)
 
     def _call(self, robot, key, value, duration_s):
-        try:
-            answer = rospy.ServiceProxy(_SERVICE.format(robot), SetFault)(key, value, duration_s)
-            self._news.put((robot, answer.success, answer.message))
-        except (rospy.ServiceException, rospy.ROSException, OSError):
-            self._news.put((robot, False, '{} does not answer: its driver is dead, or does not '
-                                          'run'.format(robot)))
+        answer = call(_SERVICE.format(robot), SetFault, key, value, duration_s, log=rospy.logdebug)
+        self._news.put((robot, answer.success, answer.message) if answer else (
+            robot, False, '{} does not answer: its driver is dead, or does not run'.format(robot)))

@@ -5,12 +5,12 @@
 ``/mhri_drill/state`` (``mhri/DrillState``, latched, on change and at 1 Hz until it is over).
 """
 import math
-import threading
 
 import rospy
 
 from mhri.base.text import tidy_names, tidy_text
 from mhri.drill.view import DrillView
+from mhri.graph.ros.node_client import NodeClient
 from mhri.msg import DrillState
 from mhri.session.topics import DRILL
 
@@ -56,11 +56,12 @@ class DrillClient:
     """Hears it; :meth:`view` returns the newest word."""
 
     def __init__(self):
-        self._view = self._subscriber = None
+        self._view = None
+        self._node = NodeClient('drill_client')
 
     def start(self):
-        """Begin; call it after ``rospy.init_node`` and where asking the master may take a while."""
-        self._subscriber = rospy.Subscriber(DRILL, DrillState, self._hear, queue_size=10)
+        """Begin; call it after ``rospy.init_node``. Returns at once."""
+        self._node.do(self._node.hear, DRILL, DrillState, self._hear, 10)
 
     def _hear(self, state):
         if not math.isfinite(state.elapsed_s + state.limit_s):
@@ -77,6 +78,4 @@ class DrillClient:
 
     def close(self):
         """Hear nothing more; returns at once."""
-        if self._subscriber is not None and not rospy.is_shutdown():
-            # It asks the master, which may hang.
-            threading.Thread(target=self._subscriber.unregister, daemon=True).start()
+        self._node.close(forget=True)

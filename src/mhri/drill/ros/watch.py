@@ -12,6 +12,7 @@ import rospy
 from std_msgs.msg import Bool
 
 from mhri.drill.referee import Doing
+from mhri.graph.ros.node_client import call
 from mhri.graph.ros.worker import Worker
 from mhri.msg import GatesState, RobotGate
 from mhri.sim.faults import ALL
@@ -66,12 +67,7 @@ class FaultCaller:
 
     @staticmethod
     def _call(robot, key, value, duration_s):
-        name = '/{}/base/set_fault'.format(robot)
-        try:
-            rospy.wait_for_service(name, CALL_S)
-            answer = rospy.ServiceProxy(name, SetFault)(key, value, duration_s)
-        except (rospy.ROSException, rospy.ServiceException) as error:
-            rospy.logwarn('%s cannot be asked for the fault %s: %s', robot, key, error)
-            return
-        if not answer.success:
+        answer = call('/{}/base/set_fault'.format(robot), SetFault, key, value, duration_s,
+                      wait_s=CALL_S)
+        if answer and not answer.success:
             rospy.logwarn('%s refuses the fault: %s', robot, answer.message)

@@ -11,12 +11,10 @@ import math
 import time
 
 from geometry_msgs.msg import Point32, Pose2D
-import rospy
 
 from mhri.base.mocap import Pose
 from mhri.base.text import tidy_text
-from mhri.graph.ros.in_force import InForce
-from mhri.graph.ros.worker import Worker
+from mhri.graph.ros.node_client import NodeClient
 from mhri.map.scene import MapMark, PlacesView, Placing, UnderWay
 from mhri.msg import Places, TaskList
 from mhri.srv import FitPlace, SetFence, SetMark, SetPlace
@@ -63,18 +61,16 @@ class PlacesClient:
         self._clock = clock
         self._places = (PlacesView(), -math.inf)
         self._runs = ()
-        self._force = None
-        self._topics = []
-        self._worker = Worker('map_calls').start()
+        self._opened = False
+        self._node = NodeClient('map_calls', _PLACE, CALL_S)
 
     def open(self):
         """Listen from now on (blocking: it asks the master)."""
-        if self._force is None:
-            self._force = InForce(_PLACE)
-            self._topics = [self._force.subscribe(*row, queue_size=1, tcp_nodelay=True) for row in (
-                ('/mhri_tasks/places', Places, self._on_places),
-                ('/mhri_tasks/list', TaskList, self._on_list))]
-            self._force.start()
+        if not self._opened:
+            self._opened = True
+            self._node.hear('/mhri_tasks/places', Places, self._on_places)
+            self._node.hear('/mhri_tasks/list', TaskList, self._on_list)
+            self._node.watch()
 
     def _on_places(self, message):
         self._places = places_view(message), self._clock()
@@ -116,30 +112,16 @@ class PlacesClient:
                  _message(pose))
 
     def _do(self, on_answer, name, kind, *words):
-        self._worker.do(self._call, on_answer, name, kind, words)
+        def answered(answer):
+            if answer is None:
+                on_answer(False, 'the task service does not answer')
+            else:
+                on_answer(answer.success, tidy_text(answer.message, _LONGEST))
+        self._node.ask(answered, name, kind, *words)
 
-    @staticmethod
-    def _call(on_answer, name, kind, words):
-        """Call a service once, over its own connection, and report the result."""
-        try:
-            rospy.wait_for_service(name, timeout=CALL_S)
-            answer = rospy.ServiceProxy(name, kind)(*words)
-        except (rospy.ServiceException, rospy.ROSException, OSError) as error:
-            rospy.logwarn('%s: %s', name, error)
-            on_answer(False, 'the task service does not answer')
-            return
-        on_answer(answer.success, tidy_text(answer.message, _LONGEST))
-
-    def close(self):
-        """Stop the worker; returns at once."""
-        self._worker.stop()
-        if self._force is not None:
-            self._force.stop()
-
-    def unregister(self):
-        """Unregister every topic (blocking: it asks the master)."""
-        for topic in self._topics:
-            topic.unregister()
+    def close(self, forget=False):
+        """End; returns at once. ``forget``: unregister every topic as well, in the background."""
+        self._node.close(forget)
 
 
 def _message(pose):

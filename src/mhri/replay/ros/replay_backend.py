@@ -8,6 +8,7 @@ import rospy
 from std_msgs.msg import UInt32
 
 from mhri.base.views import ControlView, LIVE, PROOF_STOPPED, ROS_CONNECTED
+from mhri.graph.ros.node_client import call
 from mhri.graph.ros.worker import Worker
 from mhri.msg import ReplayState, RobotSelect
 from mhri.robots.link_quality import RecordedQuality
@@ -101,14 +102,10 @@ class ReplayBackend(ScreenBackend):
         self._caller.do(self._control_player, action, value)
 
     def _control_player(self, action, value):
-        try:
-            rospy.wait_for_service(CONTROL_SERVICE, timeout=1.0)
-            answer = rospy.ServiceProxy(CONTROL_SERVICE, ControlReplay)(action, value)
-        except (rospy.ServiceException, rospy.ROSException, OSError) as error:
-            rospy.logwarn('%s: %s', CONTROL_SERVICE, error)
+        answer = call(CONTROL_SERVICE, ControlReplay, action, value, wait_s=1.0)
+        if answer is None:
             self._events.put(('told', 'the player does not answer'))
-            return
-        if not answer.success:
+        elif not answer.success:
             self._events.put(('told', answer.message))
 
     def view(self):

@@ -8,6 +8,7 @@ import rospy
 from std_srvs.srv import Trigger
 
 from mhri.base.views import LIVE
+from mhri.graph.ros.node_client import call
 from mhri.msg import LinkControl
 from mhri.robots.owners import shown
 
@@ -53,11 +54,8 @@ class Controls:
         threading.Thread(target=self._ask, args=(name,), name='ask', daemon=True).start()
 
     def _ask(self, name):
-        try:
-            answer = rospy.ServiceProxy('/{}/mhri_link/take_control'.format(name), Trigger)()
-            text = answer.message
-        except (rospy.ServiceException, rospy.ROSException) as error:
-            text = 'cannot ask for control: {}'.format(error)
+        answer = call('/{}/mhri_link/take_control'.format(name), Trigger)
+        text = answer.message if answer else 'cannot ask for control: its link does not answer'
         self._told('{}: {}'.format(name, text))
 
     def close(self):

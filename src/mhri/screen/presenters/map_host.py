@@ -259,13 +259,13 @@ class MapHost(QObject):
         """Draw no more; returns at once. ``forget`` as in the backend."""
         self._timer.stop()
         self._guard.end()
-        self._places.close()
+        self._places.close(forget)
         if forget:
             threading.Thread(target=self._forget, name='forget_map', daemon=True).start()
 
     def _forget(self):
         """Unregister every topic (blocking)."""
-        for end in (self._scans.close, self._map.close, self._places.unregister):
+        for end in (self._scans.close, self._map.close):
             end()
 
 

@@ -6,7 +6,6 @@ Publishes ``/panel/events`` (``mhri/SessionEvent``) and ``/panel/pictures`` (``m
 subscribes ``/mhri_session/state``; calls ``/mhri_session/record``, ``mark``, ``note``, ``still``.
 """
 import queue
-import threading
 import time
 
 import rospy
@@ -14,7 +13,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from mhri.base.text import tidy_text
 from mhri.camera.ros.passed_on import PASSED_ON
-from mhri.graph.ros.worker import Worker
+from mhri.graph.ros.node_client import NodeClient
 from mhri.msg import SeenPicture, SessionEvent, SessionState
 from mhri.session.topics import PANEL_EVENTS, PICTURES
 from mhri.session.view import SessionView, SILENT_S
@@ -34,7 +33,7 @@ class SessionClient:
 
     def __init__(self, clock=time.monotonic):
         self._clock = clock
-        self._worker = Worker('session_client')
+        self._node = NodeClient('session_client', wait_s=CALL_S)
         self._state = None
         self._heard_at = 0.0
         self._gone = False
@@ -43,15 +42,13 @@ class SessionClient:
 
     def start(self):
         """Begin, on a worker; call it after ``rospy.init_node``."""
-        self._worker.start()
-        self._worker.do(self._connect)
+        self._node.do(self._connect)
 
     def _connect(self):
         """Open every topic (on the worker: it asks the master)."""
-        self._events = rospy.Publisher(PANEL_EVENTS, SessionEvent, queue_size=200)
-        self._pictures = rospy.Publisher(PICTURES, SeenPicture, queue_size=4)
-        self._subscriber = rospy.Subscriber('/mhri_session/state', SessionState, self._hear,
-                                            queue_size=5, tcp_nodelay=True)
+        self._events = self._node.say(PANEL_EVENTS, SessionEvent, queue_size=200)
+        self._pictures = self._node.say(PICTURES, SeenPicture, queue_size=4)
+        self._subscriber = self._node.hear('/mhri_session/state', SessionState, self._hear, 5)
         PASSED_ON.open(self._pictures)
 
     def _hear(self, message):
@@ -84,38 +81,31 @@ class SessionClient:
 
     def record(self, on):
         """Ask to record the session, or to end it."""
-        self._worker.do(self._call, 'record', SetBool, on)
+        self._ask('record', SetBool, on)
 
     def mark(self, text=''):
         """Ask to mark this moment."""
-        self._worker.do(self._call, 'mark', MarkSession, text)
+        self._ask('mark', MarkSession, text)
 
     def note(self, name, text):
         """Ask to write the text of a mark."""
-        self._worker.do(self._call, 'note', AddNote, name, text)
+        self._ask('note', AddNote, name, text)
 
     def still(self):
         """Ask for a still of every camera in sight."""
-        self._worker.do(self._call, 'still', Trigger)
+        self._ask('still', Trigger)
 
-    def _call(self, name, kind, *arguments):
-        """Call a service of the recorder (on the worker)."""
-        service = '/mhri_session/' + name
-        try:
-            rospy.wait_for_service(service, CALL_S)
-            answer = rospy.ServiceProxy(service, kind)(*arguments)
-        except (rospy.ROSException, rospy.ServiceException, OSError) as error:
-            rospy.logwarn('%s: %s', service, error)
-            self.answers.put((name, False, 'the recorder of the session does not answer', ''))
-            return
-        self.answers.put((name, answer.success, tidy_text(answer.message),
-                          getattr(answer, 'id', '')))
+    def _ask(self, name, kind, *words):
+        """Call a service of the recorder."""
+        self._node.ask(lambda answer: self._answer(name, answer), '/mhri_session/' + name, kind,
+                       *words)
+
+    def _answer(self, name, answer):
+        self.answers.put(
+            (name, False, 'the recorder of the session does not answer', '') if answer is None else
+            (name, answer.success, tidy_text(answer.message), getattr(answer, 'id', '')))
 
     def close(self):
         """Pass nothing on any more; returns at once."""
         PASSED_ON.open(None)
-        self._worker.stop()
-        for topic in (self._events, self._pictures, self._subscriber):
-            if topic is not None and not rospy.is_shutdown():
-                # It asks the master, which may hang.
-                threading.Thread(target=topic.unregister, daemon=True).start()
+        self._node.close(forget=True)

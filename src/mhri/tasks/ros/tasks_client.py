@@ -21,9 +21,9 @@ import rospy
 from mhri.base.task_views import FieldView, KindView, Progress, RunView
 from mhri.base.task_words import NOT_ANSWERING, NOT_RUNNING
 from mhri.base.text import tidy_text
-from mhri.graph.ros.in_force import InForce, Strangers
+from mhri.graph.ros.in_force import Strangers
+from mhri.graph.ros.node_client import NodeClient
 from mhri.graph.ros.rospy_inside import publishers
-from mhri.graph.ros.worker import Worker
 from mhri.msg import (
     RunTaskActionFeedback, RunTaskActionGoal, RunTaskActionResult, RunTaskGoal, TaskList)
 from mhri.srv import EndTask
@@ -51,28 +51,25 @@ class TasksClient:
         self._heard_at = clock()
         self._there = False
         self._numbers = itertools.count(1)
-        self._topics = ()
-        self._worker = Worker('tasks_client')
+        self._list = None
         self.strangers = Strangers(clock)
-        self._force = InForce(SERVICE, self.strangers.refuse, self._on_new)
+        self._node = NodeClient('tasks_client', SERVICE, CALL_S, self.strangers.refuse,
+                                self._on_new)
 
     def start(self):
         """Begin to listen, on a worker; call it after ``rospy.init_node``."""
-        self._worker.start()
-        self._worker.do(self._connect)
+        self._node.do(self._connect)
         return self
 
     def _connect(self):
         """Open every topic (on the worker: it asks the master)."""
-        self._goal = rospy.Publisher('/mhri_tasks/run/goal', RunTaskActionGoal, queue_size=20)
-        self._cancel = rospy.Publisher('/mhri_tasks/run/cancel', GoalID, queue_size=20)
-        heard = [self._force.subscribe(topic, kind, hear, queue_size=50, tcp_nodelay=True)
-                 for topic, kind, hear in (
-                     ('/mhri_tasks/list', TaskList, self._hear_list),
-                     ('/mhri_tasks/run/feedback', RunTaskActionFeedback, self._hear_feedback),
-                     ('/mhri_tasks/run/result', RunTaskActionResult, self._hear_result))]
-        self._force.start()
-        self._topics = (*heard, self._goal, self._cancel)
+        self._goal = self._node.say('/mhri_tasks/run/goal', RunTaskActionGoal, 20)
+        self._cancel = self._node.say('/mhri_tasks/run/cancel', GoalID, 20)
+        heard = self._node.hear('/mhri_tasks/list', TaskList, self._hear_list, 50)
+        self._node.hear('/mhri_tasks/run/feedback', RunTaskActionFeedback, self._hear_feedback, 50)
+        self._node.hear('/mhri_tasks/run/result', RunTaskActionResult, self._hear_result, 50)
+        self._node.watch()
+        self._list = heard
 
     def _on_new(self, _):
         """Take in that another process runs the tasks now: what the last one ran is over."""
@@ -108,7 +105,7 @@ class TasksClient:
     def view(self):
         """Return the :class:`mhri.base.task_views.TasksView` of this moment."""
         now = self._clock()
-        there = bool(self._topics) and self._force.caller in publishers(self._topics[0])
+        there = self._list is not None and self._node.caller in publishers(self._list)
         with self._lock:
             if self._there and not there:
                 self._book.lose('the task service has ended, and the robot stands')
@@ -139,7 +136,7 @@ class TasksClient:
 
         :param goal: :class:`mhri.tasks.task_book.Goal`
         """
-        if not self._topics:
+        if self._list is None:
             return
         message = RunTaskActionGoal(goal=RunTaskGoal(goal.key, list(goal.robots),
                                                      goal.parameters))
@@ -161,18 +158,15 @@ class TasksClient:
                 self._book.cancel(goal_id, some)
         for goal_id, some in parts:
             if some:
-                self._worker.do(self._end, some)
+                self._node.ask(lambda answer, robots=some: self._ended(robots, answer), _END,
+                               EndTask, some)
             else:
                 self._cancel.publish(GoalID(id=goal_id))
         return bool(parts)
 
-    def _end(self, robots):
-        """Take robots out of their goals (on the worker: it waits for the answer)."""
-        try:
-            rospy.wait_for_service(_END, timeout=CALL_S)
-            rospy.ServiceProxy(_END, EndTask)(robots)
-        except (rospy.ServiceException, rospy.ROSException, OSError) as error:
-            rospy.logwarn('%s: %s', _END, error)
+    def _ended(self, robots, answer):
+        """Take in whether robots are out of their goals."""
+        if answer is None:
             with self._lock:
                 self._book.keep_on(robots, 'the task service does not answer')
 
@@ -181,14 +175,7 @@ class TasksClient:
 
         :param forget: unregister every topic as well, in the background
         """
-        self._worker.stop()
-        self._force.stop()
-        if forget:
-            threading.Thread(target=self._unregister, name='forget_tasks', daemon=True).start()
-
-    def _unregister(self):
-        for topic in self._topics:
-            topic.unregister()
+        self._node.close(forget)
 
 
 def _kind(message):
