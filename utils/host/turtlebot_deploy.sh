@@ -123,7 +123,9 @@ pack_link() {
   cp "$REPO/package.xml" "$folder"
   cp -r "$REPO/resource/robots" "$folder/resource"
   cp "$REPO/scripts/mhri_link" "$folder/scripts"
-  (cd "$REPO/src/mhri" && cp -r __init__.py core ros nodes "$folder/src/mhri")
+  # What mhri_link imports lies in these.
+  (cd "$REPO/src/mhri" &&
+    cp -r __init__.py base graph recording robots driving link nodes "$folder/src/mhri")
   cp -r "$messages/msg" "$messages/srv" "$folder/src/mhri"
   find "$folder" -name __pycache__ -prune -exec rm -rf {} +
   tar -c -C "$folder" --sort=name --mtime=@0 --owner=0 --group=0 --mode=go-w . |
