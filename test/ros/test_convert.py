@@ -6,8 +6,9 @@ import math
 from nav_msgs.msg import Odometry
 import pytest
 
+from mhri.base.robot_types import ODOMETRY_TYPES
 from mhri.robots.link import Motion
-from mhri.robots.ros.convert import motion_from_odometry
+from mhri.robots.ros.odometry import MOTIONS
 
 
 def test_odometry_keeps_all_three_velocities_and_the_pose():
@@ -17,7 +18,12 @@ def test_odometry_keeps_all_three_velocities_and_the_pose():
     twist.linear.x, twist.linear.y, twist.angular.z = 0.1, -0.5, 0.2
     pose.position.x, pose.position.y = 3.0, 4.0
     pose.orientation.z, pose.orientation.w = math.sin(0.25), math.cos(0.25)
-    assert motion_from_odometry(message) == Motion(0.1, 0.2, 3.0, 4.0, pytest.approx(0.5), -0.5)
+    assert MOTIONS['nav_msgs/Odometry'](message) == Motion(
+        0.1, 0.2, 3.0, 4.0, pytest.approx(0.5), -0.5)
+
+
+def test_every_type_of_odometry_is_read():
+    assert set(MOTIONS) == set(ODOMETRY_TYPES)
 
 
 @pytest.mark.parametrize('spoil, problem', [
@@ -27,7 +33,7 @@ def test_odometry_keeps_all_three_velocities_and_the_pose():
 def test_odometry_that_cannot_be_is_refused_where_it_comes_in(spoil, problem):
     message = Odometry()
     message.pose.pose.orientation.w = 1.0
-    assert motion_from_odometry(message).is_standstill()
+    assert MOTIONS['nav_msgs/Odometry'](message).is_standstill()
     spoil(message)
-    motion = motion_from_odometry(message)
+    motion = MOTIONS['nav_msgs/Odometry'](message)
     assert motion.problem == problem and not motion.is_standstill()

@@ -30,7 +30,7 @@ from python_qt_binding.QtWidgets import QApplication  # noqa: E402
 
 from mhri.base.views import LIVE, PROOF_STOPPED  # noqa: E402
 from mhri.driving.gui.hands import Grip  # noqa: E402
-from mhri.robots.ros.convert import motion_from_odometry  # noqa: E402
+from mhri.robots.ros.odometry import MOTIONS  # noqa: E402
 from support.panel_session import PanelSession  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
 from support.screen_words import (  # noqa: E402
@@ -207,7 +207,7 @@ def carried(folder):
     for path in sorted(glob.glob(os.path.join(folder, '*.bag'))):
         with rosbag.Bag(path) as bag:
             found += [(heard.to_sec(), (heard - message.header.stamp).to_sec(),
-                       topic.split('/')[1], motion_from_odometry(message))
+                       topic.split('/')[1], MOTIONS['nav_msgs/Odometry'](message))
                       for topic, message, heard in bag.read_messages(
                           ['/{}/odom'.format(name) for name in ROBOTS])]
     return found

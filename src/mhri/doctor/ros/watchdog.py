@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The trial of a robot's watchdog, on ROS. It moves the robot: only on request, see the caller."""
-import importlib
 import select
 import threading
 import time
@@ -18,14 +17,13 @@ from mhri.graph.ros.resources import robot_types
 from mhri.graph.ros.rospy_inside import unsubscribe
 from mhri.msg import RobotSelect
 from mhri.recording.ros.raw_link import LinkError, RawLink
-from mhri.robots.ros.convert import motion_from_odometry, motion_from_turtle_pose, to_twist
+from mhri.robots.ros.convert import to_twist
 from mhri.robots.ros.look import robot_facts
+from mhri.robots.ros.odometry import odometry_of
 
 PERIOD_S = 0.05
 ZEROS = 10
 CONNECT_S = 3.0
-_READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
-            'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
 
 
 class _Refused(Exception):
@@ -36,8 +34,7 @@ class _Ear:
     """Keeps the newest motion of a robot and when it came."""
 
     def __init__(self, name, template):
-        module, class_name, self._read = _READERS[template.odometry_type]
-        message_class = getattr(importlib.import_module(module), class_name)
+        message_class, self._read = odometry_of(template)
         self._newest = (None, 0.0)
         self._subscribers = [
             rospy.Subscriber(topic_of(name, topic), message_class, self._on_message,

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the obstacle brake of the gates knows of a robot: what it sees, and where it is."""
 from contextlib import nullcontext
-import importlib
 import threading
 import time
 
@@ -12,11 +11,12 @@ from sensor_msgs.msg import LaserScan
 from mhri.base.mocap import Pose
 from mhri.base.names import topic_of
 from mhri.driving.stick_brake import StickBrake
+from mhri.graph.ros.messages import MessageMissing
 from mhri.graph.ros.refusals import Refusals
 from mhri.graph.ros.rospy_inside import unsubscribe
 from mhri.robots.pose_track import PoseTrack
 from mhri.robots.ros.convert import header_of
-from mhri.robots.ros.robot_link import ODOMETRY_READERS
+from mhri.robots.ros.odometry import odometry_of
 from mhri.sensors.brake import NARROW_M
 from mhri.sensors.ros.beams import made_s, read_beams
 from mhri.sensors.ros.mounts import Mounts, NoPlace
@@ -50,10 +50,9 @@ class BrakeEye:
             from mhri.sensors.ros.depth_scans import DepthScans
             self._depth = DepthScans(name, robot_type.depth, self._mounts, self._on_depth, clock)
         self._topics = [topic_of(name, topic) for topic in robot_type.scan]
-        module, class_name, self._read = ODOMETRY_READERS[robot_type.odometry_type]
         try:
-            self._odometry = getattr(importlib.import_module(module), class_name)
-        except ImportError:
+            self._odometry, self._read = odometry_of(robot_type)
+        except MessageMissing:
             self._odometry = None
         self._refusals = Refusals(', '.join(self._topics or [
             topic_of(name, topic) for topic in robot_type.depth]), clock)

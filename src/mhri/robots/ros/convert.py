@@ -10,7 +10,6 @@ import rospy
 from sensor_msgs.msg import Joy
 
 from mhri.base.limits import Velocity
-from mhri.robots.link import Motion
 
 # With its length before it.
 _TWIST = struct.Struct('<I6d')
@@ -56,19 +55,6 @@ def yaw_of(quaternion):
     """Return the heading [rad, (-pi, pi]] of an orientation about the vertical axis."""
     x, y, z, w = quaternion.x, quaternion.y, quaternion.z, quaternion.w
     return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
-
-
-def motion_from_odometry(message):
-    """Return the :class:`Motion` of a ``nav_msgs/Odometry``; what cannot be is NaN in it."""
-    pose, twist, turn = message.pose.pose, message.twist.twist, message.pose.pose.orientation
-    return Motion.told(twist.linear.x, twist.angular.z, pose.position.x, pose.position.y,
-                       yaw_of(turn), twist.linear.y, turn=(turn.x, turn.y, turn.z, turn.w))
-
-
-def motion_from_turtle_pose(message):
-    """Return the :class:`Motion` of a ``turtlesim/Pose``; what cannot be is NaN in it."""
-    return Motion.told(message.linear_velocity, message.angular_velocity, message.x, message.y,
-                       message.theta, 0.0)
 
 
 class PlanarTwist(Twist):

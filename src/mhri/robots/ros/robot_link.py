@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """One robot as this program hears it: odometry, link and the proof of its stops."""
-import importlib
 import math
 import threading
 import time
@@ -17,6 +16,7 @@ from mhri.base.names import topic_of
 from mhri.base.plausible import BATTERY, can_be
 from mhri.base.tf_tree import OdometryFrames
 from mhri.base.views import LIVE, RobotView, UNANSWERED
+from mhri.graph.ros.messages import MessageMissing
 from mhri.graph.ros.refusals import Refusals
 from mhri.msg import RobotGate
 from mhri.robots.figures import (
@@ -24,14 +24,11 @@ from mhri.robots.figures import (
 from mhri.robots.gate_words import also_words, LIMIT_RAISED, NOT_ALONE, ODOMETRY_STUCK, stands_words
 from mhri.robots.link import link_note, link_state
 from mhri.robots.link_quality import link_warning, LinkQuality
-from mhri.robots.ros.convert import (
-    header_of, is_driven, motion_from_odometry, motion_from_turtle_pose, round_trip_s)
+from mhri.robots.ros.convert import header_of, is_driven, round_trip_s
 from mhri.robots.ros.hardware_stop import HardwareStop
+from mhri.robots.ros.odometry import odometry_of
 from mhri.robots.stamp_age import delay_of, StampAge
 from mhri.robots.stop_proof import StopProof
-
-ODOMETRY_READERS = {'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', motion_from_odometry),
-                    'turtlesim/Pose': ('turtlesim.msg', 'Pose', motion_from_turtle_pose)}
 
 # Topic in a robot's namespace: the late commands that its guard dropped.
 DROPPED = 'mhri_guard/dropped'
@@ -160,12 +157,10 @@ class RobotLink:
 
     def _open_feeds(self):
         """Subscribe to the odometry topics of the template."""
-        module, class_name, read = ODOMETRY_READERS[self.robot_type.odometry_type]
         try:
-            message_class = getattr(importlib.import_module(module), class_name)
-        except ImportError:
-            rospy.logwarn('%s: cannot read its odometry, %s is not installed here', self.name,
-                          self.robot_type.odometry_type)
+            message_class, read = odometry_of(self.robot_type)
+        except MessageMissing as error:
+            rospy.logwarn('%s: cannot read its odometry: %s', self.name, error)
             return []
 
         def read_motion(message):

@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Gathers what a robot's IMU and odometry say, for the graph of its tile."""
-import importlib
 import math
 import threading
 import time
@@ -12,6 +11,7 @@ import rospy
 from mhri.base.names import topic_of
 from mhri.base.plausible import ACCELERATION, ANGULAR_VELOCITY, QUATERNION, sifted, SPEED
 from mhri.base.series import BinRing, IMU_KEYS, ODOMETRY_KEYS, roll_pitch_yaw, Series
+from mhri.graph.ros.messages import message_class
 from mhri.graph.ros.refusals import Refusals
 from mhri.graph.ros.rospy_inside import unsubscribe
 
@@ -52,10 +52,10 @@ def _turtle_row(message):
 
 _IMU_KINDS = (QUATERNION,) * 4 + (ANGULAR_VELOCITY,) * 3 + (ACCELERATION,) * 3
 _MOTION_KINDS = (SPEED, ANGULAR_VELOCITY)
-# Type: module and class of its messages, function that makes a row of one, kind of each value.
-_READERS = {'sensor_msgs/Imu': ('sensor_msgs.msg', 'Imu', _imu_row, _IMU_KINDS),
-            'nav_msgs/Odometry': ('nav_msgs.msg', 'Odometry', _odometry_row, _MOTION_KINDS),
-            'turtlesim/Pose': ('turtlesim.msg', 'Pose', _turtle_row, _MOTION_KINDS)}
+# Type of message: function that makes a row of one, kind of each value.
+_READERS = {'sensor_msgs/Imu': (_imu_row, _IMU_KINDS),
+            'nav_msgs/Odometry': (_odometry_row, _MOTION_KINDS),
+            'turtlesim/Pose': (_turtle_row, _MOTION_KINDS)}
 
 
 class _Intake:
@@ -64,8 +64,8 @@ class _Intake:
     def __init__(self, topics, message_type, keys, prepare, clock):
         self.topics = topics
         self.ring = BinRing(keys)
-        module, name, self._read, self._kinds = _READERS[message_type]
-        self._message_class = getattr(importlib.import_module(module), name)
+        self._read, self._kinds = _READERS[message_type]
+        self._message_class = message_class(message_type)
         self._prepare = prepare
         self._clock = clock
         self._lock = threading.Lock()

@@ -12,13 +12,12 @@ from mhri.graph.ros.messages import message_class, MessageMissing
 from mhri.map.places import composed
 from mhri.msg import Places
 from mhri.recording.folder import still_name
-from mhri.robots.ros.convert import motion_from_odometry, motion_from_turtle_pose
+from mhri.robots.ros.odometry import MOTIONS
 from mhri.session.topics import camera_topics
 
 PLACES = '/mhri_tasks/places'
 # A picture that is older is not in sight [s].
 IN_SIGHT_S = 3.0
-_READERS = {'nav_msgs/Odometry': motion_from_odometry, 'turtlesim/Pose': motion_from_turtle_pose}
 _JPEG = b'\xff\xd8'
 
 
@@ -63,14 +62,14 @@ class Moment:
         """Return (Pose, its frame) by a robot's odometry, None without any."""
         for name in kind.odometry:
             source = self._tap.newest(topic_of(robot, name))
-            if source is None or source.fields['type'] not in _READERS:
+            if source is None or source.fields['type'] not in MOTIONS:
                 continue
             try:
                 message = read(message_class(source.fields['type']), source.frame)
             except (MessageMissing, genpy.DeserializationError) as error:
                 rospy.logdebug('%s: %s', source.fields['topic'], error)
                 continue
-            motion = _READERS[source.fields['type']](message)
+            motion = MOTIONS[source.fields['type']](message)
             if not motion.is_possible():
                 continue
             frame = message.header.frame_id if message._has_header else ''

@@ -15,14 +15,13 @@ from mhri.map.ros.map_feed import grid_of_message, MAP_TOPIC
 from mhri.recording.folder import (
     bags_of, EVENTS_JSONL, NotASession, read_events, read_info, robots_of, SESSION_YAML)
 from mhri.recording.ros.bag_set import BagSet, DAMAGED
-from mhri.robots.ros.convert import motion_from_odometry, motion_from_turtle_pose
+from mhri.robots.ros.odometry import MOTIONS
 from mhri.session.drill_results import FILE as DRILL_FILE, read_result, rows_of
 from mhri.session.report import report_of, sound_events
 from mhri.session.survey import RobotSurvey
 from mhri.session.timeline import read_time_line
 
 GATES, PLACES = '/gates/state', '/mhri_tasks/places'
-_MOTIONS = {'nav_msgs/Odometry': motion_from_odometry, 'turtlesim/Pose': motion_from_turtle_pose}
 _HOST = {GATES: 'mhri/GatesState', PLACES: 'mhri/Places', MAP_TOPIC: 'nav_msgs/OccupancyGrid'}
 # After a stop all that was heard counts for so long [s].
 _DENSE_S = 4.0
@@ -177,7 +176,7 @@ class Teller:
 
     def is_odometry(self, connection):
         """Tell whether a connection is the odometry of one of the robots."""
-        return connection.topic in self._odometry and connection.kind in _MOTIONS
+        return connection.topic in self._odometry and connection.kind in MOTIONS
 
     def odometry_topic(self, robot):
         """Return where a robot's odometry is recorded."""
@@ -186,7 +185,7 @@ class Teller:
     def motion(self, recorded):
         """Return the :class:`Motion` of a message of odometry, None where it cannot be read."""
         message = self.message(recorded)
-        return None if message is None else _MOTIONS[recorded.connection.kind](message)
+        return None if message is None else MOTIONS[recorded.connection.kind](message)
 
     def _wanted(self, connection):
         return connection.kind == _HOST.get(connection.topic) or self.is_odometry(connection)
@@ -198,7 +197,7 @@ class Teller:
         topic = recorded.connection.topic
         if topic in self._odometry:
             self._surveys[self._odometry[topic]].on_motion(
-                recorded.time_ns / _NS - self.start, _MOTIONS[recorded.connection.kind](message))
+                recorded.time_ns / _NS - self.start, MOTIONS[recorded.connection.kind](message))
         elif topic == MAP_TOPIC:
             self._take_map(message)
         else:
@@ -256,7 +255,7 @@ def _odometry_of(name, robot, recorded):
     topics = robot.get('topics')
     named = topics.get('odometry') if isinstance(topics, dict) else None
     others = sorted(topic for topic, kind in recorded.items()
-                    if kind in _MOTIONS and topic.startswith('/{}/'.format(name)))
+                    if kind in MOTIONS and topic.startswith('/{}/'.format(name)))
     return named if isinstance(named, str) and named in recorded else (others or [''])[0]
 
 

@@ -9,11 +9,11 @@ from mhri.base.mocap import Pose
 from mhri.recording.folder import NotASession
 from mhri.recording.ros.bag_set import BagSet
 from mhri.robots.ros.convert import yaw_of
-from mhri.robots.ros.robot_link import ODOMETRY_READERS
+from mhri.robots.ros.odometry import MOTIONS
 from mhri.tasks.replay import MOST_PLACES, thinned
 
 POSE = 'geometry_msgs/PoseStamped'
-READABLE = tuple(ODOMETRY_READERS) + (POSE,)
+READABLE = tuple(MOTIONS) + (POSE,)
 # So many messages are read at most: an hour at 50 Hz.
 MOST_MESSAGES = 200000
 
@@ -82,7 +82,7 @@ def _pose_of(kind):
 
     def read_odometry(message):
         """Return the pose of an odometry message."""
-        motion = ODOMETRY_READERS[kind][2](message)
+        motion = MOTIONS[kind](message)
         if motion is None or not motion.is_possible():
             return None
         return Pose(motion.x_m, motion.y_m, motion.heading_rad)

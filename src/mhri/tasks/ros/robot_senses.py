@@ -1,7 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What one robot senses, for its task: odometry, motion capture, laser and battery."""
-import importlib
 import threading
 import time
 
@@ -11,13 +10,15 @@ from sensor_msgs.msg import BatteryState, LaserScan
 from mhri.base.mocap import Pose
 from mhri.base.names import topic_of
 from mhri.base.tf_tree import frame_name
+from mhri.graph.ros.messages import MessageMissing
 from mhri.graph.ros.refusals import Refusals
 from mhri.graph.ros.rospy_inside import unsubscribe
 from mhri.map.places import Odometry, OLD_S
 from mhri.robots.pose_track import PoseTrack
 from mhri.robots.ros.convert import header_of
 from mhri.robots.ros.mocap_feed import MocapFeed
-from mhri.robots.ros.robot_link import battery_fraction, ODOMETRY_READERS
+from mhri.robots.ros.odometry import odometry_of
+from mhri.robots.ros.robot_link import battery_fraction
 from mhri.sensors.brake import NARROW_M, reach_of, SCAN_OLD_S, Surroundings, Unplaced
 from mhri.sensors.ros.beams import made_s, read_beams
 from mhri.sensors.ros.mounts import Mounts, NoPlace
@@ -99,12 +100,10 @@ class RobotSenses:
         self._unplaced = Unplaced()
 
     def _open_odometry(self):
-        module, class_name, self._read = ODOMETRY_READERS[self.robot_type.odometry_type]
         try:
-            message_class = getattr(importlib.import_module(module), class_name)
-        except ImportError:
-            rospy.logwarn('%s: cannot read its odometry, %s is not installed here', self.name,
-                          self.robot_type.odometry_type)
+            message_class, self._read = odometry_of(self.robot_type)
+        except MessageMissing as error:
+            rospy.logwarn('%s: cannot read its odometry: %s', self.name, error)
             return None
         return _Newest(self.odometry_topics, message_class, self._clock)
 
