@@ -1,0 +1,35 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A node that cannot be asked: who asks is told, and does not wait."""
+import queue
+import time
+
+import pytest
+from std_srvs.srv import Trigger
+
+from mhri.graph.ros.node_client import call, NodeClient
+
+
+@pytest.mark.parametrize('wait_s', [0.0, 0.3])
+def test_without_an_answer_there_is_none_and_it_is_said(wait_s):
+    said = []
+    assert call('/nobody/asks', Trigger, wait_s=wait_s,
+                log=lambda *words: said.append(words[1])) is None
+    assert said == ['/nobody/asks']
+
+
+def test_who_asks_does_not_wait_and_is_told():
+    node, answers = NodeClient('asking', wait_s=0.3), queue.Queue()
+    begun = time.monotonic()
+    node.ask(answers.put, '/nobody/asks', Trigger)
+    assert time.monotonic() - begun < 0.3
+    assert answers.get(timeout=60.0) is None
+    node.close()
+
+
+def test_jobs_are_done_in_their_order_one_at_a_time():
+    node, done = NodeClient('working'), queue.Queue()
+    for number in range(100):
+        node.do(done.put, number)
+    assert [done.get(timeout=60.0) for _ in range(100)] == list(range(100))
+    node.close()
