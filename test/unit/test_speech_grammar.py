@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from mhri.voice.grammar import Command, DRIVE, Grammar, MODE, PANEL, STOP, WAKE
+from mhri.voice.grammar import Command, DRIVE, Grammar, MODE, NOBODY, PANEL, STOP, WAKE
 from mhri.voice.language import parse_language
 
 TEST = Path(__file__).resolve().parents[1]
@@ -136,6 +136,18 @@ def test_without_robots_nothing_is_selected_by_name():
     assert '<robot>' not in grammar.jsgf()
 
 
+@pytest.mark.parametrize('robots', [[], ['bot1', 'bot2', 'bot3'], ['bot1', '', 'tango']])
+def test_a_number_that_no_robot_has_is_known_and_means_nobody(robots):
+    """Else it is taken for what sounds most like it: "number four" for "forward"."""
+    grammar = Grammar(LANGUAGE, robots, WORDS.__contains__)
+    heard = grammar.parse('robot select number four')
+    assert heard == Command(NOBODY, 'select', woken=True) and not grammar.moves(
+        'robot select number four')
+    assert 'number four' in grammar.jsgf() and {'number', 'four', 'twenty'} <= set(grammar.words)
+    named = Grammar(LANGUAGE, ['a', 'b', 'c', 'tango'], WORDS.__contains__)
+    assert named.parse('robot select number four').robots == ('tango',)
+
+
 def test_a_robot_that_cannot_be_spoken_goes_by_its_number():
     grammar = Grammar(LANGUAGE, ['zzzzzz', 'stop1'], WORDS.__contains__)
     assert grammar.parse('robot select two').robots == ('stop1',)
@@ -143,6 +155,6 @@ def test_a_robot_that_cannot_be_spoken_goes_by_its_number():
     assert len(grammar.notes) == 2
     gaps = Grammar(LANGUAGE, grammar.robots[:1] + ('', '') + grammar.robots[1:], WORDS.__contains__)
     assert gaps.parse('robot select four').robots == ('stop1',)
-    assert gaps.parse('robot select two') is None
+    assert gaps.parse('robot select two').kind == NOBODY
     # Above all, no robot's name becomes a stop or takes it away.
     assert grammar.parse('robot select stop one') == Command(STOP)

@@ -7,7 +7,10 @@ from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tupl
 from mhri.voice.language import GROUP_ACTIONS, Language, ROBOT_ACTIONS
 from mhri.voice.names import call_robots, number_words, numbered
 
-DRIVE, PACE, PANEL, MODE, STOP, WAKE = 'drive', 'pace', 'panel', 'mode', 'stop', 'wake'
+# Numbers up to this are known, whether a robot has them or not.
+MOST_SPOKEN = 20
+DRIVE, PACE, PANEL, MODE, STOP, WAKE, NOBODY = (
+    'drive', 'pace', 'panel', 'mode', 'stop', 'wake', 'nobody')
 _Words = Tuple[str, ...]
 
 
@@ -17,8 +20,8 @@ class Command:
 
     ``kind`` is DRIVE (``action``: a direction, ``manner``: '' or one of ``MANNERS``), PACE
     (``action``: faster or slower), PANEL (``action`` of ``mhri/PanelRequest``, ``robots``), MODE
-    (``action``: a source), STOP, or WAKE (the wake word alone). ``woken`` tells whether the wake
-    word came with it.
+    (``action``: a source), STOP, WAKE (the wake word alone), or NOBODY (``action``: what a robot
+    was meant for by a number that none has). ``woken`` tells whether the wake word came with it.
     """
 
     kind: str
@@ -81,6 +84,11 @@ class Grammar:
                 self._robots[' '.join([prefix, number_words(number)]).strip()] = name
         self._robots.update({phrase: name for name, phrases in self.called.items()
                              for phrase in phrases})
+        # Numbers that no robot has are known as well, and mean none: "select number four" would be
+        # taken for the motion that sounds most like it.
+        self._nobody = frozenset(
+            ' '.join([prefix, number_words(number)]).strip() for number in range(MOST_SPOKEN + 1)
+            for prefix in ('',) + language.numbers).difference(self._robots)
 
     def _fixed_phrases(self) -> Tuple[str, ...]:
         """Return every phrase that does not depend on the robots."""
@@ -95,7 +103,8 @@ class Grammar:
     def words(self) -> List[str]:
         """Every word of the grammar, sorted: what the recogniser's dictionary has to hold."""
         language = self.language
-        phrases = (self._fixed + tuple(self._robots) + language.joiners + language.please
+        phrases = (self._fixed + tuple(self._robots) + tuple(self._nobody) + language.joiners
+                   + language.please
                    + language.stop_before + language.stop_after)
         return sorted({word for phrase in phrases for word in phrase.split()})
 
@@ -129,15 +138,16 @@ class Grammar:
         if language.sources:
             others.append('{} {}'.format(_any_of(language.use), _any_of(
                 phrase for phrases in language.sources.values() for phrase in phrases)))
+        actions = [phrase for action in ROBOT_ACTIONS for phrase in language.robots[action]]
         if self._robots:
-            actions = [phrase for action in ROBOT_ACTIONS for phrase in language.robots[action]]
             more = (_seldom('({} <robot>)'.format(_any_of(language.joiners)))
                     if language.joiners else '')
             others.append('{} <robot> {}'.format(_any_of(actions), more))
+        others.append('{} <nobody>'.format(_any_of(actions)))
         please = _seldom(_any_of(language.please)) if language.please else ''
         before, after = ('[{}]'.format(_any_of(phrases)) if phrases else ''
                          for phrases in (language.stop_before, language.stop_after))
-        rules = ['#JSGF V1.0;', 'grammar mhri;']
+        rules = ['#JSGF V1.0;', 'grammar mhri;', '<nobody> = {};'.format(_any_of(self._nobody))]
         if self._robots:
             rules.append('<robot> = {};'.format(_any_of(self._robots)))
         rules += ['<command> = {};'.format(' | '.join(drives + others)),
@@ -213,11 +223,17 @@ class Grammar:
             for source, phrases in language.sources.items():
                 if ' '.join(rest) in phrases:
                     return Command(MODE, source)
+        return self._of_robots(words)
+
+    def _of_robots(self, words: _Words) -> Optional[Command]:
+        """Return what robots are chosen for by name or number, or None."""
         for action in ROBOT_ACTIONS:
-            for rest in _after(words, language.robots[action]):
+            for rest in _after(words, self.language.robots[action]):
                 robots = self._named(rest)
                 if robots:
                     return Command(PANEL, action, '', robots)
+                if ' '.join(rest) in self._nobody:
+                    return Command(NOBODY, action)
         return None
 
     def _named(self, words: _Words) -> Tuple[str, ...]:

@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass
 from typing import Optional, Tuple
 
-from mhri.voice.grammar import Command, DRIVE, MODE, PACE, PANEL, STOP, WAKE
+from mhri.voice.grammar import Command, DRIVE, MODE, NOBODY, PACE, PANEL, STOP, WAKE
 from mhri.voice.language import Language
 
 # axes[0] left +1, axes[1] forward +1, as the contract has it.
@@ -160,8 +160,8 @@ class VoiceRules:
         waiting, self._stop_due = self._stop_due is not None, None
         window, self._woken_until = self._woken_until, -math.inf
         heard = Heard(text, command.words if command else '', confidence=confidence)
-        problem = self._problem(command, confidence, began, window) or _too_old(
-            command, age_s, computed_s, spoken_on)
+        problem = (self._problem(command, confidence, began, window) or _meant_nobody(command)
+                   or _too_old(command, age_s, computed_s, spoken_on))
         recorder = command is not None and command.action == 'stop_recording'
         hidden = (confidence >= SURE_OF_STOP
                   and any(word in self._language.stop for word in text.split()))
@@ -225,6 +225,11 @@ class VoiceRules:
             self._pace(command.manner)
         self._direction = command.action
         self._until = now + (motion.little_s if command.manner == 'little' else motion.lasts_s)
+
+
+def _meant_nobody(command: Optional[Command]) -> str:
+    """Say that no robot is meant; '' where one may be."""
+    return 'no robot has that number' if command is not None and command.kind == NOBODY else ''
 
 
 def _too_old(command: Optional[Command], age_s: float, computed_s: float,

@@ -3,7 +3,6 @@
 """Joins the list of faults with the simulated robots; everything here runs on the GUI thread."""
 from mhri.base.part import Part
 from mhri.drill.gui.faults_page import FaultsPage, TITLE
-from mhri.drill.ros.faults_client import FaultsClient
 
 
 class FaultHost(Part):
@@ -16,6 +15,8 @@ class FaultHost(Part):
     @classmethod
     def of(cls, desk):
         """Return the one of a :class:`mhri.base.part.Desk`: below the doctor, if there is one."""
+        # The rest of this knows nothing of ROS.
+        from mhri.drill.ros.faults_client import FaultsClient
         doctor = desk.parts.get('doctor')
         return cls(doctor.page.add_part if doctor else desk.screen.arrangement.add_page,
                    FaultsClient())
