@@ -13,6 +13,7 @@ from mhri.base.names import topic_of
 from mhri.base.robot_types import resolve_robot_type, Seen
 from mhri.doctor.watchdog import DONE, unknown, verdict, WatchdogTrial
 from mhri.graph.ros.master_api import MasterApi, MasterError
+from mhri.graph.ros.messages import MessageMissing
 from mhri.graph.ros.resources import robot_types
 from mhri.graph.ros.rospy_inside import unsubscribe
 from mhri.msg import RobotSelect
@@ -69,7 +70,7 @@ def measure_watchdog(name):
         return _try(name, template)
     except _Refused as error:
         return unknown(name, *error.args)
-    except MasterError as error:
+    except (MasterError, MessageMissing) as error:
         return unknown(name, str(error), 'rosrun mhri mhri_doctor')
 
 

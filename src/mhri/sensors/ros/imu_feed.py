@@ -11,7 +11,7 @@ import rospy
 from mhri.base.names import topic_of
 from mhri.base.plausible import ACCELERATION, ANGULAR_VELOCITY, QUATERNION, sifted, SPEED
 from mhri.base.series import BinRing, IMU_KEYS, ODOMETRY_KEYS, roll_pitch_yaw, Series
-from mhri.graph.ros.messages import message_class
+from mhri.graph.ros.messages import message_class, MessageMissing
 from mhri.graph.ros.refusals import Refusals
 from mhri.graph.ros.rospy_inside import unsubscribe
 
@@ -154,9 +154,8 @@ class ImuFeed:
             names = [topic_of(robot, topic) for topic in topics]
             try:
                 self._intakes[keys] = _Intake(names, message_type, keys, prepare, clock)
-            except ImportError:
-                rospy.logwarn('%s: no graph of its odometry, %s is not installed here', robot,
-                              message_type)
+            except MessageMissing as error:
+                rospy.logwarn('%s: no graph of its odometry: %s', robot, error)
 
     def open(self):
         """Start listening (blocking: it asks the master)."""
