@@ -230,8 +230,8 @@ class Player:
         """Play until the node ends."""
         try:
             self._play()
-        except rospy.ROSException:
-            # Its topics are closed before this thread hears of it.
+        except (rospy.ROSException, AttributeError):
+            # Shutdown closed a topic. In the middle of publish(), rospy fails on a buffer of None.
             if not rospy.is_shutdown():
                 raise
 
