@@ -21,7 +21,7 @@ def test_without_an_answer_there_is_none_and_it_is_said(wait_s):
 def test_who_asks_does_not_wait_and_is_told():
     node, answers = NodeClient('asking', wait_s=0.3), queue.Queue()
     begun = time.monotonic()
-    node.ask(answers.put, '/nobody/asks', Trigger)
+    node.request(answers.put, '/nobody/asks', Trigger)
     assert time.monotonic() - begun < 0.3
     assert answers.get(timeout=60.0) is None
     node.close()
@@ -33,3 +33,25 @@ def test_jobs_are_done_in_their_order_one_at_a_time():
         node.do(done.put, number)
     assert [done.get(timeout=60.0) for _ in range(100)] == list(range(100))
     node.close()
+
+
+class Topic:
+    """A topic that counts how often it is unregistered."""
+
+    def __init__(self, *_, **__):
+        self.ended = 0
+
+    def unregister(self):
+        self.ended += 1
+
+
+def test_a_topic_opened_while_the_client_is_closed_is_unregistered(monkeypatch):
+    monkeypatch.setattr('rospy.Publisher', Topic)
+    node = NodeClient('closing')
+    before = node.advertise('/a', None, 1)
+    node.close()
+    assert before.ended == 0, 'a program that ends unregisters nothing'
+    node.unregister()
+    assert before.ended == 1 and node.advertise('/b', None, 1).ended == 1
+    node.unregister()
+    assert before.ended == 1

@@ -1,23 +1,23 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a subject adds to the screen: pages, lines, buttons and keys, all of one shape.
+"""What a subject adds to the screen: pages, lines, buttons and keys, all with one interface.
 
-A row of :mod:`mhri.screen.parts` names each; the screen makes, shows and closes them in turn and
-knows none by its name. One that is not there is missed by nobody.
+Each has a row in :mod:`mhri.screen.parts`. The screen creates, updates and closes them in a loop
+and knows none of them by name: everything else works without them.
 """
 from dataclasses import dataclass
 from typing import Any, Callable, Mapping, Optional
 
 
 @dataclass(frozen=True)
-class Desk:
-    """What a part may use.
+class ScreenContext:
+    """What a part may use of the screen.
 
     :param screen: :class:`mhri.screen.gui.screen.ScreenWidget`
     :param backend: :class:`mhri.screen.ros.backend.ScreenBackend`
     :param events: :class:`mhri.screen.presenters.event_host.EventHost`
     :param save_stills: saves every picture on show
-    :param parts: {key: part} of those made before
+    :param parts: {key: part} of those created before
     """
 
     screen: Any
@@ -28,22 +28,22 @@ class Desk:
 
 
 class Part:
-    """One part; everything is called on the GUI thread and returns at once.
+    """One part; every method is called on the GUI thread and returns at once.
 
-    A part is made by its class method ``of(desk)``, of a :class:`Desk`.
+    Its class method ``of(context)`` creates it from a :class:`ScreenContext`.
     """
 
     #: for how long this part has been recording the session [s], None while it is not
     recorded_s: Optional[float] = None
 
     def show_view(self, view: Any) -> None:
-        """Take in the :class:`mhri.base.views.PanelView` of this moment."""
+        """Update it from the newest :class:`mhri.base.views.PanelView`."""
 
     def mark(self) -> None:
-        """Mark this moment, if that is this part's job."""
+        """Mark this moment, if this part records it."""
 
     def disable(self) -> None:
-        """Take away what would do something: the screen only looks, at a replay."""
+        """Disable whatever acts on robots or files: the screen shows a replay."""
 
     def close(self) -> None:
         """End."""

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The parts of the screen that it can do without: a row each, in the order in which they appear."""
+"""The optional parts of the screen, a row each, in the order in which they appear."""
 from typing import Tuple
 
 # (key, class): see :mod:`mhri.base.part`.

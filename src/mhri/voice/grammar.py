@@ -7,8 +7,8 @@ from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tupl
 from mhri.voice.language import GROUP_ACTIONS, Language, ROBOT_ACTIONS
 from mhri.voice.names import call_robots, number_words, numbered
 
-# Numbers up to this are known, whether a robot has them or not.
-MOST_SPOKEN = 20
+# Numbers up to this are recognised, whether a robot has them or not.
+MAX_NUMBER = 20
 DRIVE, PACE, PANEL, MODE, STOP, WAKE, NOBODY = (
     'drive', 'pace', 'panel', 'mode', 'stop', 'wake', 'nobody')
 _Words = Tuple[str, ...]
@@ -84,10 +84,10 @@ class Grammar:
                 self._robots[' '.join([prefix, number_words(number)]).strip()] = name
         self._robots.update({phrase: name for name, phrases in self.called.items()
                              for phrase in phrases})
-        # Numbers that no robot has are known as well, and mean none: "select number four" would be
-        # taken for the motion that sounds most like it.
+        # Unassigned numbers are recognised, too: otherwise "select number four" could be mistaken
+        # for a motion that sounds like it.
         self._nobody = frozenset(
-            ' '.join([prefix, number_words(number)]).strip() for number in range(MOST_SPOKEN + 1)
+            ' '.join([prefix, number_words(number)]).strip() for number in range(MAX_NUMBER + 1)
             for prefix in ('',) + language.numbers).difference(self._robots)
 
     def _fixed_phrases(self) -> Tuple[str, ...]:

@@ -40,9 +40,9 @@ class PadHost(QObject, Part):
     _written = Signal(bool, str, bool)
 
     @classmethod
-    def of(cls, desk):
-        """Return the one of a :class:`mhri.base.part.Desk`."""
-        return cls(desk.backend, desk.screen, parent=desk.screen)
+    def of(cls, context):
+        """Create it from a :class:`mhri.base.part.ScreenContext`."""
+        return cls(context.backend, context.screen, parent=context.screen)
 
     def __init__(self, operator, screen, program=None, parent=None):
         super().__init__(parent)

@@ -19,9 +19,9 @@ class DoctorHost(Part):
     """
 
     @classmethod
-    def of(cls, desk):
-        """Return the one of a :class:`mhri.base.part.Desk`."""
-        return cls(desk.screen)
+    def of(cls, context):
+        """Create it from a :class:`mhri.base.part.ScreenContext`."""
+        return cls(context.screen)
 
     def __init__(self, screen):
         self._screen = screen

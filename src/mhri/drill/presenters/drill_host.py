@@ -18,9 +18,9 @@ class DrillHost(Part):
     """
 
     @classmethod
-    def of(cls, desk):
-        """Return the one of a :class:`mhri.base.part.Desk`."""
-        return cls(desk.screen, desk.events.note, DrillClient(), desk.backend.wall)
+    def of(cls, context):
+        """Create it from a :class:`mhri.base.part.ScreenContext`."""
+        return cls(context.screen, context.events.note, DrillClient(), context.backend.wall)
 
     def __init__(self, screen, note, client, wall):
         self.line, self._note = DrillLine(screen.foot), note

@@ -13,12 +13,12 @@ class FaultHost(Part):
     """
 
     @classmethod
-    def of(cls, desk):
-        """Return the one of a :class:`mhri.base.part.Desk`: below the doctor, if there is one."""
-        # The rest of this knows nothing of ROS.
+    def of(cls, context):
+        """Create it; its page goes below the doctor's, if there is one."""
+        # Imported here so that the rest can be tested without ROS.
         from mhri.drill.ros.faults_client import FaultsClient
-        doctor = desk.parts.get('doctor')
-        return cls(doctor.page.add_part if doctor else desk.screen.arrangement.add_page,
+        doctor = context.parts.get('doctor')
+        return cls(doctor.page.add_part if doctor else context.screen.arrangement.add_page,
                    FaultsClient())
 
     def __init__(self, add, client):

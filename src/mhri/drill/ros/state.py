@@ -61,7 +61,7 @@ class DrillClient:
 
     def start(self):
         """Begin; call it after ``rospy.init_node``. Returns at once."""
-        self._node.do(self._node.hear, DRILL, DrillState, self._hear, 10)
+        self._node.do(self._node.subscribe, DRILL, DrillState, self._hear, 10)
 
     def _hear(self, state):
         if not math.isfinite(state.elapsed_s + state.limit_s):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A node as another program sees it: what it says, what it is told, calls to its services."""
+"""The client side of another node: its topics, and calls to its services."""
 import threading
 
 import rospy
@@ -26,47 +26,58 @@ def call(service, kind, *words, wait_s=0.0, log=rospy.logwarn):
 
 
 class NodeClient:
-    """One node, from elsewhere.
+    """The client of one node; a thread of its own does what may block.
 
-    :param label: the name of the thread on which everything is done that waits
-    :param owner: a service of the node: only who serves it is heard; '': anybody is
+    :param label: the name of that thread
+    :param owner: a service of the node: only messages of the node that serves it are accepted; '':
+        those of any node
     :param wait_s: how long a call waits for its service [s]
-    :param refuse: called with (caller, topic) of a message that is not the node's own
-    :param on_new: called with its caller id when another process is the node
+    :param refuse: called with (caller, topic) of a message that is not accepted
+    :param on_new: called with the caller id when another process serves ``owner``
     """
 
     def __init__(self, label, owner='', wait_s=1.0, refuse=lambda caller, topic: None,
                  on_new=lambda caller: None):
         self._wait_s = wait_s
         self._force = InForce(owner, refuse, on_new) if owner else None
+        self._lock = threading.Lock()
         self._topics = []
+        self._forgotten = False
         self._worker = Worker(label).start()
 
     @property
     def caller(self):
-        """Caller id of the node that is heard, '' while unknown, or where anybody is."""
+        """Caller id of the accepted node; '' while it is unknown, or without an owner."""
         return self._force.caller if self._force else ''
 
     def do(self, job, *words):
-        """Have something done on the thread; return at once."""
+        """Run a job on the thread; return at once."""
         self._worker.do(job, *words)
 
-    def hear(self, topic, kind, hear, queue_size=1):
+    def subscribe(self, topic, kind, callback, queue_size=1):
         """Return a new subscriber (blocking: it asks the master)."""
         subscribe = self._force.subscribe if self._force else rospy.Subscriber
-        self._topics.append(subscribe(topic, kind, hear, queue_size=queue_size, tcp_nodelay=True))
-        return self._topics[-1]
+        return self._keep(subscribe(topic, kind, callback, queue_size=queue_size,
+                                    tcp_nodelay=True))
 
-    def say(self, topic, kind, queue_size):
+    def advertise(self, topic, kind, queue_size):
         """Return a new publisher (blocking: it asks the master)."""
-        self._topics.append(rospy.Publisher(topic, kind, queue_size=queue_size))
-        return self._topics[-1]
+        return self._keep(rospy.Publisher(topic, kind, queue_size=queue_size))
 
-    def watch(self):
-        """Find out who the node is, now that every topic is heard; return at once."""
+    def _keep(self, topic):
+        """Keep a topic to unregister it later; at once, if the client was closed meanwhile."""
+        with self._lock:
+            self._topics.append(topic)
+            forgotten = self._forgotten
+        if forgotten:
+            topic.unregister()
+        return topic
+
+    def start(self):
+        """Find out which node serves ``owner``; call it after subscribing. Return at once."""
         self._force.start()
 
-    def ask(self, on_answer, service, kind, *words):
+    def request(self, on_answer, service, kind, *words):
         """Call a service; return at once.
 
         :param on_answer: called on the thread with the answer, None where there is none
@@ -86,5 +97,8 @@ class NodeClient:
 
     def unregister(self):
         """Unregister every topic (blocking: it asks the master)."""
-        for topic in self._topics:
+        with self._lock:
+            self._forgotten = True
+            topics, self._topics = self._topics, []
+        for topic in topics:
             topic.unregister()

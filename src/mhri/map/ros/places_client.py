@@ -68,9 +68,9 @@ class PlacesClient:
         """Listen from now on (blocking: it asks the master)."""
         if not self._opened:
             self._opened = True
-            self._node.hear('/mhri_tasks/places', Places, self._on_places)
-            self._node.hear('/mhri_tasks/list', TaskList, self._on_list)
-            self._node.watch()
+            self._node.subscribe('/mhri_tasks/places', Places, self._on_places)
+            self._node.subscribe('/mhri_tasks/list', TaskList, self._on_list)
+            self._node.start()
 
     def _on_places(self, message):
         self._places = places_view(message), self._clock()
@@ -117,7 +117,7 @@ class PlacesClient:
                 on_answer(False, 'the task service does not answer')
             else:
                 on_answer(answer.success, tidy_text(answer.message, _LONGEST))
-        self._node.ask(answered, name, kind, *words)
+        self._node.request(answered, name, kind, *words)
 
     def close(self, forget=False):
         """End; returns at once. ``forget``: unregister every topic as well, in the background."""

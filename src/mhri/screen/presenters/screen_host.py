@@ -13,7 +13,7 @@ from python_qt_binding.QtWidgets import QApplication
 
 from mhri.base.gui.words import remote_stick_texts
 from mhri.base.names import tidy_name
-from mhri.base.part import Desk
+from mhri.base.part import ScreenContext
 from mhri.base.remote_display import HELD_S
 from mhri.base.view_rows import load
 from mhri.base.views import GONE, SILENT
@@ -70,9 +70,10 @@ class ScreenHost(QObject):
         self.map = MapHost(operator, self.screen, self.tasks)
         #: {key: :class:`mhri.base.part.Part`} of :data:`mhri.screen.parts.PARTS`
         self.parts = {}
-        desk = Desk(self.screen, operator, self.events, self.tiles.save_stills, self.parts)
+        context = ScreenContext(self.screen, operator, self.events, self.tiles.save_stills,
+                                self.parts)
         for key, made_by in PARTS:
-            self.parts[key] = load(made_by).of(desk)
+            self.parts[key] = load(made_by).of(context)
         self.screen.doctor_button.setVisible(
             self.screen.receivers(self.screen.doctor_requested) > 0)
         self._connect()

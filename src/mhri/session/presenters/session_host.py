@@ -27,9 +27,9 @@ class SessionHost(Part):
     """
 
     @classmethod
-    def of(cls, desk):
-        """Return the one of a :class:`mhri.base.part.Desk`."""
-        return cls(desk.screen, desk.events, desk.save_stills)
+    def of(cls, context):
+        """Create it from a :class:`mhri.base.part.ScreenContext`."""
+        return cls(context.screen, context.events, context.save_stills)
 
     def __init__(self, screen, events, save_stills, client=None):
         self._screen = screen
@@ -162,9 +162,9 @@ class ShelfHost(Part):
     """
 
     @classmethod
-    def of(cls, desk):
-        """Return the one of a :class:`mhri.base.part.Desk`."""
-        return cls(desk.screen)
+    def of(cls, context):
+        """Create it from a :class:`mhri.base.part.ScreenContext`."""
+        return cls(context.screen)
 
     def __init__(self, screen, shelf=None):
         self._shelf = shelf or SessionShelf()

@@ -46,9 +46,9 @@ class SessionClient:
 
     def _connect(self):
         """Open every topic (on the worker: it asks the master)."""
-        self._events = self._node.say(PANEL_EVENTS, SessionEvent, queue_size=200)
-        self._pictures = self._node.say(PICTURES, SeenPicture, queue_size=4)
-        self._subscriber = self._node.hear('/mhri_session/state', SessionState, self._hear, 5)
+        self._events = self._node.advertise(PANEL_EVENTS, SessionEvent, queue_size=200)
+        self._pictures = self._node.advertise(PICTURES, SeenPicture, queue_size=4)
+        self._subscriber = self._node.subscribe('/mhri_session/state', SessionState, self._hear, 5)
         PASSED_ON.open(self._pictures)
 
     def _hear(self, message):
@@ -97,8 +97,8 @@ class SessionClient:
 
     def _ask(self, name, kind, *words):
         """Call a service of the recorder."""
-        self._node.ask(lambda answer: self._answer(name, answer), '/mhri_session/' + name, kind,
-                       *words)
+        self._node.request(lambda answer: self._answer(name, answer), '/mhri_session/' + name, kind,
+                           *words)
 
     def _answer(self, name, answer):
         self.answers.put(

@@ -63,12 +63,13 @@ class TasksClient:
 
     def _connect(self):
         """Open every topic (on the worker: it asks the master)."""
-        self._goal = self._node.say('/mhri_tasks/run/goal', RunTaskActionGoal, 20)
-        self._cancel = self._node.say('/mhri_tasks/run/cancel', GoalID, 20)
-        heard = self._node.hear('/mhri_tasks/list', TaskList, self._hear_list, 50)
-        self._node.hear('/mhri_tasks/run/feedback', RunTaskActionFeedback, self._hear_feedback, 50)
-        self._node.hear('/mhri_tasks/run/result', RunTaskActionResult, self._hear_result, 50)
-        self._node.watch()
+        self._goal = self._node.advertise('/mhri_tasks/run/goal', RunTaskActionGoal, 20)
+        self._cancel = self._node.advertise('/mhri_tasks/run/cancel', GoalID, 20)
+        heard = self._node.subscribe('/mhri_tasks/list', TaskList, self._hear_list, 50)
+        self._node.subscribe('/mhri_tasks/run/feedback', RunTaskActionFeedback,
+                             self._hear_feedback, 50)
+        self._node.subscribe('/mhri_tasks/run/result', RunTaskActionResult, self._hear_result, 50)
+        self._node.start()
         self._list = heard
 
     def _on_new(self, _):
@@ -158,8 +159,8 @@ class TasksClient:
                 self._book.cancel(goal_id, some)
         for goal_id, some in parts:
             if some:
-                self._node.ask(lambda answer, robots=some: self._ended(robots, answer), _END,
-                               EndTask, some)
+                self._node.request(lambda answer, robots=some: self._ended(robots, answer), _END,
+                                   EndTask, some)
             else:
                 self._cancel.publish(GoalID(id=goal_id))
         return bool(parts)
